@@ -1,0 +1,267 @@
+//! What a generated model offers: names, units, meanings, dimensions, and the typed tables of
+//! its modes and transitions. Everything here is `'static` data emitted by `codegen/` (one
+//! `Model` a folder under `models/`); the numbers behind it are computed in [`crate::kernel`].
+
+use crate::kernel::{ConstantsKernel, ModeKernels, TransitionKernel};
+
+/// A model: one folder under `models/`.
+#[derive(Debug)]
+pub struct Model {
+    /// Folder name, which is also the name a scene uses.
+    pub name: &'static str,
+    /// One line that says what the model is.
+    pub title: &'static str,
+    /// Where the model comes from (author, year).
+    pub source: &'static str,
+    /// Generalized coordinates, in the order of every `q`, `v`, `a` and reaction vector.
+    pub coordinates: &'static [Coordinate],
+    /// Prescribed motions of the ground, in the order of the base reactions.
+    pub motions: &'static [Motion],
+    /// Parameters, in the order of the raw parameter vector.
+    pub parameters: &'static [Parameter],
+    /// Named parameter sets (`"parameters": {"set": "full_plate"}`).
+    pub parameter_sets: &'static [ParameterSet],
+    /// Inputs a scene may prescribe.
+    pub inputs: &'static [Input],
+    /// Discrete states, changed by transitions only.
+    pub discretes: &'static [Discrete],
+    /// Modelling choices of a scene, such as the rule set; each combination is a [`Variant`].
+    pub choices: &'static [Choice],
+    /// One variant per combination of choices.
+    pub variants: &'static [Variant],
+    /// True for models that exist for the test suite alone.
+    pub for_tests: bool,
+}
+
+/// A generalized coordinate and its velocity.
+#[derive(Debug)]
+pub struct Coordinate {
+    /// Name.
+    pub name: &'static str,
+    /// Unit of the coordinate; the velocity has `unit/s`.
+    pub unit: &'static str,
+    /// Meaning and sign.
+    pub meaning: &'static str,
+    /// Unit of the reaction (generalized force) of this coordinate.
+    pub reaction_unit: &'static str,
+    /// Typical magnitude, in `unit`; the default absolute tolerance is relative tolerance × scale.
+    pub scale: f64,
+    /// Typical magnitude of the velocity, in `unit/s`.
+    pub rate_scale: f64,
+    /// Lower bound that every admissible state respects, if any (`theta >= 0`).
+    pub minimum: Option<f64>,
+}
+
+/// A prescribed motion of the ground along one axis.
+#[derive(Debug)]
+pub struct Motion {
+    /// Name (`z_h`).
+    pub name: &'static str,
+    /// Unit of the displacement.
+    pub unit: &'static str,
+    /// Unit of the base reaction: the force the ground exerts on the system along the axis.
+    pub reaction_unit: &'static str,
+    /// Meaning and sign.
+    pub meaning: &'static str,
+}
+
+/// A parameter.
+#[derive(Debug)]
+pub struct Parameter {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Meaning.
+    pub meaning: &'static str,
+    /// Value when a scene says nothing.
+    pub default: f64,
+    /// Smallest admissible value; exclusive where `minimum_exclusive`.
+    pub minimum: f64,
+    /// Whether `minimum` itself is inadmissible (a mass that must be positive).
+    pub minimum_exclusive: bool,
+    /// Largest admissible value (may be infinite).
+    pub maximum: f64,
+    /// Name of a parameter that this one must not exceed (μ_k ≤ μ_s).
+    pub at_most: Option<&'static str>,
+}
+
+/// Named values for some of the parameters.
+#[derive(Debug)]
+pub struct ParameterSet {
+    /// Name.
+    pub name: &'static str,
+    /// What the set describes, with its source.
+    pub meaning: &'static str,
+    /// `(parameter name, value)` pairs; parameters not named keep their default.
+    pub values: &'static [(&'static str, f64)],
+}
+
+/// What an input prescribes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputKind {
+    /// An acceleration of the ground. It fills three signals: acceleration, velocity,
+    /// displacement; the last two start from rest at t = 0.
+    Acceleration,
+    /// Any other function of time (a force, say). It fills one signal.
+    Value,
+}
+
+/// A prescribed function of time.
+#[derive(Debug)]
+pub struct Input {
+    /// Name.
+    pub name: &'static str,
+    /// Unit of what a scene prescribes.
+    pub unit: &'static str,
+    /// Meaning and sign.
+    pub meaning: &'static str,
+    /// Which signals it fills.
+    pub kind: InputKind,
+    /// Index of its first signal in the vector of signals.
+    pub signal: usize,
+}
+
+/// A discrete state.
+#[derive(Debug)]
+pub struct Discrete {
+    /// Name.
+    pub name: &'static str,
+    /// Admissible values; the first is the default.
+    pub values: &'static [f64],
+    /// Meaning.
+    pub meaning: &'static str,
+}
+
+/// A modelling choice of a scene (a top-level key of the scene file).
+#[derive(Debug)]
+pub struct Choice {
+    /// Name, such as `rules`.
+    pub name: &'static str,
+    /// The alternatives, such as `reactions`, `paper`.
+    pub options: &'static [&'static str],
+    /// Meaning.
+    pub meaning: &'static str,
+}
+
+/// The hybrid automaton for one combination of choices.
+#[derive(Debug)]
+pub struct Variant {
+    /// Chosen option of each choice, by name, in the order of [`Model::choices`].
+    pub options: &'static [&'static str],
+    /// Whether this variant takes, for every choice not named by a scene, that choice's default
+    /// given the ones it names. (Defaults may depend on other choices.)
+    pub defaults: &'static [bool],
+    /// What depends on parameters alone; evaluated once a run.
+    pub constants: ConstantsKernel,
+    /// The modes; the first is where a scene starts when it names none and several fit.
+    pub modes: &'static [Mode],
+}
+
+/// A mode: which coordinates are free, and the functions of the reduced system.
+#[derive(Debug)]
+pub struct Mode {
+    /// Name.
+    pub name: &'static str,
+    /// Meaning.
+    pub meaning: &'static str,
+    /// Indices of the free coordinates, increasing.
+    pub free: &'static [usize],
+    /// Value at which a frozen coordinate is held; `None`: wherever it was. One entry a coordinate.
+    pub held_at: &'static [Option<f64>],
+    /// Guards of this mode, in the order of the guards function.
+    pub guards: &'static [Guard],
+    /// What must stay positive in this mode, in the order of the requirements function.
+    pub requirements: &'static [Requirement],
+    /// Reactions this mode reports: coordinate indices that are frozen, then `N + m` for motion m.
+    pub reactions: &'static [usize],
+    /// Index of the mode at the limit of an accumulation of this mode's events, if one is declared.
+    pub rest: Option<usize>,
+    /// Generated functions, typed by the number of free coordinates.
+    pub kernels: ModeKernels,
+    /// Operation counts of the generated functions, by name.
+    pub operations: &'static [(&'static str, usize)],
+}
+
+/// A continuous scalar whose fall through zero makes the mode inadmissible.
+#[derive(Debug)]
+pub struct Guard {
+    /// Name, as errors print it.
+    pub name: &'static str,
+    /// The guard as text, for `describe`.
+    pub text: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Its dependence, which decides how its roots are isolated.
+    pub shape: GuardShape,
+    /// Transitions this guard can trigger, tried in order: the first whose condition holds is taken.
+    pub transitions: &'static [Transition],
+}
+
+/// How a guard depends on the state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GuardShape {
+    /// `sign × q[i] + offset-free`: a free coordinate itself (index among the free ones).
+    Coordinate {
+        /// Index among the mode's free coordinates.
+        index: usize,
+        /// Factor; for `Discrete` factors the general shape is used.
+        factor: f64,
+    },
+    /// A function of state, accelerations, signals and parameters.
+    General,
+}
+
+/// Guard → next mode, with a map of the state.
+#[derive(Debug)]
+pub struct Transition {
+    /// Name, as events list it.
+    pub name: &'static str,
+    /// Index of the next mode.
+    pub target: usize,
+    /// Whether the transition is taken only if its condition, evaluated in the target mode after
+    /// the reset, is ≥ 0.
+    pub conditional: bool,
+    /// Names of what the reset may change (coordinates, `theta.rate`, discretes).
+    pub changes: &'static [&'static str],
+    /// Whether it is an impact: velocities may jump and energy may be lost.
+    pub impact: bool,
+    /// The generated reset.
+    pub kernel: TransitionKernel,
+}
+
+/// Something that must stay positive for the mode to mean anything (N > 0).
+#[derive(Debug)]
+pub struct Requirement {
+    /// The requirement as text.
+    pub text: &'static str,
+    /// What its failure means, in words.
+    pub failure: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+}
+
+impl Model {
+    /// Number of signals that the inputs fill.
+    pub fn signal_count(&self) -> usize {
+        self.inputs.iter().map(|i| i.kind.signals()).sum()
+    }
+    /// Index of a coordinate by name.
+    pub fn coordinate(&self, name: &str) -> Option<usize> {
+        self.coordinates.iter().position(|c| c.name == name)
+    }
+    /// Index of a parameter by name.
+    pub fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|p| p.name == name)
+    }
+}
+
+impl InputKind {
+    /// How many signals an input of this kind fills.
+    pub fn signals(self) -> usize {
+        match self {
+            InputKind::Acceleration => 3,
+            InputKind::Value => 1,
+        }
+    }
+}
