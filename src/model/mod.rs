@@ -2,7 +2,7 @@
 //! its modes and transitions. Everything here is `'static` data emitted by `codegen/` (one
 //! `Model` a folder under `models/`); the numbers behind it are computed in [`crate::kernel`].
 
-use crate::kernel::{ConstantsKernel, ModeKernels, TransitionKernel};
+use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
 
 /// A model: one folder under `models/`.
 #[derive(Debug)]
@@ -27,6 +27,8 @@ pub struct Model {
     pub discretes: &'static [Discrete],
     /// Modelling choices of a scene, such as the rule set; each combination is a [`Variant`].
     pub choices: &'static [Choice],
+    /// What depends on parameters alone; evaluated once a run.
+    pub constants: ConstantsKernel,
     /// One variant per combination of choices.
     pub variants: &'static [Variant],
     /// True for models that exist for the test suite alone.
@@ -149,11 +151,9 @@ pub struct Choice {
 pub struct Variant {
     /// Chosen option of each choice, by name, in the order of [`Model::choices`].
     pub options: &'static [&'static str],
-    /// Whether this variant takes, for every choice not named by a scene, that choice's default
-    /// given the ones it names. (Defaults may depend on other choices.)
+    /// Whether each chosen option is the default, given the choices made before it. A scene gets
+    /// the variant that has the options it names and the default for every other choice.
     pub defaults: &'static [bool],
-    /// What depends on parameters alone; evaluated once a run.
-    pub constants: ConstantsKernel,
     /// The modes; the first is where a scene starts when it names none and several fit.
     pub modes: &'static [Mode],
 }
@@ -173,8 +173,8 @@ pub struct Mode {
     pub guards: &'static [Guard],
     /// What must stay positive in this mode, in the order of the requirements function.
     pub requirements: &'static [Requirement],
-    /// Reactions this mode reports: coordinate indices that are frozen, then `N + m` for motion m.
-    pub reactions: &'static [usize],
+    /// Rate of each frozen coordinate that drifts (a belt); false: it rests. One entry a coordinate.
+    pub drifts: &'static [bool],
     /// Index of the mode at the limit of an accumulation of this mode's events, if one is declared.
     pub rest: Option<usize>,
     /// Generated functions, typed by the number of free coordinates.
@@ -194,6 +194,8 @@ pub struct Guard {
     pub unit: &'static str,
     /// Its dependence, which decides how its roots are isolated.
     pub shape: GuardShape,
+    /// The generated guard and its derivative along the flow.
+    pub kernel: GuardKernel,
     /// Transitions this guard can trigger, tried in order: the first whose condition holds is taken.
     pub transitions: &'static [Transition],
 }
@@ -201,15 +203,24 @@ pub struct Guard {
 /// How a guard depends on the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GuardShape {
-    /// `sign × q[i] + offset-free`: a free coordinate itself (index among the free ones).
-    Coordinate {
+    /// A free coordinate or its rate, times a factor: a polynomial on a step's dense output.
+    Linear {
         /// Index among the mode's free coordinates.
         index: usize,
-        /// Factor; for `Discrete` factors the general shape is used.
+        /// Whether it is the rate rather than the coordinate.
+        rate: bool,
+        /// Constant factor.
         factor: f64,
+        /// Index of a discrete state that is a further factor.
+        discrete: Option<usize>,
     },
     /// A function of state, accelerations, signals and parameters.
-    General,
+    General {
+        /// Whether it depends on the accelerations of the free coordinates.
+        accelerations: bool,
+        /// Whether it depends on the signals.
+        signals: bool,
+    },
 }
 
 /// Guard → next mode, with a map of the state.

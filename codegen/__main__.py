@@ -1,0 +1,35 @@
+"""Command line of the package: `python -m codegen generate --model-dir DIR --out DIR`."""
+
+import argparse
+import os
+import sys
+
+from .errors import ModelError
+
+
+def main(argv):
+    """Runs a command; returns the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m codegen", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    generator = commands.add_parser("generate", help="write C, Rust tables and manifest of models")
+    generator.add_argument("--model-dir", action="append", required=True, help="a folder with a model.py")
+    generator.add_argument("--out", required=True, help="output root; each model gets a folder in it")
+    generator.add_argument("--for-tests", action="store_true", help="mark the models as test models")
+    arguments = parser.parse_args(argv)
+    from .generate import generate
+    try:
+        for folder in arguments.model_dir:
+            files = generate(folder, arguments.for_tests)
+            target = os.path.join(arguments.out, os.path.basename(os.path.normpath(folder)))
+            os.makedirs(target, exist_ok=True)
+            for name, text in files.items():
+                with open(os.path.join(target, name), "w", encoding="utf-8", newline="\n") as stream:
+                    stream.write(text)
+    except ModelError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,304 @@
+"""From energies to the equations of each mode.
+
+With the motions z of the ground appended as prescribed coordinates, the residual of coordinate i is
+
+    r_i = Σ_bodies m J_iᵀ(J a + J̇ v) + I φ_i φ̈ + d/dt ∂T/∂v_i − ∂T/∂q_i + ∂V/∂q_i + ∂D/∂v_i − Q_i
+
+(virtual power over the bodies; Lagrange's equations for what is not a body). A frozen coordinate
+stays in the energies and only its motion is removed, so that its r_i is the reaction.
+"""
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from . import graph, units
+from .errors import ModelError
+
+ENERGY = units.parse("kg m^2/s^2")
+
+
+@dataclass
+class Configuration:
+    """Coordinates, rates and accelerations with the ground motions appended, as columns."""
+
+    q: ca.SX
+    v: ca.SX
+    a: ca.SX
+
+
+def configuration(model):
+    """All coordinates and ground motions of a model."""
+    symbols = [c.symbol for c in model.coordinates + model.motions]
+    return Configuration(
+        ca.vertcat(*symbols) if symbols else ca.SX(0, 1),
+        ca.vertcat(*[s.rate for s in symbols]),
+        ca.vertcat(*[s.acceleration for s in symbols]),
+    )
+
+
+def inertial_position(model, body):
+    """Position of a body in the inertial frame: relative position plus motion of the ground."""
+    position = list(body.position)
+    for motion in model.motions:
+        position[motion.axis] = position[motion.axis] + motion.symbol
+    return ca.vertcat(*position)
+
+
+def total_time_derivative(expression, x):
+    """d/dt of an expression in (q, v)."""
+    return ca.jtimes(expression, x.q, x.v) + ca.jtimes(expression, x.v, x.a)
+
+
+def kinetic_energy(model):
+    """T in the inertial frame, as a scalar expression."""
+    x = configuration(model)
+    energy = sum(model.kinetic_terms, ca.SX(0))
+    for body in model.bodies:
+        velocity = ca.jtimes(inertial_position(model, body), x.q, x.v)
+        energy += body.mass * ca.dot(velocity, velocity) / 2
+        if body.angle is not None:
+            energy += body.inertia * ca.jtimes(body.angle, x.q, x.v) ** 2 / 2
+    return energy
+
+
+def potential_energy(model):
+    """V: weight of the bodies and the declared potentials."""
+    energy = sum(model.potentials, ca.SX(0))
+    for body in model.bodies:
+        energy += body.mass * model.gravity_constant * inertial_position(model, body)[1]
+    return energy
+
+
+def residual_from_bodies(model):
+    """r by virtual power over the bodies (the form that gives the cheapest code)."""
+    x = configuration(model)
+    residual = _lagrange(model, sum(model.kinetic_terms, ca.SX(0)), sum(model.potentials, ca.SX(0)), x)
+    weight = ca.vertcat(0, model.gravity_constant)
+    for body in model.bodies:
+        residual += body.mass * _virtual_power(inertial_position(model, body), x, weight)
+        if body.angle is not None:
+            residual += body.inertia * _virtual_power(body.angle, x, 0)
+    return residual
+
+
+def residual_from_energies(model):
+    """r by Lagrange's equations from T and V as expressions; the check of the body form."""
+    return _lagrange(model, kinetic_energy(model), potential_energy(model), configuration(model))
+
+
+def _virtual_power(place, x, weight):
+    """Jᵀ(J a + J̇ v + weight) of a position or an angle."""
+    jacobian = ca.jacobian(place, x.q)
+    velocity = jacobian @ x.v
+    acceleration = jacobian @ x.a + ca.jtimes(velocity, x.q, x.v)
+    return jacobian.T @ (acceleration + weight)
+
+
+def _lagrange(model, kinetic, potential, x):
+    momentum = ca.jacobian(kinetic, x.v).T
+    residual = total_time_derivative(momentum, x) - ca.jacobian(kinetic, x.q).T
+    residual += ca.jacobian(potential, x.q).T
+    residual += ca.jacobian(sum(model.dissipations, ca.SX(0)), x.v).T
+    for coordinate, force in model.external:
+        residual[_index(model, coordinate.name())] -= force
+    return ca.densify(residual)
+
+
+def _index(model, name):
+    return next(i for i, c in enumerate(model.coordinates + model.motions) if c.name == name)
+
+
+@dataclass
+class Substitution:
+    """Replacement of symbols by expressions."""
+
+    old: list
+    new: list
+
+    def __call__(self, expression):
+        if not self.old:
+            return expression
+        return ca.substitute(expression, ca.vertcat(*self.old), ca.vertcat(*self.new))
+
+
+class ModeEquations:
+    """Everything that is generated for one mode, as expressions in its own symbols.
+
+    `held` are the symbols of the values at which coordinates are frozen.
+    """
+
+    def __init__(self, model, mode, full_residual, held):
+        self.model, self.mode = model, mode
+        count = len(model.coordinates)
+        self.free = [i for i, c in enumerate(model.coordinates) if c.name not in mode.held]
+        self.freeze = self._freeze(held)
+        residual = full_residual
+        for name, expression in model.hand_written.items():
+            residual[_index(model, name)] = expression
+        residual = self.freeze(residual)
+        self.raw_reactions = residual
+        self.placeholders = self._placeholders()
+        for coordinate, force, _ in mode.forces:
+            residual[_index(model, coordinate.name())] -= self.place(force)
+
+        symbols = [c.symbol for c in model.coordinates]
+        pick = lambda column: ca.vertcat(*[column[i] for i in self.free]) if self.free else ca.SX(0, 1)
+        self.q = pick(symbols)
+        self.v = pick([s.rate for s in symbols])
+        self.a = pick([s.acceleration for s in symbols])
+        self.j = pick([s.jerk for s in symbols])
+        self.r = pick(ca.vertsplit(residual)) if self.free else ca.SX(0, 1)
+        self.reactions = [
+            (i, ca.SX(residual[i])) for i in range(count + len(model.motions)) if i not in self.free
+        ]
+        self.held = held
+        self.rates_of_held = ca.vertcat(*[
+            mode.drift.get(c.name, ca.SX(0)) for c in model.coordinates
+        ])
+        self._check_linear_in_accelerations()
+
+    def place(self, expression):
+        """An expression of the model file in the symbols of this mode: frozen coordinates and
+        reactions put in."""
+        expression = self.freeze(ca.SX(expression))
+        for symbol in ca.symvar(expression):
+            entry = self.model.placeholders.get(symbol.name())
+            if entry is not None and entry[1] is not self.mode:
+                raise ModelError(
+                    f"`{symbol.name()}` is used in mode `{self.mode.name}`; reactions of another mode are not defined there"
+                )
+        return self.placeholders(expression)
+
+    def _freeze(self, held):
+        old, new = [], []
+        for i, declaration in enumerate(self.model.coordinates):
+            if declaration.name not in self.mode.held:
+                continue
+            value = self.mode.held[declaration.name]
+            symbol = declaration.symbol
+            old += [symbol, symbol.rate, symbol.acceleration, symbol.jerk]
+            new += [
+                held[i] if value is None else ca.SX(value),
+                self.mode.drift.get(declaration.name, ca.SX(0)), ca.SX(0), ca.SX(0),
+            ]
+        return Substitution(old, new)
+
+    def _placeholders(self):
+        old, new = [], []
+        for symbol, mode, name, settings in self.model.placeholders.values():
+            if mode is self.mode:
+                value = ca.SX(self.raw_reactions[_index(self.model, name)])
+                for key, setting in settings.items():
+                    discrete = next(d.symbol for d in self.model.discretes if d.name == key)
+                    value = ca.substitute(value, discrete, ca.SX(float(setting)))
+                old.append(symbol)
+                new.append(value)
+        return Substitution(old, new)
+
+    def _check_linear_in_accelerations(self):
+        mass = ca.jacobian(self.r, self.a)
+        if any(ca.which_depends(ca.vec(mass), self.a, 1, False)) if self.free and mass.nnz() else False:
+            raise ModelError(f"mode `{self.mode.name}`: the equations are not linear in the accelerations")
+
+    def system(self):
+        """Mass matrix M and b with r = M a + b."""
+        zero = ca.SX.zeros(len(self.free))
+        return ca.densify(ca.jacobian(self.r, self.a)), ca.substitute(self.r, self.a, zero)
+
+    def jacobians(self):
+        """∂r/∂a, ∂r/∂v, ∂r/∂q as dense matrices."""
+        return [ca.densify(ca.jacobian(self.r, s)) for s in (self.a, self.v, self.q)]
+
+    def along_the_flow(self, expression, signals, signal_rates):
+        """d/dt of an expression in (q, v, a, signals, held), with the jerk of the free coordinates."""
+        derivative = ca.SX.zeros(expression.shape)
+        for symbols, rates in (
+            (self.q, self.v), (self.v, self.a), (self.a, self.j),
+            (signals, signal_rates), (self.held, self.freeze(self.rates_of_held)),
+        ):
+            if symbols.numel():
+                derivative += ca.jtimes(expression, symbols, rates)
+        return derivative
+
+    def jerk_load(self, signals, signal_rates):
+        """b with M j + b = 0 for the jerk j: the derivative of r along the flow without M j."""
+        total = self.along_the_flow(self.r, signals, signal_rates)
+        return ca.substitute(total, self.j, ca.SX.zeros(len(self.free)))
+
+    def magnitude(self):
+        """Per equation: number of terms × sum of their absolute values at given accelerations.
+
+        Times machine epsilon it bounds the rounding error of the residual (Higham 2002, §4.2).
+        """
+        rows = []
+        for row in ca.vertsplit(self.r) if self.free else []:
+            terms = graph.additive_terms(row)
+            rows.append(len(terms) * sum((ca.fabs(t) for t in terms), ca.SX(0)))
+        return ca.vertcat(*rows) if rows else ca.SX(0, 1)
+
+    def energies(self):
+        """Kinetic and potential energy."""
+        return self.freeze(ca.vertcat(kinetic_energy(self.model), potential_energy(self.model)))
+
+    def momenta(self):
+        """∂T/∂v for every coordinate and ground motion."""
+        x = configuration(self.model)
+        return ca.densify(self.freeze(ca.jacobian(kinetic_energy(self.model), x.v).T))
+
+    def powers(self):
+        """Dissipated power and input power.
+
+        Input power is the power of external forces, of ground reactions on the moving ground, of
+        the reactions of drifting coordinates and of moving friction partners.
+        """
+        model, mode = self.model, self.mode
+        x = configuration(model)
+        rayleigh = sum(model.dissipations, ca.SX(0))
+        dissipated = ca.dot(ca.jacobian(rayleigh, x.v).T, x.v)
+        power_in = ca.SX(0)
+        for coordinate, force in model.external:
+            power_in += force * coordinate.rate
+        for coordinate, force, against in mode.forces:
+            force = self.place(force)
+            dissipated -= force * (coordinate.rate - against)
+            power_in += force * against
+        count = len(model.coordinates)
+        for i, reaction in self.reactions:
+            if i >= count:
+                power_in += reaction * model.motions[i - count].symbol.rate
+            elif model.coordinates[i].name in mode.drift:
+                power_in += reaction * mode.drift[model.coordinates[i].name]
+        return self.freeze(ca.vertcat(dissipated, power_in))
+
+
+def impact_velocities(model, before, after, prescribed, conserve):
+    """See Model.impact_velocities."""
+    x = configuration(model)
+    kinetic = kinetic_energy(model)
+    momentum = ca.jacobian(kinetic, x.v).T
+    coordinates = [c.symbol for c in model.coordinates]
+    rates = {c.name(): ca.SX(0) for c in coordinates}
+    for coordinate, rate in prescribed:
+        rates[coordinate.name()] = ca.SX(rate)
+    unknown = [ca.SX.sym(c.name() + ".after") for c in conserve]
+    for coordinate, symbol in zip(conserve, unknown):
+        rates[coordinate.name()] = symbol
+    old = ca.vertcat(*[c.rate for c in coordinates])
+    new = ca.vertcat(*[rates[c.name()] for c in coordinates])
+    rows = [_index(model, c.name()) for c in conserve]
+
+    def with_discretes(expression, settings):
+        for discrete, value in settings:
+            expression = ca.substitute(expression, discrete, ca.SX(value))
+        return expression
+
+    momenta_before = with_discretes(ca.vertcat(*[momentum[i] for i in rows]), before)
+    momenta_after = ca.substitute(
+        with_discretes(ca.vertcat(*[momentum[i] for i in rows]), after), old, new)
+    column = ca.vertcat(*unknown)
+    mass = ca.jacobian(momenta_after, column)
+    load = momenta_before - ca.substitute(momenta_after, column, ca.SX.zeros(len(unknown)))
+    solution = ca.inv_minor(ca.densify(mass)) @ load
+    result = [(coordinate.rate, rate) for coordinate, rate in prescribed]
+    return result + [(c.rate, solution[i]) for i, c in enumerate(conserve)]

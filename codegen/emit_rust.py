@@ -1,0 +1,235 @@
+"""Emission of the Rust tables of a model: names, units, dimensions and function pointers.
+
+The fragment is placed inside a module of `src/kernel.rs`, see there for the types.
+"""
+
+import json
+
+import casadi as ca
+
+from . import units
+
+MOST_FREE = 6
+"""Most free coordinates a mode may have; `ModeKernels` in src/kernel.rs has one case for each."""
+
+_MODE_FUNCTIONS = ("residual", "jacobian", "system", "jerk_load", "magnitude", "reactions",
+                   "energies", "powers", "momenta")
+
+
+def model_text(name, variants, constants_symbol, constants_count, for_tests):
+    """The Rust fragment of a model."""
+    model = variants[0].model
+    signals = sum(len(i.signals) for i in model.inputs)
+    externs = sorted({f.symbol for v in variants for f in v.functions.values()} | {constants_symbol})
+    lines = ["use super::*;", "use crate::model::*;", "", 'unsafe extern "C" {']
+    lines += [
+        f"    fn {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
+        for e in externs
+    ]
+    lines += ["}", "", "static DIMENSIONS: Dimensions = Dimensions {",
+              f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
+              f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
+              f"    parameters: {len(model.parameters)},", f"    constants: {constants_count},", "};", ""]
+    lines += [f"/// {model.title}.", f"pub static {name.upper()}: Model = Model {{"]
+    lines += [
+        f"    name: {_text(name)},", f"    title: {_text(model.title)},", f"    source: {_text(model.source)},",
+        f"    coordinates: &[{', '.join(_coordinate(c) for c in model.coordinates)}],",
+        f"    motions: &[{', '.join(_motion(m) for m in model.motions)}],",
+        f"    parameters: &[{', '.join(_parameter(p) for p in model.parameters)}],",
+        f"    parameter_sets: &[{', '.join(_parameter_set(*s) for s in model.parameter_sets)}],",
+        f"    inputs: &[{', '.join(_inputs(model))}],",
+        f"    discretes: &[{', '.join(_discrete(d) for d in model.discretes)}],",
+        f"    choices: &[{', '.join(_choice(*c[:3]) for c in model.choices)}],",
+        f"    constants: ConstantsKernel {{ dimensions: &DIMENSIONS, function: {constants_symbol} }},",
+        "    variants: &[",
+    ]
+    for variant in variants:
+        lines += _variant(variant)
+    lines += ["    ],", f"    for_tests: {_bool(for_tests)},", "};"]
+    return "\n".join(lines) + "\n"
+
+
+def _text(value):
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _bool(value):
+    return "true" if value else "false"
+
+
+def _number(value):
+    value = float(value)
+    if value == float("inf"):
+        return "f64::INFINITY"
+    if value == float("-inf"):
+        return "f64::NEG_INFINITY"
+    return repr(value)
+
+
+def _option(value, show):
+    return "None" if value is None else f"Some({show(value)})"
+
+
+def _reaction_unit(unit):
+    return units.text(units.combine(units.parse("kg m^2/s^2"), units.parse(unit), -1))
+
+
+def _coordinate(c):
+    return (f"Coordinate {{ name: {_text(c.name)}, unit: {_text(c.unit)}, meaning: {_text(c.meaning)}, "
+            f"reaction_unit: {_text(_reaction_unit(c.unit))}, scale: {_number(c.scale)}, "
+            f"rate_scale: {_number(c.rate_scale)}, minimum: {_option(c.minimum, _number)} }}")
+
+
+def _motion(m):
+    return (f"Motion {{ name: {_text(m.name)}, unit: {_text(m.unit)}, "
+            f"reaction_unit: {_text(_reaction_unit(m.unit))}, meaning: {_text(m.meaning)} }}")
+
+
+def _parameter(p):
+    return (f"Parameter {{ name: {_text(p.name)}, unit: {_text(p.unit)}, meaning: {_text(p.meaning)}, "
+            f"default: {_number(p.default)}, minimum: {_number(p.minimum)}, "
+            f"minimum_exclusive: {_bool(p.exclusive)}, maximum: {_number(p.maximum)}, "
+            f"at_most: {_option(p.at_most, _text)} }}")
+
+
+def _parameter_set(name, meaning, values):
+    pairs = ", ".join(f"({_text(k)}, {_number(v)})" for k, v in values.items())
+    return f"ParameterSet {{ name: {_text(name)}, meaning: {_text(meaning)}, values: &[{pairs}] }}"
+
+
+def _inputs(model):
+    signal = 0
+    for i in model.inputs:
+        kind = "Value" if i.motion is None else "Acceleration"
+        yield (f"Input {{ name: {_text(i.name)}, unit: {_text(i.unit)}, meaning: {_text(i.meaning)}, "
+               f"kind: InputKind::{kind}, signal: {signal} }}")
+        signal += len(i.signals)
+
+
+def _discrete(d):
+    return (f"Discrete {{ name: {_text(d.name)}, values: &[{', '.join(map(_number, d.values))}], "
+            f"meaning: {_text(d.meaning)} }}")
+
+
+def _choice(name, options, meaning):
+    return (f"Choice {{ name: {_text(name)}, options: &[{', '.join(map(_text, options))}], "
+            f"meaning: {_text(meaning)} }}")
+
+
+def _variant(variant):
+    model = variant.model
+    yield "        Variant {"
+    yield f"            options: &[{', '.join(_text(c[3]) for c in model.choices)}],"
+    yield f"            defaults: &[{', '.join(_bool(c[3] == c[4]) for c in model.choices)}],"
+    yield "            modes: &["
+    for i, equations in enumerate(variant.modes):
+        yield from _mode(variant, i, equations)
+    yield "            ],"
+    yield "        },"
+
+
+def _mode(variant, i, equations):
+    model, mode = variant.model, equations.mode
+    functions = {slot[1:]: f for slot, f in variant.functions.items() if slot[0] == i}
+    free = len(equations.free)
+    if free > MOST_FREE:
+        from .errors import ModelError
+        raise ModelError(f"mode `{mode.name}` has {free} free coordinates; at most {MOST_FREE} are supported", model.file)
+    held = ", ".join(
+        _option(mode.held.get(c.name), _number) for c in model.coordinates)
+    drifts = ", ".join(_bool(c.name in mode.drift) for c in model.coordinates)
+    index = {m.name: k for k, m in enumerate(model.modes)}
+    rest = None if mode.rest is None else index[mode.rest.name]
+    pad = " " * 16
+    yield f"{pad}Mode {{"
+    yield f"{pad}    name: {_text(mode.name)}, meaning: {_text(mode.meaning)},"
+    yield f"{pad}    free: &{equations.free}, held_at: &[{held}], drifts: &[{drifts}],"
+    yield f"{pad}    guards: &["
+    for g, (expression, transitions) in enumerate(equations.guards):
+        yield f"{pad}        Guard {{"
+        yield f"{pad}            name: {_text(_guard_name(transitions))}, text: {_text(units.short(expression, 200))},"
+        yield f"{pad}            unit: {_text(_unit(model, expression))}, shape: {_shape(model, equations, expression)},"
+        yield (f"{pad}            kernel: GuardKernel {{ free: {free}, value: {functions['guard', g].symbol}, "
+               f"rate: {functions['guard_rate', g].symbol} }},")
+        yield f"{pad}            transitions: &["
+        for t, transition in enumerate(transitions):
+            condition = functions.get(("condition", g, t))
+            target = index[transition.target.name]
+            target_free = len(variant.modes[target].free)
+            yield (f"{pad}                Transition {{ name: {_text(transition.name)}, target: {target}, "
+                   f"conditional: {_bool(condition)}, changes: &[{', '.join(map(_text, transition.changes))}], "
+                   f"impact: {_bool(transition.impact)}, kernel: TransitionKernel {{ source_free: {free}, "
+                   f"reset: {functions['reset', g, t].symbol}, "
+                   f"condition: {_option(condition, lambda c: f'({c.symbol}, {target_free})')} }} }},")
+        yield f"{pad}            ],"
+        yield f"{pad}        }},"
+    yield f"{pad}    ],"
+    yield f"{pad}    requirements: &["
+    for requirement, failure, _ in mode.requirements:
+        yield (f"{pad}        Requirement {{ text: {_text(units.short(requirement, 200))}, "
+               f"failure: {_text(failure)}, unit: {_text(_unit(model, requirement))} }},")
+    yield f"{pad}    ],"
+    yield f"{pad}    rest: {_option(rest, str)},"
+    yield f"{pad}    kernels: ModeKernels::F{free}(ModeKernel {{"
+    yield f"{pad}        dimensions: &DIMENSIONS,"
+    for what in _MODE_FUNCTIONS:
+        yield f"{pad}        {what}: {functions[(what,)].symbol},"
+    yield f"{pad}        requirements: ({functions[('requirements',)].symbol}, {len(mode.requirements)}),"
+    yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
+    yield f"{pad}    }}),"
+    counts = ", ".join(
+        f"({_text(what[0] if len(what) == 1 else ' '.join(map(str, what)))}, {f.operations})"
+        for what, f in functions.items())
+    yield f"{pad}    operations: &[{counts}],"
+    yield f"{pad}}},"
+
+
+def _guard_name(transitions):
+    return " / ".join(dict.fromkeys(t.name for t in transitions))
+
+
+def _unit(model, expression):
+    return units.text(units.dimension_of(ca.SX(expression), model.dimensions))
+
+
+def _shape(model, equations, expression):
+    placed = equations.place(expression)
+    linear = _linear(model, equations, placed)
+    if linear is not None:
+        return linear
+    depends = lambda symbols: any(
+        s.element_hash() in present for s in ca.vertsplit(symbols)) if symbols.numel() else False
+    present = {s.element_hash() for s in ca.symvar(placed)}
+    signals = ca.vertcat(*[s for i in model.inputs for s in i.signals])
+    return (f"GuardShape::General {{ accelerations: {_bool(depends(equations.a))}, "
+            f"signals: {_bool(depends(signals))} }}")
+
+
+def _linear(model, equations, expression):
+    """`GuardShape::Linear` if the guard is a constant or discrete factor times a state, else None."""
+    factor, discrete = 1.0, None
+    discretes = {d.symbol.element_hash(): k for k, d in enumerate(model.discretes)}
+    while not expression.is_symbolic():
+        if expression.is_constant():
+            return None
+        op = expression.op()
+        if op == ca.OP_NEG:
+            factor, expression = -factor, expression.dep(0)
+        elif op == ca.OP_MUL:
+            left, right = expression.dep(0), expression.dep(1)
+            if left.is_constant():
+                factor, expression = factor * float(left), right
+            elif discrete is None and left.element_hash() in discretes:
+                discrete, expression = discretes[left.element_hash()], right
+            elif discrete is None and right.element_hash() in discretes:
+                discrete, expression = discretes[right.element_hash()], left
+            else:
+                return None
+        else:
+            return None
+    for rate, column in ((False, equations.q), (True, equations.v)):
+        for index, symbol in enumerate(ca.vertsplit(column)) if column.numel() else []:
+            if symbol.element_hash() == expression.element_hash():
+                return (f"GuardShape::Linear {{ index: {index}, rate: {_bool(rate)}, "
+                        f"factor: {_number(factor)}, discrete: {_option(discrete, str)} }}")
+    return None

@@ -1,0 +1,322 @@
+"""One model folder → C, a Rust fragment with its tables, and a manifest."""
+
+import hashlib
+import json
+import os
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from . import derive, emit_rust, graph, units
+from .emit_c import Source
+from .errors import ModelError, error_location
+from .model import build
+
+
+@dataclass
+class Function:
+    """A function to be emitted: where its arguments live and what it computes."""
+
+    name: str
+    output: ca.SX
+    equations: object
+    slot: tuple = ()
+    symbol: str = ""
+    operations: int = 0
+
+
+@dataclass
+class Variant:
+    """The equations of a model for one combination of choices."""
+
+    model: object
+    modes: list
+    functions: dict = field(default_factory=dict)
+
+
+def load(folder):
+    """The models (one a combination of choices) of a model folder."""
+    name = os.path.basename(os.path.normpath(folder))
+    file = os.path.abspath(os.path.join(folder, "model.py"))
+    try:
+        with open(file, encoding="utf-8") as stream:
+            source = stream.read()
+    except OSError as error:
+        raise ModelError(f"the model folder has no readable model.py: {error.strerror}", file) from None
+    try:
+        return build(name, file, source)
+    except ModelError as error:
+        if error.location is None:
+            error.location = error_location(error, file)
+        raise
+    except Exception as error:
+        raise ModelError(f"{type(error).__name__}: {error}", error_location(error, file)) from error
+
+
+def generate(folder, for_tests=False):
+    """All files of a model: a dict from file name to text."""
+    models = load(folder)
+    name = models[0].name
+    _check_same_declarations(models)
+    variants = [_variant(model) for model in models]
+    constants = _extract_constants(variants)
+    source = Source()
+    prefix = f"dalembert_{name}"
+    parameters = ca.vertcat(*[p.symbol for p in models[0].parameters])
+    constants_symbol = source.add(f"{prefix}_constants", [("q", parameters)], constants.values)
+    for variant in variants:
+        for function in variant.functions.values():
+            equations = function.equations
+            arguments = [
+                ("q", equations.q), ("v", equations.v), ("a", equations.a), ("j", equations.j),
+                ("u", _signals(variant.model)), ("u_dot", _signal_rates(variant.model)),
+                ("d", _discretes(variant.model)), ("h", equations.held), ("c", constants.symbols),
+            ]
+            function.symbol = source.add(f"{prefix}_{function.name}", arguments, function.output)
+            function.operations = source.operations[f"{prefix}_{function.name}"]
+    c_text = source.text(name)
+    rust_text = emit_rust.model_text(name, variants, constants_symbol, constants.values.numel(), for_tests)
+    manifest = {
+        "name": name,
+        "static": name.upper(),
+        "sources": [f"{name}.c"],
+        "casadi": ca.__version__,
+        "content": hashlib.sha256((c_text + rust_text).encode()).hexdigest(),
+        "operations": {
+            f"{'/'.join(c[3] for c in v.model.choices)}:{f.name}" if v.model.choices else f.name: f.operations
+            for v in variants for f in v.functions.values()
+        },
+    }
+    return {f"{name}.c": c_text, "model.rs": rust_text, "manifest.json": json.dumps(manifest, indent=1) + "\n"}
+
+
+def _check_same_declarations(models):
+    def declared(model):
+        groups = (model.parameters, model.coordinates, model.motions, model.inputs, model.discretes)
+        return [[(d.name, d.unit) for d in group] for group in groups]
+    for model in models[1:]:
+        if declared(model) != declared(models[0]):
+            raise ModelError(
+                "declarations differ between choices: parameters, coordinates, inputs and discrete"
+                " states must be the same for all of them", models[0].file)
+
+
+def _signals(model):
+    return ca.vertcat(*[s for i in model.inputs for s in i.signals])
+
+
+def _signal_rates(model):
+    rates = []
+    for declaration in model.inputs:
+        for k in range(len(declaration.signals)):
+            rates.append(ca.SX.sym(f"{declaration.name}.signal{k}.dot"))
+    known = model.__dict__.setdefault("_signal_rates", ca.vertcat(*rates))
+    return known
+
+
+def _discretes(model):
+    return ca.vertcat(*[d.symbol for d in model.discretes])
+
+
+def _variant(model):
+    """Derives and checks the equations of every mode, and lists the functions to emit."""
+    _check_energies(model)
+    residual = derive.residual_from_bodies(model)
+    held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates])
+    modes = [derive.ModeEquations(model, mode, residual, held) for mode in model.modes]
+    variant = Variant(model, modes)
+    names = [m.name for m in model.modes]
+    index = {m.name: i for i, m in enumerate(model.modes)}
+    tag = "_".join(str(c[1].index(c[3])) for c in model.choices)
+    for i, equations in enumerate(modes):
+        prefix = f"v{tag}_{names[i]}_" if tag else f"{names[i]}_"
+        _mode_functions(variant, equations, (i,), prefix)
+        guards = _guards(model, equations)
+        equations.guards = guards
+        for g, (expression, transitions) in enumerate(guards):
+            placed = equations.place(expression)
+            _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location)
+            _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
+            rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
+            _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
+            for t, transition in enumerate(transitions):
+                target = modes[index[transition.target.name]]
+                reset = _reset(model, equations, target, transition)
+                _add(variant, prefix + f"guard{g}_reset{t}", reset, equations, (i, "reset", g, t))
+                if transition.condition is not None:
+                    condition = target.place(transition.condition)
+                    _check_smooth(condition, f"condition of `{transition.name}`", transition.location)
+                    _add(variant, prefix + f"guard{g}_condition{t}", condition, target, (i, "condition", g, t))
+    return variant
+
+
+def _add(variant, name, output, equations, slot):
+    parameters = [p.symbol for p in variant.model.parameters]
+    arranged = graph.arrange(ca.densify(ca.vec(ca.SX(output))), parameters)
+    variant.functions[slot] = Function(name, arranged, equations, slot)
+
+
+def _mode_functions(variant, equations, slot, prefix):
+    model = variant.model
+    signals, rates = _signals(model), _signal_rates(model)
+    if equations.free:
+        name = equations.mode.name
+        _check_smooth(equations.r, f"equations of mode `{name}`", model.file)
+    mass, load = equations.system()
+    jacobians = equations.jacobians()
+    reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
+    for i, reaction in equations.reactions:
+        reactions[i] = reaction
+    requirements = ca.vertcat(*[equations.place(r[0]) for r in equations.mode.requirements])
+    for what, output in (
+        ("residual", equations.r),
+        ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
+        ("system", ca.vertcat(ca.vec(mass), load)),
+        ("jerk_load", equations.jerk_load(signals, rates)),
+        ("magnitude", equations.magnitude()),
+        ("reactions", reactions),
+        ("energies", equations.energies()),
+        ("powers", equations.powers()),
+        ("momenta", equations.momenta()),
+        ("requirements", requirements),
+        ("held_rates", equations.freeze(equations.rates_of_held)),
+    ):
+        _add(variant, prefix + what, output, equations, slot + (what,))
+
+
+def _check_smooth(expression, what, location):
+    for row in ca.vertsplit(ca.densify(ca.vec(expression))):
+        operation = graph.non_smooth_operation(row)
+        if operation:
+            raise ModelError(
+                f"{what}: `{operation}` is not smooth; write one mode or one guard for each smooth"
+                " piece instead", location)
+
+
+def _guards(model, equations):
+    """Transitions of a mode grouped by guard: a list of (expression, transitions)."""
+    groups = {}
+    for transition in model.transitions:
+        if transition.source is equations.mode:
+            groups.setdefault(str(transition.guard), (transition.guard, []))[1].append(transition)
+    return list(groups.values())
+
+
+def _reset(model, source, target, transition):
+    """Column of q⁺, v⁺, d⁺ in the symbols of the source mode."""
+    values = {}
+    allowed = {}
+    for c in model.coordinates:
+        allowed[c.symbol.element_hash()] = c.name
+        allowed[c.symbol.rate.element_hash()] = c.name + ".rate"
+        values[c.name], values[c.name + ".rate"] = c.symbol, c.symbol.rate
+    for d in model.discretes:
+        allowed[d.symbol.element_hash()] = d.name
+        values[d.name] = d.symbol
+    transition.changes = []
+    for symbol, expression in transition.reset:
+        key = allowed.get(symbol.element_hash())
+        if key is None:
+            raise ModelError(
+                f"transition `{transition.name}`: a reset can set a coordinate, its rate or a discrete"
+                f" state, not `{symbol}`", transition.location)
+        values[key] = expression
+        transition.changes.append(key)
+    for c in model.coordinates:
+        if c.name in target.mode.held:
+            value = target.mode.held[c.name]
+            if value is not None:
+                values[c.name] = ca.SX(value)
+            values[c.name + ".rate"] = target.mode.drift.get(c.name, ca.SX(0))
+    order = [c.name for c in model.coordinates]
+    order += [c.name + ".rate" for c in model.coordinates] + [d.name for d in model.discretes]
+    return source.place(ca.vertcat(*[values[key] for key in order]))
+
+
+@dataclass
+class Constants:
+    """Symbols of the constants, and their values as expressions in the parameters."""
+
+    symbols: ca.SX
+    values: ca.SX
+
+
+def _extract_constants(variants):
+    """Replaces sub-expressions of parameters alone, over all functions of all variants."""
+    canonical = ca.vertcat(*[p.symbol for p in variants[0].model.parameters])
+    columns, functions = [], []
+    for variant in variants:
+        own = ca.vertcat(*[p.symbol for p in variant.model.parameters])
+        for function in variant.functions.values():
+            column = function.output
+            if own.numel():
+                column = ca.substitute(column, own, canonical)
+            columns.append(column)
+            functions.append(function)
+    joint = ca.vertcat(*columns)
+    if not canonical.numel():
+        return Constants(ca.SX(0, 1), ca.SX(0, 1))
+    extracted, symbols, values = ca.extract_parametric(
+        ca.cse(joint), canonical, {"extract_trivial": True})
+    start = 0
+    for function, column in zip(functions, columns):
+        function.output = extracted[start: start + column.numel()]
+        start += column.numel()
+    return Constants(ca.vertcat(*symbols) if symbols else ca.SX(0, 1),
+                     ca.vertcat(*values) if values else ca.SX(0, 1))
+
+
+def _check_energies(model):
+    """Dimensions of the energies, term by term, and of guards, forces, resets."""
+    table = model.dimensions
+    where = {"kinetic energy": model.kinetic_terms, "potential energy": model.potentials,
+             "dissipation": model.dissipations}
+    energy = units.parse("kg m^2/s^2")
+    for what, expressions in where.items():
+        want = units.combine(energy, units.parse("1/s")) if what == "dissipation" else energy
+        for expression in expressions:
+            for term in graph.additive_terms(expression):
+                _check_unit(term, want, table, what, model.file)
+    for k, body in enumerate(model.bodies):
+        what = f"body {k + 1}"
+        _check_unit(body.mass, units.parse("kg"), table, what + ": mass", model.file)
+        for axis, position in zip("XY", body.position):
+            for term in graph.additive_terms(position):
+                _check_unit(term, units.parse("m"), table, f"{what}: position {axis}", model.file)
+        if body.angle is not None:
+            _check_unit(body.inertia, units.parse("kg m^2"), table, what + ": inertia", model.file)
+            _check_unit(body.angle, units.NONE, table, what + ": angle", model.file)
+    if model.bodies:
+        _check_unit(ca.SX(model.gravity_constant), units.parse("m/s^2"), table, "gravity", model.file)
+    forces = [(c, f, f"force on `{c.name()}`") for c, f in model.external]
+    for mode in model.modes:
+        forces += [(c, f, f"force on `{c.name()}` in mode `{mode.name}`") for c, f, _ in mode.forces]
+    forces += [
+        (next(c.symbol for c in model.coordinates if c.name == name), f, f"equation of `{name}`")
+        for name, f in model.hand_written.items()
+    ]
+    for coordinate, force, what in forces:
+        want = units.combine(energy, table[coordinate.name()], -1)
+        for term in graph.additive_terms(force):
+            _check_unit(term, want, table, what, model.file)
+    for transition in model.transitions:
+        _check_unit(transition.guard, None, table, f"guard of `{transition.name}`", transition.location)
+        if transition.condition is not None:
+            _check_unit(transition.condition, None, table, f"condition of `{transition.name}`", transition.location)
+        for symbol, value in transition.reset:
+            _check_unit(value, table.get(symbol.name()), table,
+                        f"transition `{transition.name}`: reset of `{symbol.name()}`", transition.location)
+    for mode in model.modes:
+        for requirement, _, location in mode.requirements:
+            _check_unit(requirement, None, table, "requirement", location)
+
+
+def _check_unit(expression, want, table, what, location):
+    try:
+        found = units.dimension_of(ca.SX(expression), table)
+    except units.UnitError as error:
+        raise ModelError(f"{what}: {error}", location) from None
+    if want is not None and found != want and not ca.SX(expression).is_zero():
+        raise ModelError(
+            f"{what}: the term `{units.short(expression)}` has the dimension {units.text(found)},"
+            f" expected {units.text(want)}", location)

@@ -1,0 +1,155 @@
+"""Work on CasADi expression graphs: smoothness, shape of the generated code, additive terms."""
+
+import casadi as ca
+
+_NON_SMOOTH = {
+    getattr(ca, "OP_" + name): text
+    for name, text in (
+        ("IF_ELSE_ZERO", "if_else"), ("FABS", "fabs"), ("SIGN", "sign"), ("FMIN", "fmin"),
+        ("FMAX", "fmax"), ("LT", "<"), ("LE", "<="), ("EQ", "=="), ("NE", "!="), ("NOT", "not"),
+        ("AND", "and"), ("OR", "or"), ("FLOOR", "floor"), ("CEIL", "ceil"), ("FMOD", "fmod"),
+        ("COPYSIGN", "copysign"), ("REMAINDER", "remainder"),
+    )
+}
+
+
+def non_smooth_operation(expression):
+    """Name of a non-smooth operation in `expression`, or None."""
+    function = ca.Function("smooth", ca.symvar(expression), [expression])
+    for k in range(function.n_instructions()):
+        name = _NON_SMOOTH.get(function.instruction_id(k))
+        if name:
+            return name
+    return None
+
+
+def additive_terms(expression):
+    """The terms of a scalar sum, signs included, down to the first non-additive operations."""
+    terms, stack = [], [(expression, 1)]
+    while stack:
+        node, sign = stack.pop()
+        op = None if node.is_constant() or node.is_symbolic() else node.op()
+        if op == ca.OP_ADD:
+            stack += [(node.dep(1), sign), (node.dep(0), sign)]
+        elif op == ca.OP_SUB:
+            stack += [(node.dep(1), -sign), (node.dep(0), sign)]
+        elif op == ca.OP_NEG:
+            stack.append((node.dep(0), -sign))
+        elif not node.is_zero():
+            terms.append(node if sign > 0 else -node)
+    return terms
+
+
+class _Value:
+    """A scalar as coefficient × rest, and, where it is a sum, as offset + variable.
+
+    `coefficient` and `offset` depend on parameters alone; `rest` is None for a parametric value.
+    """
+
+    __slots__ = ("coefficient", "rest", "offset", "variable")
+
+    def __init__(self, coefficient, rest=None, offset=None, variable=None):
+        self.coefficient, self.rest = coefficient, rest
+        self.offset, self.variable = offset, variable
+
+    @property
+    def parametric(self):
+        return self.rest is None
+
+    def expression(self):
+        if self.rest is None:
+            return self.coefficient
+        if self.coefficient.is_one():
+            return self.rest
+        if self.coefficient.is_minus_one():
+            return -self.rest
+        return self.coefficient * self.rest
+
+
+def arrange(expressions, parameters):
+    """The same column of expressions, arranged for cheap code.
+
+    Factors that depend on parameters alone are gathered, so that they can be computed once a run,
+    and sin/cos of (parametric phase ± angle) are expanded, so that one angle costs one sin/cos pair.
+    """
+    symbols = ca.symvar(ca.vertcat(expressions, ca.vertcat(*parameters)))
+    parametric = {p.element_hash() for vector in parameters for p in ca.vertsplit(vector)}
+    function = ca.Function("arrange", symbols, [expressions])
+    work, result = {}, [None] * expressions.numel()
+    for k in range(function.n_instructions()):
+        op = function.instruction_id(k)
+        into, source = function.instruction_output(k), function.instruction_input(k)
+        if op == ca.OP_CONST:
+            work[into[0]] = _Value(ca.SX(function.instruction_constant(k)))
+        elif op == ca.OP_INPUT:
+            symbol = symbols[source[0]]
+            if symbol.element_hash() in parametric:
+                work[into[0]] = _Value(symbol)
+            else:
+                work[into[0]] = _Value(ca.SX(1), symbol)
+        elif op == ca.OP_OUTPUT:
+            result[into[1]] = work[source[0]].expression()
+        else:
+            work[into[0]] = _arranged(op, [work[i] for i in source])
+    nonzeros = ca.SX(expressions.sparsity(), ca.vertcat(*result[: expressions.nnz()]))
+    return ca.densify(nonzeros)
+
+
+def _arranged(op, arguments):
+    if all(a.parametric for a in arguments):
+        values = [a.coefficient for a in arguments]
+        return _Value(ca.SX.binary(op, *values) if len(values) == 2 else ca.SX.unary(op, *values))
+    one = ca.SX(1)
+    if op == ca.OP_MUL:
+        a, b = arguments
+        rest = a.rest if b.parametric else b.rest if a.parametric else a.rest * b.rest
+        return _Value(a.coefficient * b.coefficient, rest)
+    if op == ca.OP_DIV:
+        a, b = arguments
+        if b.parametric:
+            return _Value(a.coefficient / b.coefficient, a.rest)
+        return _Value(a.coefficient / b.coefficient, (one if a.parametric else a.rest) / b.rest)
+    if op == ca.OP_SQ:
+        return _Value(arguments[0].coefficient ** 2, arguments[0].rest ** 2)
+    if op == ca.OP_TWICE:
+        return _Value(2 * arguments[0].coefficient, arguments[0].rest)
+    if op == ca.OP_NEG:
+        return _Value(-arguments[0].coefficient, arguments[0].rest)
+    if op in (ca.OP_ADD, ca.OP_SUB):
+        a, b = arguments
+        sign = 1 if op == ca.OP_ADD else -1
+        offset = ca.SX(0)
+        variable = ca.SX(0)
+        for value, s in ((a, 1), (b, sign)):
+            if value.parametric:
+                offset += s * value.coefficient
+            elif value.offset is not None:
+                offset += s * value.offset
+                variable += s * value.variable
+            else:
+                variable += s * value.expression()
+        total = a.expression() + b.expression() if sign > 0 else a.expression() - b.expression()
+        return _Value(one, total, offset, variable)
+    if op in (ca.OP_SIN, ca.OP_COS):
+        a = arguments[0]
+        if a.offset is not None and not a.offset.is_zero():
+            return _Value(one, _expanded(op, a.offset, a.variable))
+        return _Value(one, _odd_even(op, a.expression()))
+    values = [a.expression() for a in arguments]
+    return _Value(one, ca.SX.binary(op, *values) if len(values) == 2 else ca.SX.unary(op, *values))
+
+
+def _odd_even(op, angle):
+    """sin or cos of an angle, with a leading minus sign taken out."""
+    if not angle.is_symbolic() and not angle.is_constant() and angle.op() == ca.OP_NEG:
+        inner = angle.dep(0)
+        return -ca.sin(inner) if op == ca.OP_SIN else ca.cos(inner)
+    return ca.sin(angle) if op == ca.OP_SIN else ca.cos(angle)
+
+
+def _expanded(op, phase, angle):
+    """Addition theorem for sin or cos of (phase + angle)."""
+    s, c = _odd_even(ca.OP_SIN, angle), _odd_even(ca.OP_COS, angle)
+    if op == ca.OP_SIN:
+        return ca.sin(phase) * c + ca.cos(phase) * s
+    return ca.cos(phase) * c - ca.sin(phase) * s

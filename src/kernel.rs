@@ -1,0 +1,377 @@
+//! Calls into the generated C: the only unsafe code of the crate.
+//!
+//! Every generated function has the signature [`Raw`]. Safety rests on two facts, both checked
+//! here: each output has the length that the generated tables state (the typed wrappers below fix
+//! it), and each [`Context`] was made for the model whose functions it is passed to.
+
+use crate::model::Model;
+use nalgebra::{SMatrix, SVector};
+
+/// Context of a call, as C sees it: signals, their rates, discrete states, held coordinates,
+/// constants, jerks.
+#[repr(C)]
+struct RawContext {
+    u: *const f64,
+    u_dot: *const f64,
+    d: *const f64,
+    h: *const f64,
+    c: *const f64,
+    j: *const f64,
+}
+
+/// A generated C function.
+type Raw = unsafe extern "C" fn(*const f64, *const f64, *const f64, *const RawContext, *mut f64);
+
+/// Numbers of entries of the context arrays of a model; its address identifies the model.
+#[derive(Debug)]
+pub struct Dimensions {
+    /// Coordinates.
+    pub coordinates: usize,
+    /// Ground motions.
+    pub motions: usize,
+    /// Signals.
+    pub signals: usize,
+    /// Discrete states.
+    pub discretes: usize,
+    /// Parameters.
+    pub parameters: usize,
+    /// Constants computed from the parameters.
+    pub constants: usize,
+}
+
+/// What a generated function needs besides the free coordinates.
+#[derive(Debug, Clone)]
+pub struct Context {
+    dimensions: &'static Dimensions,
+    /// Signals of the inputs at the present time.
+    pub signals: Box<[f64]>,
+    /// Time derivatives of the signals.
+    pub signal_rates: Box<[f64]>,
+    /// Discrete states.
+    pub discrete: Box<[f64]>,
+    /// All coordinates; the generated functions read those that the mode holds.
+    pub held: Box<[f64]>,
+    constants: Box<[f64]>,
+}
+
+impl Context {
+    /// A context for `model` with the constants of `parameters` (in the order of the model).
+    ///
+    /// # Panics
+    /// If the number of parameters is not the model's.
+    pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
+        let dimensions = model.constants.dimensions;
+        Context {
+            dimensions,
+            signals: vec![0.0; dimensions.signals].into(),
+            signal_rates: vec![0.0; dimensions.signals].into(),
+            discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
+            held: vec![0.0; dimensions.coordinates].into(),
+            constants: model.constants.evaluate(parameters),
+        }
+    }
+
+    /// Calls a generated function.
+    ///
+    /// # Safety
+    /// `q`, `v`, `a`, `jerks` must have the length of the function's free coordinates (where it
+    /// reads them) and `out` must have room for its outputs.
+    #[inline(always)]
+    unsafe fn call(
+        &self,
+        function: Raw,
+        dimensions: &'static Dimensions,
+        [q, v, a, j]: [*const f64; 4],
+        out: *mut f64,
+    ) {
+        assert!(
+            std::ptr::eq(self.dimensions, dimensions)
+                && self.signals.len() == dimensions.signals
+                && self.signal_rates.len() == dimensions.signals
+                && self.discrete.len() == dimensions.discretes
+                && self.held.len() == dimensions.coordinates,
+            "a context is used with the functions of the model it was made for"
+        );
+        let raw = RawContext {
+            u: self.signals.as_ptr(),
+            u_dot: self.signal_rates.as_ptr(),
+            d: self.discrete.as_ptr(),
+            h: self.held.as_ptr(),
+            c: self.constants.as_ptr(),
+            j,
+        };
+        // SAFETY: the lengths of the context arrays were checked above, the rest is the caller's.
+        unsafe { function(q, v, a, &raw, out) }
+    }
+}
+
+/// What depends on parameters alone.
+#[derive(Debug)]
+pub struct ConstantsKernel {
+    dimensions: &'static Dimensions,
+    function: Raw,
+}
+
+impl ConstantsKernel {
+    fn evaluate(&self, parameters: &[f64]) -> Box<[f64]> {
+        assert_eq!(parameters.len(), self.dimensions.parameters, "number of parameters");
+        let mut out = vec![0.0; self.dimensions.constants].into_boxed_slice();
+        let raw = RawContext {
+            u: std::ptr::null(),
+            u_dot: std::ptr::null(),
+            d: std::ptr::null(),
+            h: std::ptr::null(),
+            c: std::ptr::null(),
+            j: std::ptr::null(),
+        };
+        let none = std::ptr::null();
+        // SAFETY: the function reads `parameters` only and writes `constants` outputs.
+        unsafe { (self.function)(parameters.as_ptr(), none, none, &raw, out.as_mut_ptr()) }
+        out
+    }
+}
+
+/// State and accelerations of the free coordinates of a mode, as every mode function takes them.
+#[derive(Debug, Clone, Copy)]
+pub struct Free<'a, const F: usize> {
+    /// Coordinates.
+    pub q: &'a SVector<f64, F>,
+    /// Velocities.
+    pub v: &'a SVector<f64, F>,
+    /// Accelerations.
+    pub a: &'a SVector<f64, F>,
+}
+
+impl<const F: usize> Free<'_, F> {
+    #[inline(always)]
+    fn pointers(&self) -> [*const f64; 4] {
+        [self.q.as_ptr(), self.v.as_ptr(), self.a.as_ptr(), self.a.as_ptr()]
+    }
+}
+
+/// Mass matrix M and load b of r = M a + b.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct LinearSystem<const F: usize> {
+    /// M = ∂r/∂a; unsymmetric where friction depends on the accelerations.
+    pub mass: SMatrix<f64, F, F>,
+    /// r at a = 0.
+    pub load: SVector<f64, F>,
+}
+
+/// The generated functions of one mode with F free coordinates.
+#[derive(Debug)]
+pub struct ModeKernel<const F: usize> {
+    dimensions: &'static Dimensions,
+    residual: Raw,
+    jacobian: Raw,
+    system: Raw,
+    jerk_load: Raw,
+    magnitude: Raw,
+    reactions: Raw,
+    energies: Raw,
+    powers: Raw,
+    momenta: Raw,
+    requirements: (Raw, usize),
+    held_rates: Raw,
+}
+
+impl<const F: usize> ModeKernel<F> {
+    /// r(q, v, a, u): generalized forces that are missing for equilibrium, one a free coordinate.
+    #[inline]
+    pub fn residual(&self, x: &Context, at: Free<F>, r: &mut SVector<f64, F>) {
+        // SAFETY: F outputs.
+        unsafe { x.call(self.residual, self.dimensions, at.pointers(), r.as_mut_ptr()) }
+    }
+
+    /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
+    #[inline]
+    pub fn jacobian(&self, x: &Context, at: Free<F>, out: &mut [SMatrix<f64, F, F>; 3]) {
+        // SAFETY: three dense column-major F × F outputs, contiguous in the array.
+        unsafe { x.call(self.jacobian, self.dimensions, at.pointers(), out.as_mut_ptr().cast()) }
+    }
+
+    /// Mass matrix and load at (q, v).
+    #[inline]
+    pub fn system(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> LinearSystem<F> {
+        let mut out = LinearSystem { mass: SMatrix::zeros(), load: SVector::zeros() };
+        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
+        // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
+        unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
+        out
+    }
+
+    /// b with M j + b = 0 for the jerk j; needs `Context::signal_rates`.
+    pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
+        let mut out = SVector::zeros();
+        // SAFETY: F outputs.
+        unsafe { x.call(self.jerk_load, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        out
+    }
+
+    /// Number of terms × sum of their magnitudes, per equation: times machine epsilon a bound of
+    /// the rounding error of the residual.
+    pub fn magnitude(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
+        let mut out = SVector::zeros();
+        // SAFETY: F outputs.
+        unsafe { x.call(self.magnitude, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        out
+    }
+
+    /// Reactions of all coordinates (0 where free), then of the ground motions.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate and motion.
+    #[inline]
+    pub fn reactions(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(out.len(), self.dimensions.coordinates + self.dimensions.motions);
+        // SAFETY: the length was checked.
+        unsafe { x.call(self.reactions, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// [kinetic, potential] energy, J, in the inertial frame.
+    pub fn energies(&self, x: &Context, at: Free<F>) -> [f64; 2] {
+        let mut out = [0.0; 2];
+        // SAFETY: two outputs.
+        unsafe { x.call(self.energies, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        out
+    }
+
+    /// [dissipated, input] power, W.
+    #[inline]
+    pub fn powers(&self, x: &Context, at: Free<F>) -> [f64; 2] {
+        let mut out = [0.0; 2];
+        // SAFETY: two outputs.
+        unsafe { x.call(self.powers, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        out
+    }
+
+    /// ∂T/∂v of all coordinates, then of the ground motions.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate and motion.
+    pub fn momenta(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(out.len(), self.dimensions.coordinates + self.dimensions.motions);
+        // SAFETY: the length was checked.
+        unsafe { x.call(self.momenta, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// What must be positive in this mode.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a requirement.
+    #[inline]
+    pub fn requirements(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        let (function, count) = self.requirements;
+        assert_eq!(out.len(), count);
+        // SAFETY: the length was checked.
+        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// Constant rates of the frozen coordinates (0 where one rests or is free).
+    pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
+        assert_eq!(out.len(), self.dimensions.coordinates);
+        let none = SVector::<f64, F>::zeros();
+        let at = Free { q: &none, v: &none, a: &none };
+        // SAFETY: the length was checked.
+        unsafe { x.call(self.held_rates, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// Value of a guard of this mode.
+    #[inline]
+    pub fn guard(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
+        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        let mut out = 0.0;
+        // SAFETY: one output; the guard's number of free coordinates was checked.
+        unsafe { x.call(guard.value, self.dimensions, at.pointers(), &mut out) }
+        out
+    }
+
+    /// Derivative of a guard along the flow with jerk `j`; needs `Context::signal_rates`.
+    pub fn guard_rate(
+        &self,
+        x: &Context,
+        guard: &GuardKernel,
+        at: Free<F>,
+        j: &SVector<f64, F>,
+    ) -> f64 {
+        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        let mut out = 0.0;
+        let at = [at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr(), j.as_ptr()];
+        // SAFETY: one output; the guard's number of free coordinates was checked.
+        unsafe { x.call(guard.rate, self.dimensions, at, &mut out) }
+        out
+    }
+
+    /// The reset of a transition out of this mode: all q, all v, all discrete states after it.
+    ///
+    /// # Panics
+    /// If `out` has not two entries a coordinate and one a discrete state.
+    pub fn reset(&self, x: &Context, transition: &TransitionKernel, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(transition.source_free, F, "a reset is evaluated in its source mode");
+        assert_eq!(out.len(), 2 * self.dimensions.coordinates + self.dimensions.discretes);
+        // SAFETY: the lengths were checked.
+        unsafe { x.call(transition.reset, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// The condition of a transition into this mode, which is taken only if it is ≥ 0.
+    pub fn condition(&self, x: &Context, transition: &TransitionKernel, at: Free<F>) -> Option<f64> {
+        let (function, free) = transition.condition?;
+        assert_eq!(free, F, "a condition is evaluated in the target mode");
+        let mut out = 0.0;
+        // SAFETY: one output; the number of free coordinates was checked.
+        unsafe { x.call(function, self.dimensions, at.pointers(), &mut out) }
+        Some(out)
+    }
+}
+
+/// A generated guard.
+#[derive(Debug)]
+pub struct GuardKernel {
+    free: usize,
+    value: Raw,
+    rate: Raw,
+}
+
+/// A generated transition: its reset, and the condition with the target's number of free coordinates.
+#[derive(Debug)]
+pub struct TransitionKernel {
+    source_free: usize,
+    reset: Raw,
+    condition: Option<(Raw, usize)>,
+}
+
+macro_rules! mode_kernels {
+    ($($variant:ident = $free:literal),*) => {
+        /// The functions of a mode, typed by its number of free coordinates.
+        #[derive(Debug)]
+        pub enum ModeKernels {
+            $(
+                #[doc = concat!("A mode with ", $free, " free coordinates.")]
+                $variant(ModeKernel<$free>),
+            )*
+        }
+    };
+}
+mode_kernels!(F0 = 0, F1 = 1, F2 = 2, F3 = 3, F4 = 4, F5 = 5, F6 = 6);
+
+/// Runs an expression with the typed kernel of a mode: `with_kernel!(kernels, k => expression)`.
+#[macro_export]
+macro_rules! with_kernel {
+    ($kernels:expr, $kernel:ident => $body:expr) => {
+        match $kernels {
+            $crate::kernel::ModeKernels::F0($kernel) => $body,
+            $crate::kernel::ModeKernels::F1($kernel) => $body,
+            $crate::kernel::ModeKernels::F2($kernel) => $body,
+            $crate::kernel::ModeKernels::F3($kernel) => $body,
+            $crate::kernel::ModeKernels::F4($kernel) => $body,
+            $crate::kernel::ModeKernels::F5($kernel) => $body,
+            $crate::kernel::ModeKernels::F6($kernel) => $body,
+        }
+    };
+}
+
+/// Most free coordinates that a mode may have.
+pub const MOST_FREE: usize = 6;
+
+include!(concat!(env!("OUT_DIR"), "/models.rs"));
