@@ -160,7 +160,7 @@ def _mode(variant, i, equations):
                    f"conditional: {_bool(condition)}, changes: &[{', '.join(map(_text, transition.changes))}], "
                    f"impact: {_bool(transition.impact)}, kernel: TransitionKernel {{ source_free: {free}, "
                    f"reset: {functions['reset', g, t].symbol}, "
-                   f"condition: {_option(condition, lambda c: f'({c.symbol}, {target_free})')} }} }},")
+                   f"condition: {_option(condition, lambda c: f'({c.symbol}, {target_free}, {c.output.numel()})')} }} }},")
         yield f"{pad}            ],"
         yield f"{pad}        }},"
     yield f"{pad}    ],"

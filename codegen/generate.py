@@ -302,7 +302,8 @@ def _check_energies(model):
     for transition in model.transitions:
         _check_unit(transition.guard, None, table, f"guard of `{transition.name}`", transition.location)
         if transition.condition is not None:
-            _check_unit(transition.condition, None, table, f"condition of `{transition.name}`", transition.location)
+            for condition in ca.vertsplit(transition.condition):
+                _check_unit(condition, None, table, f"condition of `{transition.name}`", transition.location)
         for symbol, value in transition.reset:
             _check_unit(value, table.get(symbol.name()), table,
                         f"transition `{transition.name}`: reset of `{symbol.name()}`", transition.location)

@@ -280,14 +280,14 @@ class Model:
         """Transition `source` → `target` when the guard falls through zero.
 
         `reset` lists (coordinate | coordinate.rate | discrete, expression in the state before).
-        `provided` must be ≥ 0 for the transition to be taken; it is evaluated in `target` after
-        the reset. Of several transitions with one guard the first whose condition holds is taken.
+        `provided` (one expression or several) must be ≥ 0 for the transition to be taken; it is
+        evaluated in `target` after the reset. Of several transitions with one guard the first whose condition holds is taken.
         """
         if not isinstance(when, Falls):
             raise self.error(f"transition `{name}`: `when` must be falls(…) or rises(…)")
         self.transitions.append(Transition(
             name, source, target, when.expression,
-            None if provided is None else ca.SX(provided),
+            None if provided is None else ca.vertcat(*provided) if isinstance(provided, (list, tuple)) else ca.SX(provided),
             [(symbol, ca.SX(value)) for symbol, value in reset], impact,
             caller_location(self.file)))
 

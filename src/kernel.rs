@@ -314,16 +314,21 @@ impl<const F: usize> ModeKernel<F> {
         unsafe { x.call(transition.reset, self.dimensions, at.pointers(), out.as_mut_ptr()) }
     }
 
-    /// The condition of a transition into this mode, which is taken only if it is ≥ 0.
+    /// The smallest condition of a transition into this mode, which is taken only if it is ≥ 0;
+    /// None if the transition is unconditional.
     pub fn condition(&self, x: &Context, transition: &TransitionKernel, at: Free<F>) -> Option<f64> {
-        let (function, free) = transition.condition?;
+        let (function, free, count) = transition.condition?;
         assert_eq!(free, F, "a condition is evaluated in the target mode");
-        let mut out = 0.0;
-        // SAFETY: one output; the number of free coordinates was checked.
-        unsafe { x.call(function, self.dimensions, at.pointers(), &mut out) }
-        Some(out)
+        let mut out = [0.0; MOST_CONDITIONS];
+        assert!(count <= MOST_CONDITIONS);
+        // SAFETY: room for `count` outputs; the number of free coordinates was checked.
+        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        Some(out[..count].iter().copied().fold(f64::INFINITY, f64::min))
     }
 }
+
+/// Most conditions that one transition may have (codegen rejects more).
+const MOST_CONDITIONS: usize = 8;
 
 /// A generated guard.
 #[derive(Debug)]
@@ -333,12 +338,13 @@ pub struct GuardKernel {
     rate: Raw,
 }
 
-/// A generated transition: its reset, and the condition with the target's number of free coordinates.
+/// A generated transition: its reset, and the conditions with the target's number of
+/// free coordinates and the number of conditions.
 #[derive(Debug)]
 pub struct TransitionKernel {
     source_free: usize,
     reset: Raw,
-    condition: Option<(Raw, usize)>,
+    condition: Option<(Raw, usize, usize)>,
 }
 
 macro_rules! mode_kernels {

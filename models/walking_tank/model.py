@@ -1,0 +1,151 @@
+"""Walking of an unanchored flat-bottom cylindrical liquid storage tank: rocking, bulging, slipping.
+
+The energy-consistent model after Taniguchi's paper; assumptions, sketch and signs in README.md, the
+printed equations in paper.py.
+"""
+
+from types import SimpleNamespace
+
+from codegen.model import *
+from models.walking_tank import paper
+
+model = Model("Walking of an unanchored liquid storage tank", source=paper.paper.source)
+
+rules = model.choice(
+    "rules", ("reactions", "paper"),
+    "what starts rocking and slipping, and the normal force of the kinetic friction: the reactions of the"
+    " energy-consistent model, or conditions (5)-(9) and force (4) as the paper prints them")
+landing = model.choice(
+    "landing", ("momenta", "velocities"),
+    "what a landing keeps of the other motions: their momenta, or their velocities",
+    default="momenta" if rules == "reactions" else "velocities")
+
+# Masses, first moments and inertias of the full plate; the doughnut is a parameter set.
+M_0 = model.parameter("M_0", "kg", 50.3, "mass of the contents", above=0)
+M_I = model.parameter("M_I", "kg", 0.782 * 50.3, "effective mass of liquid for bulging", above=0)
+M_E = model.parameter("M_E", "kg", 50.3, "effective mass of liquid for rocking", above=0)
+M_rb = model.parameter("M_rb", "kg", 0.782 * 50.3, "effective mass of liquid for rocking-bulging interaction", minimum=0, at_most=M_I)
+M_S = model.parameter("M_S", "kg", 7.477, "mass of shell and bottom plate", above=0)
+I_E = model.parameter("I_E", "kg m^2", 5.198, "moment of inertia of M_E about the pivot edge", above=0)
+I_S = model.parameter("I_S", "kg m^2", 0.7527, "moment of inertia of M_S about the pivot edge", above=0)
+R_0 = model.parameter("R_0", "m", 0.283, "distance of the centre of M_E from the pivot edge", above=0)
+R_I = model.parameter("R_I", "m", 0.258, "distance of the centre of M_rb from the pivot edge", above=0)
+R_S = model.parameter("R_S", "m", 0.2561, "distance of the centre of M_S from the pivot edge", above=0)
+alpha_0 = model.parameter("alpha_0", "rad", 0.785, "angle of R_0 with the vertical at rest", above=0, maximum=1.5707963267948966)
+alpha_I = model.parameter("alpha_I", "rad", 0.889, "angle of R_I with the vertical at rest", above=0, maximum=1.5707963267948966)
+alpha_S = model.parameter("alpha_S", "rad", 0.8961, "angle of R_S with the vertical at rest", above=0, maximum=1.5707963267948966)
+frequency = model.parameter("frequency", "Hz", 26.0, "natural frequency of bulging", above=0)
+damping = model.parameter("damping", "1", 0.05, "damping ratio of bulging", minimum=0)
+mu_s = model.parameter("mu_s", "1", 0.2, "static friction coefficient", minimum=0)
+mu_k = model.parameter("mu_k", "1", 0.19, "kinetic friction coefficient", minimum=0, at_most=mu_s)
+e = model.parameter("e", "1", 0.6, "restitution of the uplift rate at a landing", minimum=0, maximum=1)
+g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
+
+model.parameter_set("full_plate", "rigid full bottom plate: the paper's first tank; M_S, R_S, alpha_S, I_S from its dimensions")
+model.parameter_set(
+    "doughnut", "10 % rigid doughnut plate: the paper's second tank (M_rb/M_I = 0.152); M_S, R_S, alpha_S, I_S from its dimensions",
+    M_E=9.56, I_E=1.065, M_rb=0.152 * 0.782 * 50.3, M_S=6.266, I_S=0.6944, R_S=0.2765, alpha_S=0.8086)
+
+theta = model.coordinate("theta", "rad", "uplift angle about the pivot edge", minimum=0, scale=0.01, rate_scale=0.1)
+x_I = model.coordinate("x_I", "m", "bulging displacement along the tank's base line", scale=1e-3, rate_scale=0.1)
+x = model.coordinate("x", "m", "slip of the base on the ground", scale=0.01, rate_scale=0.1)
+y = model.coordinate("y", "m", "height of the base; its reaction is the normal force N")
+side = model.discrete("side", (+1, -1), "pivot: +1 the left edge O, -1 the right edge O'")
+slip = model.discrete("slip", (+1, -1), "direction of slip while sliding")
+z_h = model.ground("z_h", "motion of the ground to the right", input="ground_acceleration")
+
+model.gravity(g)
+model.point_mass(  # bulging liquid that rocks with the tank
+    mass=M_rb,
+    position=(x + side * R_I * sin(alpha_I - theta) + x_I * cos(theta),
+              y + R_I * cos(alpha_I - theta) + side * x_I * sin(theta)))
+model.point_mass(mass=M_I - M_rb, position=(x + x_I, y))  # bulging liquid that does not rock
+model.rigid_body(  # shell and bottom plate
+    mass=M_S, inertia=I_S - M_S * R_S**2, angle=side * theta,
+    position=(x + side * R_S * sin(alpha_S - theta), y + R_S * cos(alpha_S - theta)))
+
+# The rest of the liquid rocks without horizontal momentum: inertia, and first moment for weight
+# and vertical momentum.
+moment = M_E * R_0 * cos(alpha_0 - theta) - M_rb * R_I * cos(alpha_I - theta)
+moment_rate = (M_E * R_0 * sin(alpha_0 - theta) - M_rb * R_I * sin(alpha_I - theta)) * theta.rate
+rest = M_0 - M_I
+model.kinetic((I_E - M_rb * R_I**2) * theta.rate**2 / 2 + moment_rate * y.rate + rest * y.rate**2 / 2)
+model.potential(g * moment + rest * g * y)
+
+omega = 2 * pi * frequency
+model.potential(M_I * omega**2 * x_I**2 / 2)
+model.dissipation(damping * M_I * omega * x_I.rate**2)
+
+stands_sticks = model.mode("stands_sticks", "on the whole base, held by friction", freeze=[(theta, 0), x, (y, 0)])
+rocks_sticks = model.mode("rocks_sticks", "about one edge, held by friction", freeze=[x, (y, 0)])
+stands_slides = model.mode("stands_slides", "on the whole base, slipping", freeze=[(theta, 0), (y, 0)])
+rocks_slides = model.mode("rocks_slides", "about one edge, slipping", freeze=[(y, 0)])
+
+
+def printed(equation):
+    """An equation of the paper as a sum, in the symbols of this model."""
+    symbols = SimpleNamespace(
+        theta=theta, dtheta=theta.rate, ddtheta=theta.acceleration, x_I=x_I, dx_I=x_I.rate,
+        ddx_I=x_I.acceleration, x=x, dx=x.rate, ddx=x.acceleration, ddz_h=z_h.acceleration, lam=side,
+        g=g, M_I=M_I, M_E=M_E, M_rb=M_rb, M_S=M_S, M_T=M_0 + M_S, I_E=I_E, I_S=I_S, R_0=R_0, R_I=R_I, R_S=R_S,
+        alpha_0=alpha_0, alpha_I=alpha_I, alpha_S=alpha_S, k=M_I * omega**2, c=2 * damping * M_I * omega,
+        mu=mu_s, nu=mu_k, e=e)
+    functions = SimpleNamespace(sin=sin, cos=cos, sign=lambda _: slip)
+    return sum(equation(symbols, functions), 0)
+
+
+def base_shear(mode):
+    return mode.reaction(x) if rules == "reactions" else printed(paper.equation_8)
+
+
+def normal_force(mode):
+    return mode.reaction(y) if rules == "reactions" else printed(paper.equation_9)
+
+
+# Slip and stick. Both directions have a guard of their own, since |R_x| is not smooth.
+for sticks, slides in ((stands_sticks, stands_slides), (rocks_sticks, rocks_slides)):
+    if rules == "reactions":
+        slides.friction(x, normal=slides.reaction(y), coefficient=mu_k, direction=slip)
+    else:
+        slides.force(x, -printed(paper.equation_4))
+    for direction in (+1, -1):
+        model.transition(
+            "slip", sticks, slides, reset=[(slip, direction)],
+            when=falls(mu_s * normal_force(sticks) + direction * base_shear(sticks)))
+    stops = falls(slip * x.rate)
+    model.transition(
+        "stick", slides, sticks, when=stops,
+        provided=[mu_s * normal_force(sticks) + base_shear(sticks), mu_s * normal_force(sticks) - base_shear(sticks)])
+    model.transition("reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)])
+
+# Lift-off about either edge, landing, and rest at the limit of an accumulation of landings.
+for stands, rocks, conserved in (
+    (stands_sticks, rocks_sticks, [x_I]),
+    (stands_slides, rocks_slides, [x_I, x]),
+):
+    if rules == "reactions":
+        for edge in (+1, -1):
+            model.transition("lift_off", stands, rocks, reset=[(side, edge)], when=falls(stands.reaction(theta, side=edge)))
+    else:
+        # Condition (5), one smooth guard for each sign of the two moduli; (6) decides the pivot. The
+        # condition overstates the overturning moment, so uplift also needs (1) to lift the edge.
+        height = R_I * cos(alpha_I)
+        for s in (+1, -1):
+            for t in (+1, -1):
+                onset = falls(M_E * g * R_0 * sin(alpha_0) - M_I * s * x_I.acceleration * height
+                              - (M_0 + M_S) * t * (x.acceleration + z_h.acceleration) * R_0 * cos(alpha_0))
+                for edge in (+1, -1):
+                    model.transition(
+                        "lift_off", stands, rocks, when=onset, reset=[(side, edge)],
+                        provided=[theta.acceleration,
+                                  edge * (x.acceleration + x_I.acceleration + z_h.acceleration)])
+    if landing == "momenta":
+        others = model.impact_velocities(
+            before=[], after=[(side, -side)], prescribed=[(theta, -e * theta.rate)], conserve=conserved)
+    else:
+        others = [(theta.rate, -e * theta.rate)]
+    model.transition("landing", rocks, rocks, when=falls(theta), impact=True, reset=[(theta, 0), (side, -side)] + others)
+    model.rest(rocks, stands)
+
+for mode in model.modes:
+    model.requires(mode, mode.reaction(y), "the normal force is not positive: the tank would leave the ground")
