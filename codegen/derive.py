@@ -139,6 +139,8 @@ class ModeEquations:
         residual = self.freeze(residual)
         self.raw_reactions = residual
         self.placeholders = self._placeholders()
+        frictionless = residual
+        residual = ca.SX(residual)
         for coordinate, force, _ in mode.forces:
             residual[_index(model, coordinate.name())] -= self.place(force)
 
@@ -149,6 +151,7 @@ class ModeEquations:
         self.a = pick([s.acceleration for s in symbols])
         self.j = pick([s.jerk for s in symbols])
         self.r = pick(ca.vertsplit(residual)) if self.free else ca.SX(0, 1)
+        self.frictionless = pick(ca.vertsplit(frictionless)) if self.free else ca.SX(0, 1)
         self.reactions = [
             (i, ca.SX(residual[i])) for i in range(count + len(model.motions)) if i not in self.free
         ]
@@ -205,6 +208,11 @@ class ModeEquations:
         """Mass matrix M and b with r = M a + b."""
         zero = ca.SX.zeros(len(self.free))
         return ca.densify(ca.jacobian(self.r, self.a)), ca.substitute(self.r, self.a, zero)
+
+    def inertia(self):
+        """Mass matrix without the forces of the mode: ∂²T/∂v² on the free coordinates, or what
+        hand-written equations put in its place."""
+        return ca.densify(ca.jacobian(self.frictionless, self.a))
 
     def jacobians(self):
         """∂r/∂a, ∂r/∂v, ∂r/∂q as dense matrices."""

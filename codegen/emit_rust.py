@@ -12,7 +12,7 @@ from . import units
 MOST_FREE = 6
 """Most free coordinates a mode may have; `ModeKernels` in src/kernel.rs has one case for each."""
 
-_MODE_FUNCTIONS = ("residual", "jacobian", "system", "jerk_load", "magnitude", "reactions",
+_MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions",
                    "energies", "powers", "momenta")
 
 

@@ -172,6 +172,7 @@ def _mode_functions(variant, equations, slot, prefix):
         ("residual", equations.r),
         ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
         ("system", ca.vertcat(ca.vec(mass), load)),
+        ("inertia", ca.vec(equations.inertia())),
         ("jerk_load", equations.jerk_load(signals, rates)),
         ("magnitude", equations.magnitude()),
         ("reactions", reactions),

@@ -166,6 +166,7 @@ pub struct ModeKernel<const F: usize> {
     residual: Raw,
     jacobian: Raw,
     system: Raw,
+    inertia: Raw,
     jerk_load: Raw,
     magnitude: Raw,
     reactions: Raw,
@@ -198,6 +199,15 @@ impl<const F: usize> ModeKernel<F> {
         let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
         unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
+        out
+    }
+
+    /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
+    pub fn inertia(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> SMatrix<f64, F, F> {
+        let mut out = SMatrix::zeros();
+        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
+        // SAFETY: F × F outputs; `a` is not read.
+        unsafe { x.call(self.inertia, self.dimensions, at, out.as_mut_ptr()) }
         out
     }
 

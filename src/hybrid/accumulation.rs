@@ -1,0 +1,220 @@
+//! Recognition of a Zeno accumulation: infinitely many events in finite time.
+//!
+//! Successive events repeat a pattern (of one hop, or of several, since the pivot alternates and
+//! sticks and slips may belong to it) and the durations of the pattern shrink geometrically. Where
+//! the pattern's ratio has converged, the limit in time and state is that of the geometric series.
+//! The rest of the series is left out only once it moves nothing by more than the tolerances of
+//! the run.
+
+use super::instant::Instant;
+
+/// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
+const LONGEST_PATTERN: usize = 8;
+
+/// Three repetitions of the longest pattern and the event before them.
+const MEMORY: usize = 3 * LONGEST_PATTERN + 1;
+
+/// What is remembered of an event.
+#[derive(Debug, Clone, Default)]
+struct Hop {
+    /// What makes two events the same: guard, transition, mode and discrete states after it.
+    signature: u64,
+    /// When it happened.
+    at: Instant,
+    /// State after the event: all coordinates, then all velocities.
+    state: Vec<f64>,
+}
+
+/// Limit of an accumulation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// When it is reached.
+    pub at: Instant,
+    /// Coordinates, then velocities, at the limit.
+    pub state: Vec<f64>,
+    /// Number of events of the repeating pattern.
+    pub pattern: usize,
+    /// Ratio of the durations of successive patterns.
+    pub ratio: f64,
+}
+
+/// The last events of a run.
+#[derive(Debug)]
+pub struct Accumulation {
+    hops: Vec<Hop>,
+    count: usize,
+}
+
+impl Accumulation {
+    /// No events yet; `width` is the number of coordinates and velocities.
+    pub fn new(width: usize) -> Self {
+        let hop = Hop { state: vec![0.0; width], ..Hop::default() };
+        Accumulation { hops: vec![hop; MEMORY], count: 0 }
+    }
+
+    /// Forgets all events: something else has intervened.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Remembers an event, with the state after it.
+    pub fn push(&mut self, signature: u64, at: Instant, state: impl Iterator<Item = f64>) {
+        let slot = self.count % MEMORY;
+        let hop = &mut self.hops[slot];
+        hop.signature = signature;
+        hop.at = at;
+        for (to, from) in hop.state.iter_mut().zip(state) {
+            *to = from;
+        }
+        self.count += 1;
+    }
+
+    fn hop(&self, back: usize) -> &Hop {
+        &self.hops[(self.count - 1 - back) % MEMORY]
+    }
+
+    /// The limit, if the last events accumulate and what is left of the series moves no component
+    /// of the state by more than `tolerance(index, value)`; `relative` is the accuracy asked of
+    /// the limit's time.
+    pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
+        (1..=LONGEST_PATTERN).find_map(|p| self.limit_of_pattern(p, relative, &tolerance))
+    }
+
+    fn limit_of_pattern(
+        &self,
+        p: usize,
+        relative: f64,
+        tolerance: &impl Fn(usize, f64) -> f64,
+    ) -> Option<Limit> {
+        if self.count < 3 * p + 1 {
+            return None;
+        }
+        let repeats = (0..2 * p).all(|i| self.hop(i).signature == self.hop(i + p).signature);
+        if !repeats {
+            return None;
+        }
+        let [last, middle, first] =
+            [0, 1, 2].map(|k| self.hop(k * p).at.since(self.hop((k + 1) * p).at));
+        let (ratio, ratio_before) = (last / middle, middle / first);
+        if !(ratio > 0.0 && ratio < 1.0 && ratio_before < 1.0) {
+            return None;
+        }
+        let series = ratio / (1.0 - ratio);
+        let now = self.hop(0);
+        let remaining = last * series;
+        let limit = now.at.plus(remaining);
+        let predicted_before = self.hop(p).at.plus(middle * ratio_before / (1.0 - ratio_before));
+        let uncertainty = limit.since(predicted_before).abs();
+        let one_place = limit.seconds().abs() * f64::EPSILON;
+        if uncertainty > (relative * limit.seconds().abs()).max(one_place) {
+            return None;
+        }
+        let before = self.hop(p);
+        let mut state = now.state.clone();
+        let mut negligible = true;
+        for (i, value) in state.iter_mut().enumerate() {
+            let change = (now.state[i] - before.state[i]) * series;
+            // The largest departure within the pattern is seen between its events: bound it by
+            // what the events of the last pattern differ by.
+            let spread = (0..p).map(|k| (self.hop(k).state[i] - now.state[i]).abs());
+            let movement = spread.fold(change.abs(), f64::max);
+            negligible &= movement <= tolerance(i, now.state[i]);
+            let limit_before =
+                before.state[i] + (before.state[i] - self.hop(2 * p).state[i]) * ratio_before / (1.0 - ratio_before);
+            *value += change;
+            // A component whose limit is not told from zero by two successive predictions dies
+            // with the pattern.
+            if value.abs() <= (*value - limit_before).abs() {
+                *value = 0.0;
+            }
+        }
+        // Below one unit in the last place of t the series cannot advance the time any more.
+        (negligible || remaining < one_place)
+            .then_some(Limit { at: limit, state, pattern: p, ratio })
+    }
+
+    /// Whether the memory is full of events that together do not advance the time by one unit in
+    /// its last place.
+    pub fn stands_still(&self) -> bool {
+        self.count >= MEMORY && {
+            let (new, old) = (self.hop(0).at, self.hop(MEMORY - 1).at);
+            new.since(old) < new.seconds().abs() * f64::EPSILON
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {
+        let g = 9.81;
+        let mut accumulation = Accumulation::new(2);
+        let mut t = Instant::new((2.0f64 / g).sqrt());
+        let mut v = e * (2.0 * g).sqrt();
+        for k in 0.. {
+            accumulation.push(1, t, [0.0, v].into_iter());
+            if let Some(limit) = accumulation.limit(tolerance, |_, _| tolerance) {
+                return (k, limit);
+            }
+            t = t.plus(2.0 * v / g);
+            v *= e;
+        }
+        unreachable!()
+    }
+
+    #[test]
+    fn a_ball_comes_to_rest_at_the_closed_form_limit() {
+        for (e, exact) in [
+            (0.5, 1.354_570_922_957_192_7),
+            (0.9, 8.578_949_178_728_887),
+            (0.99, 89.853_204_556_160_45),
+        ] {
+            let (_, limit) = bounce(e, 1e-12);
+            assert!((limit.at.seconds() / exact - 1.0).abs() < 1e-13, "{e}: {limit:?}");
+            assert_eq!(limit.state, [0.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn a_series_that_still_moves_is_not_left_out() {
+        let (loose, _) = bounce(0.9, 1e-3);
+        let (tight, _) = bounce(0.9, 1e-12);
+        assert!(loose > 50 && tight > 250, "{loose} {tight}");
+    }
+
+    #[test]
+    fn alternating_hops_are_recognised_over_two() {
+        let mut accumulation = Accumulation::new(1);
+        let mut t = Instant::new(0.0);
+        let (mut long, mut short) = (1.0, 0.3);
+        let mut found = None;
+        for k in 0..400u64 {
+            accumulation.push(k % 2, t, [long].into_iter());
+            found = accumulation.limit(1e-12, |_, _| 1e-9);
+            if found.is_some() {
+                break;
+            }
+            if k % 2 == 0 {
+                t = t.plus(long);
+                long *= 0.7;
+            } else {
+                t = t.plus(short);
+                short *= 0.7;
+            }
+        }
+        let limit = found.expect("accumulates");
+        assert_eq!(limit.pattern, 2);
+        assert!((limit.at.seconds() - 1.3 / 0.3).abs() < 1e-12, "{limit:?}");
+    }
+
+    #[test]
+    fn regular_events_do_not_accumulate() {
+        let mut accumulation = Accumulation::new(1);
+        for k in 0..100 {
+            accumulation.push(0, Instant::new(k as f64 * 1e-6), [1.0].into_iter());
+            assert!(accumulation.limit(1e-12, |_, _| 1.0).is_none());
+            assert!(!accumulation.stands_still());
+        }
+    }
+}
