@@ -1,6 +1,7 @@
 //! From generated C to one static library per model.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use super::cache::Cache;
 use super::error::Error;
@@ -17,16 +18,17 @@ const KIND: &str = "libraries";
 /// that generated the same C as before is not compiled again.
 pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
     let build = compiler();
-    let tool = build.try_get_compiler().map_err(|error| Error::Compiler {
-        what: "the models".to_owned(),
-        problem: error.to_string(),
-    })?;
-    let command = Fingerprint::default().with(format!("{:?}", tool.to_command()));
+    let failed = |what: &str, problem: String| Error::Compiler {
+        what: what.to_owned(),
+        problem,
+    };
+    let command = command(&build).map_err(|problem| failed("the models", problem))?;
+    let command = Fingerprint::default().with(command);
     let libraries = Cache::at(out_dir);
     let compiled = parallel::map(models, |model| {
         let hash = command
             .clone()
-            .with_files(Path::new(""), model.sources.iter().map(PathBuf::as_path))?
+            .with_files(&model.directory, model.sources.iter().map(PathBuf::as_path))?
             .finish();
         let key = format!("{}-{hash}", model.name);
         let folder = libraries.entry(KIND, &key, |folder| {
@@ -37,9 +39,11 @@ pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
                 .files(&model.sources)
                 .out_dir(folder)
                 .try_compile(&library(model))
-                .map_err(|error| Error::Compiler {
-                    what: format!("the C code of {}", model.folder),
-                    problem: error.to_string(),
+                .map_err(|error| {
+                    failed(
+                        &format!("the C code of {}", model.folder),
+                        error.to_string(),
+                    )
                 })
         })?;
         Ok((key, folder))
@@ -68,6 +72,25 @@ fn compiler() -> cc::Build {
         // Generated functions have one signature, whether or not they use every argument.
         .flag_if_supported("-Wno-unused-parameter");
     build
+}
+
+/// The command line of the compiler, once it is known to exist: otherwise the `cc` crate would
+/// warn once for every flag that it cannot try.
+fn command(build: &cc::Build) -> Result<String, String> {
+    let found = cc::Build::new()
+        .cargo_metadata(false)
+        .cargo_warnings(false)
+        .try_get_compiler()
+        .map_err(|error| error.to_string())?;
+    let program = found.path();
+    Command::new(program)
+        .arg("--version")
+        .output()
+        .map_err(|error| format!("{}: {error}", program.display()))?;
+    let tool = build
+        .try_get_compiler()
+        .map_err(|error| error.to_string())?;
+    Ok(format!("{:?}", tool.to_command()))
 }
 
 /// Name of a model's library.

@@ -108,10 +108,11 @@ pub enum InstallCause {
 pub struct ModelFailure {
     /// The model's folder, relative to the project.
     pub folder: String,
-    /// `true` if the generator named the fault in the model (exit status 2), `false` if it
-    /// crashed.
-    pub named: bool,
-    /// What the generator wrote to standard error.
+    /// The fault in the model, with file and line, if the generator named it.
+    pub fault: Option<String>,
+    /// How the generator ended.
+    pub status: String,
+    /// All that the generator wrote to standard error.
     pub output: String,
 }
 
@@ -292,21 +293,27 @@ fn install(
         )?,
     }
     writeln!(f, "pip says:")?;
-    quote(f, output)
+    // One of pip's retries tells why; the others tell the same.
+    let mut retries = 0;
+    let words: Vec<_> = output
+        .lines()
+        .filter(|line| {
+            retries += usize::from(line.contains("Retrying ("));
+            !line.contains("Retrying (") || retries == 1
+        })
+        .collect();
+    quote(f, &words.join("\n"))
 }
 
 fn models(f: &mut fmt::Formatter<'_>, failures: &[ModelFailure]) -> fmt::Result {
     for failure in failures {
-        if failure.named {
-            // The generator's text names file and line itself; cargo adds its own "error:".
-            let text = failure.output.trim();
-            writeln!(f, "{}", text.strip_prefix("error: ").unwrap_or(text))?;
+        if let Some(fault) = &failure.fault {
+            writeln!(f, "{fault}")?;
         } else {
             writeln!(
                 f,
-                "{}: code generation broke down on this model without naming its fault; Python \
-                 says:",
-                failure.folder
+                "{}: code generation ended with {} and did not name the fault; Python says:",
+                failure.folder, failure.status
             )?;
             quote(f, &failure.output)?;
         }

@@ -14,8 +14,8 @@ use super::parallel;
 /// Kind of the cache entries that hold generated code.
 const KIND: &str = "generated";
 
-/// Exit status by which the generator says: the fault is in the model, and my words name it.
-const FAULT_IN_MODEL: i32 = 2;
+/// How the generator begins when it names the fault of a model, with file and line.
+const NAMED_FAULT: &str = "error: ";
 
 /// A model folder.
 #[derive(Debug)]
@@ -35,7 +35,9 @@ pub struct Generated {
     pub name: String,
     /// Where it comes from, relative to the project.
     pub folder: String,
-    /// The C files.
+    /// The folder of the generated files.
+    pub directory: PathBuf,
+    /// The C files in it.
     pub sources: Vec<PathBuf>,
     /// The Rust fragment that describes the model.
     pub fragment: String,
@@ -106,7 +108,7 @@ pub fn generate(
         let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
             run(project, model, environment, folder)
         })?;
-        read(model, &entry)
+        read(model, &entry.join(&model.name))
     });
     let mut generated = Vec::new();
     let mut failures = Vec::new();
@@ -124,7 +126,7 @@ pub fn generate(
     }
 }
 
-/// Runs the generator on one model.
+/// Runs the generator on one model, for which it makes a sub-folder of `folder`.
 fn run(
     project: &Path,
     model: &Model,
@@ -144,21 +146,23 @@ fn run(
     if output.status.success() {
         return Ok(());
     }
+    let text = String::from_utf8_lossy(&output.stderr);
     Err(Error::Models(vec![ModelFailure {
         folder: model.folder.clone(),
-        named: output.status.code() == Some(FAULT_IN_MODEL),
-        output: String::from_utf8_lossy(&output.stderr).into_owned(),
+        fault: text.trim().strip_prefix(NAMED_FAULT).map(str::to_owned),
+        status: output.status.to_string(),
+        output: text.into_owned(),
     }]))
 }
 
 /// Reads what the generator wrote for a model.
-fn read(model: &Model, entry: &Path) -> Result<Generated, Error> {
+fn read(model: &Model, folder: &Path) -> Result<Generated, Error> {
     let wrong = |problem: &str| Error::Manifest {
         folder: model.folder.clone(),
         problem: problem.to_owned(),
     };
     let text = |name: &str| {
-        fs::read_to_string(entry.join(name))
+        fs::read_to_string(folder.join(name))
             .map_err(|error| wrong(&format!("no readable {name}: {error}")))
     };
     let manifest: Value = serde_json::from_str(&text("manifest.json")?)
@@ -174,7 +178,8 @@ fn read(model: &Model, entry: &Path) -> Result<Generated, Error> {
     Ok(Generated {
         name: model.name.clone(),
         folder: model.folder.clone(),
-        sources: sources.iter().map(|name| entry.join(name)).collect(),
+        directory: folder.to_owned(),
+        sources: sources.iter().map(|name| folder.join(name)).collect(),
         fragment: text("model.rs")?,
         item: item.to_owned(),
     })

@@ -101,9 +101,11 @@ impl Environment {
         let answer = String::from_utf8_lossy(&output.stdout);
         let mut answer = answer.lines();
         let Some(version) = answer.next().filter(|_| output.status.success()) else {
+            let complaint = String::from_utf8_lossy(&output.stderr);
+            // A traceback names the error last.
+            let complaint = complaint.trim().lines().last().unwrap_or_default();
             return Err(refuse(format!(
-                "this interpreter cannot import CasADi: {}",
-                python::last_words(&output)
+                "this interpreter cannot import CasADi: {complaint}"
             )));
         };
         if version != lock.casadi {

@@ -5,7 +5,7 @@ use std::ffi::{OsStr, OsString};
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use super::error::Error;
 
@@ -129,7 +129,15 @@ impl Python {
                 _ => Rejection::Unusable(error.to_string()),
             })?;
         let answer = String::from_utf8_lossy(&output.stdout);
-        Self::parse(&answer).unwrap_or_else(|| Err(Rejection::Unusable(last_words(&output))))
+        Self::parse(&answer).unwrap_or_else(|| {
+            let complaint = String::from_utf8_lossy(&output.stderr);
+            let complaint = complaint
+                .lines()
+                .map(str::trim)
+                .find(|line| !line.is_empty());
+            let status = output.status.to_string();
+            Err(Rejection::Unusable(complaint.unwrap_or(&status).to_owned()))
+        })
     }
 
     /// Reads the answer to [`PROBE`]; `None` if it is not one.
@@ -227,13 +235,4 @@ fn is_foreign(name: &OsString) -> bool {
     name == "VIRTUAL_ENV"
         || name.starts_with("PYTHON")
         || (name.starts_with("PIP_") && !REGISTRY_SETTINGS.contains(&name))
-}
-
-/// The last line that a program wrote to standard error, or else its exit status.
-pub fn last_words(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr)
-        .lines()
-        .map(str::trim)
-        .rfind(|line| !line.is_empty())
-        .map_or_else(|| output.status.to_string(), str::to_owned)
 }
