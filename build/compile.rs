@@ -1,0 +1,99 @@
+//! From generated C to one static library per model.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::cache::Cache;
+use super::error::Error;
+use super::fingerprint::Fingerprint;
+use super::generate::Generated;
+use super::parallel;
+
+/// Kind of the entries that hold libraries, in the package's own output folder.
+const KIND: &str = "libraries";
+
+/// Compiles what changed and tells cargo to link the library of every model.
+///
+/// A library is kept under the hash of its C files, the compiler and the flags, so that a model
+/// that generated the same C as before is not compiled again.
+pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
+    let build = compiler();
+    let failed = |what: &str, problem: String| Error::Compiler {
+        what: what.to_owned(),
+        problem,
+    };
+    let command = command(&build).map_err(|problem| failed("the models", problem))?;
+    let command = Fingerprint::default().with(command);
+    let libraries = Cache::at(out_dir);
+    let compiled = parallel::map(models, |model| {
+        let hash = command
+            .clone()
+            .with_files(&model.directory, model.sources.iter().map(PathBuf::as_path))?
+            .finish();
+        let key = format!("{}-{hash}", model.name);
+        let folder = libraries.entry(KIND, &key, |folder| {
+            build
+                .clone()
+                // Linked below, whether it was compiled now or before.
+                .cargo_metadata(false)
+                .files(&model.sources)
+                .out_dir(folder)
+                .try_compile(&library(model))
+                .map_err(|error| {
+                    failed(
+                        &format!("the C code of {}", model.folder),
+                        error.to_string(),
+                    )
+                })
+        })?;
+        Ok((key, folder))
+    });
+    let mut keys = Vec::new();
+    for (model, result) in models.iter().zip(compiled) {
+        let (key, folder) = result?;
+        println!("cargo::rustc-link-search=native={}", folder.display());
+        println!("cargo::rustc-link-lib=static={}", library(model));
+        keys.push(key);
+    }
+    libraries.retain(KIND, &keys)
+}
+
+/// The compiler and its flags. Generated code is the inner loop of every simulation: it is
+/// optimised in every profile, in the same way, so that a debug build and a release build give the
+/// same bits. For the same reason products and sums are not contracted (a fused multiply-add
+/// changes the last bits, and with them the time of an event), and the code is not tuned to the
+/// machine of the build.
+fn compiler() -> cc::Build {
+    let mut build = cc::Build::new();
+    build
+        .opt_level(2)
+        .debug(false)
+        .flag_if_supported("-ffp-contract=off")
+        // Generated functions have one signature, whether or not they use every argument.
+        .flag_if_supported("-Wno-unused-parameter");
+    build
+}
+
+/// The command line of the compiler, once it is known to exist: otherwise the `cc` crate would
+/// warn once for every flag that it cannot try.
+fn command(build: &cc::Build) -> Result<String, String> {
+    let found = cc::Build::new()
+        .cargo_metadata(false)
+        .cargo_warnings(false)
+        .try_get_compiler()
+        .map_err(|error| error.to_string())?;
+    let program = found.path();
+    Command::new(program)
+        .arg("--version")
+        .output()
+        .map_err(|error| format!("{}: {error}", program.display()))?;
+    let tool = build
+        .try_get_compiler()
+        .map_err(|error| error.to_string())?;
+    Ok(format!("{:?}", tool.to_command()))
+}
+
+/// Name of a model's library.
+fn library(model: &Generated) -> String {
+    format!("dalembert_{}", model.name)
+}

@@ -1,0 +1,206 @@
+//! From model folders to generated C and Rust, each model on its own and only when it changed.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::cache::{self, Cache};
+use super::error::{Error, ModelFailure};
+use super::fingerprint::Fingerprint;
+use super::install::{Environment, Lock};
+use super::parallel;
+
+/// Kind of the cache entries that hold generated code.
+const KIND: &str = "generated";
+
+/// How the generator begins when it names the fault of a model, with file and line.
+const NAMED_FAULT: &str = "error: ";
+
+/// A model folder.
+#[derive(Debug)]
+pub struct Model {
+    /// Name of the folder and of the model.
+    pub name: String,
+    /// The folder, relative to the project, with forward slashes.
+    pub folder: String,
+    /// Whether the model exists for the test suite alone.
+    pub for_tests: bool,
+}
+
+/// The generated code of a model.
+#[derive(Debug)]
+pub struct Generated {
+    /// Name of the model.
+    pub name: String,
+    /// Where it comes from, relative to the project.
+    pub folder: String,
+    /// The folder of the generated files.
+    pub directory: PathBuf,
+    /// The C files in it.
+    pub sources: Vec<PathBuf>,
+    /// The Rust fragment that describes the model.
+    pub fragment: String,
+    /// Name of the `static` in the fragment.
+    pub item: String,
+}
+
+/// The models under `models/` and, if asked for, `tests/models/`: every folder with a `model.py`.
+/// The order is that of the names, so that nothing depends on the file system.
+pub fn discover(project: &Path, with_tests: bool) -> Result<Vec<Model>, Error> {
+    let mut models = Vec::new();
+    let parents = [("models", false), ("tests/models", true)];
+    for (parent, for_tests) in parents {
+        if (for_tests && !with_tests) || !project.join(parent).is_dir() {
+            continue;
+        }
+        for path in cache::list(&project.join(parent))? {
+            if !path.join("model.py").is_file() {
+                continue;
+            }
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let folder = format!("{parent}/{name}");
+            if !is_module_name(&name) {
+                return Err(Error::ModelName { folder });
+            }
+            models.push(Model {
+                name: name.into_owned(),
+                folder,
+                for_tests,
+            });
+        }
+    }
+    models.sort_by(|a, b| a.name.cmp(&b.name));
+    match models.windows(2).find(|pair| pair[0].name == pair[1].name) {
+        Some([first, second]) => Err(Error::DuplicateModel {
+            folders: [first.folder.clone(), second.folder.clone()],
+        }),
+        _ => Ok(models),
+    }
+}
+
+/// Files of the generator, whose change regenerates every model.
+pub fn generator_files(project: &Path) -> Result<Vec<PathBuf>, Error> {
+    inputs(&project.join("codegen"))
+}
+
+/// The generated code of all models, in their order: from the cache where neither the model, nor
+/// the generator, nor the lock file changed. A failure reports every model that failed.
+pub fn generate(
+    project: &Path,
+    models: &[Model],
+    lock: &Lock,
+    environment: &Environment,
+    cache: &Cache,
+    target: &str,
+) -> Result<Vec<Generated>, Error> {
+    let generator = generator_files(project)?;
+    let common = Fingerprint::default()
+        .with(target)
+        .with(&lock.text)
+        .with_files(project, generator.iter().map(PathBuf::as_path))?;
+    let results = parallel::map(models, |model| {
+        let files = inputs(&project.join(&model.folder))?;
+        let hash = common
+            .clone()
+            .with_files(project, files.iter().map(PathBuf::as_path))?
+            .finish();
+        let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
+            run(project, model, environment, folder)
+        })?;
+        read(model, &entry.join(&model.name))
+    });
+    let mut generated = Vec::new();
+    let mut failures = Vec::new();
+    for result in results {
+        match result {
+            Ok(model) => generated.push(model),
+            Err(Error::Models(more)) => failures.extend(more),
+            Err(other) => return Err(other),
+        }
+    }
+    if failures.is_empty() {
+        Ok(generated)
+    } else {
+        Err(Error::Models(failures))
+    }
+}
+
+/// Runs the generator on one model, for which it makes a sub-folder of `folder`.
+fn run(
+    project: &Path,
+    model: &Model,
+    environment: &Environment,
+    folder: &Path,
+) -> Result<(), Error> {
+    let mut command = environment.command();
+    command
+        .current_dir(project)
+        .args(["-m", "codegen", "generate", "--model-dir", &model.folder])
+        .arg("--out")
+        .arg(folder)
+        .args(model.for_tests.then_some("--for-tests"));
+    let output = command
+        .output()
+        .map_err(Error::io("run", Path::new(command.get_program())))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let text = String::from_utf8_lossy(&output.stderr);
+    Err(Error::Models(vec![ModelFailure {
+        folder: model.folder.clone(),
+        fault: text.trim().strip_prefix(NAMED_FAULT).map(str::to_owned),
+        status: output.status.to_string(),
+        output: text.into_owned(),
+    }]))
+}
+
+/// Reads what the generator wrote for a model.
+fn read(model: &Model, folder: &Path) -> Result<Generated, Error> {
+    let wrong = |problem: &str| Error::Manifest {
+        folder: model.folder.clone(),
+        problem: problem.to_owned(),
+    };
+    let text = |name: &str| {
+        fs::read_to_string(folder.join(name))
+            .map_err(|error| wrong(&format!("no readable {name}: {error}")))
+    };
+    let manifest: Value = serde_json::from_str(&text("manifest.json")?)
+        .map_err(|error| wrong(&format!("a manifest.json that is not JSON: {error}")))?;
+    let item = manifest["static"]
+        .as_str()
+        .ok_or_else(|| wrong("a manifest.json without the string `static`"))?;
+    let sources = manifest["sources"]
+        .as_array()
+        .and_then(|names| names.iter().map(Value::as_str).collect::<Option<Vec<_>>>())
+        .filter(|names| !names.is_empty())
+        .ok_or_else(|| wrong("a manifest.json without the list of file names `sources`"))?;
+    Ok(Generated {
+        name: model.name.clone(),
+        folder: model.folder.clone(),
+        directory: folder.to_owned(),
+        sources: sources.iter().map(|name| folder.join(name)).collect(),
+        fragment: text("model.rs")?,
+        item: item.to_owned(),
+    })
+}
+
+/// The files of a folder on which generated code can depend: all but prose, the generator's own
+/// tests, bytecode and hidden files.
+fn inputs(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    cache::files(folder, &|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with('.') || name.ends_with(".md") || name == "tests" || name == "__pycache__"
+    })
+}
+
+/// Whether a name can be that of a Rust module and part of a CasADi function name, in which
+/// CasADi allows no double underscore.
+fn is_module_name(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name
+            .chars()
+            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        && !name.contains("__")
+        && !name.ends_with('_')
+}

@@ -1,0 +1,109 @@
+//! What `build.rs` does: Python with CasADi, generated code, compiled models.
+//!
+//! | module | subject |
+//! |---|---|
+//! | `python` | which interpreter, and how it is run |
+//! | `install` | the locked packages, from the cache or a registry |
+//! | `generate` | from model folders to C and Rust |
+//! | `compile` | from C to static libraries |
+//! | `registry` | the Rust file that lists the models |
+//! | `cache`, `fingerprint`, `parallel` | folders under content keys; hashes; threads |
+//! | `error` | every failure, with what to do |
+//!
+//! Variables that the user may set:
+//!
+//! | variable | meaning |
+//! |---|---|
+//! | `DALEMBERT_PYTHON` | an interpreter that already has the CasADi of the lock file |
+//! | `DALEMBERT_CACHE` | folder for installed packages and generated code |
+//! | `PIP_INDEX_URL`, `PIP_FIND_LINKS`, … | how pip reaches a registry |
+//! | `CC`, `CFLAGS`, … | the C compiler, as the `cc` crate understands them |
+
+mod cache;
+mod compile;
+mod error;
+mod fingerprint;
+mod generate;
+mod install;
+mod parallel;
+mod python;
+mod registry;
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+use cache::Cache;
+use error::Error;
+use install::{Environment, Lock};
+
+/// Provides everything that the crate includes, links and reads from its build environment.
+pub fn run() -> Result<(), Error> {
+    let project = PathBuf::from(cargo("CARGO_MANIFEST_DIR")?);
+    let out_dir = PathBuf::from(cargo("OUT_DIR")?);
+    let target = cargo("TARGET")?;
+    let with_tests = env::var_os("CARGO_FEATURE_TEST_MODELS").is_some();
+    watch(&project, with_tests)?;
+
+    let lock = Lock::read(project.join("codegen").join("requirements.lock"))?;
+    let cache = Cache::shared(&out_dir)?;
+    let environment = Environment::provide(&lock, &cache)?;
+    announce(&environment, &lock);
+
+    let models = generate::discover(&project, with_tests)?;
+    let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
+    compile::compile(&generated, &out_dir)?;
+    registry::write(&generated, &out_dir.join("models.rs"))
+}
+
+/// Tells cargo when to run the build script again.
+///
+/// The generator is watched file by file: bytecode and tests beside it change nothing. `models/`
+/// is watched as a whole, because a new folder counts. Not watched are the variables that only
+/// lead to Python or to a registry (`PATH`, `HOME`, `PIP_*`): what they led to stays valid, and a
+/// build that failed is run again anyway.
+fn watch(project: &Path, with_tests: bool) -> Result<(), Error> {
+    let mut paths: Vec<_> = ["build.rs", "build", "models"].map(Into::into).into();
+    if with_tests {
+        paths.push("tests/models".into());
+    }
+    paths.extend(generate::generator_files(project)?);
+    // Cargo takes a path that is missing for one that changed.
+    for path in paths.iter().filter(|path| project.join(path).exists()) {
+        println!("cargo::rerun-if-changed={}", path.display());
+    }
+    for variable in [python::SETTING, cache::SETTING] {
+        println!("cargo::rerun-if-env-changed={variable}");
+    }
+    Ok(())
+}
+
+/// Passes the interpreter on to the crate, which runs Python for verification and in tests.
+fn announce(environment: &Environment, lock: &Lock) {
+    let packages = environment.packages.as_deref();
+    println!(
+        "cargo::rustc-env=DALEMBERT_PYTHON_EXE={}",
+        environment.python.executable.display()
+    );
+    println!(
+        "cargo::rustc-env=DALEMBERT_PYTHON_PATH={}",
+        packages.unwrap_or(Path::new("")).display()
+    );
+    println!("cargo::rustc-env=DALEMBERT_CASADI_VERSION={}", lock.casadi);
+    if let Some(packages) = packages {
+        // Verification needs them later: if they are deleted, the next build brings them back.
+        let inventory = packages.join(cache::INVENTORY);
+        println!("cargo::rerun-if-changed={}", inventory.display());
+    }
+    if !environment.can_verify {
+        println!(
+            "cargo::warning=the interpreter that {} names has no SymPy: `dalembert verify` will \
+             not work until `pip install sympy`",
+            python::SETTING
+        );
+    }
+}
+
+/// A variable that cargo sets for build scripts.
+fn cargo(variable: &'static str) -> Result<String, Error> {
+    env::var(variable).map_err(|_| Error::NotUnderCargo { variable })
+}

@@ -1,0 +1,43 @@
+//! The Rust file that the crate includes: every model's generated description, and their list.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use super::error::Error;
+use super::generate::Generated;
+
+/// Writes the file. It holds a module per model, with the generated fragment inside, and
+/// `MODELS`, in the order of the names. The fragments are copied, not included by path: the cache
+/// they come from may be deleted.
+pub fn write(models: &[Generated], path: &Path) -> Result<(), Error> {
+    fs::write(path, text(models)).map_err(Error::io("write", path))
+}
+
+fn text(models: &[Generated]) -> String {
+    let mut text = String::new();
+    let mut list = String::new();
+    for Generated {
+        name,
+        folder,
+        fragment,
+        item,
+        ..
+    } in models
+    {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "/// The model `{folder}`, as generated.\n\
+             pub mod {name} {{\n\
+             use super::*;\n\
+             {fragment}\n\
+             }}\n\n"
+        );
+        let _ = writeln!(list, "    &{name}::{item},");
+    }
+    text + "/// Every model that was found when the crate was built, by name.\n\
+            pub static MODELS: &[&Model] = &[\n"
+        + &list
+        + "];\n"
+}

@@ -1,0 +1,87 @@
+//! Step sizes: the predictive controller of Gustafsson (1994) as in RADAU5 (Hairer & Wanner 1996,
+//! IV.8), with its constants.
+
+use super::tolerances::nth_root;
+
+/// Aim below the tolerance by this factor in h, so that few steps are rejected (RADAU5).
+const SAFETY: f64 = 0.9;
+/// A step is at most this many times longer than the last (RADAU5).
+const GROWTH: f64 = 8.0;
+/// A step is at least this part of the last (RADAU5).
+const SHRINKAGE: f64 = 0.2;
+/// Errors below this part of the tolerance say little about the trend (RADAU5).
+const SMALLEST_ERROR: f64 = 0.01;
+/// A step that would grow by less keeps its length, and with it the factorization (RADAU5).
+const KEEP: f64 = 1.2;
+
+/// Memory of the controller.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Controller {
+    /// Length and error of the last accepted step since the start or a restart.
+    last: Option<(f64, f64)>,
+}
+
+impl Controller {
+    pub fn new() -> Self {
+        Controller { last: None }
+    }
+
+    /// Length after an attempt of length `h`, rejected with `error` > 1.
+    #[inline]
+    pub fn after_rejection<const S: usize>(
+        &self,
+        h: f64,
+        error: f64,
+        iterations: u32,
+        limit: u32,
+    ) -> f64 {
+        h * (safety(iterations, limit) / root::<S>(error)).clamp(SHRINKAGE, GROWTH)
+    }
+
+    /// Length after an accepted step of length `h` with `error` ≤ 1; `discarded`: attempts failed
+    /// before it, so the next step must not be longer.
+    #[inline]
+    pub fn after_acceptance<const S: usize>(
+        &mut self,
+        h: f64,
+        error: f64,
+        iterations: u32,
+        limit: u32,
+        discarded: bool,
+    ) -> f64 {
+        let mut factor = safety(iterations, limit) / root::<S>(error);
+        if let Some((last_h, last_error)) = self.last {
+            // The error behaves as it did from the last step to this one.
+            let trend = SAFETY * (h / last_h) / root::<S>(error * error / last_error);
+            factor = factor.min(trend);
+        }
+        self.last = Some((h, error.max(SMALLEST_ERROR)));
+        let mut factor = factor.clamp(SHRINKAGE, GROWTH);
+        if discarded {
+            factor = factor.min(1.0);
+        }
+        if (1.0..KEEP).contains(&factor) {
+            h
+        } else {
+            h * factor
+        }
+    }
+}
+
+/// Safety factor, smaller after many Newton iterations (RADAU5).
+#[inline]
+fn safety(iterations: u32, limit: u32) -> f64 {
+    SAFETY * f64::from(1 + 2 * limit) / f64::from(iterations + 2 * limit)
+}
+
+/// error^(1/(S+1)): the estimate is of order h^(S+1).
+#[inline]
+fn root<const S: usize>(error: f64) -> f64 {
+    match S {
+        1 => error.sqrt(),
+        3 => error.sqrt().sqrt(),
+        7 => error.sqrt().sqrt().sqrt(),
+        _ if error > 0.0 => nth_root(error, S + 1),
+        _ => 0.0,
+    }
+}

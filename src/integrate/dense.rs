@@ -1,0 +1,162 @@
+//! Dense output: the motion within a step as one polynomial a coordinate.
+
+use super::tableau::{Coefficients, RadauIia};
+use nalgebra::SVector;
+
+/// The motion within a step, from its start at time t₀ over a length h. With τ = t − t₀, s = τ/h,
+///
+/// ```text
+/// q = q₀ + τ (v₀ + τ P(s)),    P(s) = p₀ + p₁ s + … + p_S s^S,    v = dq/dt,    a = dv/dt.
+/// ```
+///
+/// q₀ and v₀ come out exactly at the start, and the first power of τ that is not zero decides the
+/// sign of q − q₀ after the start, however small τ is.
+///
+/// A component that the step resolves uses the interpolant of its acceleration through the start and
+/// all stages; q, v and a join those at both ends (S = 3: the quintic Hermite polynomial). A stiff
+/// component that the step does not resolve uses the collocation polynomial (see
+/// [`super::Radau::step`]). Uniform global order, S ≥ 3: q and v min(2S − 1, S + 2) and the error
+/// of the interpolant itself is of order S + 3 in q and S + 2 in v; for stiff components S + 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dense<const S: usize, const F: usize> {
+    pub(super) t0: f64,
+    pub(super) h: f64,
+    pub(super) t_end: f64,
+    pub(super) q0: SVector<f64, F>,
+    pub(super) v0: SVector<f64, F>,
+    /// p₀ in the module's formula.
+    pub(super) p0: SVector<f64, F>,
+    /// p₁ … p_S.
+    pub(super) p: [SVector<f64, F>; S],
+}
+
+impl<const S: usize, const F: usize> Dense<S, F> {
+    /// Degree in s of the polynomials of q.
+    pub const DEGREE: usize = S + 2;
+
+    /// Time at s = 0, s.
+    pub fn start(&self) -> f64 {
+        self.t0
+    }
+
+    /// Length of the step the polynomial was made for, s: s = (t − start)/length. Clipping does not
+    /// change it.
+    pub fn length(&self) -> f64 {
+        self.h
+    }
+
+    /// End of the window in which the polynomial is valid, s.
+    pub fn end(&self) -> f64 {
+        self.t_end
+    }
+
+    /// Shortens the window to end at time `t`. The polynomial stays as it is.
+    ///
+    /// # Panics
+    /// If `t` is not within the window.
+    pub fn clip(&mut self, t: f64) {
+        assert!(
+            self.t0 <= t && t <= self.t_end,
+            "the window can only shrink: {t} is not in [{}, {}]",
+            self.t0,
+            self.t_end
+        );
+        self.t_end = t;
+    }
+
+    /// Coordinates, velocities and accelerations at time `t` of the window.
+    #[inline]
+    pub fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+        self.at_offset(t - self.t0)
+    }
+
+    /// The same at τ = t − start, which resolves times close to the start.
+    #[inline]
+    pub fn at_offset(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+        let s = tau / self.h;
+        let (mut q, mut v, mut a) = (self.q0, self.v0, SVector::zeros());
+        for i in 0..F {
+            // Horner's scheme for P and, with the powers' factors from differentiating τ²P once and
+            // twice, for 2P + sP′ and 2P + 4sP′ + s²P″.
+            let (mut value, mut first, mut second) = (0.0, 0.0, 0.0);
+            for k in (0..S).rev() {
+                let power = (k + 3) as f64;
+                value = value * s + self.p[k][i];
+                first = first * s + power * self.p[k][i];
+                second = second * s + power * (power - 1.0) * self.p[k][i];
+            }
+            value = value * s + self.p0[i];
+            first = first * s + 2.0 * self.p0[i];
+            second = second * s + 2.0 * self.p0[i];
+            q[i] += tau * (self.v0[i] + tau * value);
+            v[i] += tau * first;
+            a[i] = second;
+        }
+        (q, v, a)
+    }
+
+    /// The coefficient of s^`power` in q, 0 ≤ `power` ≤ [`Self::DEGREE`], in the units of q.
+    #[inline]
+    pub fn coefficient(&self, power: usize) -> SVector<f64, F> {
+        match power {
+            0 => self.q0,
+            1 => self.v0 * self.h,
+            2 => self.p0 * (self.h * self.h),
+            _ => self.p[power - 3] * (self.h * self.h),
+        }
+    }
+
+    /// Sets P from the accelerations `a0` at the start and `stages`.
+    #[inline]
+    pub(super) fn interpolate(
+        &mut self,
+        a0: &SVector<f64, F>,
+        stages: &[SVector<f64, F>; S],
+        unresolved: &[bool; F],
+    ) where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let tableau = RadauIia::<S>::TABLEAU;
+        for i in 0..F {
+            // One stage does not make an interpolant that reaches the end point.
+            if S > 1 && !unresolved[i] {
+                self.p0[i] = 0.5 * a0[i];
+                for k in 0..S {
+                    let mut sum = 0.0;
+                    for j in 0..S {
+                        sum += tableau.smooth[k][j] * (stages[j][i] - a0[i]);
+                    }
+                    self.p[k][i] = sum;
+                }
+            } else {
+                let mut square = 0.0;
+                for j in 0..S {
+                    square += tableau.collocation_square[j] * stages[j][i];
+                }
+                self.p0[i] = square;
+                for k in 0..S {
+                    let mut sum = 0.0;
+                    for j in 0..S {
+                        sum += tableau.collocation[k][j] * stages[j][i];
+                    }
+                    self.p[k][i] = sum;
+                }
+            }
+        }
+    }
+
+    /// Accelerations at time t₀ + `tau`, inside or beyond the window, as starting values.
+    #[inline]
+    pub(super) fn acceleration(&self, tau: f64) -> SVector<f64, F> {
+        let s = tau / self.h;
+        let mut a = SVector::zeros();
+        for i in 0..F {
+            let mut second = 0.0;
+            for k in (0..S).rev() {
+                second = second * s + ((k + 3) * (k + 2)) as f64 * self.p[k][i];
+            }
+            a[i] = second * s + 2.0 * self.p0[i];
+        }
+        a
+    }
+}

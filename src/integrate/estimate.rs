@@ -1,0 +1,84 @@
+//! Estimate of the local error: an embedded formula of order S, filtered so that stiff components
+//! do not count (Hairer & Wanner 1996, IV.8, eqs. 8.17–8.20), with q̇ = v eliminated.
+
+use super::newton::{Linearization, Newton, Stages};
+use super::radau::State;
+use super::tableau::{Coefficients, RadauIia};
+use super::tolerances::Weights;
+use nalgebra::SVector;
+
+/// Difference of the embedded formula and the step, in q and v.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Estimate<const F: usize> {
+    q: SVector<f64, F>,
+    v: SVector<f64, F>,
+}
+
+impl<const F: usize> Estimate<F> {
+    /// d_v = h (γ a₀ + Σ e_i A_i), d_q = h (γ v₀ + Σ e_i V_i), both written without the parts that
+    /// cancel exactly.
+    #[inline]
+    pub fn raw<const S: usize>(h: f64, start: &State<F>, stages: &Stages<S, F>) -> Self
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let tableau = RadauIia::<S>::TABLEAU;
+        let mut raw = Estimate {
+            q: SVector::zeros(),
+            v: SVector::zeros(),
+        };
+        for l in 0..F {
+            let (mut first, mut second) = (0.0, 0.0);
+            for i in 0..S {
+                first += tableau.e[i] * (stages.a[i][l] - start.a[l]);
+                second += tableau.ea[i] * stages.a[i][l];
+            }
+            raw.v[l] = h * first;
+            raw.q[l] = h * h * second;
+        }
+        raw
+    }
+
+    /// (I − hγJ)⁻¹ applied to the estimate, J the Jacobian of the first-order system:
+    /// (M + hγC + h²γ²K) v = M d_v − hγ K d_q, q = d_q + hγ v.
+    #[inline]
+    pub fn filtered<const S: usize>(&self, h: f64, newton: &Newton<S, F>) -> Self
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let z = h * RadauIia::<S>::TABLEAU.gamma;
+        let Linearization { m, k, .. } = &newton.matrices;
+        let v = SVector::from(newton.real.solve(|i| {
+            let mut sum = 0.0;
+            for j in 0..F {
+                sum += m[(i, j)] * self.v[j] - z * k[(i, j)] * self.q[j];
+            }
+            sum
+        }));
+        Estimate {
+            q: self.q + v * z,
+            v,
+        }
+    }
+
+    /// Size of component `i` in units of the tolerance.
+    #[inline]
+    pub fn size(&self, i: usize, weights: &Weights<F>) -> f64 {
+        f64::max(
+            self.q[i].abs() * weights.q[i],
+            self.v[i].abs() * weights.v[i],
+        )
+    }
+
+    /// Largest component in units of the tolerance; NaN if one is not finite.
+    #[inline]
+    pub fn norm(&self, weights: &Weights<F>) -> f64 {
+        let (mut norm, mut sum) = (0.0_f64, 0.0);
+        for i in 0..F {
+            let size = self.size(i, weights);
+            norm = norm.max(size);
+            sum += self.v[i];
+        }
+        if sum.is_finite() { norm } else { f64::NAN }
+    }
+}

@@ -1,0 +1,253 @@
+//! Small dense linear systems: LU factorization with row pivoting, unrolled by the compiler.
+//!
+//! Rows of the matrices here are generalized forces in different units (N, N m, …), so pivots are
+//! compared after scaling row i by a typical size of coordinate i: all entries of a column then
+//! have the same unit. The choice of pivots, and with it every bit of the result, does not depend on
+//! the units of the coordinates.
+
+use nalgebra::{Complex, SMatrix, SVector};
+use std::ops::{Mul, Sub};
+
+/// A matrix is singular to working precision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Singular {
+    /// Index of the coordinate (column) for which no pivot was left.
+    pub coordinate: usize,
+}
+
+/// Entries of a matrix: real or complex.
+pub(super) trait Scalar: Copy + Default + Mul<Output = Self> + Sub<Output = Self> {
+    /// Size for the choice of a pivot; for complex numbers |Re| + |Im|, within √2 of the modulus.
+    fn size(self) -> f64;
+    /// 1 / self. Complex: |self| in 1e-154 … 1e154, where its square is a normal number.
+    fn reciprocal(self) -> Self;
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn size(self) -> f64 {
+        self.abs()
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        1.0 / self
+    }
+}
+
+impl Scalar for Complex<f64> {
+    #[inline(always)]
+    fn size(self) -> f64 {
+        self.re.abs() + self.im.abs()
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        let scale = 1.0 / (self.re * self.re + self.im * self.im);
+        Complex::new(self.re * scale, -self.im * scale)
+    }
+}
+
+/// P A = L U of an F × F matrix.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lu<T, const F: usize> {
+    /// L below the diagonal, U above.
+    rows: [[T; F]; F],
+    /// Reciprocals of the diagonal of U.
+    reciprocals: [T; F],
+    /// Row of A that became row i.
+    order: [usize; F],
+}
+
+impl<T: Scalar, const F: usize> Lu<T, F> {
+    /// Placeholder until the first factorization.
+    pub fn empty() -> Self {
+        Lu {
+            rows: [[T::default(); F]; F],
+            reciprocals: [T::default(); F],
+            order: [0; F],
+        }
+    }
+
+    /// Factorizes the matrix with the given entry (row, column); `row_scale` as in the module's
+    /// text, positive.
+    #[inline(always)]
+    pub fn factorize(
+        entry: impl Fn(usize, usize) -> T,
+        row_scale: &SVector<f64, F>,
+    ) -> Result<Self, Singular> {
+        let mut lu = Self::empty();
+        let mut scale = [0.0; F];
+        for i in 0..F {
+            lu.order[i] = i;
+            scale[i] = row_scale[i];
+            for j in 0..F {
+                lu.rows[i][j] = entry(i, j);
+            }
+        }
+        for k in 0..F {
+            lu.eliminate(k, &mut scale)?;
+        }
+        Ok(lu)
+    }
+
+    /// One column of Doolittle's elimination by rows of U, columns of L (Crout order): column `k` is
+    /// brought up to date, its pivot chosen, and row `k` finished.
+    #[inline(always)]
+    fn eliminate(&mut self, k: usize, scale: &mut [f64; F]) -> Result<(), Singular> {
+        let mut largest = 0.0_f64;
+        for i in 0..F {
+            largest = largest.max(self.rows[i][k].size() * scale[i]);
+        }
+        for i in k..F {
+            for l in 0..k {
+                self.rows[i][k] = self.rows[i][k] - self.rows[i][l] * self.rows[l][k];
+            }
+        }
+        let mut pivot = k;
+        let mut size = self.rows[k][k].size() * scale[k];
+        for i in k + 1..F {
+            let candidate = self.rows[i][k].size() * scale[i];
+            if candidate > size {
+                pivot = i;
+                size = candidate;
+            }
+        }
+        // F roundings of numbers as large as the column: what is left below that is no information.
+        // (A NaN fails the comparison as well.)
+        let rounding = if k == 0 { 0.0 } else { F as f64 * f64::EPSILON };
+        if !(size > rounding * largest && size.is_finite()) {
+            return Err(Singular { coordinate: k });
+        }
+        if pivot != k {
+            self.rows.swap(pivot, k);
+            self.order.swap(pivot, k);
+            scale.swap(pivot, k);
+        }
+        for j in k + 1..F {
+            for l in 0..k {
+                self.rows[k][j] = self.rows[k][j] - self.rows[k][l] * self.rows[l][j];
+            }
+        }
+        self.reciprocals[k] = self.rows[k][k].reciprocal();
+        for i in k + 1..F {
+            self.rows[i][k] = self.rows[i][k] * self.reciprocals[k];
+        }
+        Ok(())
+    }
+
+    /// A⁻¹ b.
+    #[inline(always)]
+    pub fn solve(&self, b: impl Fn(usize) -> T) -> [T; F] {
+        let mut x = [T::default(); F];
+        for i in 0..F {
+            let mut sum = b(self.order[i]);
+            for j in 0..i {
+                sum = sum - self.rows[i][j] * x[j];
+            }
+            x[i] = sum;
+        }
+        for i in (0..F).rev() {
+            for j in i + 1..F {
+                x[i] = x[i] - self.rows[i][j] * x[j];
+            }
+            x[i] = x[i] * self.reciprocals[i];
+        }
+        x
+    }
+}
+
+/// Solves `matrix` · x = `right_side` by LU with row pivoting; rows are compared as they are after
+/// scaling row i by `row_scale[i]` (a typical size of coordinate i; all ones where units agree).
+///
+/// # Errors
+/// [`Singular`] if no pivot exceeds the rounding of its column, or an entry is not finite.
+pub fn solve<const F: usize>(
+    matrix: &SMatrix<f64, F, F>,
+    right_side: &SVector<f64, F>,
+    row_scale: &SVector<f64, F>,
+) -> Result<SVector<f64, F>, Singular> {
+    let lu = Lu::factorize(|i, j| matrix[(i, j)], row_scale)?;
+    Ok(SVector::from(lu.solve(|i| right_side[i])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Entries without structure in (−1, 1), the same in every run.
+    fn noise(seed: &mut u64) -> f64 {
+        *seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn check<const F: usize>() {
+        let mut seed = 7;
+        for _ in 0..200 {
+            let real = SMatrix::<f64, F, F>::from_fn(|_, _| noise(&mut seed));
+            let imaginary = SMatrix::<f64, F, F>::from_fn(|_, _| noise(&mut seed));
+            let matrix = real.zip_map(&imaginary, Complex::new);
+            let x = SVector::<f64, F>::from_fn(|_, _| noise(&mut seed));
+            let scale = SVector::repeat(1.0);
+
+            let b = real * x;
+            let residual = real * solve(&real, &b, &scale).unwrap() - b;
+            assert!(residual.amax() < 1e-12, "{residual}");
+
+            let b = matrix * x.map(|x| Complex::new(x, -x));
+            let lu = Lu::factorize(|i, j| matrix[(i, j)], &scale).unwrap();
+            let residual = matrix * SVector::from(lu.solve(|i| b[i])) - b;
+            assert!(residual.iter().all(|r| r.size() < 1e-12), "{residual}");
+        }
+    }
+
+    #[test]
+    fn solves_real_and_complex_systems() {
+        check::<1>();
+        check::<2>();
+        check::<3>();
+        check::<6>();
+    }
+
+    #[test]
+    fn pivots_where_the_leading_block_is_singular() {
+        // An effective mass matrix with Coulomb friction: regular, but its first entry is zero.
+        let matrix = SMatrix::<f64, 2, 2>::new(0.0, 2.0, -3.0, 1.0);
+        let x = solve(&matrix, &SVector::from([4.0, -1.0]), &SVector::repeat(1.0)).unwrap();
+        assert_eq!(x, SVector::from([1.0, 2.0]));
+    }
+
+    #[test]
+    fn names_the_coordinate_of_a_singular_matrix() {
+        let matrix = SMatrix::<f64, 2, 2>::new(0.1, 0.3, 0.3, 0.9);
+        let error = solve(&matrix, &SVector::from([1.0, 1.0]), &SVector::repeat(1.0)).unwrap_err();
+        assert_eq!(error, Singular { coordinate: 1 });
+        let matrix = SMatrix::<f64, 1, 1>::new(f64::NAN);
+        assert!(solve(&matrix, &SVector::from([1.0]), &SVector::repeat(1.0)).is_err());
+    }
+
+    #[test]
+    fn units_scaled_by_powers_of_two_change_no_bit() {
+        let mut seed = 3;
+        for _ in 0..100 {
+            let matrix = SMatrix::<f64, 3, 3>::from_fn(|_, _| noise(&mut seed));
+            let b = SVector::<f64, 3>::from_fn(|_, _| noise(&mut seed));
+            let x = solve(&matrix, &b, &SVector::repeat(1.0)).unwrap();
+            // Coordinate i in units of 1/unit_i: q' = unit q, so M'_ij = M_ij / (unit_i unit_j).
+            let unit = SVector::<f64, 3>::new(1024.0, 1.0, 1.0 / 4096.0);
+            let scaled = SMatrix::from_fn(|i, j| matrix[(i, j)] / (unit[i] * unit[j]));
+            let y = solve(&scaled, &b.component_div(&unit), &unit).unwrap();
+            assert_eq!(y, x.component_mul(&unit));
+        }
+    }
+
+    #[test]
+    fn no_coordinates_no_work() {
+        let x = solve(
+            &SMatrix::<f64, 0, 0>::zeros(),
+            &SVector::zeros(),
+            &SVector::zeros(),
+        );
+        assert_eq!(x, Ok(SVector::<f64, 0>::zeros()));
+    }
+}

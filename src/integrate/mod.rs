@@ -1,0 +1,37 @@
+//! One-step integration of second-order systems r(t, q, v, a) = 0 by Radau IIA collocation.
+//!
+//! [`Radau`] advances a [`System`] by implicit Runge–Kutta steps of 1, 3, 5 or 7 stages (orders 1,
+//! 5, 9, 13) with error control, and offers the last step as a polynomial ([`Dense`]) on which
+//! events are located. q̇ = v is eliminated: with accelerations A_j at the stages as unknowns,
+//!
+//! ```text
+//! V_i = v₀ + h Σ_j a_ij A_j,    Q_i = q₀ + h c_i v₀ + h² Σ_j (A²)_ij A_j,
+//! ```
+//!
+//! so all linear algebra is F × F. Nothing is allocated, and only +, −, ×, ÷ and square roots are
+//! used, so that results have the same bits on every processor.
+//!
+//! Files: `tableau` (coefficients), `linear` (LU), `newton` (stage equations), `estimate` (local
+//! error), `controller` (step sizes), `first_step`, `dense`, `radau` (the step), `tolerances`,
+//! `system` (the interface to the equations), `report` (counters and errors).
+
+mod coefficients;
+mod controller;
+mod dense;
+mod estimate;
+mod first_step;
+mod linear;
+mod newton;
+mod radau;
+mod report;
+mod system;
+mod tableau;
+mod tolerances;
+
+pub use dense::Dense;
+pub use linear::{Singular, solve};
+pub use radau::{Radau, Stage, State};
+pub use report::{Counters, StepError, StepReport};
+pub use system::{FirstOrder, FirstOrderProblem, System};
+pub use tableau::{Coefficients, RadauIia, Tableau};
+pub use tolerances::{ToleranceError, Tolerances};

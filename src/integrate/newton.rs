@@ -1,0 +1,326 @@
+//! The stage equations, solved by simplified Newton iteration in the eigenbasis of A.
+//!
+//! With M, C, K at one point, the Newton matrix I⊗M + hA⊗C + h²A²⊗K falls apart into one real and
+//! (S − 1)/2 complex systems M + hλC + h²λ²K of size F, λ the eigenvalues of A (Hairer & Wanner 1996,
+//! IV.8, with q̇ = v eliminated).
+
+use super::linear::{Lu, Singular};
+use super::radau::State;
+use super::report::Counters;
+use super::system::System;
+use super::tableau::{Coefficients, MAX_PAIRS, RadauIia, Tableau};
+use super::tolerances::Weights;
+use nalgebra::{Complex, SMatrix, SVector};
+
+/// A contraction above this is no convergence (RADAU5).
+const DIVERGENCE: f64 = 0.99;
+
+/// Roundings in units of |M||a| + |C||v| + |K||q| below which a residual is zero: its few hundred
+/// operations err by a handful of units in the last place of the largest term.
+const RESIDUAL_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Stage values of one step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stages<const S: usize, const F: usize> {
+    pub a: [SVector<f64, F>; S],
+    pub v: [SVector<f64, F>; S],
+    pub q: [SVector<f64, F>; S],
+    /// End of the step relative to its start: v₁ − v₀ and q₁ − q₀.
+    pub v_change: SVector<f64, F>,
+    pub q_change: SVector<f64, F>,
+}
+
+/// How an attempt to solve the stage equations ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Outcome {
+    Converged { iterations: u32 },
+    Slow { rate: f64 },
+    NonFinite,
+}
+
+/// M, C, K at the linearization point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Linearization<const F: usize> {
+    pub m: SMatrix<f64, F, F>,
+    pub c: SMatrix<f64, F, F>,
+    pub k: SMatrix<f64, F, F>,
+}
+
+impl<const F: usize> Linearization<F> {
+    /// True if no entry is NaN or infinite.
+    pub fn is_finite(&self) -> bool {
+        [&self.m, &self.c, &self.k]
+            .into_iter()
+            .flatten()
+            .all(|x| x.is_finite())
+    }
+}
+
+/// Newton's iteration with what it keeps from step to step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Newton<const S: usize, const F: usize> {
+    pub matrices: Linearization<F>,
+    pub real: Lu<f64, F>,
+    complex: [Lu<Complex<f64>, F>; MAX_PAIRS],
+    /// Step length of the factorization; NaN if there is none.
+    h: f64,
+    /// Contraction θ of the last iteration.
+    pub rate: f64,
+}
+
+impl<const S: usize, const F: usize> Newton<S, F>
+where
+    RadauIia<S>: Coefficients<S>,
+{
+    /// Iterations allowed (RADAU: 7, and more for more stages, whose steps are longer).
+    pub const LIMIT: u32 = if S > 3 { 7 + 5 * (S as u32 - 3) / 2 } else { 7 };
+
+    pub fn new() -> Self {
+        let zero = SMatrix::zeros();
+        Newton {
+            matrices: Linearization {
+                m: zero,
+                c: zero,
+                k: zero,
+            },
+            real: Lu::empty(),
+            complex: [Lu::empty(); MAX_PAIRS],
+            h: f64::NAN,
+            rate: 1.0,
+        }
+    }
+
+    /// Evaluates M, C and K at `state`.
+    #[inline]
+    pub fn linearize<Y: System<F>>(
+        &mut self,
+        system: &mut Y,
+        state: &State<F>,
+        counters: &mut Counters,
+    ) {
+        let Linearization { m, c, k } = &mut self.matrices;
+        system.jacobian(state.t, &state.q, &state.v, &state.a, m, c, k);
+        counters.jacobian_evaluations += 1;
+        self.h = f64::NAN;
+    }
+
+    /// Factorizes for step length `h`, unless that is done.
+    #[inline]
+    pub fn factorize(
+        &mut self,
+        h: f64,
+        row_scale: &SVector<f64, F>,
+        counters: &mut Counters,
+    ) -> Result<(), Singular> {
+        if self.h == h {
+            return Ok(());
+        }
+        self.h = f64::NAN;
+        counters.factorizations += 1;
+        let tableau = RadauIia::<S>::TABLEAU;
+        let Linearization { m, c, k } = &self.matrices;
+        let z = h * tableau.gamma;
+        let entry = |i, j| m[(i, j)] + z * (c[(i, j)] + z * k[(i, j)]);
+        self.real = Lu::factorize(entry, row_scale)?;
+        for pair in 0..Tableau::<S>::PAIRS {
+            let [alpha, beta] = tableau.pairs[pair];
+            let (re, im) = (h * alpha, h * beta);
+            let (re2, im2) = (re * re - im * im, 2.0 * re * im);
+            let entry = |i, j| {
+                Complex::new(
+                    m[(i, j)] + re * c[(i, j)] + re2 * k[(i, j)],
+                    im * c[(i, j)] + im2 * k[(i, j)],
+                )
+            };
+            self.complex[pair] = Lu::factorize(entry, row_scale)?;
+        }
+        self.h = h;
+        Ok(())
+    }
+
+    /// Solves the stage equations of a step of length `h` from `start`, for which the matrices must be
+    /// factorized; `stages.a` holds starting values. Stops when the error is below `tolerance`, in
+    /// the norm of `weights`.
+    #[inline]
+    pub fn solve<Y: System<F>>(
+        &mut self,
+        system: &mut Y,
+        start: &State<F>,
+        h: f64,
+        stages: &mut Stages<S, F>,
+        weights: &Weights<F>,
+        tolerance: f64,
+        counters: &mut Counters,
+    ) -> Outcome {
+        // A change of an acceleration changes v by at most h times it, and q by ½h² times it.
+        let mut weight = SVector::<f64, F>::zeros();
+        for i in 0..F {
+            weight[i] = h * f64::max(weights.v[i], 0.5 * h * weights.q[i]);
+        }
+        // Before two iterations have shown the contraction, last step's stands in, raised to the
+        // power 3/4 out of caution (RADAU5: 0.8; square roots are exact everywhere).
+        let mut remaining = if system.is_linear() {
+            f64::EPSILON
+        } else {
+            let rate = self.rate.clamp(f64::EPSILON, DIVERGENCE);
+            rate / (1.0 - rate)
+        };
+        remaining = (remaining * remaining.sqrt()).sqrt();
+
+        let (mut last_norm, mut last_quotient) = (0.0, 0.0);
+        stages.extend(start, h);
+        for iteration in 1..=Self::LIMIT {
+            let residual = stages.residual(system, start.t, h);
+            counters.residual_evaluations += S as u64;
+            counters.newton_iterations += 1;
+            let norm = self.correct(&residual, stages, &weight);
+            if !norm.is_finite() {
+                return Outcome::NonFinite;
+            }
+            stages.extend(start, h);
+            if iteration > 1 {
+                let quotient = norm / last_norm;
+                self.rate = if iteration == 2 {
+                    quotient
+                } else {
+                    f64::sqrt(quotient * last_quotient)
+                };
+                last_quotient = quotient;
+                let rate = self.rate;
+                // Below DIVERGENCE, but so slow that the iterations left will not do?
+                let left = Self::LIMIT - iteration;
+                let hopeless = || {
+                    let reached = (0..left).fold(norm, |reached, _| reached * rate);
+                    reached * rate / (1.0 - rate) > tolerance
+                };
+                if rate >= DIVERGENCE || norm * rate / (1.0 - rate) > tolerance && hopeless() {
+                    if self.is_rounding(&residual, stages) {
+                        return Outcome::Converged {
+                            iterations: iteration,
+                        };
+                    }
+                    return Outcome::Slow { rate };
+                }
+                remaining = rate / (1.0 - rate);
+            }
+            if remaining * norm <= tolerance {
+                return Outcome::Converged {
+                    iterations: iteration,
+                };
+            }
+            last_norm = norm;
+        }
+        Outcome::Slow { rate: self.rate }
+    }
+
+    /// Subtracts the Newton correction from the stage accelerations and returns its norm.
+    #[inline]
+    fn correct(
+        &self,
+        residual: &[SVector<f64, F>; S],
+        stages: &mut Stages<S, F>,
+        weight: &SVector<f64, F>,
+    ) -> f64 {
+        let tableau = RadauIia::<S>::TABLEAU;
+        let mut w = [[0.0; F]; S];
+        for i in 0..S {
+            for l in 0..F {
+                for j in 0..S {
+                    w[i][l] += tableau.t_inverse[i][j] * residual[j][l];
+                }
+            }
+        }
+        w[0] = self.real.solve(|l| w[0][l]);
+        for pair in 0..Tableau::<S>::PAIRS {
+            let (i, j) = (2 * pair + 1, 2 * pair + 2);
+            let x = self.complex[pair].solve(|l| Complex::new(w[i][l], w[j][l]));
+            for l in 0..F {
+                w[i][l] = x[l].re;
+                w[j][l] = x[l].im;
+            }
+        }
+        let mut norm = 0.0_f64;
+        let mut sum = 0.0;
+        for i in 0..S {
+            for l in 0..F {
+                let mut change = 0.0;
+                for j in 0..S {
+                    change += tableau.t[i][j] * w[j][l];
+                }
+                stages.a[i][l] -= change;
+                // `max` would drop a NaN; the sum keeps it.
+                norm = norm.max(change.abs() * weight[l]);
+                sum += change;
+            }
+        }
+        if sum.is_finite() { norm } else { f64::NAN }
+    }
+
+    /// True if no residual exceeds the rounding of its terms: there is nothing left to correct.
+    #[cold]
+    fn is_rounding(&self, residual: &[SVector<f64, F>; S], stages: &Stages<S, F>) -> bool {
+        let Linearization { m, c, k } = &self.matrices;
+        (0..S).all(|stage| {
+            (0..F).all(|i| {
+                let terms: f64 = (0..F)
+                    .map(|j| {
+                        (m[(i, j)] * stages.a[stage][j]).abs()
+                            + (c[(i, j)] * stages.v[stage][j]).abs()
+                            + (k[(i, j)] * stages.q[stage][j]).abs()
+                    })
+                    .sum();
+                residual[stage][i].abs() <= RESIDUAL_ROUNDING * terms
+            })
+        })
+    }
+}
+
+impl<const S: usize, const F: usize> Stages<S, F>
+where
+    RadauIia<S>: Coefficients<S>,
+{
+    pub fn zeros() -> Self {
+        let zero = SVector::zeros();
+        Stages {
+            a: [zero; S],
+            v: [zero; S],
+            q: [zero; S],
+            v_change: zero,
+            q_change: zero,
+        }
+    }
+
+    /// Velocities and coordinates that belong to the accelerations.
+    #[inline(always)]
+    fn extend(&mut self, start: &State<F>, h: f64) {
+        let tableau = RadauIia::<S>::TABLEAU;
+        for i in 0..S {
+            for l in 0..F {
+                let (mut first, mut second) = (0.0, 0.0);
+                for j in 0..S {
+                    first += tableau.a[i][j] * self.a[j][l];
+                    second += tableau.a2[i][j] * self.a[j][l];
+                }
+                let (v_change, q_change) =
+                    (h * first, h * (tableau.c[i] * start.v[l] + h * second));
+                self.v[i][l] = start.v[l] + v_change;
+                self.q[i][l] = start.q[l] + q_change;
+                if i == S - 1 {
+                    self.v_change[l] = v_change;
+                    self.q_change[l] = q_change;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn residual<Y: System<F>>(&self, system: &mut Y, t0: f64, h: f64) -> [SVector<f64, F>; S] {
+        let tableau = RadauIia::<S>::TABLEAU;
+        let mut r = [SVector::zeros(); S];
+        for i in 0..S {
+            let t = t0 + tableau.c[i] * h;
+            system.residual(t, &self.q[i], &self.v[i], &self.a[i], &mut r[i]);
+        }
+        r
+    }
+}

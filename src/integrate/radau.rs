@@ -1,0 +1,509 @@
+//! The step: attempts, acceptance, restarts, and steps of exact length.
+
+use super::controller::Controller;
+use super::dense::Dense;
+use super::estimate::Estimate;
+use super::first_step;
+use super::newton::{Newton, Outcome, Stages};
+use super::report::{Counters, StepError, StepReport};
+use super::system::System;
+use super::tableau::{Coefficients, RadauIia};
+use super::tolerances::{Control, Tolerances, Weights};
+use nalgebra::SVector;
+
+/// A Jacobian with which Newton's iteration contracted at least this fast serves the next step too.
+const REUSE: f64 = 1e-3;
+
+/// A point of the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<const F: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// Coordinates.
+    pub q: SVector<f64, F>,
+    /// Velocities.
+    pub v: SVector<f64, F>,
+    /// Accelerations.
+    pub a: SVector<f64, F>,
+}
+
+impl<const F: usize> State<F> {
+    /// Name of the part that is not finite, if any.
+    fn not_finite(&self) -> Option<&'static str> {
+        let finite = |x: &SVector<f64, F>| x.iter().all(|x| x.is_finite());
+        match self {
+            state if !state.t.is_finite() => Some("time"),
+            state if !finite(&state.q) => Some("a coordinate"),
+            state if !finite(&state.v) => Some("a velocity"),
+            state if !finite(&state.a) => Some("an acceleration"),
+            _ => None,
+        }
+    }
+}
+
+/// A stage of the last step: a point at which the motion satisfies the equations.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage<'a, const F: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// Weight h b_i of this stage in the integral over the step, s: Σ weight · f(stage) is ∫ f dt to
+    /// the order of the method.
+    pub weight: f64,
+    /// Coordinates.
+    pub q: &'a SVector<f64, F>,
+    /// Velocities.
+    pub v: &'a SVector<f64, F>,
+    /// Accelerations.
+    pub a: &'a SVector<f64, F>,
+}
+
+/// Sums that are carried on to the next step because they were lost in rounding t, q and v.
+#[derive(Debug, Clone, Copy)]
+struct Lost<const F: usize> {
+    t: f64,
+    q: SVector<f64, F>,
+    v: SVector<f64, F>,
+}
+
+impl<const F: usize> Lost<F> {
+    fn nothing() -> Self {
+        Lost {
+            t: 0.0,
+            q: SVector::zeros(),
+            v: SVector::zeros(),
+        }
+    }
+}
+
+/// The sum x + (change + lost), rounded, and what rounding lost (Knuth's two-sum).
+#[inline(always)]
+fn add(x: f64, change: f64, lost: f64) -> (f64, f64) {
+    let change = change + lost;
+    let sum = x + change;
+    let virtual_change = sum - x;
+    (
+        sum,
+        (x - (sum - virtual_change)) + (change - virtual_change),
+    )
+}
+
+/// Radau IIA with `S` stages for a [`System`] of `F` coordinates.
+///
+/// Use: [`Radau::new`], [`Radau::restart`], then [`Radau::step`] as often as wanted; after each step
+/// the motion in it is [`Radau::dense`]. After an event [`Radau::step_exactly`] takes the same step
+/// again up to the event, and [`Radau::restart`] goes on from the state behind it.
+#[derive(Debug, Clone)]
+pub struct Radau<const S: usize, const F: usize> {
+    control: Control<F>,
+    controller: Controller,
+    newton: Newton<S, F>,
+    /// M, C, K were evaluated at the start of the step being made.
+    fresh: bool,
+    /// There are matrices at all that belong to the system.
+    linearized: bool,
+    /// Proposed length of the next step; `None` after a restart.
+    proposal: Option<f64>,
+    start: State<F>,
+    end: State<F>,
+    lost_at_start: Lost<F>,
+    lost: Lost<F>,
+    stages: Stages<S, F>,
+    /// Motion in the last step; `None` after a restart.
+    dense: Option<Dense<S, F>>,
+    /// Components that the last step did not resolve.
+    unresolved: [bool; F],
+    counters: Counters,
+}
+
+impl<const S: usize, const F: usize> Radau<S, F>
+where
+    RadauIia<S>: Coefficients<S>,
+{
+    /// An integrator at rest at zero; call [`Radau::restart`] before the first step.
+    pub fn new(tolerances: &Tolerances<F>) -> Self {
+        let zero = SVector::zeros();
+        let origin = State {
+            t: 0.0,
+            q: zero,
+            v: zero,
+            a: zero,
+        };
+        Radau {
+            control: Control::new::<S>(tolerances),
+            controller: Controller::new(),
+            newton: Newton::new(),
+            fresh: false,
+            linearized: false,
+            proposal: None,
+            start: origin,
+            end: origin,
+            lost_at_start: Lost::nothing(),
+            lost: Lost::nothing(),
+            stages: Stages::zeros(),
+            dense: None,
+            unresolved: [false; F],
+            counters: Counters::default(),
+        }
+    }
+
+    /// Goes on from a state that the last step did not lead to: the initial state, or that behind an
+    /// event. `a` are the accelerations at the state, r(t, q, v, a) = 0. The equations may be
+    /// others than before. The length of the first step is estimated, unless
+    /// [`Radau::suggest`] is called.
+    pub fn restart(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: &SVector<f64, F>,
+    ) {
+        self.end = State {
+            t,
+            q: *q,
+            v: *v,
+            a: *a,
+        };
+        self.start = self.end;
+        self.lost = Lost::nothing();
+        self.lost_at_start = self.lost;
+        self.controller = Controller::new();
+        self.newton.rate = 1.0;
+        self.linearized = false;
+        self.proposal = None;
+        self.dense = None;
+    }
+
+    /// Sets the length with which the next step is tried, s; positive.
+    pub fn suggest(&mut self, h: f64) {
+        self.proposal = Some(h);
+    }
+
+    /// Length with which the next step would be tried, s; `None` if it is to be estimated.
+    pub fn proposal(&self) -> Option<f64> {
+        self.proposal
+    }
+
+    /// The state the last step started from.
+    pub fn start(&self) -> &State<F> {
+        &self.start
+    }
+
+    /// The state the last step led to (or the restart set).
+    pub fn state(&self) -> &State<F> {
+        &self.end
+    }
+
+    /// The motion within the last step; `None` after a restart.
+    pub fn dense(&self) -> Option<&Dense<S, F>> {
+        self.dense.as_ref()
+    }
+
+    /// The stages of the last step, in the order of time; the last is its end. Meaningless after a
+    /// restart.
+    pub fn stages(&self) -> impl Iterator<Item = Stage<'_, F>> {
+        let tableau = RadauIia::<S>::TABLEAU;
+        let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
+        (0..S).map(move |i| Stage {
+            t: self.start.t + tableau.c[i] * h,
+            weight: h * tableau.a[S - 1][i],
+            q: &self.stages.q[i],
+            v: &self.stages.v[i],
+            a: &self.stages.a[i],
+        })
+    }
+
+    /// Work done since construction.
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// Makes one step with error control, not beyond `t_end` and not longer than `h_max` (∞ where
+    /// nothing limits it). Attempts that fail are repeated with shorter lengths. A step that could
+    /// reach `t_end` ends there exactly; if two are needed they have equal lengths.
+    ///
+    /// The dense output of a component is the collocation polynomial where stiffness alone made the
+    /// step acceptable: where its unfiltered estimate exceeds the tolerance and the filter more
+    /// than halved it. There the accelerations at the step's start belong to a transient that the
+    /// step does not resolve.
+    ///
+    /// # Errors
+    /// [`StepError`] when no step, however short, succeeds. The state is unchanged then.
+    ///
+    /// # Panics
+    /// If `t_end` is not after the present time, or `h_max` is not positive.
+    pub fn step<Y: System<F>>(
+        &mut self,
+        system: &mut Y,
+        t_end: f64,
+        h_max: f64,
+    ) -> Result<StepReport, StepError> {
+        assert!(
+            t_end > self.end.t,
+            "t_end = {t_end} is not after t = {}",
+            self.end.t
+        );
+        assert!(h_max > 0.0, "h_max = {h_max} is not positive");
+        let after_restart = self.dense.is_none();
+        if let (true, Some(what)) = (after_restart, self.end.not_finite()) {
+            return Err(StepError::NonFinite {
+                t: self.end.t,
+                h: 0.0,
+                what,
+            });
+        }
+        let origin = self.end;
+        let weights = self.control.weights(&origin.q, &origin.v);
+        let keep = self.linearized && (system.is_linear() || self.newton.rate <= REUSE);
+        self.fresh = false;
+        if !keep {
+            self.linearize(system, &origin);
+        }
+        let remaining = (t_end - origin.t) - self.lost.t;
+        let mut h = match self.proposal {
+            Some(h) => h,
+            None => first_step::estimate(
+                system,
+                &origin,
+                h_max.min(remaining),
+                &self.control,
+                &weights,
+                &self.newton,
+                &mut self.counters,
+            ),
+        };
+        let mut discarded = 0;
+        let proposed = h;
+        loop {
+            h = fit(h, remaining, h_max);
+            let failure = match self.attempt(system, &origin, h, &weights) {
+                Ok(iterations) => {
+                    let raw = Estimate::raw(h, &origin, &self.stages);
+                    let mut filtered = raw.filtered(h, &self.newton);
+                    let mut error = filtered.norm(&weights);
+                    if error >= 1.0 && (after_restart || discarded > 0) {
+                        // A transient: the filter once more (Hairer & Wanner 1996, eq. 8.20).
+                        filtered = filtered.filtered(h, &self.newton);
+                        error = filtered.norm(&weights);
+                    }
+                    let limit = Newton::<S, F>::LIMIT;
+                    if error < 1.0 {
+                        let t = (h == remaining).then_some(t_end);
+                        self.unresolved = std::array::from_fn(|i| {
+                            let size = raw.size(i, &weights);
+                            size > 1.0 && filtered.size(i, &weights) < 0.5 * size
+                        });
+                        self.accept(&origin, self.lost, h, t);
+                        let next = self.controller.after_acceptance::<S>(
+                            h,
+                            error,
+                            iterations,
+                            limit,
+                            discarded > 0,
+                        );
+                        // A step cut short by a limit says nothing against the longer one.
+                        let cut = discarded == 0 && h < proposed;
+                        self.proposal = Some(if cut { next.max(proposed) } else { next });
+                        self.counters.steps += 1;
+                        return Ok(self.report(error, iterations, discarded));
+                    }
+                    self.counters.rejected += 1;
+                    let t = origin.t;
+                    let shorter = self
+                        .controller
+                        .after_rejection::<S>(h, error, iterations, limit);
+                    let failure = if error.is_nan() {
+                        StepError::NonFinite {
+                            t,
+                            h,
+                            what: "the error estimate",
+                        }
+                    } else {
+                        StepError::Tolerance { t, h, error }
+                    };
+                    h = if error.is_nan() { 0.5 * h } else { shorter };
+                    failure
+                }
+                Err(failure) => {
+                    self.counters.newton_failures += 1;
+                    h *= 0.5;
+                    failure
+                }
+            };
+            discarded += 1;
+            if origin.t + h == origin.t {
+                return Err(failure);
+            }
+            if !self.fresh && !system.is_linear() {
+                self.linearize(system, &origin);
+            }
+        }
+    }
+
+    /// Takes the last step again from its start, with exactly the length `h` and no error control:
+    /// a state of full order where an event was located on the dense output, which serves for
+    /// starting values. May be repeated. The proposal for the next step is kept.
+    ///
+    /// # Errors
+    /// [`StepError`] if the stage equations cannot be solved; then state and dense output are
+    /// those of the step before.
+    ///
+    /// # Panics
+    /// If there was no step since the last restart, or `h` is not positive.
+    pub fn step_exactly<Y: System<F>>(
+        &mut self,
+        system: &mut Y,
+        h: f64,
+    ) -> Result<StepReport, StepError> {
+        assert!(h > 0.0, "h = {h} is not positive");
+        assert!(self.dense.is_some(), "there is no step to take again");
+        let origin = self.start;
+        let weights = self.control.weights(&origin.q, &origin.v);
+        let before = self.stages;
+        let solved = self
+            .attempt(system, &origin, h, &weights)
+            .or_else(|failure| {
+                if system.is_linear() {
+                    return Err(failure);
+                }
+                self.linearize(system, &origin);
+                self.attempt(system, &origin, h, &weights)
+            });
+        match solved {
+            Ok(iterations) => {
+                self.accept(&origin, self.lost_at_start, h, None);
+                self.counters.retaken += 1;
+                Ok(self.report(f64::NAN, iterations, 0))
+            }
+            Err(failure) => {
+                self.stages = before;
+                Err(failure)
+            }
+        }
+    }
+
+    fn linearize<Y: System<F>>(&mut self, system: &mut Y, origin: &State<F>) {
+        self.newton.linearize(system, origin, &mut self.counters);
+        self.fresh = true;
+        self.linearized = true;
+    }
+
+    /// Solves the stage equations of a step of length `h`; gives the number of iterations.
+    #[inline]
+    fn attempt<Y: System<F>>(
+        &mut self,
+        system: &mut Y,
+        origin: &State<F>,
+        h: f64,
+        weights: &Weights<F>,
+    ) -> Result<u32, StepError> {
+        let t = origin.t;
+        let tableau = RadauIia::<S>::TABLEAU;
+        if let Err(singular) =
+            self.newton
+                .factorize(h, self.control.row_scale(), &mut self.counters)
+        {
+            return Err(match self.newton.matrices.is_finite() {
+                true => StepError::Singular {
+                    t,
+                    h,
+                    coordinate: singular.coordinate,
+                },
+                false => StepError::NonFinite {
+                    t,
+                    h,
+                    what: "the Jacobian",
+                },
+            });
+        }
+        match &self.dense {
+            // One stage: the polynomial passes through the end points, its second derivative says
+            // nothing.
+            Some(dense) if S > 1 => {
+                let offset = origin.t - dense.t0;
+                for i in 0..S {
+                    self.stages.a[i] = dense.acceleration(offset + tableau.c[i] * h);
+                }
+            }
+            _ => self.stages.a = [origin.a; S],
+        }
+        let outcome = self.newton.solve(
+            system,
+            origin,
+            h,
+            &mut self.stages,
+            weights,
+            self.control.newton,
+            &mut self.counters,
+        );
+        match outcome {
+            Outcome::Converged { iterations } => Ok(iterations),
+            Outcome::Slow { rate } => Err(StepError::Newton { t, h, rate }),
+            Outcome::NonFinite => Err(StepError::NonFinite {
+                t,
+                h,
+                what: "the residual",
+            }),
+        }
+    }
+
+    /// Makes the solved stages the step from `origin`; it ends at `t` if that is given.
+    #[inline]
+    fn accept(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, t: Option<f64>) {
+        let mut end = State {
+            a: self.stages.a[S - 1],
+            ..*origin
+        };
+        let mut now_lost = Lost::nothing();
+        match t {
+            Some(t) => end.t = t,
+            None => (end.t, now_lost.t) = add(origin.t, h, lost.t),
+        }
+        for l in 0..F {
+            (end.q[l], now_lost.q[l]) = add(origin.q[l], self.stages.q_change[l], lost.q[l]);
+            (end.v[l], now_lost.v[l]) = add(origin.v[l], self.stages.v_change[l], lost.v[l]);
+        }
+        self.start = *origin;
+        self.end = end;
+        self.lost_at_start = lost;
+        self.lost = now_lost;
+        let zero = SVector::zeros();
+        let mut dense = Dense {
+            t0: origin.t,
+            h,
+            t_end: end.t,
+            q0: origin.q,
+            v0: origin.v,
+            p0: zero,
+            p: [zero; S],
+        };
+        dense.interpolate(&origin.a, &self.stages.a, &self.unresolved);
+        self.dense = Some(dense);
+    }
+
+    fn report(&self, error: f64, iterations: u32, discarded: u32) -> StepReport {
+        let (t_start, t_end) = (self.start.t, self.end.t);
+        let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
+        StepReport {
+            t_start,
+            t_end,
+            h,
+            error,
+            iterations,
+            discarded,
+        }
+    }
+}
+
+/// The length closest to `h` that neither exceeds `h_max` nor leaves a rest of `remaining` shorter
+/// than itself.
+#[inline]
+fn fit(h: f64, remaining: f64, h_max: f64) -> f64 {
+    let h = h.min(h_max);
+    if h >= remaining {
+        remaining
+    } else if 2.0 * h > remaining {
+        0.5 * remaining
+    } else {
+        h
+    }
+}
