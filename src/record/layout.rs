@@ -1,0 +1,189 @@
+//! Names, units and order of everything a run records.
+
+use std::ops::Range;
+
+use super::run::{Column, Group};
+use crate::model::{InputKind, Model, Variant};
+
+/// Which columns a scene records besides coordinates, velocities, discrete states and the mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Recorded {
+    /// The reactions.
+    pub reactions: bool,
+    /// The running energy ledger.
+    pub energies: bool,
+    /// The signals of the inputs.
+    pub inputs: bool,
+}
+
+/// A named quantity with its unit.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Quantity {
+    /// Name.
+    pub name: String,
+    /// Unit, as the model writes it; `1` where there is none.
+    pub unit: String,
+    /// Meaning and sign, in words.
+    pub meaning: String,
+}
+
+/// Names and units of all that a run records. A row of the trajectory holds the groups in the
+/// order of the fields; [`Layout::range`] says where each one is.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// The coordinates.
+    pub coordinates: Vec<Quantity>,
+    /// The velocities, one a coordinate: `theta.rate`.
+    pub velocities: Vec<Quantity>,
+    /// The reactions, one a coordinate and one a motion of the ground: `reaction.theta`,
+    /// `reaction.z_h`. Empty where they are not recorded.
+    pub reactions: Vec<Quantity>,
+    /// The discrete states.
+    pub discretes: Vec<Quantity>,
+    /// The running ledger, in this order: `energy.stored` (kinetic and potential),
+    /// `energy.input_work`, `energy.dissipated`, `energy.lost_at_impacts`. Empty where it is not
+    /// recorded.
+    pub energies: Vec<Quantity>,
+    /// The signals, in the model's order; an input `a` that is an acceleration gives `a`,
+    /// `a.velocity` and `a.displacement`. Empty where they are not recorded.
+    pub inputs: Vec<Quantity>,
+    /// Names of the modes.
+    pub modes: Vec<String>,
+}
+
+impl Quantity {
+    /// A quantity.
+    pub fn new(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        meaning: impl Into<String>,
+    ) -> Self {
+        Quantity {
+            name: name.into(),
+            unit: unit.into(),
+            meaning: meaning.into(),
+        }
+    }
+}
+
+impl Layout {
+    /// The layout of a model's runs.
+    pub fn new(model: &Model, variant: &Variant, recorded: Recorded) -> Layout {
+        let mut layout = Layout {
+            coordinates: (model.coordinates.iter())
+                .map(|c| Quantity::new(c.name, c.unit, c.meaning))
+                .collect(),
+            velocities: (model.coordinates.iter())
+                .map(|c| {
+                    let meaning = format!("rate of {}", c.name);
+                    Quantity::new(format!("{}.rate", c.name), rate_unit(c.unit), meaning)
+                })
+                .collect(),
+            discretes: (model.discretes.iter())
+                .map(|d| Quantity::new(d.name, "1", d.meaning))
+                .collect(),
+            modes: variant.modes.iter().map(|m| m.name.to_owned()).collect(),
+            ..Layout::default()
+        };
+        if recorded.reactions {
+            layout.reactions = reactions(model);
+        }
+        if recorded.energies {
+            layout.energies = ledger();
+        }
+        if recorded.inputs {
+            layout.inputs = signals(model);
+        }
+        layout
+    }
+
+    /// The groups in the order of a row.
+    fn groups(&self) -> [(Group, &[Quantity]); 6] {
+        [
+            (Group::Coordinate, &self.coordinates),
+            (Group::Velocity, &self.velocities),
+            (Group::Reaction, &self.reactions),
+            (Group::Discrete, &self.discretes),
+            (Group::Energy, &self.energies),
+            (Group::Input, &self.inputs),
+        ]
+    }
+
+    /// The columns of a row, in order.
+    pub fn columns(&self) -> Vec<Column> {
+        let of_group = |(group, quantities): (Group, &[Quantity])| -> Vec<Column> {
+            let column = |q: &Quantity| Column {
+                name: q.name.clone(),
+                unit: q.unit.clone(),
+                meaning: q.meaning.clone(),
+                group,
+            };
+            quantities.iter().map(column).collect()
+        };
+        self.groups().into_iter().flat_map(of_group).collect()
+    }
+
+    /// Where a group is in a row.
+    pub fn range(&self, group: Group) -> Range<usize> {
+        let mut start = 0;
+        for (candidate, quantities) in self.groups() {
+            if candidate == group {
+                return start..start + quantities.len();
+            }
+            start += quantities.len();
+        }
+        unreachable!("groups() lists every group")
+    }
+}
+
+fn reactions(model: &Model) -> Vec<Quantity> {
+    let held = model.coordinates.iter().map(|c| {
+        let meaning = format!("generalized force that holds {} still", c.name);
+        Quantity::new(format!("reaction.{}", c.name), c.reaction_unit, meaning)
+    });
+    let ground = model.motions.iter().map(|m| {
+        let meaning = format!("force of the ground on the system along {}", m.name);
+        Quantity::new(format!("reaction.{}", m.name), m.reaction_unit, meaning)
+    });
+    held.chain(ground).collect()
+}
+
+fn ledger() -> Vec<Quantity> {
+    vec![
+        Quantity::new("energy.stored", "J", "kinetic and potential energy"),
+        Quantity::new("energy.input_work", "J", "work of the inputs so far"),
+        Quantity::new("energy.dissipated", "J", "energy dissipated so far"),
+        Quantity::new(
+            "energy.lost_at_impacts",
+            "J",
+            "energy lost at impacts so far",
+        ),
+    ]
+}
+
+fn signals(model: &Model) -> Vec<Quantity> {
+    let of_input = |input: &crate::model::Input| {
+        let mut signals = vec![Quantity::new(input.name, input.unit, input.meaning)];
+        if input.kind == InputKind::Acceleration {
+            let length = input.unit.strip_suffix("/s^2").unwrap_or(input.unit);
+            for (what, unit) in [
+                ("velocity", rate_unit(length)),
+                ("displacement", length.to_owned()),
+            ] {
+                let meaning = format!("{what} that belongs to {}", input.name);
+                signals.push(Quantity::new(
+                    format!("{}.{what}", input.name),
+                    unit,
+                    meaning,
+                ));
+            }
+        }
+        signals
+    };
+    model.inputs.iter().flat_map(of_input).collect()
+}
+
+/// Unit of the rate of a quantity.
+fn rate_unit(unit: &str) -> String {
+    format!("{unit}/s")
+}

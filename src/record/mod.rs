@@ -1,0 +1,16 @@
+//! What a simulation leaves behind, and everything that is made of it.
+//!
+//! The event engine fills a [`Run`]: the [`Trajectory`] through a [`Recorder`], one [`Event`] a
+//! transition, the energy [`Ledger`], the [`Solver`]'s counters, and a [`Failure`] where the run
+//! stopped early. Every name and unit comes from one [`Layout`], made once from the model.
+
+mod layout;
+mod recorder;
+mod run;
+
+pub use layout::{Layout, Quantity, Recorded};
+pub use recorder::Recorder;
+pub use run::{
+    Column, EnergyJump, Event, Failure, Group, Ledger, Place, Run, Snapshot, Solver, Subject,
+    Trajectory,
+};
