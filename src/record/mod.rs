@@ -4,13 +4,21 @@
 //! transition, the energy [`Ledger`], the [`Solver`]'s counters, and a [`Failure`] where the run
 //! stopped early. Every name and unit comes from one [`Layout`], made once from the model.
 
+pub mod folder;
 mod layout;
+mod number;
+mod peaks;
 mod recorder;
 mod run;
+pub mod summary;
+pub mod table;
 
+pub use folder::{FolderError, OutputFolder};
 pub use layout::{Layout, Quantity, Recorded};
+pub use peaks::{Peak, peaks};
 pub use recorder::Recorder;
 pub use run::{
     Column, EnergyJump, Event, Failure, Group, Ledger, Place, Run, Snapshot, Solver, Subject,
     Trajectory,
 };
+pub use summary::Summary;

@@ -154,7 +154,7 @@ pub struct Failure {
 }
 
 /// Work done by the integrator.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Solver {
     /// Name of the method.
     pub method: String,
@@ -186,6 +186,29 @@ pub struct Ledger {
     pub lost_at_impacts: f64,
     /// A sentence that says in which frame the ledger is kept.
     pub frame: String,
+}
+
+impl Group {
+    /// Whether a [`Snapshot`] holds values of this group.
+    pub fn is_of_the_state(self) -> bool {
+        match self {
+            Group::Coordinate | Group::Velocity | Group::Reaction | Group::Discrete => true,
+            Group::Energy | Group::Input => false,
+        }
+    }
+}
+
+impl Snapshot {
+    /// The values in the order of a row of the trajectory, which starts with them.
+    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        let Snapshot {
+            q,
+            v,
+            reactions,
+            discrete,
+        } = self;
+        q.iter().chain(v).chain(reactions).chain(discrete).copied()
+    }
 }
 
 impl Trajectory {

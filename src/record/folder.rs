@@ -1,0 +1,446 @@
+//! The output folder: written aside, then put in place by one rename.
+//!
+//! Everything goes into a temporary folder beside the target, which then changes places with it
+//! in one system call. Whoever looks at the target, at any moment and also after the program was
+//! killed, sees either the old files or the new ones, whole. What a killed program can leave is
+//! the temporary folder, `.NAME.XXXXXX`, which is safe to delete.
+//!
+//! A folder written here holds a marker, a list of the files written. Those may be replaced by a
+//! later run; any other file is somebody else's and stays.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+/// Name of the marker.
+const MARKER: &str = ".dalembert-output";
+/// First line of the marker.
+const MARKER_TITLE: &str =
+    "# dalembert wrote the files listed here; a later run into this folder replaces them.";
+
+/// Why an output folder cannot be written. The folder is as it was before.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FolderError {
+    /// The path is something else than a folder.
+    #[error("{}: exists and is not a folder; choose another output folder", path.display())]
+    NotAFolder {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The folder holds files and no marker.
+    #[error(
+        "{}: this folder was not written by dalembert and is not empty (it holds `{entry}`); \
+         choose another output folder, or move its files away",
+        path.display()
+    )]
+    NotOurs {
+        /// The folder.
+        path: PathBuf,
+        /// One of the entries found.
+        entry: String,
+    },
+    /// A file that is about to be written is already there, and dalembert did not write it.
+    #[error(
+        "{}: the file `{file}` in this folder was not written by dalembert and would be replaced; \
+         rename it, or choose another output folder",
+        path.display()
+    )]
+    WouldReplace {
+        /// The folder.
+        path: PathBuf,
+        /// The file.
+        file: String,
+    },
+    /// The folder is the current one or holds it, so it cannot change places with another.
+    #[error(
+        "{}: the output folder must not be the current folder or one above it, since it is \
+         replaced as a whole; choose a folder inside, such as `out`",
+        path.display()
+    )]
+    HoldsCurrent {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The operating system refused something.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// On which file or folder.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+}
+
+/// A place where output may be written.
+#[derive(Debug, Clone)]
+pub struct OutputFolder {
+    path: PathBuf,
+}
+
+/// The files on their way into an output folder.
+#[derive(Debug)]
+pub struct Staging {
+    folder: TempDir,
+    files: BTreeSet<String>,
+}
+
+impl OutputFolder {
+    /// Checks that `path` is a place where output may be written, and writes nothing: it does not
+    /// exist, or is an empty folder, or was written by dalembert.
+    pub fn new(path: &Path) -> Result<OutputFolder, FolderError> {
+        let folder = OutputFolder {
+            path: path.to_owned(),
+        };
+        folder.target()?;
+        Ok(folder)
+    }
+
+    /// The path as it was given.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the output: `write` creates the files, and if it succeeds they take the place of
+    /// those of the last run, all at once. Folders above are created as needed.
+    pub fn replace(
+        &self,
+        write: impl FnOnce(&mut Staging) -> Result<(), FolderError>,
+    ) -> Result<(), FolderError> {
+        let target = self.target()?;
+        let parent = match target.parent() {
+            Some(parent) if parent != Path::new("") => parent,
+            _ => Path::new("."),
+        };
+        fs::create_dir_all(parent).map_err(io_error("create the folder", parent))?;
+        let name = target
+            .file_name()
+            .unwrap_or(OsStr::new("out"))
+            .to_string_lossy();
+        let mut staging = Staging {
+            folder: temporary_folder(&name, parent)
+                .map_err(io_error("create a folder inside", parent))?,
+            files: BTreeSet::new(),
+        };
+        write(&mut staging)?;
+        staging.mark()?;
+        let new = staging.folder.path();
+        if fs::symlink_metadata(&target).is_err() {
+            fs::rename(new, &target).map_err(io_error("create the folder", &target))?;
+            // The folder has moved: there is nothing left to clean up at its old path.
+            let _ = staging.folder.keep();
+            return Ok(());
+        }
+        let ours = ours(&target)?;
+        if let Some(file) = staging
+            .files
+            .iter()
+            .find(|f| !ours.contains(*f) && target.join(f).exists())
+        {
+            return Err(FolderError::WouldReplace {
+                path: target,
+                file: file.clone(),
+            });
+        }
+        let permissions = fs::metadata(&target)
+            .map_err(io_error("read", &target))?
+            .permissions();
+        fs::set_permissions(new, permissions).map_err(io_error("set the permissions of", new))?;
+        keep_foreign(&target, new, &ours).map_err(io_error("copy other files of", &target))?;
+        exchange(new, &target).map_err(io_error("replace the folder", &target))?;
+        // `new` is now the path of the old folder. Foreign files that appeared there meanwhile:
+        keep_foreign(new, &target, &ours).map_err(io_error("copy other files of", new))?;
+        staging
+            .folder
+            .close()
+            .map_err(io_error("remove the old output of", &target))
+    }
+
+    /// The folder to replace, symbolic links resolved, after the checks of [`OutputFolder::new`].
+    fn target(&self) -> Result<PathBuf, FolderError> {
+        let path = &self.path;
+        if fs::symlink_metadata(path).is_err() {
+            return Ok(path.clone());
+        }
+        let target = match path.canonicalize() {
+            Ok(target) => target,
+            // A symbolic link that leads nowhere.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                return Err(FolderError::NotAFolder { path: path.clone() });
+            }
+            Err(error) => return Err(io_error("read the folder", path)(error)),
+        };
+        if !target.is_dir() {
+            return Err(FolderError::NotAFolder { path: path.clone() });
+        }
+        if std::env::current_dir().is_ok_and(|current| current.starts_with(&target)) {
+            return Err(FolderError::HoldsCurrent { path: path.clone() });
+        }
+        let mut entries = fs::read_dir(&target).map_err(io_error("read the folder", path))?;
+        match entries.next() {
+            Some(entry) if !target.join(MARKER).is_file() => {
+                let entry = entry
+                    .map_err(io_error("read the folder", path))?
+                    .file_name();
+                let entry = entry.to_string_lossy().into_owned();
+                Err(FolderError::NotOurs {
+                    path: path.clone(),
+                    entry,
+                })
+            }
+            _ => Ok(target),
+        }
+    }
+}
+
+impl Staging {
+    /// Creates a file; `write` fills it.
+    pub fn file(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<(), FolderError> {
+        let path = self.folder.path().join(name);
+        let filled = File::create_new(&path).and_then(|file| {
+            let mut out = BufWriter::new(file);
+            write(&mut out)?;
+            out.flush()
+        });
+        filled.map_err(io_error("write", Path::new(name)))?;
+        self.files.insert(name.to_owned());
+        Ok(())
+    }
+
+    /// Writes the marker.
+    fn mark(&mut self) -> Result<(), FolderError> {
+        let lines: Vec<String> = self.files.iter().map(|file| format!("{file}\n")).collect();
+        self.file(MARKER, |out| {
+            writeln!(out, "{MARKER_TITLE}")?;
+            lines
+                .iter()
+                .try_for_each(|line| out.write_all(line.as_bytes()))
+        })
+    }
+}
+
+fn io_error(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FolderError {
+    let path = path.to_owned();
+    move |source| FolderError::Io {
+        action,
+        path,
+        source,
+    }
+}
+
+/// The files of a folder that dalembert wrote; none in an empty folder.
+fn ours(folder: &Path) -> Result<BTreeSet<String>, FolderError> {
+    let path = folder.join(MARKER);
+    let marker = match fs::read_to_string(&path) {
+        Ok(marker) => marker,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(BTreeSet::new()),
+        Err(error) => return Err(io_error("read", &path)(error)),
+    };
+    let files = marker.lines().skip(1).map(str::to_owned);
+    Ok(files.chain([MARKER.to_owned()]).collect())
+}
+
+/// A new folder beside the target, with the permissions of any new folder.
+fn temporary_folder(name: &str, parent: &Path) -> io::Result<TempDir> {
+    let prefix = format!(".{name}.");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o777)); // less the umask
+    }
+    builder.tempdir_in(parent)
+}
+
+/// Brings every entry of `from` that is not `ours` into `to`, where it is not yet there. Files are
+/// linked, so that they stay the same files.
+fn keep_foreign(from: &Path, to: &Path, ours: &BTreeSet<String>) -> io::Result<()> {
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let (source, copy) = (entry.path(), to.join(entry.file_name()));
+        let is_ours = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| ours.contains(name));
+        if is_ours {
+            continue;
+        }
+        if entry.file_type()?.is_dir() {
+            if !copy.exists() {
+                fs::create_dir(&copy)?;
+            }
+            keep_foreign(&source, &copy, &BTreeSet::new())?;
+            fs::set_permissions(&copy, entry.metadata()?.permissions())?;
+        } else if fs::symlink_metadata(&copy).is_err() {
+            // Linux links symbolic links themselves; where a file cannot be linked it is copied.
+            fs::hard_link(&source, &copy).or_else(|_| fs::copy(&source, &copy).map(drop))?;
+        }
+    }
+    Ok(())
+}
+
+/// Lets two folders change places in one step, where system and file system can.
+fn exchange(a: &Path, b: &Path) -> io::Result<()> {
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    {
+        use rustix::fs::{CWD, RenameFlags, renameat_with};
+        use rustix::io::Errno;
+        match renameat_with(CWD, a, CWD, b, RenameFlags::EXCHANGE) {
+            Ok(()) => return Ok(()),
+            Err(Errno::INVAL | Errno::NOSYS | Errno::NOTSUP) => {} // some network file systems
+            Err(error) => return Err(error.into()),
+        }
+    }
+    exchange_in_steps(a, b)
+}
+
+/// The same in three renames. Between the first and the second there is nothing at `b`; both
+/// folders are whole all the time.
+fn exchange_in_steps(a: &Path, b: &Path) -> io::Result<()> {
+    let mut aside = a.as_os_str().to_owned();
+    aside.push(".old");
+    fs::rename(b, &aside)?;
+    if let Err(error) = fs::rename(a, b) {
+        fs::rename(&aside, b)?;
+        return Err(error);
+    }
+    fs::rename(&aside, a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(path: &Path, files: &[(&str, &str)]) -> Result<(), FolderError> {
+        OutputFolder::new(path)?.replace(|staging| {
+            files.iter().try_for_each(|(name, text)| {
+                staging.file(name, |out| out.write_all(text.as_bytes()))
+            })
+        })
+    }
+
+    fn names(path: &Path) -> Vec<String> {
+        let name = |e: io::Result<fs::DirEntry>| e.unwrap().file_name().into_string().unwrap();
+        let mut names: Vec<_> = fs::read_dir(path).unwrap().map(name).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_second_run_replaces_the_first_and_keeps_foreign_files() {
+        let home = tempfile::tempdir().unwrap();
+        let out = home.path().join("above").join("out");
+        folder(&out, &[("a.csv", "1"), ("b.csv", "1")]).unwrap();
+        fs::create_dir_all(out.join("notes/deep")).unwrap();
+        fs::write(out.join("notes/deep/own.txt"), "mine").unwrap();
+        fs::write(out.join("own.txt"), "mine").unwrap();
+        folder(&out, &[("a.csv", "2")]).unwrap();
+        assert_eq!(names(&out), [MARKER, "a.csv", "notes", "own.txt"]);
+        assert_eq!(fs::read_to_string(out.join("a.csv")).unwrap(), "2");
+        assert_eq!(fs::read_to_string(out.join("own.txt")).unwrap(), "mine");
+        assert_eq!(
+            fs::read_to_string(out.join("notes/deep/own.txt")).unwrap(),
+            "mine"
+        );
+        assert_eq!(
+            names(out.parent().unwrap()),
+            ["out"],
+            "nothing is left beside the folder"
+        );
+    }
+
+    #[test]
+    fn a_foreign_folder_is_refused_and_stays() {
+        let home = tempfile::tempdir().unwrap();
+        fs::write(home.path().join("thesis.tex"), "years of work").unwrap();
+        let error = folder(home.path(), &[("a.csv", "1")]).unwrap_err();
+        assert!(matches!(&error, FolderError::NotOurs { entry, .. } if entry == "thesis.tex"));
+        assert_eq!(names(home.path()), ["thesis.tex"]);
+    }
+
+    #[test]
+    fn a_foreign_file_with_a_name_we_need_is_refused_and_stays() {
+        let home = tempfile::tempdir().unwrap();
+        let out = home.path().join("out");
+        folder(&out, &[("a.csv", "1")]).unwrap();
+        fs::write(out.join("b.csv"), "mine").unwrap();
+        let error = folder(&out, &[("a.csv", "2"), ("b.csv", "2")]).unwrap_err();
+        assert!(matches!(&error, FolderError::WouldReplace { file, .. } if file == "b.csv"));
+        assert_eq!(fs::read_to_string(out.join("a.csv")).unwrap(), "1");
+        assert_eq!(fs::read_to_string(out.join("b.csv")).unwrap(), "mine");
+        assert_eq!(names(home.path()), ["out"]);
+    }
+
+    #[test]
+    fn a_failure_while_writing_leaves_the_old_files() {
+        let home = tempfile::tempdir().unwrap();
+        let out = home.path().join("out");
+        folder(&out, &[("a.csv", "1")]).unwrap();
+        let failed = OutputFolder::new(&out).unwrap().replace(|staging| {
+            staging.file("a.csv", |out| out.write_all(b"2"))?;
+            staging.file("b.csv", |_| Err(io::Error::other("disk full")))
+        });
+        assert!(failed.unwrap_err().to_string().contains("disk full"));
+        assert_eq!(fs::read_to_string(out.join("a.csv")).unwrap(), "1");
+        assert_eq!(names(home.path()), ["out"]);
+    }
+
+    #[test]
+    fn an_empty_folder_is_taken_and_a_file_or_the_current_folder_is_not() {
+        let home = tempfile::tempdir().unwrap();
+        folder(home.path(), &[("a.csv", "1")]).unwrap();
+        let file = home.path().join("a.csv");
+        assert!(matches!(
+            OutputFolder::new(&file),
+            Err(FolderError::NotAFolder { .. })
+        ));
+        assert!(matches!(
+            OutputFolder::new(Path::new(".")),
+            Err(FolderError::HoldsCurrent { .. })
+        ));
+    }
+
+    #[test]
+    fn the_exchange_in_steps_does_the_same() {
+        let home = tempfile::tempdir().unwrap();
+        let (a, b) = (home.path().join("a"), home.path().join("b"));
+        for path in [&a, &b] {
+            fs::create_dir(path).unwrap();
+            fs::write(path.join(path.file_name().unwrap()), "").unwrap();
+        }
+        exchange_in_steps(&a, &b).unwrap();
+        assert_eq!(
+            (names(&a), names(&b)),
+            (vec!["b".to_owned()], vec!["a".to_owned()])
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_linked_folder_stays_linked_and_permissions_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let home = tempfile::tempdir().unwrap();
+        let (real, link) = (home.path().join("real"), home.path().join("link"));
+        folder(&real, &[("a.csv", "1")]).unwrap();
+        fs::set_permissions(&real, fs::Permissions::from_mode(0o750)).unwrap();
+        symlink(&real, &link).unwrap();
+        folder(&link, &[("a.csv", "2")]).unwrap();
+        assert_eq!(fs::read_to_string(real.join("a.csv")).unwrap(), "2");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(
+            fs::metadata(&real).unwrap().permissions().mode() & 0o777,
+            0o750
+        );
+    }
+}

@@ -1,0 +1,126 @@
+//! Numbers as text.
+
+use std::fmt::Write;
+
+/// Significant digits that determine a double.
+const EXACT: usize = 17;
+
+/// Appends `x` with 17 significant digits, trailing zeros dropped: reading it back gives the same
+/// bits (of a NaN: some NaN). Whole numbers have no decimal point; the negative zero keeps one,
+/// because `-0` is read as an integer by many. Non-finite numbers become `NaN`, `inf`, `-inf`.
+pub(super) fn push_exact(out: &mut String, x: f64) {
+    if x == 0.0 && x.is_sign_negative() {
+        out.push_str("-0.0");
+    } else {
+        push_general(out, x, EXACT);
+    }
+}
+
+/// `x` with at most `digits` significant digits, for people.
+pub(super) fn rounded(x: f64, digits: usize) -> String {
+    let mut out = String::new();
+    push_general(&mut out, x, digits);
+    out
+}
+
+/// As C's `%.{digits}g`: positional where the exponent is in `-4..digits`, else scientific.
+fn push_general(out: &mut String, x: f64, digits: usize) {
+    if !x.is_finite() {
+        write!(out, "{x}").expect("writing to a string succeeds");
+        return;
+    }
+    let start = out.len();
+    write!(out, "{:.*e}", digits - 1, x.abs()).expect("writing to a string succeeds");
+    let (mantissa, exponent) = out[start..]
+        .split_once('e')
+        .expect("{:e} writes an exponent");
+    let exponent: i32 = exponent.parse().expect("{:e} writes a whole exponent");
+    let figures: String = mantissa.chars().filter(|&c| c != '.').collect();
+    let figures = match figures.trim_end_matches('0') {
+        "" => "0",
+        trimmed => trimmed,
+    };
+    out.truncate(start);
+    if x.is_sign_negative() && x != 0.0 {
+        out.push('-');
+    }
+    let last = figures.len() as i32 - 1;
+    if exponent < -4 || exponent >= digits as i32 {
+        out.push_str(&figures[..1]);
+        if last > 0 {
+            out.push('.');
+            out.push_str(&figures[1..]);
+        }
+        write!(out, "e{exponent}").expect("writing to a string succeeds");
+    } else if exponent < 0 {
+        out.push_str("0.");
+        out.extend(std::iter::repeat_n('0', (-exponent - 1) as usize));
+        out.push_str(figures);
+    } else if exponent >= last {
+        out.push_str(figures);
+        out.extend(std::iter::repeat_n('0', (exponent - last) as usize));
+    } else {
+        let point = (exponent + 1) as usize;
+        out.push_str(&figures[..point]);
+        out.push('.');
+        out.push_str(&figures[point..]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn exact(x: f64) -> String {
+        let mut out = String::new();
+        push_exact(&mut out, x);
+        out
+    }
+
+    #[test]
+    fn known_numbers() {
+        for (x, text) in [
+            (0.0, "0"),
+            (-0.0, "-0.0"),
+            (1.0, "1"),
+            (-20.0, "-20"),
+            (0.1, "0.10000000000000001"),
+            (0.001, "0.001"),
+            (1.5e-5, "1.5e-5"),
+            (1e16, "10000000000000000"),
+            (1e17, "1e17"),
+            (std::f64::consts::PI, "3.1415926535897931"),
+            (f64::MIN_POSITIVE, "2.2250738585072014e-308"),
+            (5e-324, "4.9406564584124654e-324"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(exact(x), text);
+        }
+    }
+
+    #[test]
+    fn rounding_carries_into_the_exponent() {
+        assert_eq!(rounded(9.9999, 3), "10");
+        assert_eq!(rounded(0.000_099_999, 3), "0.0001");
+        assert_eq!(rounded(999_950.0, 4), "1e6");
+        assert_eq!(rounded(-12.345, 3), "-12.3");
+    }
+
+    proptest! {
+        #[test]
+        fn every_double_is_read_back_bit_for_bit(bits: u64) {
+            let x = f64::from_bits(bits);
+            prop_assume!(!x.is_nan());
+            let back: f64 = exact(x).parse().unwrap();
+            prop_assert_eq!(back.to_bits(), x.to_bits());
+        }
+
+        #[test]
+        fn agrees_with_the_standard_rounding(x in -1e6..1e6f64, digits in 1usize..17) {
+            let standard: f64 = format!("{:.*e}", digits - 1, x).parse().unwrap();
+            prop_assert_eq!(rounded(x, digits).parse::<f64>().unwrap(), standard);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Extremes over the samples and the states on both sides of every transition.
+
+use super::run::{Group, Run};
+
+/// Smallest and largest value of a quantity, and when it first took them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Peak {
+    /// Largest value.
+    pub max: f64,
+    /// First time of the largest value [s].
+    pub t_max: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// First time of the smallest value [s].
+    pub t_min: f64,
+}
+
+/// The peaks of every coordinate, velocity and reaction, as `(column, peak)`. Values that are not
+/// numbers are passed over; a column without any number has no peak.
+pub fn peaks(run: &Run) -> Vec<(usize, Peak)> {
+    let has_peak = |group| matches!(group, Group::Coordinate | Group::Velocity | Group::Reaction);
+    let columns = run.trajectory.columns.iter().enumerate();
+    let columns = columns.filter(|(_, column)| has_peak(column.group));
+    columns
+        .filter_map(|(i, _)| Some((i, peak(run.curve(i))?)))
+        .collect()
+}
+
+/// The peak of a curve in order of time.
+fn peak(curve: impl Iterator<Item = (f64, f64)>) -> Option<Peak> {
+    let mut peak: Option<Peak> = None;
+    for (t, x) in curve.filter(|(_, x)| !x.is_nan()) {
+        let peak = peak.get_or_insert(Peak {
+            max: x,
+            t_max: t,
+            min: x,
+            t_min: t,
+        });
+        if x > peak.max {
+            (peak.max, peak.t_max) = (x, t);
+        }
+        if x < peak.min {
+            (peak.min, peak.t_min) = (x, t);
+        }
+    }
+    peak
+}
+
+impl Run {
+    /// A column over time: the samples and, for what belongs to the state, both sides of every
+    /// transition, in order of time. A sample at the time of a transition comes first.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    pub fn curve(&self, column: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let of_state = self.trajectory.columns[column].group.is_of_the_state();
+        let sides = self
+            .events
+            .iter()
+            .filter(move |_| of_state)
+            .flat_map(move |event| {
+                let value = |values: &mut dyn Iterator<Item = f64>| {
+                    values
+                        .nth(column)
+                        .expect("a snapshot holds every column of the state")
+                };
+                let before = value(&mut event.before.values());
+                [
+                    (event.t, before),
+                    (event.t, value(&mut event.after.values())),
+                ]
+            });
+        let samples = self
+            .trajectory
+            .t
+            .iter()
+            .enumerate()
+            .map(move |(i, &t)| (t, self.trajectory.row(i)[column]));
+        let (mut samples, mut sides) = (samples.peekable(), sides.peekable());
+        std::iter::from_fn(move || match (samples.peek(), sides.peek()) {
+            (Some(sample), Some(side)) if sample.0 <= side.0 => samples.next(),
+            (_, Some(_)) => sides.next(),
+            _ => samples.next(),
+        })
+    }
+}

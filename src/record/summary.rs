@@ -1,0 +1,289 @@
+//! `summary.json`: the result of a run on one page.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::ser::{Formatter, PrettyFormatter};
+
+use super::layout::Quantity;
+use super::number::push_exact;
+use super::peaks::peaks;
+use super::run::{Place, Run};
+
+/// File name of the summary.
+pub const SUMMARY: &str = "summary.json";
+
+/// What `summary.json` holds. Names map to values in the order of the model. All bytes follow
+/// from the run, `wall_seconds` alone differs from one execution to the next.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Summary {
+    /// Name of the model.
+    pub model: String,
+    /// Title of the scene.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub title: String,
+    /// Chosen option of each choice of the model.
+    pub choices: Named<String>,
+    /// Value of each parameter.
+    pub parameters: Named<f64>,
+    /// Where the run ended.
+    pub end: Point,
+    /// Why and where the run stopped early; `null` when it reached its end.
+    pub failure: Option<Stopped>,
+    /// Extremes of every coordinate, velocity and reaction.
+    pub peaks: Named<Extremes>,
+    /// The transitions.
+    pub events: Events,
+    /// What the impacts did to the energy, by transition.
+    pub impacts: Named<Impacts>,
+    /// The balance of energies.
+    pub energy: Energy,
+    /// Work done by the integrator.
+    pub solver: super::Solver,
+    /// Time the simulation took on the wall clock [s].
+    pub wall_seconds: f64,
+}
+
+/// A point in hybrid time.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Point {
+    /// Time [s].
+    pub t: f64,
+    /// Number of transitions so far.
+    pub j: u64,
+    /// Name of the mode.
+    pub mode: String,
+    /// Coordinates.
+    pub q: Named<f64>,
+    /// Velocities.
+    pub v: Named<f64>,
+    /// Discrete states.
+    pub discrete: Named<f64>,
+}
+
+/// Why and where a run stopped early.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Stopped {
+    /// What went wrong.
+    pub reason: String,
+    /// Where.
+    #[serde(flatten)]
+    pub at: Point,
+}
+
+/// Extremes of a quantity over the samples and both sides of every transition.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Extremes {
+    /// Largest value.
+    pub max: f64,
+    /// First time of the largest value [s].
+    pub t_max: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// First time of the smallest value [s].
+    pub t_min: f64,
+    /// Unit of the values.
+    pub unit: String,
+}
+
+/// Number of transitions.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Events {
+    /// All of them.
+    pub total: usize,
+    /// By name.
+    pub by_transition: BTreeMap<&'static str, usize>,
+}
+
+/// What the impacts of one kind did to the energy.
+#[derive(Debug, Clone, Default, serde::Serialize)]
+pub struct Impacts {
+    /// Number of impacts.
+    pub count: usize,
+    /// Energy lost in all, in the frame of the ground [J].
+    pub lost: f64,
+    /// Number of impacts that gained energy.
+    pub gaining: usize,
+    /// Smallest loss of one impact [J]; negative where an impact gained energy.
+    pub smallest_loss: f64,
+    /// Largest loss of one impact [J].
+    pub largest_loss: f64,
+    /// Work of the ground's impulses, in the inertial frame [J].
+    pub ground_work: f64,
+}
+
+/// The balance `initial + input_work − dissipated − lost_at_impacts − final = imbalance`.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Energy {
+    /// Kinetic and potential energy at the start [J].
+    pub initial: f64,
+    /// Kinetic and potential energy at the end [J].
+    #[serde(rename = "final")]
+    pub final_: f64,
+    /// Energy dissipated [J].
+    pub dissipated: f64,
+    /// Work of the inputs [J].
+    pub input_work: f64,
+    /// Energy lost at impacts [J].
+    pub lost_at_impacts: f64,
+    /// What the balance is off by [J].
+    pub imbalance: f64,
+    /// In which frame the balance is kept.
+    pub frame: String,
+}
+
+/// Names and values that keep their order, written as a JSON object.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+impl Summary {
+    /// The summary of a run.
+    pub fn new(run: &Run) -> Summary {
+        let mut by_transition = BTreeMap::new();
+        for event in &run.events {
+            *by_transition.entry(event.transition).or_default() += 1;
+        }
+        let extremes = peaks(run).into_iter().map(|(i, peak)| {
+            let column = &run.trajectory.columns[i];
+            let extremes = Extremes {
+                max: peak.max,
+                t_max: peak.t_max,
+                min: peak.min,
+                t_min: peak.t_min,
+                unit: column.unit.clone(),
+            };
+            (column.name.clone(), extremes)
+        });
+        Summary {
+            model: run.subject.model.clone(),
+            title: run.subject.title.clone(),
+            choices: Named(run.subject.choices.clone()),
+            parameters: Named(run.subject.parameters.clone()),
+            end: point(run, &run.end),
+            failure: (run.failure.as_ref()).map(|f| Stopped {
+                reason: f.reason.clone(),
+                at: point(run, &f.at),
+            }),
+            peaks: Named(extremes.collect()),
+            events: Events {
+                total: run.events.len(),
+                by_transition,
+            },
+            impacts: impacts(run),
+            energy: Energy {
+                initial: run.energy.initial,
+                final_: run.energy.final_,
+                dissipated: run.energy.dissipated,
+                input_work: run.energy.input_work,
+                lost_at_impacts: run.energy.lost_at_impacts,
+                imbalance: run.energy.imbalance(),
+                frame: run.energy.frame.clone(),
+            },
+            solver: run.solver.clone(),
+            wall_seconds: run.wall.as_secs_f64(),
+        }
+    }
+
+    /// Writes the summary as JSON, numbers with 17 significant digits.
+    pub fn write(&self, out: impl Write) -> io::Result<()> {
+        let mut out = out;
+        let formatter = ExactFormatter(PrettyFormatter::new());
+        self.serialize(&mut serde_json::Serializer::with_formatter(
+            &mut out, formatter,
+        ))?;
+        writeln!(out)
+    }
+}
+
+fn point(run: &Run, place: &Place) -> Point {
+    let named = |quantities: &[Quantity], values: &[f64]| {
+        Named(
+            quantities
+                .iter()
+                .map(|q| q.name.clone())
+                .zip(values.iter().copied())
+                .collect(),
+        )
+    };
+    Point {
+        t: place.t,
+        j: place.j,
+        mode: run.layout.modes[place.mode].clone(),
+        q: named(&run.layout.coordinates, &place.state.q),
+        v: named(&run.layout.velocities, &place.state.v),
+        discrete: named(&run.layout.discretes, &place.state.discrete),
+    }
+}
+
+fn impacts(run: &Run) -> Named<Impacts> {
+    let mut by_transition = BTreeMap::<&str, Impacts>::new();
+    for event in &run.events {
+        let Some(jump) = event.energy else { continue };
+        let impacts = by_transition.entry(event.transition).or_insert(Impacts {
+            smallest_loss: f64::INFINITY,
+            largest_loss: f64::NEG_INFINITY,
+            ..Impacts::default()
+        });
+        impacts.count += 1;
+        impacts.lost += jump.lost;
+        impacts.gaining += usize::from(jump.lost < 0.0);
+        impacts.smallest_loss = impacts.smallest_loss.min(jump.lost);
+        impacts.largest_loss = impacts.largest_loss.max(jump.lost);
+        impacts.ground_work += jump.ground_work;
+    }
+    Named(
+        by_transition
+            .into_iter()
+            .map(|(name, impacts)| (name.to_owned(), impacts))
+            .collect(),
+    )
+}
+
+/// Pretty JSON with exact numbers. (What is not finite is `null`: JSON has no other way.)
+struct ExactFormatter<'a>(PrettyFormatter<'a>);
+
+impl Formatter for ExactFormatter<'_> {
+    fn write_f64<W: ?Sized + Write>(&mut self, writer: &mut W, x: f64) -> io::Result<()> {
+        let mut text = String::new();
+        push_exact(&mut text, x);
+        writer.write_all(text.as_bytes())
+    }
+    fn begin_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.begin_array(writer)
+    }
+    fn end_array<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_array(writer)
+    }
+    fn begin_array_value<W: ?Sized + Write>(&mut self, w: &mut W, first: bool) -> io::Result<()> {
+        self.0.begin_array_value(w, first)
+    }
+    fn end_array_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_array_value(writer)
+    }
+    fn begin_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.begin_object(writer)
+    }
+    fn end_object<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_object(writer)
+    }
+    fn begin_object_key<W: ?Sized + Write>(&mut self, w: &mut W, first: bool) -> io::Result<()> {
+        self.0.begin_object_key(w, first)
+    }
+    fn begin_object_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.begin_object_value(writer)
+    }
+    fn end_object_value<W: ?Sized + Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.0.end_object_value(writer)
+    }
+}

@@ -1,0 +1,222 @@
+//! `trajectory.csv`, `events.csv`, and `csv-metadata.json`, which says units and meanings.
+//!
+//! A CSV file has one header line, so that every reader of tables takes it as it is. The units are
+//! in `csv-metadata.json`, the file that the W3C recommendation "Metadata Vocabulary for Tabular
+//! Data" (2015) names for tables in the same folder; the unit is an annotation `schema:unitText`.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use super::number::push_exact;
+use super::run::{Column, EnergyJump, Group, Run};
+
+/// File name of the samples.
+pub const TRAJECTORY: &str = "trajectory.csv";
+/// File name of the transitions.
+pub const EVENTS: &str = "events.csv";
+/// File name of the description of both tables.
+pub const METADATA: &str = "csv-metadata.json";
+
+/// Writes the samples: `t`, every column of the trajectory by name, `mode` by name.
+pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
+    let mut rows = Rows::new(out);
+    rows.text("t")?;
+    for column in &run.trajectory.columns {
+        rows.text(&column.name)?;
+    }
+    rows.text("mode")?;
+    rows.end()?;
+    for (i, &t) in run.trajectory.t.iter().enumerate() {
+        rows.number(t)?;
+        for &value in run.trajectory.row(i) {
+            rows.number(value)?;
+        }
+        rows.text(&run.layout.modes[usize::from(run.trajectory.mode[i])])?;
+        rows.end()?;
+    }
+    rows.finish()
+}
+
+/// Writes the transitions: `t,j,transition,from,to`, the state before (`theta.before`, …) and
+/// after, reactions and discrete states included, and the jump of the energy: `lost`,
+/// `ground_work`, 0 where the transition is no impact.
+pub fn write_events(run: &Run, out: impl Write) -> io::Result<()> {
+    let mut rows = Rows::new(out);
+    for name in event_columns(run).into_iter().map(|column| column.name) {
+        rows.text(&name)?;
+    }
+    rows.end()?;
+    for event in &run.events {
+        rows.number(event.t)?;
+        rows.text(&event.j.to_string())?;
+        rows.text(event.transition)?;
+        rows.text(&run.layout.modes[event.from])?;
+        rows.text(&run.layout.modes[event.to])?;
+        for value in event.before.values().chain(event.after.values()) {
+            rows.number(value)?;
+        }
+        let EnergyJump { lost, ground_work } = event.energy.unwrap_or_default();
+        rows.number(lost)?;
+        rows.number(ground_work)?;
+        rows.end()?;
+    }
+    rows.finish()
+}
+
+/// Writes the description of both tables.
+pub fn write_metadata(run: &Run, out: impl Write) -> io::Result<()> {
+    let mut columns = vec![Described::time()];
+    columns.extend(run.trajectory.columns.iter().map(Described::quantity));
+    columns.push(Described::text("mode", "mode of the system"));
+    let tables = Tables {
+        context: "http://www.w3.org/ns/csvw",
+        tables: [
+            Table {
+                url: TRAJECTORY,
+                schema: Schema { columns },
+            },
+            Table {
+                url: EVENTS,
+                schema: Schema {
+                    columns: event_columns(run),
+                },
+            },
+        ],
+    };
+    let mut out = out;
+    serde_json::to_writer_pretty(&mut out, &tables)?;
+    writeln!(out)
+}
+
+/// Name and description of each column of the table of events.
+fn event_columns(run: &Run) -> Vec<Described> {
+    let mut columns = vec![
+        Described::time(),
+        Described {
+            name: "j".into(),
+            meaning: "number of transitions up to and including this one".into(),
+            datatype: "integer",
+            unit: None,
+        },
+        Described::text("transition", "name of the transition"),
+        Described::text("from", "mode left"),
+        Described::text("to", "mode entered"),
+    ];
+    for side in ["before", "after"] {
+        let state = run
+            .layout
+            .columns()
+            .into_iter()
+            .filter(|c| c.group.is_of_the_state());
+        columns.extend(state.map(|c| {
+            let name = format!("{}.{side}", c.name);
+            let meaning = format!("{}, {side} the transition", c.meaning);
+            Described::quantity(&Column { name, meaning, ..c })
+        }));
+    }
+    for (name, meaning) in [
+        (
+            "lost",
+            "energy lost at the impact, in the frame of the ground",
+        ),
+        (
+            "ground_work",
+            "work of the ground's impulse under the ground's motion, inertial frame",
+        ),
+    ] {
+        columns.push(Described::quantity(&Column {
+            name: name.into(),
+            unit: "J".into(),
+            meaning: meaning.into(),
+            group: Group::Energy,
+        }));
+    }
+    columns
+}
+
+#[derive(Serialize)]
+struct Tables {
+    #[serde(rename = "@context")]
+    context: &'static str,
+    tables: [Table; 2],
+}
+
+#[derive(Serialize)]
+struct Table {
+    url: &'static str,
+    #[serde(rename = "tableSchema")]
+    schema: Schema,
+}
+
+#[derive(Serialize)]
+struct Schema {
+    columns: Vec<Described>,
+}
+
+/// A column, as the metadata describes it.
+#[derive(Serialize)]
+struct Described {
+    name: String,
+    #[serde(rename = "dc:description")]
+    meaning: String,
+    datatype: &'static str,
+    #[serde(rename = "schema:unitText", skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+}
+
+impl Described {
+    fn time() -> Described {
+        Described {
+            name: "t".into(),
+            meaning: "time".into(),
+            datatype: "double",
+            unit: Some("s".into()),
+        }
+    }
+    fn text(name: &str, meaning: &str) -> Described {
+        Described {
+            name: name.into(),
+            meaning: meaning.into(),
+            datatype: "string",
+            unit: None,
+        }
+    }
+    fn quantity(column: &Column) -> Described {
+        Described {
+            name: column.name.clone(),
+            meaning: column.meaning.clone(),
+            datatype: "double",
+            unit: Some(column.unit.clone()),
+        }
+    }
+}
+
+/// A CSV writer that formats numbers into one reused buffer.
+struct Rows<W: Write> {
+    csv: csv::Writer<W>,
+    buffer: String,
+}
+
+impl<W: Write> Rows<W> {
+    fn new(out: W) -> Self {
+        Rows {
+            csv: csv::Writer::from_writer(out),
+            buffer: String::new(),
+        }
+    }
+    fn text(&mut self, text: &str) -> io::Result<()> {
+        Ok(self.csv.write_field(text)?)
+    }
+    fn number(&mut self, x: f64) -> io::Result<()> {
+        self.buffer.clear();
+        push_exact(&mut self.buffer, x);
+        Ok(self.csv.write_field(&self.buffer)?)
+    }
+    fn end(&mut self) -> io::Result<()> {
+        Ok(self.csv.write_record(None::<&[u8]>)?)
+    }
+    fn finish(mut self) -> io::Result<()> {
+        self.csv.flush()
+    }
+}
