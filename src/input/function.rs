@@ -1,0 +1,146 @@
+//! A function of time as a sum of simple terms.
+
+use super::{Sine, Table};
+
+/// Which one-sided limit is meant at a breakpoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The limit from earlier times.
+    Left,
+    /// The limit from later times.
+    Right,
+}
+
+/// A function of time and what is needed of it at one instant. Units: those of the function f,
+/// per second, times second and times second squared.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Jet {
+    /// f′(t).
+    pub rate: f64,
+    /// f(t).
+    pub value: f64,
+    /// ∫₀ᵗ f.
+    pub integral: f64,
+    /// ∫₀ᵗ ∫₀ˢ f.
+    pub double_integral: f64,
+}
+
+impl std::ops::Add for Jet {
+    type Output = Jet;
+    fn add(self, other: Jet) -> Jet {
+        Jet {
+            rate: self.rate + other.rate,
+            value: self.value + other.value,
+            integral: self.integral + other.integral,
+            double_integral: self.double_integral + other.double_integral,
+        }
+    }
+}
+
+/// A prescribed function of time: a sum of constants, sines and tables. The empty sum is zero.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Function {
+    terms: Vec<Term>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Term {
+    Constant(f64),
+    Sine(Sine),
+    Table(Table),
+}
+
+impl Function {
+    /// The function that is zero.
+    pub fn zero() -> Self {
+        Function::default()
+    }
+
+    /// A constant.
+    pub fn constant(value: f64) -> Self {
+        Function {
+            terms: vec![Term::Constant(value)],
+        }
+    }
+
+    /// The sum of functions.
+    pub fn sum(functions: impl IntoIterator<Item = Function>) -> Self {
+        Function {
+            terms: functions.into_iter().flat_map(|f| f.terms).collect(),
+        }
+    }
+
+    /// Value, rate and antiderivatives at time `t` (s).
+    pub fn at(&self, t: f64, side: Side) -> Jet {
+        self.terms
+            .iter()
+            .fold(Jet::default(), |sum, term| sum + term.at(t, side))
+    }
+
+    /// The first time after `t` at which the function is not smooth, in s; infinite if there is
+    /// none.
+    pub fn next_breakpoint(&self, t: f64) -> f64 {
+        self.terms
+            .iter()
+            .map(|term| term.next_breakpoint(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The longest window after `t` over which the function is close to a polynomial of low
+    /// degree, in s: a quarter period of a sine, and for a spline the time to the end of the next
+    /// piece, so that it has at most one knot inside. Infinite for polynomials between
+    /// breakpoints.
+    pub fn resolution(&self, t: f64) -> f64 {
+        self.terms
+            .iter()
+            .map(|term| term.resolution(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl From<Sine> for Function {
+    fn from(sine: Sine) -> Self {
+        Function {
+            terms: vec![Term::Sine(sine)],
+        }
+    }
+}
+
+impl From<Table> for Function {
+    fn from(table: Table) -> Self {
+        Function {
+            terms: vec![Term::Table(table)],
+        }
+    }
+}
+
+impl Term {
+    fn at(&self, t: f64, side: Side) -> Jet {
+        match self {
+            Term::Constant(c) => Jet {
+                rate: 0.0,
+                value: *c,
+                integral: c * t,
+                double_integral: 0.5 * c * t * t,
+            },
+            Term::Sine(sine) => sine.at(t, side),
+            Term::Table(table) => table.at(t, side),
+        }
+    }
+
+    fn next_breakpoint(&self, t: f64) -> f64 {
+        match self {
+            Term::Constant(_) => f64::INFINITY,
+            Term::Sine(sine) => sine.next_breakpoint(t),
+            Term::Table(table) => table.next_breakpoint(t),
+        }
+    }
+
+    fn resolution(&self, t: f64) -> f64 {
+        match self {
+            Term::Constant(_) => f64::INFINITY,
+            Term::Sine(sine) => sine.resolution(t),
+            Term::Table(table) => table.resolution(t),
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Prescribed functions of time: what a scene's `inputs` say, evaluated as the signals of a model.
+//!
+//! An input of kind [`InputKind::Acceleration`] fills three signals: acceleration, velocity and
+//! displacement of the ground. The last two are the exact antiderivatives of the first, both zero
+//! at t = 0, for tables and sums too; nothing is integrated numerically.
+//!
+//! Functions may jump or have kinks. At such a breakpoint there are two limits:
+//! [`Signals::evaluate`] gives the right-hand one and [`Signals::evaluate_left`] the left-hand one.
+//! Over a segment `(t0, t1]` without a breakpoint inside, `evaluate` at `t0` and `evaluate_left`
+//! after it give the values of one smooth function.
+
+mod function;
+mod sine;
+mod spline;
+mod table;
+
+pub use function::{Function, Jet, Side};
+pub use sine::Sine;
+pub use table::{Interpolation, Outside, Table, TableError};
+
+use crate::model::{Input, InputKind};
+
+/// All inputs of a model, as functions of the absolute time of a run.
+///
+/// The layout of the signal vector is [`Input::signal`]: acceleration, velocity and displacement
+/// for an acceleration, the value alone for a value. Nothing here allocates after construction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signals {
+    channels: Vec<Channel>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Channel {
+    kind: InputKind,
+    signal: usize,
+    function: Function,
+}
+
+impl Signals {
+    /// One function for each of the inputs, in their order and in their units.
+    ///
+    /// # Panics
+    /// If there are not as many functions as inputs.
+    pub fn new(inputs: &[Input], functions: Vec<Function>) -> Self {
+        assert_eq!(inputs.len(), functions.len(), "one function for each input");
+        let channels = inputs
+            .iter()
+            .zip(functions)
+            .map(|(input, function)| Channel {
+                kind: input.kind,
+                signal: input.signal,
+                function,
+            })
+            .collect();
+        Signals { channels }
+    }
+
+    /// The functions, one for each input of the model.
+    pub fn functions(&self) -> impl Iterator<Item = &Function> {
+        self.channels.iter().map(|c| &c.function)
+    }
+
+    /// Fills `u`, of length [`crate::model::Model::signal_count`], with the signals at time `t`
+    /// (s); at a breakpoint with their right-hand limits.
+    pub fn evaluate(&self, t: f64, u: &mut [f64]) {
+        self.fill_values(t, Side::Right, u);
+    }
+
+    /// As [`Signals::evaluate`], with the left-hand limits at a breakpoint.
+    pub fn evaluate_left(&self, t: f64, u: &mut [f64]) {
+        self.fill_values(t, Side::Left, u);
+    }
+
+    /// Fills `u_dot` with the time derivatives of the signals at `t` (s); at a breakpoint with
+    /// their right-hand limits.
+    pub fn rate(&self, t: f64, u_dot: &mut [f64]) {
+        self.fill_rates(t, Side::Right, u_dot);
+    }
+
+    /// As [`Signals::rate`], with the left-hand limits at a breakpoint.
+    pub fn rate_left(&self, t: f64, u_dot: &mut [f64]) {
+        self.fill_rates(t, Side::Left, u_dot);
+    }
+
+    /// The first time after `t` at which some input is not smooth (a jump, a kink, the start or
+    /// the end of a pulse), in s; infinite if there is none.
+    pub fn next_breakpoint(&self, t: f64) -> f64 {
+        self.channels
+            .iter()
+            .map(|c| c.function.next_breakpoint(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The longest window after `t` over which every input is close to a polynomial of low degree,
+    /// in s; infinite where breakpoints alone limit it. It keeps a step from stepping over a
+    /// pulse that its stages do not see; see [`Function::resolution`].
+    pub fn resolution(&self, t: f64) -> f64 {
+        self.channels
+            .iter()
+            .map(|c| c.function.resolution(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    fn fill_values(&self, t: f64, side: Side, u: &mut [f64]) {
+        for c in &self.channels {
+            let jet = c.function.at(t, side);
+            match c.kind {
+                InputKind::Acceleration => u[c.signal..c.signal + 3].copy_from_slice(&[
+                    jet.value,
+                    jet.integral,
+                    jet.double_integral,
+                ]),
+                InputKind::Value => u[c.signal] = jet.value,
+            }
+        }
+    }
+
+    fn fill_rates(&self, t: f64, side: Side, u_dot: &mut [f64]) {
+        for c in &self.channels {
+            let jet = c.function.at(t, side);
+            match c.kind {
+                InputKind::Acceleration => u_dot[c.signal..c.signal + 3].copy_from_slice(&[
+                    jet.rate,
+                    jet.value,
+                    jet.integral,
+                ]),
+                InputKind::Value => u_dot[c.signal] = jet.rate,
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,339 @@
+//! Tabulated functions: piecewise polynomials with exact antiderivatives.
+
+use super::{Jet, Side};
+use crate::input::spline;
+
+/// How a table is read between its rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Straight lines; every knot with a kink is a breakpoint.
+    Linear,
+    /// Twice continuously differentiable cubic spline with the not-a-knot condition at both ends,
+    /// so that a table of a cubic polynomial gives that polynomial. Its inner knots are not
+    /// breakpoints: they limit [`Table::resolution`] instead.
+    Cubic,
+    /// Each value holds until the time of the next row; every jump is a breakpoint.
+    Previous,
+}
+
+/// What a table is before its first and after its last row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outside {
+    /// Zero, as a ground record is.
+    Zero,
+    /// The first and the last value.
+    Hold,
+}
+
+/// Why rows do not make a table. Row numbers count from 0.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum TableError {
+    /// There are too few rows.
+    #[error("a table needs at least {needed} rows, this one has {found}")]
+    TooFewRows {
+        /// Rows there are.
+        found: usize,
+        /// Rows that the interpolation needs.
+        needed: usize,
+    },
+    /// A time is not after the one before it.
+    #[error("time {time} does not come after {previous}, the time of the row before")]
+    UnsortedTime {
+        /// Row with the offending time.
+        row: usize,
+        /// Its time, in s.
+        time: f64,
+        /// Time of the row before, in s.
+        previous: f64,
+    },
+    /// A time or a value is infinite or not a number.
+    #[error("times and values must be finite")]
+    NotFinite {
+        /// Row of the number.
+        row: usize,
+    },
+    /// The rows are so close, or the values so large, that a coefficient overflows.
+    #[error("the table is too steep here for double precision")]
+    TooSteep {
+        /// Row at which the piece starts.
+        row: usize,
+    },
+    /// The last row of a [`Interpolation::Previous`] table that is zero outside holds for no time,
+    /// so its value, which is not zero, would be lost.
+    #[error("the last value, {value}, would hold for no time")]
+    LastValueUnused {
+        /// The last row.
+        row: usize,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// A function given by rows (time, value).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Times of the rows, increasing.
+    knots: Vec<f64>,
+    /// `pieces[i]` reaches from `knots[i - 1]` to `knots[i]`; the first and the last are outside.
+    pieces: Vec<Piece>,
+    /// Knots at which value, slope or curvature jump.
+    breakpoints: Vec<f64>,
+    interpolation: Interpolation,
+    /// Knots a second, on average.
+    density: f64,
+}
+
+/// c₀ + c₁ s + c₂ s² + c₃ s³ with s = t − origin, and the antiderivatives at the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    origin: f64,
+    coefficients: [f64; 4],
+    integral: f64,
+    double_integral: f64,
+}
+
+impl Table {
+    /// A table of at least two rows, with strictly increasing times (s).
+    ///
+    /// # Panics
+    /// If there are not as many values as times.
+    pub fn new(
+        times: &[f64],
+        values: &[f64],
+        interpolation: Interpolation,
+        outside: Outside,
+    ) -> Result<Self, TableError> {
+        assert_eq!(times.len(), values.len(), "one value for each time");
+        check_rows(times, values)?;
+        let last = times.len() - 1;
+        if (interpolation, outside) == (Interpolation::Previous, Outside::Zero)
+            && values[last] != 0.0
+        {
+            return Err(TableError::LastValueUnused {
+                row: last,
+                value: values[last],
+            });
+        }
+
+        let (before, after) = match outside {
+            Outside::Zero => (0.0, 0.0),
+            Outside::Hold => (values[0], values[last]),
+        };
+        let constant = |c: f64| [c, 0.0, 0.0, 0.0];
+        let inner: Vec<[f64; 4]> = match interpolation {
+            Interpolation::Previous => values[..last].iter().map(|&y| constant(y)).collect(),
+            Interpolation::Linear => {
+                let slope = |i: usize| (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+                (0..last).map(|i| [values[i], slope(i), 0.0, 0.0]).collect()
+            }
+            Interpolation::Cubic => spline::not_a_knot(times, values),
+        };
+        if let Some(row) = inner.iter().position(|c| c.iter().any(|x| !x.is_finite())) {
+            return Err(TableError::TooSteep { row });
+        }
+
+        let origins = std::iter::once(times[0]).chain(times.iter().copied());
+        let coefficients = std::iter::once(constant(before))
+            .chain(inner)
+            .chain(std::iter::once(constant(after)));
+        let pieces = origins
+            .zip(coefficients)
+            .map(|(origin, c)| Piece::new(origin, c))
+            .collect::<Vec<_>>();
+
+        let mut table = Table {
+            knots: times.to_vec(),
+            pieces,
+            breakpoints: Vec::new(),
+            interpolation,
+            density: last as f64 / (times[last] - times[0]),
+        };
+        table.breakpoints = (0..=last)
+            .filter(|&i| !table.is_smooth_at(i))
+            .map(|i| times[i])
+            .collect();
+        table.integrate();
+        Ok(table)
+    }
+
+    /// Value, rate and antiderivatives at time `t` (s).
+    pub fn at(&self, t: f64, side: Side) -> Jet {
+        self.pieces[self.piece_index(t, side)].at(t)
+    }
+
+    /// The first knot after `t` at which value, slope or curvature jump.
+    pub fn next_breakpoint(&self, t: f64) -> f64 {
+        let next = self.breakpoints.partition_point(|&b| b <= t);
+        self.breakpoints.get(next).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// For a spline, the time to the end of the piece after the one that holds `t`; otherwise
+    /// infinite, as the pieces between two breakpoints are one polynomial of degree 0 or 1.
+    pub fn resolution(&self, t: f64) -> f64 {
+        let piece = self.piece_index(t, Side::Right);
+        if self.interpolation != Interpolation::Cubic || piece == self.knots.len() {
+            return f64::INFINITY;
+        }
+        self.knots[(piece + 1).min(self.knots.len() - 1)] - t
+    }
+
+    /// How many knots are before `t`, one at `t` counted for the limit from the right.
+    fn piece_index(&self, t: f64, side: Side) -> usize {
+        let is_before = |&knot: &f64| match side {
+            Side::Right => knot <= t,
+            Side::Left => knot < t,
+        };
+        // Most records are sampled uniformly: there the index follows from the time, up to one
+        // for rounding. The cast saturates, so times outside give the ends.
+        let guess = ((t - self.knots[0]) * self.density) as usize;
+        let fits = |&i: &usize| {
+            i.checked_sub(1).is_none_or(|i| is_before(&self.knots[i]))
+                && self.knots.get(i).is_none_or(|knot| !is_before(knot))
+        };
+        let near = guess.min(self.knots.len());
+        (near..=(near + 2).min(self.knots.len()))
+            .find(fits)
+            .unwrap_or_else(|| self.knots.partition_point(is_before))
+    }
+
+    /// Whether value, slope and curvature go on unchanged at a knot. The inner knots of a spline
+    /// do so by construction; whether their rounded values agree to the last bit does not matter.
+    fn is_smooth_at(&self, knot: usize) -> bool {
+        let (left, right) = (&self.pieces[knot], &self.pieces[knot + 1]);
+        let last = self.knots.len() - 1;
+        if knot == 0 {
+            return left.coefficients[..3] == right.coefficients[..3];
+        }
+        match self.interpolation {
+            Interpolation::Previous => left.coefficients == right.coefficients,
+            Interpolation::Linear if knot < last => left.coefficients[1] == right.coefficients[1],
+            Interpolation::Cubic if knot < last => true,
+            // At the last knot the outside is constant: zero, or the last value.
+            Interpolation::Linear | Interpolation::Cubic => {
+                let span = self.knots[last] - left.origin;
+                let [_, c1, c2, c3] = left.coefficients;
+                let continuous =
+                    right.coefficients[0] != 0.0 || left.at(self.knots[last]).value == 0.0;
+                continuous
+                    && c1 + span * (2.0 * c2 + span * 3.0 * c3) == 0.0
+                    && 2.0 * c2 + span * 6.0 * c3 == 0.0
+            }
+        }
+    }
+
+    /// Sets the antiderivatives at the origins of the pieces, outwards from the piece that holds
+    /// t = 0, where both are zero.
+    fn integrate(&mut self) {
+        let base = self.piece_index(0.0, Side::Right);
+        // Both integrals of the base piece, taken from its origin, are zero at the origin.
+        let from_origin = self.pieces[base].at(0.0);
+        self.pieces[base].integral = -from_origin.integral;
+        self.pieces[base].double_integral = -self.pieces[base].at(0.0).double_integral;
+
+        let start = (
+            self.pieces[base].integral,
+            self.pieces[base].double_integral,
+        );
+        let (mut integral, mut double) = (Sum::new(start.0), Sum::new(start.1));
+        for i in base..self.knots.len() {
+            let increment = self.pieces[i].increment(self.knots[i]);
+            self.pieces[i + 1].integral = integral.add(increment.0);
+            self.pieces[i + 1].double_integral = double.add(increment.1);
+        }
+        (integral, double) = (Sum::new(start.0), Sum::new(start.1));
+        for i in (0..base).rev() {
+            // The first piece has the origin of the second.
+            let end = self.pieces[i + 1].origin;
+            self.pieces[i].integral = integral.add(-self.pieces[i].increment(end).0);
+            self.pieces[i].double_integral = double.add(-self.pieces[i].increment(end).1);
+        }
+    }
+}
+
+impl Piece {
+    fn new(origin: f64, coefficients: [f64; 4]) -> Self {
+        Piece {
+            origin,
+            coefficients,
+            integral: 0.0,
+            double_integral: 0.0,
+        }
+    }
+
+    fn at(&self, t: f64) -> Jet {
+        let [c0, c1, c2, c3] = self.coefficients;
+        let s = t - self.origin;
+        let (integral, double_integral) = self.increment(t);
+        Jet {
+            rate: c1 + s * (2.0 * c2 + s * 3.0 * c3),
+            value: c0 + s * (c1 + s * (c2 + s * c3)),
+            integral: self.integral + integral,
+            double_integral: self.double_integral + double_integral,
+        }
+    }
+
+    /// By how much the two antiderivatives grow from the origin to `t`.
+    fn increment(&self, t: f64) -> (f64, f64) {
+        let [c0, c1, c2, c3] = self.coefficients;
+        let s = t - self.origin;
+        (
+            s * (c0 + s * (c1 / 2.0 + s * (c2 / 3.0 + s * (c3 / 4.0)))),
+            s * (self.integral
+                + s * (c0 / 2.0 + s * (c1 / 6.0 + s * (c2 / 12.0 + s * (c3 / 20.0))))),
+        )
+    }
+}
+
+/// A compensated sum (Neumaier 1974): a record has thousands of rows, and its antiderivatives are
+/// to be as good as the rows.
+struct Sum {
+    sum: f64,
+    compensation: f64,
+}
+
+impl Sum {
+    fn new(start: f64) -> Self {
+        Sum {
+            sum: start,
+            compensation: 0.0,
+        }
+    }
+
+    /// Adds a term and gives the sum so far.
+    fn add(&mut self, term: f64) -> f64 {
+        let sum = self.sum + term;
+        self.compensation += if self.sum.abs() >= term.abs() {
+            (self.sum - sum) + term
+        } else {
+            (term - sum) + self.sum
+        };
+        self.sum = sum;
+        self.sum + self.compensation
+    }
+}
+
+fn check_rows(times: &[f64], values: &[f64]) -> Result<(), TableError> {
+    // One row has no extent in time, whatever the interpolation.
+    const NEEDED: usize = 2;
+    if let Some(row) = times
+        .iter()
+        .zip(values)
+        .position(|(t, y)| !t.is_finite() || !y.is_finite())
+    {
+        return Err(TableError::NotFinite { row });
+    }
+    if let Some(i) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return Err(TableError::UnsortedTime {
+            row: i + 1,
+            time: times[i + 1],
+            previous: times[i],
+        });
+    }
+    if times.len() < NEEDED {
+        return Err(TableError::TooFewRows {
+            found: times.len(),
+            needed: NEEDED,
+        });
+    }
+    Ok(())
+}
