@@ -21,7 +21,7 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     model = variants[0].model
     signals = sum(len(i.signals) for i in model.inputs)
     externs = sorted({f.symbol for v in variants for f in v.functions.values()} | {constants_symbol})
-    lines = ["use super::*;", "use crate::model::*;", "", 'unsafe extern "C" {']
+    lines = ["use crate::model::*;", "", 'unsafe extern "C" {']
     lines += [
         f"    fn {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
         for e in externs

@@ -204,7 +204,7 @@ impl<const F: usize> ModeKernel<F> {
 
     /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
     pub fn inertia(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> SMatrix<f64, F, F> {
-        let mut out = SMatrix::zeros();
+        let mut out = SMatrix::<f64, F, F>::zeros();
         let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F outputs; `a` is not read.
         unsafe { x.call(self.inertia, self.dimensions, at, out.as_mut_ptr()) }
@@ -213,7 +213,7 @@ impl<const F: usize> ModeKernel<F> {
 
     /// b with M j + b = 0 for the jerk j; needs `Context::signal_rates`.
     pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
-        let mut out = SVector::zeros();
+        let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
         unsafe { x.call(self.jerk_load, self.dimensions, at.pointers(), out.as_mut_ptr()) }
         out
@@ -222,7 +222,7 @@ impl<const F: usize> ModeKernel<F> {
     /// Number of terms × sum of their magnitudes, per equation: times machine epsilon a bound of
     /// the rounding error of the residual.
     pub fn magnitude(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
-        let mut out = SVector::zeros();
+        let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
         unsafe { x.call(self.magnitude, self.dimensions, at.pointers(), out.as_mut_ptr()) }
         out

@@ -1,0 +1,3 @@
+pub mod accumulation;
+pub mod instant;
+pub mod roots;

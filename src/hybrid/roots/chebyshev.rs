@@ -1,0 +1,215 @@
+//! Interpolation at Chebyshev points of a window, and the expansion it gives.
+
+use super::extrema::{Count, Expansion};
+
+/// Highest degree of an interpolant.
+pub(super) const DEGREE: usize = 16;
+/// Nodes at that degree. Those of degree 8 and 4 are every second and fourth.
+pub(super) const NODES: usize = DEGREE + 1;
+
+/// sin²(jπ/32), j = 0 to 8: the nodes' places in a window of length 1 are these and their mirror
+/// images.
+const HALF: [f64; 9] = [
+    0.0,
+    0.009607359798384776,
+    0.038060233744356624,
+    0.08426519384872738,
+    0.14644660940672624,
+    0.22221488349019888,
+    0.30865828381745514,
+    0.40245483899193585,
+    0.5,
+];
+
+/// Place of a node of the highest degree in a window of length 1, exact relative to its distance
+/// from the left end.
+pub(super) const fn place(node: usize) -> f64 {
+    if node <= 8 { HALF[node] } else { 1.0 - HALF[DEGREE - node] }
+}
+
+/// cos(jπ/16).
+const fn cosine(j: usize) -> f64 {
+    let j = j % 32;
+    // cos 2φ = 1 − 2 sin² φ
+    1.0 - 2.0 * place(if j <= 16 { j } else { 32 - j })
+}
+
+const COSINES: [f64; 32] = {
+    let mut cosines = [0.0; 32];
+    let mut j = 0;
+    while j < 32 {
+        cosines[j] = cosine(j);
+        j += 1;
+    }
+    cosines
+};
+
+/// Σ cₖ Tₖ(2s − 1) on s ∈ \[0, 1\].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chebyshev {
+    coefficients: [f64; NODES],
+    degree: usize,
+}
+
+/// An interpolant and how well it represents the function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interpolant {
+    pub(super) expansion: Chebyshev,
+    /// Sum of the upper half of the coefficients: what is taken for the truncation error.
+    pub(super) tail: f64,
+    /// Bound of the rounding errors of interpolation and evaluation.
+    pub(super) rounding: f64,
+}
+
+impl Interpolant {
+    /// Through `values` at every `DEGREE / degree`-th node; `degree` is 4, 8 or 16.
+    pub(super) fn through(values: &[f64; NODES], degree: usize) -> Self {
+        let stride = DEGREE / degree;
+        let mut coefficients = [0.0; NODES];
+        for (k, coefficient) in coefficients[..=degree].iter_mut().enumerate() {
+            // Discrete cosine transform; the ends, and the first and last coefficient, count half.
+            let ends = values[0] + COSINES[k * DEGREE % 32] * values[DEGREE];
+            let mut sum = 0.5 * ends;
+            for j in 1..degree {
+                sum += COSINES[k * j * stride % 32] * values[j * stride];
+            }
+            // The nodes ascend, Chebyshev's own descend: Tₖ(−x) = (−1)ᵏ Tₖ(x).
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let weight = if k == 0 || k == degree { 1.0 } else { 2.0 };
+            *coefficient = sign * weight * sum / degree as f64;
+        }
+        let magnitude = values.iter().step_by(stride).fold(0.0, |m: f64, v| m.max(v.abs()));
+        // Two sums, over the nodes and over the coefficients, of degree + 1 terms each: γ ≈ 2nu.
+        let rounding = degree as f64 * f64::EPSILON * magnitude;
+        let tail = coefficients[degree / 2 + 1..=degree].iter().map(|c| c.abs()).sum();
+        // Trailing coefficients that no bit of the sum depends on only cost time.
+        let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let mut used = degree;
+        while used > 0 && coefficients[used].abs() <= f64::EPSILON * largest {
+            used -= 1;
+        }
+        let expansion = Chebyshev { coefficients, degree: used };
+        Self { expansion, tail, rounding }
+    }
+
+    /// Divides a zero of order `order` at the left end out of `values`, in place: at the other
+    /// nodes by the power of the distance, at the end itself by the interpolant through the others,
+    /// which is the condition that the last coefficient is zero. `distances` are the nodes' own.
+    pub(super) fn deflated(
+        values: &[f64; NODES],
+        distances: &[f64; NODES],
+        order: usize,
+        degree: usize,
+    ) -> (Self, [f64; NODES]) {
+        let stride = DEGREE / degree;
+        let mut quotients = [0.0; NODES];
+        let mut start = 0.0;
+        for j in 1..=degree {
+            let node = j * stride;
+            let mut quotient = values[node];
+            for _ in 0..order {
+                quotient /= distances[node];
+            }
+            quotients[node] = quotient;
+            let sign = if j % 2 == 0 { -1.0 } else { 1.0 };
+            start += sign * if j == degree { quotient } else { 2.0 * quotient };
+        }
+        quotients[0] = start;
+        let mut interpolant = Self::through(&quotients, degree);
+        // The value at the end carries the errors of all the others, up to twice each.
+        interpolant.rounding *= 2.0;
+        (interpolant, quotients)
+    }
+
+    /// Whether the function is represented as well as doubles, and a rounding error of `noise` in
+    /// each value, allow: such an error enters each of the n/2 coefficients of the tail by twice
+    /// its size at most.
+    pub(super) fn is_resolved(&self, noise: f64, degree: usize) -> bool {
+        self.tail <= degree as f64 * noise + self.rounding
+    }
+
+    /// What the interpolant may differ from the function.
+    pub(super) fn error(&self) -> f64 {
+        self.tail + self.rounding
+    }
+}
+
+impl Chebyshev {
+    fn sum_beyond_constant(&self) -> f64 {
+        self.coefficients[1..=self.degree].iter().map(|c| c.abs()).sum()
+    }
+
+    /// Bounds of the value on the window, from the coefficients alone.
+    pub(super) fn bounds(&self) -> (f64, f64) {
+        let rest = self.sum_beyond_constant();
+        (self.coefficients[0] - rest, self.coefficients[0] + rest)
+    }
+}
+
+impl Expansion for Chebyshev {
+    /// Clenshaw's recurrence.
+    fn value(&self, s: f64) -> f64 {
+        let twice_x = 2.0 * (2.0 * s - 1.0);
+        let (mut b1, mut b2) = (0.0, 0.0);
+        for &c in self.coefficients[1..=self.degree].iter().rev() {
+            (b1, b2) = (c + twice_x * b1 - b2, b1);
+        }
+        self.coefficients[0] + 0.5 * twice_x * b1 - b2
+    }
+
+    fn derivative(&self) -> Self {
+        let mut derivative = Self { coefficients: [0.0; NODES], degree: self.degree.saturating_sub(1) };
+        // d_(k−1) = d_(k+1) + 2k cₖ, and half of that for d₀.
+        for k in (1..=self.degree).rev() {
+            let above = derivative.coefficients.get(k + 1).copied().unwrap_or(0.0);
+            derivative.coefficients[k - 1] = above + (2 * k) as f64 * self.coefficients[k];
+        }
+        derivative.coefficients[0] *= 0.5;
+        derivative
+    }
+
+    fn count(&self) -> Count {
+        let (constant, rest) = (self.coefficients[0].abs(), self.sum_beyond_constant());
+        if self.degree == 0 || constant > rest {
+            Count::None
+        } else if self.degree == 1 && constant < rest {
+            Count::One
+        } else {
+            Count::Unknown
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_analytic_function_is_reproduced_with_its_derivative() {
+        let f = |s: f64| (2.0 * s).exp() * (3.0 * s).cos();
+        let values = std::array::from_fn(|j| f(place(j)));
+        let interpolant = Interpolant::through(&values, DEGREE);
+        let slope = interpolant.expansion.derivative();
+        for k in 0..=100 {
+            let s = f64::from(k) / 100.0;
+            assert!((interpolant.expansion.value(s) - f(s)).abs() <= interpolant.error());
+            let exact = (2.0 * s).exp() * (2.0 * (3.0 * s).cos() - 3.0 * (3.0 * s).sin());
+            // d/ds is twice d/dx, and the derivative is a multiple: here one half.
+            assert!((2.0 * slope.value(s) - exact).abs() <= 1e-11, "{s}");
+        }
+        assert!(interpolant.tail < 1e-5 && interpolant.tail > interpolant.rounding);
+    }
+
+    #[test]
+    fn a_zero_of_order_three_is_divided_out() {
+        let distances = std::array::from_fn(place);
+        let values = distances.map(|s| s * s * s * (1e-6 - s));
+        for degree in [8, 16] {
+            let (interpolant, _) = Interpolant::deflated(&values, &distances, 3, degree);
+            for s in [0.0, 1e-6, 0.3, 1.0] {
+                assert!((interpolant.expansion.value(s) - (1e-6 - s)).abs() <= interpolant.error());
+            }
+            assert!(interpolant.error() < 1e-13);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Where on a window a guard falls through zero.
+//!
+//! A guard is a continuous scalar g; its mode is admissible while g ≥ 0. On a window \[a, b\] this
+//! module finds the earliest event t\* with a < t\* ≤ b, for a [`Polynomial`] or for any smooth
+//! function ([`search`]), or the earliest of several guards ([`earliest`]).
+//!
+//! # What an event is
+//!
+//! The guard's own values, as doubles, decide; nothing is nudged, and only 0.0 is zero.
+//!
+//! * **Fall**: the bracket (`inside`, `outside`) are neighbouring doubles, g(`inside`) ≥ 0 and
+//!   g(`outside`) < 0 strictly, and t\* = `outside`: the first state that is strictly crossed.
+//!   A guard that is exactly 0 at b has not fallen yet; it falls in the next window or does not.
+//! * **Touch**: the guard reaches exactly 0 from above and turns back. `inside` is that place,
+//!   `outside` its upper neighbour. A touch is reported by the window in which g leaves zero.
+//! * A guard that rises is no event; it changes the remembered sign.
+//!
+//! # Remembered sign
+//!
+//! [`Watch`] is what is remembered from before the window, so an event is not found again after its
+//! own reset and not missed after it. A guard that starts at exactly 0 is [`Watch::Dormant`]: this
+//! zero is no event, whatever its multiplicity. It wakes where it leaves zero: to the positive side
+//! it is armed, and any later fall is an event; to the negative side that is reported at once, as
+//! [`Kind::LeavesNegative`]. Searching \[a, c\] finds what searching \[a, b\] and then \[b, c\], with the
+//! sign that the first search returns, finds.
+//!
+//! # What is guaranteed, and what is not
+//!
+//! *Polynomials*: every event is found whose excursion below zero is deeper than the rounding error
+//! of evaluating the polynomial, 2n·u·Σ|cₖ|sᵏ (u = 2⁻⁵³), and of two excursions the earlier.
+//! A shallower one is found if the value at its minimum, as a double, is ≤ 0. At s = 0 leading zero
+//! coefficients are divided out exactly, so a flight of 1e-300 of the window is a flight.
+//!
+//! *Functions* are represented by Chebyshev interpolants of degree 4, 8, 16, then by halving the
+//! window; a decision is taken from an interpolant only where its value exceeds its error, and by
+//! the function's own values elsewhere. The error is the sum of the upper half of its coefficients:
+//! this **assumes** that what follows them sums to no more, which holds once a function is resolved
+//! and cannot be checked from finitely many values. So a feature that hides between the five first
+//! nodes of a window is not seen. Windows of the size of an integrator's step, whose own error
+//! control resolves the motion, meet this.
+//!
+//! *Dormant functions* need their values near the start to full relative accuracy, which a guard
+//! written in time since its start has. The zero is divided out; a flight is then seen down to
+//! the last double, after a simple zero; after a zero of higher multiplicity a departure that is
+//! shorter than rounding, relative to the window, and turns back to positive is not.
+//!
+//! *Noise*: a guard that is identically zero but for rounding (x² + y² − 1 on a circle) cannot be
+//! told from its values alone. A caller that knows a bound of the rounding error, n·u·Σ|terms| for
+//! a sum of n terms, gives it as `noise`: a dormant guard is then asleep until |g| > noise. Without
+//! one (0) every value is taken at its word where the guard can be resolved; a dormant guard
+//! whose values are as rough over 2⁻²⁶ of the window as over all of it sleeps on, and the
+//! answer says `resolved: false`.
+//!
+//! *Jumps and poles* are closed in on to neighbouring doubles and told apart from falls by
+//! [`Kind::Jump`] and [`Kind::Pole`].
+
+mod bracket;
+mod chebyshev;
+mod doubles;
+mod earliest;
+mod extrema;
+mod function;
+mod polynomial;
+mod walk;
+
+pub use earliest::{Earliest, earliest};
+pub use function::search;
+pub use polynomial::Polynomial;
+
+/// Remembered sign of a guard at the start of a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watch {
+    /// It was positive: the next fall is an event.
+    Armed,
+    /// It started at exactly zero and has not left it.
+    Dormant,
+    /// It is negative: it arms when it becomes positive.
+    Violated,
+}
+
+impl Watch {
+    /// The sign of a guard's value where a segment starts. Only 0.0 (of either sign) is zero; a
+    /// value that is not a number counts as violated.
+    pub fn of(value: f64) -> Self {
+        if value > 0.0 {
+            Self::Armed
+        } else if value == 0.0 {
+            Self::Dormant
+        } else {
+            Self::Violated
+        }
+    }
+}
+
+/// What happens in the bracket of a [`Crossing`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// From ≥ 0 to < 0, continuously as far as it was resolved.
+    Fall,
+    /// Down to exactly 0 and back up: a tangent touch.
+    Touch,
+    /// A dormant guard left zero downwards. `inside` is where it last was not below zero, or the
+    /// start of the window.
+    LeavesNegative,
+    /// From ≥ 0 to < 0 by a jump.
+    Jump,
+    /// The sign changes where |g| grows without bound on both sides; not a zero.
+    Pole,
+}
+
+/// An event of one guard: neighbouring doubles `inside` < `outside`; its time is `outside`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Last double before the event, in the unit of the searched variable.
+    pub inside: f64,
+    /// The event: first double beyond it, in the unit of the searched variable.
+    pub outside: f64,
+    /// What happens between them.
+    pub kind: Kind,
+}
+
+/// Answer of a search on one window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Search {
+    /// The earliest event of the window.
+    pub crossing: Option<Crossing>,
+    /// Remembered sign at the event, or at the window's end where there is none.
+    pub watch: Watch,
+    /// Whether the guard could be resolved. If not, single values decided, and an event between
+    /// them may have been missed; a shorter window or a `noise` bound helps.
+    pub resolved: bool,
+}
+
+impl Search {
+    /// No event; `watch` at the end of the window.
+    pub(crate) fn quiet(watch: Watch) -> Self {
+        Self { crossing: None, watch, resolved: true }
+    }
+
+    /// An event, and the remembered sign right after it.
+    pub(crate) fn found(inside: f64, outside: f64, kind: Kind, watch: Watch) -> Self {
+        Self { crossing: Some(Crossing { inside, outside, kind }), watch, resolved: true }
+    }
+}

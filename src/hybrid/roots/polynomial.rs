@@ -1,0 +1,230 @@
+//! A guard that is a polynomial, such as a coordinate on the dense output of a step.
+
+use super::bracket::departure;
+use super::doubles::middle;
+use super::extrema::{Count, Expansion, Places, extrema};
+use super::walk::{Pieces, walk};
+use super::{Kind, Search, Watch};
+
+/// Polynomial on s ∈ \[0, 1\] in powers of s: value Σₖ `coefficients[k]` sᵏ, of degree `N` − 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial<const N: usize> {
+    /// In ascending powers of s, in the guard's unit.
+    pub coefficients: [f64; N],
+}
+
+impl<const N: usize> Polynomial<N> {
+    /// 1 / (N − 1 over k): from scaled powers to Bernstein coefficients.
+    const INVERSE_BINOMIALS: [f64; N] = {
+        let mut inverse = [1.0; N];
+        let mut binomial = 1.0;
+        let mut k = 1;
+        while k < N {
+            // Exact: a product of a binomial coefficient and N − k is below 2⁵³ for N ≤ 50.
+            binomial = binomial * (N - k) as f64 / k as f64;
+            inverse[k] = 1.0 / binomial;
+            k += 1;
+        }
+        inverse
+    };
+
+    /// Relative error of a sum of N terms whose factors carry as many roundings: γ ≈ 2Nu.
+    const ROUNDING: f64 = N as f64 * f64::EPSILON;
+
+    /// The value at s, by Horner's rule. These values decide about events.
+    #[inline]
+    pub fn value(&self, s: f64) -> f64 {
+        let mut value = 0.0;
+        for &coefficient in self.coefficients.iter().rev() {
+            value = value * s + coefficient;
+        }
+        value
+    }
+
+    /// The earliest event in `from` < s ≤ `to`, where 0 ≤ `from` ≤ `to` ≤ 1.
+    ///
+    /// `watch` is the sign remembered from before `from`; `noise` is a bound of what a dormant
+    /// guard may differ from zero while it is zero, in the guard's unit (0: nothing). A dormant
+    /// polynomial is zero at `from` by the caller's word. At `from` = 0 its zero is divided out
+    /// exactly, elsewhere as far as rounding allows: expand about the start of a segment.
+    #[inline]
+    pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
+        // c₀ + Σ min(cₖ, 0) bounds the polynomial on [0, 1] from below.
+        if watch == Watch::Armed {
+            let mut falls = 0.0;
+            for &coefficient in &self.coefficients[1..] {
+                falls -= coefficient.min(0.0);
+            }
+            if self.coefficients[0] > falls * (1.0 + Self::ROUNDING) {
+                return Search::quiet(Watch::Armed);
+            }
+        }
+        self.search_beyond_bound(from, to, watch, noise)
+    }
+
+    fn search_beyond_bound(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
+        if from >= to {
+            Search::quiet(watch)
+        } else if watch == Watch::Dormant && noise == 0.0 {
+            self.search_dormant(from, to)
+        } else {
+            self.search_pieces(from, to, watch, noise)
+        }
+    }
+
+    fn search_pieces(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
+        let bernstein = self.bernstein();
+        let margin = Self::ROUNDING * self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
+        if watch == Watch::Armed && bernstein.iter().all(|&b| b > margin)
+            || watch == Watch::Violated && bernstein.iter().all(|&b| b < -margin)
+        {
+            return Search::quiet(watch);
+        }
+        let mut pieces = Monotone::new(self, from, to);
+        walk(&mut pieces, watch, noise).expect("a polynomial has a value everywhere")
+    }
+
+    /// The zero at `from` is divided out; then the sign beside it is that of the quotient there.
+    fn search_dormant(&self, from: f64, to: f64) -> Search {
+        let mut quotient = self.without_root(from);
+        for _ in 1..N {
+            // At 0 the bound is below the value, so only an exact zero is divided out.
+            if quotient.value(from).abs() > quotient.error(from) {
+                break;
+            }
+            quotient = quotient.without_root(from);
+        }
+        match Watch::of(quotient.value(from)) {
+            Watch::Violated => {
+                let mut right = to;
+                while quotient.value(right) >= 0.0 {
+                    right = middle(from, right);
+                }
+                let right = (right, self.value(right));
+                let (l, r, flew) = departure(&mut |s| self.value(s), from, right);
+                let kind = if flew { Kind::Fall } else { Kind::LeavesNegative };
+                Search::found(l.0, r.0, kind, Watch::Violated)
+            }
+            Watch::Armed => quotient.search(from, to, Watch::Armed, 0.0),
+            Watch::Dormant => Search::quiet(Watch::Dormant),
+        }
+    }
+
+    /// The quotient by s − `root`; the remainder is dropped.
+    fn without_root(&self, root: f64) -> Self {
+        let mut coefficients = [0.0; N];
+        let mut carry = 0.0;
+        for k in (1..N).rev() {
+            carry = carry * root + self.coefficients[k];
+            coefficients[k - 1] = carry;
+        }
+        Self { coefficients }
+    }
+
+    /// Bound of the rounding error of [`Self::value`]: 2n·u·Σ|cₖ|sᵏ (Higham, Accuracy and Stability
+    /// of Numerical Algorithms, 2nd ed., section 5.1).
+    fn error(&self, s: f64) -> f64 {
+        let mut sum = 0.0;
+        for &coefficient in self.coefficients.iter().rev() {
+            sum = sum * s + coefficient.abs();
+        }
+        Self::ROUNDING * sum
+    }
+
+    /// Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
+    fn bernstein(&self) -> [f64; N] {
+        let mut b = self.coefficients;
+        for (b, inverse) in b.iter_mut().zip(Self::INVERSE_BINOMIALS) {
+            *b *= inverse;
+        }
+        // bⱼ = Σᵢ (j over i) aᵢ, summed by Pascal's triangle.
+        for level in 1..N {
+            for j in (level..N).rev() {
+                b[j] += b[j - 1];
+            }
+        }
+        b
+    }
+}
+
+impl<const N: usize> Expansion for Polynomial<N> {
+    fn value(&self, s: f64) -> f64 {
+        self.value(s)
+    }
+
+    fn derivative(&self) -> Self {
+        let mut coefficients = [0.0; N];
+        for k in 1..N {
+            coefficients[k - 1] = k as f64 * self.coefficients[k];
+        }
+        Self { coefficients }
+    }
+
+    /// Descartes' rule: as many roots in (0, 1) as sign changes of the Bernstein coefficients, or
+    /// fewer by an even number.
+    fn count(&self) -> Count {
+        if self.coefficients[1..].iter().all(|&c| c == 0.0) {
+            return Count::None;
+        }
+        let b = self.bernstein();
+        let mut changes = 0;
+        let mut sign = 0.0;
+        for &b in b.iter().filter(|b| **b != 0.0) {
+            if sign * b < 0.0 {
+                changes += 1;
+            }
+            sign = b.signum();
+        }
+        match changes {
+            0 => Count::None,
+            1 if b[0] != 0.0 && b[N - 1] != 0.0 => Count::One,
+            _ => Count::Unknown,
+        }
+    }
+}
+
+/// A polynomial on a window, cut at its extrema.
+struct Monotone<'p, const N: usize> {
+    polynomial: &'p Polynomial<N>,
+    /// The extrema inside the window; the nodes lie at its ends and at these.
+    extrema: Places<N>,
+    from: f64,
+    to: f64,
+}
+
+impl<'p, const N: usize> Monotone<'p, N> {
+    /// The extrema are those on [0, 1], so they do not depend on how the window is split.
+    fn new(polynomial: &'p Polynomial<N>, from: f64, to: f64) -> Self {
+        let mut inside = Places::new();
+        for &s in extrema::<N>(polynomial).as_slice() {
+            if from < s && s < to {
+                inside.push(s);
+            }
+        }
+        Self { polynomial, extrema: inside, from, to }
+    }
+}
+
+impl<const N: usize> Pieces for Monotone<'_, N> {
+    fn len(&self) -> usize {
+        self.extrema.as_slice().len() + 2
+    }
+
+    fn node(&self, index: usize) -> f64 {
+        if index == 0 {
+            self.from
+        } else {
+            self.extrema.as_slice().get(index - 1).copied().unwrap_or(self.to)
+        }
+    }
+
+    fn value(&mut self, index: usize) -> Option<(f64, bool)> {
+        let s = self.node(index);
+        let value = self.polynomial.value(s);
+        Some((value, value.abs() <= self.polynomial.error(s)))
+    }
+
+    fn own(&mut self, s: f64) -> f64 {
+        self.polynomial.value(s)
+    }
+}

@@ -1,0 +1,74 @@
+//! The walk from left to right over the monotone pieces of a guard, with the remembered sign.
+
+use super::bracket::{close, lowest};
+use super::doubles::above;
+use super::{Kind, Search, Watch};
+
+/// A guard on a window that is cut at `nodes` into pieces on which it is monotone.
+pub(super) trait Pieces {
+    /// Number of nodes, the two ends of the window included.
+    fn len(&self) -> usize;
+    /// Ascending.
+    fn node(&self, index: usize) -> f64;
+    /// Value at a node, and whether its sign is within the error of the representation; `None`
+    /// where the representation is not good enough to tell.
+    fn value(&mut self, index: usize) -> Option<(f64, bool)>;
+    /// The guard's own value anywhere in the window.
+    fn own(&mut self, x: f64) -> f64;
+}
+
+/// The earliest event, or `None` if the representation does not decide. A dormant guard leaves zero
+/// where |g| > `noise`.
+pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Option<Search> {
+    let start = pieces.node(0);
+    let mut left = (start, pieces.value(0)?.0);
+    if watch == Watch::Dormant && left.1.abs() > noise {
+        watch = Watch::of(left.1);
+        if watch == Watch::Violated {
+            return Some(Search::found(start, above(start), Kind::LeavesNegative, watch));
+        }
+    }
+    for index in 1..pieces.len() {
+        let (mut right, doubtful) = {
+            let (value, doubtful) = pieces.value(index)?;
+            ((pieces.node(index), value), doubtful)
+        };
+        if right.0 <= left.0 {
+            continue;
+        }
+        match watch {
+            Watch::Dormant if right.1 > noise => watch = Watch::Armed,
+            Watch::Dormant if right.1 < -noise => {
+                let mut beyond = |x| pieces.own(x) + noise;
+                let (l, r) = close(&mut beyond, (left.0, left.1 + noise), (right.0, right.1 + noise));
+                return Some(Search::found(l.0, r.0, Kind::LeavesNegative, Watch::Violated));
+            }
+            Watch::Violated if right.1 > 0.0 => watch = Watch::Armed,
+            Watch::Armed => {
+                if left.1 == 0.0 && right.1 > 0.0 {
+                    let outside = above(left.0);
+                    let value = pieces.own(outside);
+                    return Some(touch(left.0, outside, value));
+                }
+                if doubtful && right.1 >= 0.0 && index + 1 < pieces.len() {
+                    let high = pieces.node(index + 1);
+                    right = lowest(&mut |x| pieces.own(x), right, left.0, high);
+                }
+                if right.1 < 0.0 {
+                    let (l, r) = close(&mut |x| pieces.own(x), left, right);
+                    return Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated));
+                }
+            }
+            _ => {}
+        }
+        left = right;
+    }
+    Some(Search::quiet(watch))
+}
+
+/// A touch of zero at `inside`. The guard stays dormant on the zeros that follow it.
+fn touch(inside: f64, outside: f64, value: f64) -> Search {
+    // A zero is a minimum of a piece that rises from it: a negative neighbour is a fall.
+    let kind = if value < 0.0 { Kind::Fall } else { Kind::Touch };
+    Search::found(inside, outside, kind, Watch::of(value))
+}
