@@ -11,14 +11,14 @@ use super::instant::Instant;
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 const LONGEST_PATTERN: usize = 8;
 
-/// Three repetitions of the longest pattern and the event before them.
-const MEMORY: usize = 3 * LONGEST_PATTERN + 1;
 
 /// What is remembered of an event.
 #[derive(Debug, Clone, Default)]
 struct Hop {
     /// What makes two events the same: guard, transition, mode and discrete states after it.
     signature: u64,
+    /// Whether it was an impact.
+    impact: bool,
     /// When it happened.
     at: Instant,
     /// State after the event: all coordinates, then all velocities.
@@ -46,10 +46,13 @@ pub struct Accumulation {
 }
 
 impl Accumulation {
+    /// Number of events remembered: three repetitions of the longest pattern and the one before.
+    pub const MEMORY: usize = 3 * LONGEST_PATTERN + 1;
+
     /// No events yet; `width` is the number of coordinates and velocities.
     pub fn new(width: usize) -> Self {
         let hop = Hop { state: vec![0.0; width], ..Hop::default() };
-        Accumulation { hops: vec![hop; MEMORY], count: 0 }
+        Accumulation { hops: vec![hop; Self::MEMORY], count: 0 }
     }
 
     /// Forgets all events: something else has intervened.
@@ -58,10 +61,11 @@ impl Accumulation {
     }
 
     /// Remembers an event, with the state after it.
-    pub fn push(&mut self, signature: u64, at: Instant, state: impl Iterator<Item = f64>) {
-        let slot = self.count % MEMORY;
+    pub fn push(&mut self, signature: u64, impact: bool, at: Instant, state: impl Iterator<Item = f64>) {
+        let slot = self.count % Self::MEMORY;
         let hop = &mut self.hops[slot];
         hop.signature = signature;
+        hop.impact = impact;
         hop.at = at;
         for (to, from) in hop.state.iter_mut().zip(state) {
             *to = from;
@@ -70,7 +74,7 @@ impl Accumulation {
     }
 
     fn hop(&self, back: usize) -> &Hop {
-        &self.hops[(self.count - 1 - back) % MEMORY]
+        &self.hops[(self.count - 1 - back) % Self::MEMORY]
     }
 
     /// The limit, if the last events accumulate and what is left of the series moves no component
@@ -90,7 +94,8 @@ impl Accumulation {
             return None;
         }
         let repeats = (0..2 * p).all(|i| self.hop(i).signature == self.hop(i + p).signature);
-        if !repeats {
+        // Only impacts come to rest; stick and slip alone have modes of their own.
+        if !repeats || !(0..p).any(|i| self.hop(i).impact) {
             return None;
         }
         let [last, middle, first] =
@@ -136,8 +141,8 @@ impl Accumulation {
     /// Whether the memory is full of events that together do not advance the time by one unit in
     /// its last place.
     pub fn stands_still(&self) -> bool {
-        self.count >= MEMORY && {
-            let (new, old) = (self.hop(0).at, self.hop(MEMORY - 1).at);
+        self.count >= Self::MEMORY && {
+            let (new, old) = (self.hop(0).at, self.hop(Self::MEMORY - 1).at);
             new.since(old) < new.seconds().abs() * f64::EPSILON
         }
     }
@@ -153,7 +158,7 @@ mod tests {
         let mut t = Instant::new((2.0f64 / g).sqrt());
         let mut v = e * (2.0 * g).sqrt();
         for k in 0.. {
-            accumulation.push(1, t, [0.0, v].into_iter());
+            accumulation.push(1, true, t, [0.0, v].into_iter());
             if let Some(limit) = accumulation.limit(tolerance, |_, _| tolerance) {
                 return (k, limit);
             }
@@ -190,7 +195,7 @@ mod tests {
         let (mut long, mut short) = (1.0, 0.3);
         let mut found = None;
         for k in 0..400u64 {
-            accumulation.push(k % 2, t, [long].into_iter());
+            accumulation.push(k % 2, true, t, [long].into_iter());
             found = accumulation.limit(1e-12, |_, _| 1e-9);
             if found.is_some() {
                 break;
@@ -212,7 +217,7 @@ mod tests {
     fn regular_events_do_not_accumulate() {
         let mut accumulation = Accumulation::new(1);
         for k in 0..100 {
-            accumulation.push(0, Instant::new(k as f64 * 1e-6), [1.0].into_iter());
+            accumulation.push(0, true, Instant::new(k as f64 * 1e-6), [1.0].into_iter());
             assert!(accumulation.limit(1e-12, |_, _| 1.0).is_none());
             assert!(!accumulation.stands_still());
         }

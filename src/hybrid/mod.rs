@@ -1,3 +1,25 @@
-pub mod accumulation;
-pub mod instant;
+//! The event engine: modes, guards, transitions, settling, accumulation.
+//!
+//! [`simulate`] runs a [`Problem`]. `simulation` holds the loop; `enter` starts a segment, `segment`
+//! integrates it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
+//! the transition; `accumulation` recognises where infinitely many of them end.
+
+mod accumulation;
+mod enter;
+mod equations;
+mod failure;
+mod fire;
+mod guards;
+mod instant;
+mod ledger;
+mod locate;
+mod plan;
+mod problem;
 pub mod roots;
+mod samples;
+mod segment;
+mod simulation;
+
+pub use failure::Reason;
+pub use problem::{Accuracy, End, Initial, Problem, Record};
+pub use simulation::simulate;

@@ -1,0 +1,151 @@
+//! Start of a segment: consistent accelerations, and the sign of every guard.
+
+use super::failure::Reason;
+use super::guards::{Conditions, value};
+use super::roots::{Search, Watch};
+use super::simulation::{Simulation, Violation};
+use crate::integrate::solve;
+use crate::kernel::{Context, Free, ModeKernel};
+use crate::model::{Guard, GuardShape};
+use nalgebra::{SMatrix, SVector};
+
+/// Unit roundoff of a double.
+const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+impl Simulation<'_> {
+    /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.
+    pub fn scale<const F: usize>(&self) -> SVector<f64, F> {
+        let accuracy = &self.problem.accuracy;
+        let free = self.mode().free;
+        SVector::from_fn(|i, _| accuracy.q_absolute[free[i]] / accuracy.relative)
+    }
+
+    /// Enters the present mode: sets accelerations and remembered signs, and gives the first guard
+    /// that is not respected.
+    pub fn enter<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+    ) -> Result<Option<Violation>, Reason> {
+        self.set_context();
+        kernel.held_rates(&self.context, &mut self.drift);
+        let mode = self.mode();
+        let [q, v, _] = self.here.free::<F>(mode.free);
+        self.check_inertia(&kernel.inertia(&self.context, &q, &v))?;
+        let system = kernel.system(&self.context, &q, &v);
+        let scale = self.scale::<F>();
+        let mut a = solve(&system.mass, &-system.load, &scale)
+            .map_err(|s| Reason::singular(mode, self.problem.model, s))?;
+
+        let inverse = inverse(&system.mass, &scale);
+        let at = Free { q: &q, v: &v, a: &a };
+        let size = kernel.magnitude(&self.context, at);
+        let noise = SVector::<f64, F>::from_fn(|i, _| {
+            (0..F).map(|j| inverse[(i, j)].abs() * size[j] * ROUNDOFF).sum()
+        });
+        let jerk = -inverse * kernel.jerk_load(&self.context, at);
+
+        self.watches.clear();
+        let mut violation = None;
+        for &g in &self.plan.watched[self.here.mode] {
+            let guard = &mode.guards[g];
+            let mut conditions = Conditions {
+                variant: self.problem.variant,
+                plan: &self.plan,
+                next: &mut self.next,
+            };
+            let conditional = conditions.are_part_of(guard);
+            let at = Free { q: &q, v: &v, a: &a };
+            let value = value(kernel, &mut self.context, &mut conditions, guard, at);
+            let mut watch = Watch::of(value);
+            let mut at_once = false;
+            if watch == Watch::Dormant && !conditional {
+                let departure = departure(kernel, &self.context, guard, [&q, &v], &mut a, &noise, &jerk);
+                at_once = departure < 0.0;
+            }
+            if at_once {
+                watch = Watch::Violated;
+            }
+            if watch == Watch::Violated && violation.is_none() {
+                violation = Some(Violation { guard: g, at_once });
+            }
+            self.watches.push(watch);
+        }
+        self.found.clear();
+        self.found.resize(self.watches.len(), Search::quiet(Watch::Dormant));
+        self.here.a.fill(0.0);
+        self.here.set_free(mode.free, [&q, &v, &a]);
+        Ok(violation)
+    }
+
+    /// The symmetric part of the mass matrix must be positive definite (Cholesky).
+    fn check_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Result<(), Reason> {
+        let mut lower = SMatrix::<f64, F, F>::zeros();
+        for i in 0..F {
+            for j in 0..=i {
+                let symmetric = 0.5 * (inertia[(i, j)] + inertia[(j, i)]);
+                let rest = symmetric - (0..j).map(|k| lower[(i, k)] * lower[(j, k)]).sum::<f64>();
+                if i == j {
+                    // A pivot within the rounding of its own sum is not told from zero.
+                    let rounding = (F + 1) as f64 * ROUNDOFF * symmetric.abs();
+                    if rest.is_nan() || rest <= rounding {
+                        let mode = self.mode();
+                        let coordinate = self.problem.model.coordinates[mode.free[i]].name;
+                        return Err(Reason::Indefinite { mode: mode.name, coordinate, pivot: rest });
+                    }
+                    lower[(i, i)] = rest.sqrt();
+                } else {
+                    lower[(i, j)] = rest / lower[(j, j)];
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Sign with which a guard that is exactly zero leaves zero: that of its first derivative that is
+/// not zero; 0 where that is not decided here and the motion must tell.
+///
+/// An acceleration below its own rounding error is no evidence: at a smooth lift-off θ = θ̇ = θ̈ = 0
+/// and the jerk decides. It is then set to zero, so that the motion starts with the sign of the
+/// jerk.
+fn departure<const F: usize>(
+    kernel: &ModeKernel<F>,
+    context: &Context,
+    guard: &Guard,
+    [q, v]: [&SVector<f64, F>; 2],
+    a: &mut SVector<f64, F>,
+    noise: &SVector<f64, F>,
+    jerk: &SVector<f64, F>,
+) -> f64 {
+    match guard.shape {
+        GuardShape::Linear { index, rate, factor, discrete } => {
+            let factor = factor * discrete.map_or(1.0, |d| context.discrete[d]);
+            if !rate && v[index] != 0.0 {
+                return factor * v[index];
+            }
+            if a[index].abs() > noise[index] {
+                return factor * a[index];
+            }
+            a[index] = 0.0;
+            factor * jerk[index]
+        }
+        GuardShape::General { .. } => {
+            kernel.guard_rate(context, &guard.kernel, Free { q, v, a }, jerk)
+        }
+    }
+}
+
+/// The inverse of a mass matrix that was just solved with.
+fn inverse<const F: usize>(
+    mass: &SMatrix<f64, F, F>,
+    scale: &SVector<f64, F>,
+) -> SMatrix<f64, F, F> {
+    let mut inverse = SMatrix::zeros();
+    for j in 0..F {
+        let unit = SVector::from_fn(|i, _| if i == j { 1.0 } else { 0.0 });
+        if let Ok(column) = solve(mass, &unit, scale) {
+            inverse.set_column(j, &column);
+        }
+    }
+    inverse
+}

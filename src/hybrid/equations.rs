@@ -1,0 +1,130 @@
+//! A mode's generated equations as the integrator sees them, in the local time of a segment.
+
+use super::instant::Instant;
+use crate::input::Signals;
+use crate::integrate::{Singular, System, solve};
+use crate::kernel::{Context, Free, ModeKernel};
+use nalgebra::{SMatrix, SVector};
+
+/// What a segment needs to know about time: where it starts, what the inputs do, what drifts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Clock<'a> {
+    /// Start of the segment; local time τ counts from here.
+    pub start: Instant,
+    /// The inputs.
+    pub signals: &'a Signals,
+    /// Local time of the segment's last admissible instant and the absolute time it stands for.
+    /// Inputs are smooth before it and take their left-hand limits at it.
+    pub until: (f64, f64),
+    /// All coordinates at the start.
+    pub held: &'a [f64],
+    /// Rates of the frozen coordinates; empty if none drifts.
+    pub drift: &'a [f64],
+}
+
+impl Clock<'_> {
+    /// Sets signals and drifting coordinates of the context to those at local time `tau`.
+    fn set(&self, tau: f64, context: &mut Context) {
+        if tau < self.until.0 {
+            self.signals.evaluate(self.start.plus(tau).seconds(), &mut context.signals);
+        } else {
+            self.signals.evaluate_left(self.until.1, &mut context.signals);
+        }
+        for ((h, q), rate) in context.held.iter_mut().zip(self.held).zip(self.drift) {
+            *h = q + rate * tau;
+        }
+    }
+}
+
+/// The reduced system of a mode.
+pub(super) struct Equations<'a, const F: usize> {
+    pub kernel: &'static ModeKernel<F>,
+    pub context: &'a mut Context,
+    pub clock: Clock<'a>,
+    /// Typical sizes of the accelerations' coordinates, for the choice of pivots.
+    scale: SVector<f64, F>,
+    /// Local time for which the context is set; NaN: none.
+    set_for: f64,
+}
+
+impl<'a, const F: usize> Equations<'a, F> {
+    pub fn new(
+        kernel: &'static ModeKernel<F>,
+        context: &'a mut Context,
+        clock: Clock<'a>,
+        scale: SVector<f64, F>,
+    ) -> Self {
+        Equations { kernel, context, clock, scale, set_for: f64::NAN }
+    }
+
+    /// Sets the context to local time `tau`.
+    #[inline]
+    pub fn at(&mut self, tau: f64) {
+        if tau != self.set_for {
+            self.clock.set(tau, self.context);
+            self.set_for = tau;
+        }
+    }
+
+    /// The jerk at a point whose time the context and its signal rates are set for.
+    pub fn jerk(&self, at: Free<F>) -> Result<SVector<f64, F>, Singular> {
+        let mass = self.kernel.system(self.context, at.q, at.v).mass;
+        solve(&mass, &-self.kernel.jerk_load(self.context, at), &self.scale)
+    }
+
+    /// Sets the time derivatives of the signals at local time `tau`, for jerks and guard rates.
+    pub fn rates_at(&mut self, tau: f64) {
+        let rates = &mut self.context.signal_rates;
+        if tau < self.clock.until.0 {
+            self.clock.signals.rate(self.clock.start.plus(tau).seconds(), rates);
+        } else {
+            self.clock.signals.rate_left(self.clock.until.1, rates);
+        }
+    }
+}
+
+impl<const F: usize> System<F> for Equations<'_, F> {
+    #[inline]
+    fn residual(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: &SVector<f64, F>,
+        r: &mut SVector<f64, F>,
+    ) {
+        self.at(t);
+        self.kernel.residual(self.context, Free { q, v, a }, r);
+    }
+
+    #[inline]
+    fn jacobian(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: &SVector<f64, F>,
+        m: &mut SMatrix<f64, F, F>,
+        c: &mut SMatrix<f64, F, F>,
+        k: &mut SMatrix<f64, F, F>,
+    ) {
+        self.at(t);
+        let mut out = [SMatrix::zeros(); 3];
+        self.kernel.jacobian(self.context, Free { q, v, a }, &mut out);
+        [*m, *c, *k] = out;
+    }
+
+    #[inline]
+    fn acceleration(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: &mut SVector<f64, F>,
+    ) -> Result<(), Singular> {
+        self.at(t);
+        let system = self.kernel.system(self.context, q, v);
+        *a = solve(&system.mass, &-system.load, &self.scale)?;
+        Ok(())
+    }
+}

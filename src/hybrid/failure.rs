@@ -1,0 +1,104 @@
+//! Why a simulation stops before its end.
+
+use crate::integrate::{Singular, StepError};
+
+/// Reason of an early stop; the place (hybrid time, mode, state) and the trajectory so far are in
+/// the [`crate::record::Run`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The integrator found no acceptable step.
+    #[error("no step could be taken: {0}")]
+    Step(#[from] StepError),
+    /// The accelerations are not determined.
+    #[error(
+        "mode `{mode}`: the effective mass matrix is singular (coordinate `{coordinate}`), so the accelerations are not determined; with friction this is Painlevé's paradox, without it a massless part"
+    )]
+    Singular {
+        /// Mode.
+        mode: &'static str,
+        /// Free coordinate without a pivot.
+        coordinate: &'static str,
+    },
+    /// The kinetic energy is no norm.
+    #[error(
+        "mode `{mode}`: the mass matrix is not positive definite (pivot of `{coordinate}`: {pivot:e}), so the equations are not those of a mechanical system; check masses and inertias"
+    )]
+    Indefinite {
+        /// Mode.
+        mode: &'static str,
+        /// Free coordinate whose pivot is not positive.
+        coordinate: &'static str,
+        /// Its pivot.
+        pivot: f64,
+    },
+    /// The determinant of the effective mass matrix changes its sign.
+    #[error(
+        "mode `{mode}`: the determinant of the effective mass matrix changes its sign; beyond it friction accelerates the slip it opposes (Painlevé's paradox) and the motion is not determined"
+    )]
+    DeterminantChangesSign {
+        /// Mode.
+        mode: &'static str,
+    },
+    /// Something that must stay positive does not.
+    #[error("mode `{mode}`: {failure} ({text} = {value:e} {unit})")]
+    Requirement {
+        /// Mode.
+        mode: &'static str,
+        /// What its failure means.
+        failure: &'static str,
+        /// The requirement as text.
+        text: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// No mode is admissible: the settling came back to a mode and state it had left.
+    #[error(
+        "no mode is admissible here: the transitions {cycle} lead back to the same mode and state; two guards contradict each other"
+    )]
+    Cycle {
+        /// The transitions of the cycle, `name (from → to)`, separated by commas.
+        cycle: String,
+    },
+    /// Events follow each other without advancing the time and without a limit.
+    #[error(
+        "events accumulate without a limit (chattering): the last {count} did not advance the time; guards involved: {guards}"
+    )]
+    Chattering {
+        /// Number of events looked at.
+        count: usize,
+        /// Names of the guards.
+        guards: String,
+    },
+    /// The model needs a mode that the scene left out by freezing a coordinate.
+    #[error("no mode is left in which {frozen} may be frozen")]
+    NoModeLeft {
+        /// The frozen coordinates.
+        frozen: String,
+    },
+    /// The initial state fits no mode.
+    #[error("the initial state fits mode `{mode}` not: {why}")]
+    Initial {
+        /// Mode.
+        mode: &'static str,
+        /// Which coordinate or rate, and what it should be.
+        why: String,
+    },
+    /// The run was interrupted from outside.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl Reason {
+    /// The reason for a singular matrix met in `mode` with the given free coordinates' names.
+    pub(super) fn singular(
+        mode: &'static crate::model::Mode,
+        model: &'static crate::model::Model,
+        singular: Singular,
+    ) -> Self {
+        let coordinate = model.coordinates[mode.free[singular.coordinate]].name;
+        Reason::Singular { mode: mode.name, coordinate }
+    }
+}

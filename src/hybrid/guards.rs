@@ -1,0 +1,167 @@
+//! Values of guards, and their search on a step's dense output.
+
+use super::equations::Equations;
+use super::plan::Plan;
+use super::roots::{self, Polynomial, Search, Watch};
+use crate::integrate::{Dense, System, solve};
+use crate::kernel::{Context, Free, ModeKernel};
+use crate::model::{Guard, GuardShape, Transition, Variant};
+use crate::with_kernel;
+use nalgebra::SVector;
+
+/// Number of coefficients of a coordinate on the dense output of three stages.
+const COEFFICIENTS: usize = 6;
+
+/// What the conditions of transitions are evaluated with.
+pub(super) struct Conditions<'a> {
+    pub variant: &'static Variant,
+    pub plan: &'a Plan,
+    /// Room for a reset: q, v, discrete states.
+    pub next: &'a mut [f64],
+}
+
+impl Conditions<'_> {
+    /// Whether all transitions that the guard may trigger are conditional, so that guard and
+    /// conditions are watched together.
+    pub fn are_part_of(&self, guard: &Guard) -> bool {
+        self.admissible(guard).all(|t| t.conditional)
+    }
+
+    /// The transitions of a guard whose targets the scene may visit.
+    pub fn admissible<'g>(&self, guard: &'g Guard) -> impl Iterator<Item = &'g Transition> {
+        guard.transitions.iter().filter(|t| self.plan.allowed[t.target])
+    }
+
+    /// The condition of a transition out of the present mode, evaluated in its target after the
+    /// reset; +∞ if it has none. `next` holds the reset afterwards.
+    pub fn of<const F: usize>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        context: &mut Context,
+        transition: &Transition,
+        at: Free<F>,
+    ) -> f64 {
+        kernel.reset(context, &transition.kernel, at, self.next);
+        if !transition.conditional {
+            return f64::INFINITY;
+        }
+        let n = context.held.len();
+        let target = &self.variant.modes[transition.target];
+        context.held.swap_with_slice(&mut self.next[..n]);
+        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
+        let condition = with_kernel!(&target.kernels, k => {
+            condition_in(k, context, transition, target.free, &self.next[n..2 * n])
+        });
+        context.held.swap_with_slice(&mut self.next[..n]);
+        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
+        condition
+    }
+}
+
+/// The condition in its target mode, whose coordinates and discrete states the context holds. NaN
+/// where the accelerations are not determined.
+fn condition_in<const F: usize>(
+    kernel: &ModeKernel<F>,
+    context: &Context,
+    transition: &Transition,
+    free: &[usize],
+    rates: &[f64],
+) -> f64 {
+    let q = SVector::<f64, F>::from_fn(|i, _| context.held[free[i]]);
+    let v = SVector::<f64, F>::from_fn(|i, _| rates[free[i]]);
+    let system = kernel.system(context, &q, &v);
+    let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
+        return f64::NAN;
+    };
+    let at = Free { q: &q, v: &v, a: &a };
+    kernel.condition(context, &transition.kernel, at).unwrap_or(f64::INFINITY)
+}
+
+/// Value of a guard of the present mode; a conditional one is respected as well where none of its
+/// conditions holds.
+#[inline]
+pub(super) fn value<const F: usize>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    conditions: &mut Conditions,
+    guard: &Guard,
+    at: Free<F>,
+) -> f64 {
+    let value = kernel.guard(context, &guard.kernel, at);
+    if value >= 0.0 || !conditions.are_part_of(guard) {
+        return value;
+    }
+    let mut best = f64::NEG_INFINITY;
+    for transition in guard.transitions.iter().filter(|t| conditions.plan.allowed[t.target]) {
+        best = best.max(conditions.of(kernel, context, transition, at));
+    }
+    value.max(-best)
+}
+
+/// Motion at local time `tau` of a step, with accelerations from the equations where asked for.
+pub(super) fn motion<const F: usize>(
+    equations: &mut Equations<F>,
+    dense: &Dense<3, F>,
+    tau: f64,
+    accelerations: bool,
+) -> [SVector<f64, F>; 3] {
+    let (q, v, mut a) = dense.at(tau);
+    equations.at(tau);
+    if accelerations && equations.acceleration(tau, &q, &v, &mut a).is_err() {
+        a.fill(f64::NAN);
+    }
+    [q, v, a]
+}
+
+/// Searches a guard on the window `from` < τ ≤ `to` of a step.
+pub(super) fn search<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &Dense<3, F>,
+    guard: &Guard,
+    window: (f64, f64),
+    watch: Watch,
+) -> Search {
+    match guard.shape {
+        GuardShape::Linear { index, rate, factor, discrete } if !conditions.are_part_of(guard) => {
+            let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
+            search_linear(dense, index, rate, factor, window, watch)
+        }
+        _ => {
+            let accelerations =
+                !matches!(guard.shape, GuardShape::General { accelerations: false, .. });
+            let evaluate = |tau: f64| {
+                let [q, v, a] = motion(equations, dense, tau, accelerations);
+                let at = Free { q: &q, v: &v, a: &a };
+                value(equations.kernel, equations.context, conditions, guard, at)
+            };
+            roots::search(evaluate, window.0, window.1, watch, 0.0)
+        }
+    }
+}
+
+/// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
+fn search_linear<const F: usize>(
+    dense: &Dense<3, F>,
+    index: usize,
+    rate: bool,
+    factor: f64,
+    (from, to): (f64, f64),
+    watch: Watch,
+) -> Search {
+    let h = dense.length();
+    let coefficients = std::array::from_fn(|k| {
+        let coefficient = |power: usize| {
+            if power < COEFFICIENTS { dense.coefficient(power)[index] } else { 0.0 }
+        };
+        if rate { factor * (k + 1) as f64 * coefficient(k + 1) / h } else { factor * coefficient(k) }
+    });
+    let polynomial = Polynomial::<COEFFICIENTS> { coefficients };
+    let local = |tau: f64| ((tau - dense.start()) / h).clamp(0.0, 1.0);
+    let mut search = polynomial.search(local(from), local(to), watch, 0.0);
+    if let Some(crossing) = &mut search.crossing {
+        crossing.inside = dense.start() + crossing.inside * h;
+        crossing.outside = (dense.start() + crossing.outside * h).min(to);
+    }
+    search
+}

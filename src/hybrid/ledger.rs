@@ -1,0 +1,74 @@
+//! The running energy ledger, in the inertial frame.
+
+use crate::record::{EnergyJump, Ledger};
+
+/// Sentence about the frame, for the summary.
+const FRAME: &str = "inertial frame in which the ground is at rest at t = 0; a landing on moving \
+    ground does work there, which is counted as input work, so that `lost_at_impacts` is the loss \
+    in the frame of the ground";
+
+/// A sum that carries what rounding loses (Neumaier 1974).
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    total: f64,
+    lost: f64,
+}
+
+impl Sum {
+    fn add(&mut self, x: f64) {
+        let sum = self.total + x;
+        self.lost += if self.total.abs() >= x.abs() {
+            (self.total - sum) + x
+        } else {
+            (x - sum) + self.total
+        };
+        self.total = sum;
+    }
+
+    fn value(&self) -> f64 {
+        self.total + self.lost
+    }
+}
+
+/// Energies since the start of the run, J.
+#[derive(Debug, Clone, Default)]
+pub(super) struct RunningLedger {
+    initial: f64,
+    input_work: Sum,
+    dissipated: Sum,
+    lost_at_impacts: Sum,
+}
+
+impl RunningLedger {
+    pub fn starting_with(initial: f64) -> Self {
+        RunningLedger { initial, ..Self::default() }
+    }
+
+    /// Adds powers [dissipated, input], W, over a time `weight`, s.
+    #[inline]
+    pub fn add_powers(&mut self, [dissipated, input]: [f64; 2], weight: f64) {
+        self.dissipated.add(dissipated * weight);
+        self.input_work.add(input * weight);
+    }
+
+    pub fn add_jump(&mut self, jump: EnergyJump) {
+        self.lost_at_impacts.add(jump.lost);
+        self.input_work.add(jump.ground_work);
+    }
+
+    /// The entries of a row: stored, input work, dissipated, lost at impacts.
+    pub fn row(&self, stored: f64) -> [f64; 4] {
+        [stored, self.input_work.value(), self.dissipated.value(), self.lost_at_impacts.value()]
+    }
+
+    pub fn close(&self, stored: f64) -> Ledger {
+        Ledger {
+            initial: self.initial,
+            final_: stored,
+            dissipated: self.dissipated.value(),
+            input_work: self.input_work.value(),
+            lost_at_impacts: self.lost_at_impacts.value(),
+            frame: FRAME.into(),
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The state at a crossing, at the full order of the method and on its far side.
+//!
+//! A crossing is isolated on the dense output. The step is then taken again from its start with
+//! exactly the length to the crossing, so that the state there is an end point of the method; what
+//! the guard is off by at this end point is removed by Newton's method on the length, and last by
+//! the motion's own Taylor polynomial.
+
+use super::equations::Equations;
+use super::failure::Reason;
+use super::guards::{self, Conditions};
+use super::roots::{Crossing, Kind};
+use crate::integrate::{Radau, State, System};
+use crate::kernel::Free;
+use crate::model::{Guard, GuardShape};
+use nalgebra::SVector;
+
+/// Result of [`land`].
+pub(super) enum Landing<const F: usize> {
+    /// The state just beyond the crossing: the end of the step, moved on by `beyond`.
+    On {
+        /// State at `beyond` after the end of the step.
+        state: State<F>,
+        /// Duration from the end of the step, s; may be negative.
+        beyond: f64,
+    },
+    /// The step was shortened, and now has no crossing at its end: search it again.
+    Short,
+}
+
+/// A Taylor polynomial of second order over this fraction of a step is exact to rounding: what it
+/// leaves out is of the order of its cube, 2⁻⁵⁴ (cube root of the unit roundoff, rounded down).
+const TAYLOR: f64 = 3.8e-6;
+
+/// Retakes the last step of `radau` so that it ends at `crossing` of `guard`.
+pub(super) fn land<const F: usize>(
+    radau: &mut Radau<3, F>,
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: &Guard,
+    crossing: Crossing,
+) -> Result<Landing<F>, Reason> {
+    let start = radau.start().t;
+    let window = radau.state().t;
+    let mut tau = crossing.outside;
+    let mut correction_before = f64::INFINITY;
+    loop {
+        if tau != radau.state().t {
+            radau.step_exactly(equations, tau - start)?;
+        }
+        let end = *radau.state();
+        let value = value_at(equations, conditions, guard, &end);
+        if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
+            // There is no slope to follow: the place is as good as the dense output.
+            return Ok(match crossing.kind == Kind::Touch || value < 0.0 {
+                true => Landing::On { state: end, beyond: 0.0 },
+                false => Landing::Short,
+            });
+        }
+        if conditions.are_part_of(guard) {
+            // Guard and condition together have no slope of their own.
+            return Ok(match value < 0.0 {
+                true => Landing::On { state: end, beyond: 0.0 },
+                false => beyond_the_crossing(equations, conditions, guard, &end, 0.0),
+            });
+        }
+        let rate = rate_at(equations, guard, &end);
+        let correction = -value / rate;
+        if rate.is_nan() || rate >= 0.0 || !(start..=window).contains(&(end.t + correction)) {
+            // No fall here: either the shortened step has its crossing earlier, or none at all.
+            return Ok(if value < 0.0 && end.t == window {
+                Landing::On { state: end, beyond: 0.0 }
+            } else {
+                Landing::Short
+            });
+        }
+        if correction.abs() <= TAYLOR * (end.t - start) {
+            return Ok(beyond_the_crossing(equations, conditions, guard, &end, correction));
+        }
+        if correction.abs() >= correction_before {
+            return Ok(Landing::Short);
+        }
+        correction_before = correction.abs();
+        tau = end.t + correction;
+    }
+}
+
+/// Moves a state by its Taylor polynomial.
+fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
+    State {
+        t: state.t,
+        q: state.q + (state.v + state.a * (0.5 * by)) * by,
+        v: state.v + state.a * by,
+        a: state.a,
+    }
+}
+
+/// The first state on the far side, from the end of the step on by about `correction`.
+///
+/// The guard's own values decide. Its rounding may keep them at or above zero at the computed
+/// root: the move is lengthened by its own last place, doubled each time, until it is strictly
+/// crossed.
+fn beyond_the_crossing<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: &Guard,
+    end: &State<F>,
+    correction: f64,
+) -> Landing<F> {
+    let mut place = f64::EPSILON * correction.abs().max(f64::MIN_POSITIVE);
+    let mut beyond = correction;
+    loop {
+        let mut state = moved(end, beyond);
+        if !matches!(guard.shape, GuardShape::Linear { .. })
+            && equations.acceleration(end.t, &state.q, &state.v, &mut state.a).is_err()
+        {
+            state.a = end.a;
+        }
+        let value = value_at(equations, conditions, guard, &state);
+        if value < 0.0 || !value.is_finite() {
+            return Landing::On { state, beyond };
+        }
+        if place > TAYLOR * end.t.abs().max(correction.abs()) {
+            return Landing::Short;
+        }
+        beyond += place;
+        place *= 2.0;
+    }
+}
+
+fn value_at<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: &Guard,
+    state: &State<F>,
+) -> f64 {
+    equations.at(state.t);
+    let at = Free { q: &state.q, v: &state.v, a: &state.a };
+    guards::value(equations.kernel, equations.context, conditions, guard, at)
+}
+
+/// Derivative of a guard along the flow.
+fn rate_at<const F: usize>(equations: &mut Equations<F>, guard: &Guard, state: &State<F>) -> f64 {
+    let at = Free { q: &state.q, v: &state.v, a: &state.a };
+    if let GuardShape::Linear { index, rate, factor, discrete } = guard.shape {
+        let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
+        return factor * if rate { state.a[index] } else { state.v[index] };
+    }
+    equations.at(state.t);
+    equations.rates_at(state.t);
+    let jerk = equations.jerk(at).unwrap_or(SVector::repeat(f64::NAN));
+    equations.kernel.guard_rate(equations.context, &guard.kernel, at, &jerk)
+}

@@ -1,0 +1,85 @@
+//! Samples of the trajectory.
+
+use super::simulation::Simulation;
+use crate::kernel::{Context, Free, ModeKernel};
+use crate::record::{Group, Layout};
+use crate::with_kernel;
+
+/// What a row needs besides the state.
+pub(super) struct Row<'a> {
+    pub layout: &'a Layout,
+    pub q: &'a [f64],
+    pub v: &'a [f64],
+    /// Stored energy is filled in here; the rest of the ledger is given.
+    pub ledger: [f64; 4],
+}
+
+impl Row<'_> {
+    /// Fills a row; the context is set to its time.
+    pub fn fill<const F: usize>(
+        mut self,
+        kernel: &ModeKernel<F>,
+        context: &Context,
+        at: Free<F>,
+        row: &mut [f64],
+    ) {
+        let n = self.q.len();
+        row[..n].copy_from_slice(self.q);
+        row[n..2 * n].copy_from_slice(self.v);
+        let reactions = self.layout.range(Group::Reaction);
+        if !reactions.is_empty() {
+            kernel.reactions(context, at, &mut row[reactions]);
+        }
+        row[self.layout.range(Group::Discrete)].copy_from_slice(&context.discrete);
+        let energies = self.layout.range(Group::Energy);
+        if !energies.is_empty() {
+            let [kinetic, potential] = kernel.energies(context, at);
+            self.ledger[0] = kinetic + potential;
+            row[energies].copy_from_slice(&self.ledger);
+        }
+        let inputs = self.layout.range(Group::Input);
+        if !inputs.is_empty() {
+            row[inputs].copy_from_slice(&context.signals);
+        }
+    }
+}
+
+impl Simulation<'_> {
+    /// Time of the next sample, s; infinite without a grid.
+    pub fn next_sample_time(&self) -> f64 {
+        match self.problem.record.every {
+            Some(every) => self.next_sample as f64 * every,
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Records the samples up to the present instant that no segment has covered: the first one,
+    /// and those that an accumulation left out.
+    pub fn flush_samples(&mut self) {
+        if self.problem.record.every.is_none() && self.recorder.last_time().is_none() {
+            self.sample_here();
+        }
+        while self.next_sample_time() <= self.here.now.seconds().min(self.problem.end.time) {
+            let t = self.next_sample_time();
+            self.sample_at(t);
+            self.next_sample += 1;
+        }
+    }
+
+    /// Records the present state.
+    pub fn sample_here(&mut self) {
+        self.sample_at(self.here.now.seconds());
+    }
+
+    fn sample_at(&mut self, t: f64) {
+        let mode = self.mode();
+        let Simulation { recorder, here, context, layout, ledger, .. } = self;
+        let row = Row { layout, q: &here.q, v: &here.v, ledger: ledger.row(0.0) };
+        with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = here.free(mode.free);
+            recorder.push_row(t, here.mode, |values| {
+                row.fill(k, context, Free { q: &q, v: &v, a: &a }, values)
+            })
+        });
+    }
+}

@@ -1,0 +1,267 @@
+//! From one event to the next: steps, crossings on their dense output, samples and ledger.
+
+use super::equations::{Clock, Equations};
+use super::failure::Reason;
+use super::guards::{self, Conditions};
+use super::instant::Instant;
+use super::locate::{Landing, land};
+use super::roots::{Kind, Search, Watch, earliest};
+use super::samples::Row;
+use super::simulation::{Here, Simulation, Stop, Violation};
+use crate::integrate::{Counters, Radau, Tolerances};
+use crate::kernel::{Free, ModeKernel};
+use nalgebra::{SMatrix, SVector};
+
+impl Simulation<'_> {
+    /// Integrates the present mode until something happens.
+    pub fn advance<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+    ) -> Result<Stop, Reason> {
+        let mut radau = Radau::<3, F>::new(&self.tolerances());
+        let stop = self.integrate(kernel, &mut radau);
+        self.count(radau.counters());
+        stop
+    }
+
+    fn integrate<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        radau: &mut Radau<3, F>,
+    ) -> Result<Stop, Reason> {
+        let problem = self.problem;
+        let mode = self.mode();
+        let scale = self.scale();
+        let start = self.here.now;
+        let breakpoint = problem.signals.next_breakpoint(start.seconds());
+        let last = breakpoint.min(problem.end.time);
+        let until = Instant::new(last).since(start);
+        let [q, v, a] = self.here.free::<F>(mode.free);
+        radau.restart(0.0, &q, &v, &a);
+        let held = self.here.q.clone();
+        let drift = if mode.drifts.contains(&true) { self.drift.clone() } else { [].into() };
+        let clock = Clock {
+            start,
+            signals: &problem.signals,
+            until: (until, last),
+            held: &held,
+            drift: &drift,
+        };
+        let mut equations = Equations::new(kernel, &mut self.context, clock, scale);
+        let watched = &self.plan.watched[self.here.mode];
+        let mut conditions =
+            Conditions { variant: problem.variant, plan: &self.plan, next: &mut self.next };
+        let mut determinant = determinant_sign(&kernel.system(equations.context, &q, &v).mass);
+        let mut ledger_from = 0.0;
+
+        loop {
+            let from = radau.state().t;
+            let resolution = problem.signals.resolution(start.plus(from).seconds());
+            radau.step(&mut equations, until, resolution)?;
+
+            // The step is cut at the first crossing; the shorter step is searched again, since it
+            // is a better solution than the dense output of the longer one.
+            let mut event = None;
+            loop {
+                let dense = *radau.dense().expect("a step was made");
+                let to = radau.state().t;
+                let hit = earliest(from, to, &self.watches, &mut self.found, |i, from, to, watch| {
+                    let guard = &mode.guards[watched[i]];
+                    guards::search(&mut equations, &mut conditions, &dense, guard, (from, to), watch)
+                });
+                if hit.time.is_none() {
+                    break;
+                }
+                let first = (0..watched.len())
+                    .find(|&i| self.found[i].crossing.is_some())
+                    .expect("an event has a guard");
+                let crossing = self.found[first].crossing.expect("just found");
+                match crossing.kind {
+                    Kind::Pole => {
+                        // The sign changes, but not through zero.
+                        self.watches[first] = self.found[first].watch;
+                        continue;
+                    }
+                    Kind::LeavesNegative if from == 0.0 => {
+                        return Ok(Stop::Violated(Violation { guard: watched[first], at_once: true }));
+                    }
+                    _ => {}
+                }
+                let guard = &mode.guards[watched[first]];
+                match land(radau, &mut equations, &mut conditions, guard, crossing)? {
+                    Landing::On { state, beyond } => {
+                        event = Some((watched[first], state, beyond));
+                        break;
+                    }
+                    Landing::Short if radau.state().t == to => {
+                        // The end point itself, more accurate than the dense output, is not across.
+                        self.found[first] = Search::quiet(Watch::Armed);
+                        break;
+                    }
+                    Landing::Short => {}
+                }
+            }
+
+            let dense = *radau.dense().expect("a step was made");
+            let end = *radau.state();
+            let (state, beyond) = event.map_or((end, 0.0), |(_, state, beyond)| (state, beyond));
+
+            // Samples before the ledger moves on to the end of the step.
+            while let Some(every) = problem.record.every {
+                let t = self.next_sample as f64 * every;
+                let tau = Instant::new(t).since(start);
+                if tau > end.t + beyond {
+                    break;
+                }
+                let mut ledger = self.ledger.clone();
+                let energies = problem.record.columns.energies;
+                if energies {
+                    for (node, weight) in gauss(ledger_from, tau) {
+                        let [q, v, a] = guards::motion(&mut equations, &dense, node, true);
+                        let at = Free { q: &q, v: &v, a: &a };
+                        ledger.add_powers(kernel.powers(equations.context, at), weight);
+                    }
+                }
+                let needed = energies || problem.record.columns.reactions;
+                let [q, v, a] = guards::motion(&mut equations, &dense, tau, needed);
+                let here = &mut self.here;
+                here.set_free(mode.free, [&q, &v, &a]);
+                copy_drifting(&mut here.q, mode.drifts, &equations.context.held);
+                let row = Row { layout: &self.layout, q: &here.q, v: &here.v, ledger: ledger.row(0.0) };
+                self.recorder.push_row(t, here.mode, |values| {
+                    row.fill(kernel, equations.context, Free { q: &q, v: &v, a: &a }, values)
+                });
+                self.next_sample += 1;
+            }
+
+            for stage in radau.stages() {
+                equations.at(stage.t);
+                let at = Free { q: stage.q, v: stage.v, a: stage.a };
+                self.ledger.add_powers(kernel.powers(equations.context, at), stage.weight);
+            }
+            ledger_from = end.t;
+            equations.at(end.t);
+            let at = Free { q: &state.q, v: &state.v, a: &state.a };
+            if beyond != 0.0 {
+                self.ledger.add_powers(kernel.powers(equations.context, at), beyond);
+            }
+
+            self.here.now = start.plus(end.t).plus(beyond);
+            self.here.set_free(mode.free, [&state.q, &state.v, &state.a]);
+            copy_drifting(&mut self.here.q, mode.drifts, &equations.context.held);
+
+            let mass = kernel.system(equations.context, &state.q, &state.v).mass;
+            let sign = determinant_sign(&mass);
+            if sign != determinant {
+                return Err(Reason::DeterminantChangesSign { mode: mode.name });
+            }
+            determinant = sign;
+            let mut requirements = [0.0; MOST_REQUIREMENTS];
+            let requirements = &mut requirements[..mode.requirements.len()];
+            kernel.requirements(equations.context, at, requirements);
+            for (value, requirement) in requirements.iter().zip(mode.requirements) {
+                if value.is_nan() || *value <= 0.0 {
+                    return Err(Reason::Requirement {
+                        mode: mode.name,
+                        failure: requirement.failure,
+                        text: requirement.text,
+                        value: *value,
+                        unit: requirement.unit,
+                    });
+                }
+            }
+            if problem.record.every.is_none() {
+                let ledger = self.ledger.row(0.0);
+                let Here { q, v, .. } = &self.here;
+                let row = Row { layout: &self.layout, q, v, ledger };
+                self.recorder.push_row(self.here.now.seconds(), self.here.mode, |values| {
+                    row.fill(kernel, equations.context, at, values)
+                });
+            }
+            if self.progress.advance(self.here.now.seconds(), self.here.j).is_break() {
+                return Err(Reason::Interrupted);
+            }
+
+            if let Some((guard, ..)) = event {
+                return Ok(Stop::Event(guard));
+            }
+            for (watch, found) in self.watches.iter_mut().zip(&self.found) {
+                *watch = found.watch;
+            }
+            if end.t >= until {
+                self.here.now = Instant::new(last);
+                return Ok(if last >= problem.end.time { Stop::End } else { Stop::Breakpoint });
+            }
+        }
+    }
+
+    fn tolerances<const F: usize>(&self) -> Tolerances<F> {
+        let accuracy = &self.problem.accuracy;
+        let free = self.mode().free;
+        let pick = |full: &[f64]| SVector::from_fn(|i, _| full[free[i]]);
+        Tolerances::new(accuracy.relative, pick(&accuracy.q_absolute), pick(&accuracy.v_absolute))
+            .expect("a problem's tolerances are positive")
+    }
+
+    fn count(&mut self, counters: &Counters) {
+        let solver = &mut self.solver;
+        solver.steps += counters.steps;
+        solver.rejected += counters.rejected + counters.newton_failures;
+        solver.residual_evaluations += counters.residual_evaluations;
+        solver.jacobian_evaluations += counters.jacobian_evaluations;
+        solver.factorizations += counters.factorizations;
+    }
+}
+
+/// Most requirements that a mode may have.
+const MOST_REQUIREMENTS: usize = 8;
+
+/// Drifting coordinates move although they are frozen.
+fn copy_drifting(q: &mut [f64], drifts: &[bool], held: &[f64]) {
+    for ((q, &drifts), &held) in q.iter_mut().zip(drifts).zip(held) {
+        if drifts {
+            *q = held;
+        }
+    }
+}
+
+/// Nodes and weights of Gauss's three-point rule on [from, to] (order 6, above that of a step).
+fn gauss(from: f64, to: f64) -> [(f64, f64); 3] {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let node = 0.6f64.sqrt();
+    [-node, 0.0, node].map(|x| {
+        let weight = if x == 0.0 { 8.0 / 9.0 } else { 5.0 / 9.0 };
+        (middle + half * x, half * weight)
+    })
+}
+
+/// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
+fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
+    let mut m = *matrix;
+    let mut sign = 1;
+    for k in 0..F {
+        let mut pivot = k;
+        for i in k + 1..F {
+            if m[(i, k)].abs() > m[(pivot, k)].abs() {
+                pivot = i;
+            }
+        }
+        if pivot != k {
+            m.swap_rows(pivot, k);
+            sign = -sign;
+        }
+        if m[(k, k)] == 0.0 || m[(k, k)].is_nan() {
+            return 0;
+        }
+        if m[(k, k)] < 0.0 {
+            sign = -sign;
+        }
+        for i in k + 1..F {
+            let factor = m[(i, k)] / m[(k, k)];
+            for j in k + 1..F {
+                m[(i, j)] -= factor * m[(k, j)];
+            }
+        }
+    }
+    sign
+}

@@ -1,0 +1,409 @@
+//! The run: settle, advance to the next event, apply it, and so on to the end.
+
+use super::accumulation::{Accumulation, Limit};
+use super::failure::Reason;
+use super::instant::Instant;
+use super::ledger::RunningLedger;
+use super::plan::Plan;
+use super::problem::Problem;
+use super::roots::{Search, Watch};
+use crate::kernel::{Context, Free};
+use crate::model::Mode;
+use crate::record::{
+    Event, Failure, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
+};
+use crate::with_kernel;
+use nalgebra::SVector;
+use std::time::Instant as WallClock;
+
+/// Simulates a problem to its end, or until something stops it; the run then says why.
+///
+/// # Errors
+/// [`Reason`] if the problem cannot even be started: its initial state fits no mode, or the scene
+/// froze what every mode needs.
+pub fn simulate(problem: &Problem, progress: &mut dyn Progress) -> Result<Run, Reason> {
+    let clock = WallClock::now();
+    let mut simulation = Simulation::new(problem, progress)?;
+    let outcome = simulation.run();
+    Ok(simulation.finish(outcome.err(), clock))
+}
+
+/// Where the run is: everything but the discrete states, which live in the context.
+#[derive(Debug, Clone)]
+pub(super) struct Here {
+    pub now: Instant,
+    pub j: u64,
+    pub mode: usize,
+    /// All coordinates.
+    pub q: Box<[f64]>,
+    /// All velocities.
+    pub v: Box<[f64]>,
+    /// All accelerations; those of frozen coordinates are 0.
+    pub a: Box<[f64]>,
+}
+
+/// A guard that is not respected at the start of a segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Violation {
+    /// Index of the guard in its mode.
+    pub guard: usize,
+    /// Whether it was zero and leaves zero at once: a hop of no duration.
+    pub at_once: bool,
+}
+
+/// Why a segment ended.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Stop {
+    /// The end of the run.
+    End,
+    /// An input is not smooth here.
+    Breakpoint,
+    /// A guard, by its index in the mode, fell through zero.
+    Event(usize),
+    /// A guard that was zero at the segment's start leaves it downwards.
+    Violated(Violation),
+}
+
+pub(super) struct Simulation<'p> {
+    pub problem: &'p Problem,
+    pub plan: Plan,
+    pub context: Context,
+    pub here: Here,
+    /// Rates of the frozen coordinates in the present mode.
+    pub drift: Box<[f64]>,
+    /// Remembered signs of the watched guards of the present mode, and what was found of each.
+    pub watches: Vec<Watch>,
+    pub found: Vec<Search>,
+    /// Room for a reset: q, v, discrete states.
+    pub next: Box<[f64]>,
+    pub accumulation: Accumulation,
+    /// Modes and states seen since the time last advanced, with the transition that led there.
+    pub visited: Vec<(u64, String)>,
+    pub ledger: RunningLedger,
+    pub recorder: Recorder,
+    pub layout: Layout,
+    pub events: Vec<Event>,
+    pub solver: Solver,
+    /// Index of the next sample of the grid.
+    pub next_sample: u64,
+    /// How often the transition that ends the run has happened.
+    pub counted: u64,
+    pub progress: &'p mut dyn Progress,
+}
+
+impl<'p> Simulation<'p> {
+    fn new(problem: &'p Problem, progress: &'p mut dyn Progress) -> Result<Self, Reason> {
+        let model = problem.model;
+        let plan = Plan::new(problem)?;
+        let mut context = Context::new(model, &problem.parameters);
+        context.discrete.copy_from_slice(&problem.initial.discrete);
+        let n = model.coordinates.len();
+        let layout = Layout::new(model, problem.variant, problem.record.columns);
+        let rows = problem.record.every.map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
+        let mut simulation = Simulation {
+            problem,
+            plan,
+            context,
+            here: Here {
+                now: Instant::default(),
+                j: 0,
+                mode: 0,
+                q: problem.initial.q.clone().into(),
+                v: problem.initial.v.clone().into(),
+                a: vec![0.0; n].into(),
+            },
+            drift: vec![0.0; n].into(),
+            watches: Vec::new(),
+            found: Vec::new(),
+            next: vec![0.0; 2 * n + model.discretes.len()].into(),
+            accumulation: Accumulation::new(2 * n),
+            visited: Vec::new(),
+            ledger: RunningLedger::default(),
+            recorder: Recorder::new(&layout, rows + 1),
+            layout,
+            events: Vec::new(),
+            solver: Solver { method: "Radau IIA, order 5".into(), ..Solver::default() },
+            next_sample: 0,
+            counted: 0,
+            progress,
+        };
+        simulation.choose_initial_mode()?;
+        simulation.set_context();
+        simulation.ledger = RunningLedger::starting_with(simulation.stored_energy());
+        Ok(simulation)
+    }
+
+    pub fn mode(&self) -> &'static Mode {
+        &self.problem.variant.modes[self.here.mode]
+    }
+
+    /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
+    fn choose_initial_mode(&mut self) -> Result<(), Reason> {
+        let modes = self.problem.variant.modes;
+        if let Some(chosen) = self.problem.initial.mode {
+            self.here.mode = chosen;
+            self.apply_drift();
+            return match self.misfit(&modes[chosen]) {
+                None if self.plan.allowed[chosen] => Ok(()),
+                None => Err(Reason::Initial {
+                    mode: modes[chosen].name,
+                    why: "the scene freezes a coordinate that is free in it".into(),
+                }),
+                Some(why) => Err(Reason::Initial { mode: modes[chosen].name, why }),
+            };
+        }
+        let mut best: Option<usize> = None;
+        for m in (0..modes.len()).filter(|&m| self.plan.allowed[m]) {
+            self.here.mode = m;
+            let fewer = best.is_none_or(|b| modes[m].free.len() < modes[b].free.len());
+            if fewer && self.misfit(&modes[m]).is_none() {
+                best = Some(m);
+            }
+        }
+        let fallback = self.plan.allowed.iter().position(|&a| a).unwrap_or(0);
+        match best {
+            Some(m) => {
+                self.here.mode = m;
+                Ok(())
+            }
+            None => {
+                let why = self.misfit(&modes[fallback]).unwrap_or_default();
+                Err(Reason::Initial { mode: modes[fallback].name, why })
+            }
+        }
+    }
+
+    /// What of the state does not fit a mode, in words.
+    fn misfit(&mut self, mode: &'static Mode) -> Option<String> {
+        let model = self.problem.model;
+        let mut rates = vec![0.0; model.coordinates.len()];
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        model.coordinates.iter().enumerate().find_map(|(i, c)| {
+            if let Some(minimum) = c.minimum
+                && self.here.q[i] < minimum
+            {
+                return Some(format!("`{}` is below {minimum} {}", c.name, c.unit));
+            }
+            if mode.free.contains(&i) {
+                return None;
+            }
+            match mode.held_at[i] {
+                Some(value) if self.here.q[i] != value => {
+                    Some(format!("it holds `{}` at {value} {}", c.name, c.unit))
+                }
+                _ if self.here.v[i] != rates[i] => {
+                    Some(format!("it holds `{}.rate` at {} {}/s", c.name, rates[i], c.unit))
+                }
+                _ => None,
+            }
+        })
+    }
+
+    /// A scene that names a drifting mode need not state the drift's rate.
+    fn apply_drift(&mut self) {
+        let mode = self.mode();
+        let mut rates = vec![0.0; self.here.v.len()];
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        for (i, &drifts) in mode.drifts.iter().enumerate() {
+            if drifts && self.here.v[i] == 0.0 {
+                self.here.v[i] = rates[i];
+            }
+        }
+    }
+
+    fn run(&mut self) -> Result<(), Reason> {
+        loop {
+            self.settle()?;
+            self.flush_samples();
+            if self.is_over() {
+                return Ok(());
+            }
+            let mode = self.mode();
+            let stop = with_kernel!(&mode.kernels, k => self.advance(k))?;
+            match stop {
+                Stop::End => {
+                    self.set_context();
+                    return Ok(());
+                }
+                Stop::Breakpoint => self.visited.clear(),
+                Stop::Event(guard) => {
+                    self.visited.clear();
+                    self.fire(guard)?;
+                }
+                Stop::Violated(violation) => self.resolve(violation)?,
+            }
+        }
+    }
+
+    /// Finds the admissible mode at the present instant: every violated guard is one transition.
+    fn settle(&mut self) -> Result<(), Reason> {
+        loop {
+            let mode = self.mode();
+            match with_kernel!(&mode.kernels, k => self.enter(k))? {
+                None => return Ok(()),
+                Some(_) if self.is_over() => return Ok(()),
+                Some(violation) => self.resolve(violation)?,
+            }
+        }
+    }
+
+    /// A violated guard: the limit of its accumulation if it is an impact of no duration, else its
+    /// transition.
+    fn resolve(&mut self, violation: Violation) -> Result<(), Reason> {
+        let mode = self.mode();
+        let rests = violation.at_once && super::plan::is_impact(&mode.guards[violation.guard]);
+        match self.plan.rest(mode) {
+            Some(rest) if rests => self.come_to_rest(rest, None),
+            _ => self.fire(violation.guard),
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        let after = self.problem.end.after;
+        self.here.now.seconds() >= self.problem.end.time
+            || after.is_some_and(|(_, count)| self.counted >= count)
+    }
+
+    /// Goes to the limit of an accumulation, if the last events have one.
+    pub fn look_for_accumulation(&mut self) -> Result<(), Reason> {
+        let accuracy = &self.problem.accuracy;
+        let n = self.here.q.len();
+        let tolerance = |i: usize, value: f64| {
+            let absolute = if i < n { accuracy.q_absolute[i] } else { accuracy.v_absolute[i - n] };
+            absolute + accuracy.relative * value.abs()
+        };
+        if let Some(rest) = self.plan.rest(self.mode())
+            && let Some(limit) = self.accumulation.limit(accuracy.relative, tolerance)
+            && limit.at.seconds() < self.problem.end.time
+        {
+            return self.come_to_rest(rest, Some(limit));
+        }
+        if self.accumulation.stands_still() {
+            let recent = self.events.iter().rev().take(Accumulation::MEMORY);
+            let mut guards: Vec<_> = recent.map(|e| e.transition).collect();
+            guards.sort_unstable();
+            guards.dedup();
+            return Err(Reason::Chattering {
+                count: Accumulation::MEMORY,
+                guards: guards.join(", "),
+            });
+        }
+        Ok(())
+    }
+
+    /// Enters the mode at the limit of an accumulation; `None`: the limit is here.
+    fn come_to_rest(&mut self, rest: usize, limit: Option<Limit>) -> Result<(), Reason> {
+        let n = self.here.q.len();
+        if let Some(limit) = limit {
+            self.here.now = limit.at;
+            self.here.q.copy_from_slice(&limit.state[..n]);
+            self.here.v.copy_from_slice(&limit.state[n..]);
+        }
+        let mode = &self.problem.variant.modes[rest];
+        let before = self.here.clone();
+        self.next[..n].copy_from_slice(&self.here.q);
+        self.next[n..2 * n].copy_from_slice(&self.here.v);
+        self.next[2 * n..].copy_from_slice(&self.context.discrete);
+        let mut rates = vec![0.0; n];
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        for i in (0..n).filter(|i| !mode.free.contains(i)) {
+            if let Some(value) = mode.held_at[i] {
+                self.next[i] = value;
+            }
+            self.next[n + i] = rates[i];
+        }
+        self.commit("rest", true, rest, before)
+    }
+
+    /// Sets signals, their rates and held coordinates to the present instant.
+    pub fn set_context(&mut self) {
+        let t = self.here.now.seconds();
+        self.problem.signals.evaluate(t, &mut self.context.signals);
+        self.problem.signals.rate(t, &mut self.context.signal_rates);
+        self.context.held.copy_from_slice(&self.here.q);
+    }
+
+    /// T + V here, J.
+    pub fn stored_energy(&self) -> f64 {
+        let mode = self.mode();
+        with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = self.here.free(mode.free);
+            let [kinetic, potential] = k.energies(&self.context, Free { q: &q, v: &v, a: &a });
+            kinetic + potential
+        })
+    }
+
+    /// The state here, with reactions where they are recorded.
+    pub fn snapshot(&self) -> Snapshot {
+        let mut reactions = vec![0.0; self.layout.reactions.len()];
+        let mode = self.mode();
+        if !reactions.is_empty() {
+            with_kernel!(&mode.kernels, k => {
+                let [q, v, a] = self.here.free(mode.free);
+                k.reactions(&self.context, Free { q: &q, v: &v, a: &a }, &mut reactions)
+            });
+        }
+        Snapshot {
+            q: self.here.q.to_vec(),
+            v: self.here.v.to_vec(),
+            discrete: self.context.discrete.to_vec(),
+            reactions,
+        }
+    }
+
+    fn place(&self) -> Place {
+        Place {
+            t: self.here.now.seconds(),
+            j: self.here.j,
+            mode: self.here.mode,
+            state: self.snapshot(),
+        }
+    }
+
+    fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
+        self.set_context();
+        let last = self.recorder.last_time();
+        if last.is_none_or(|t| t < self.here.now.seconds()) {
+            self.sample_here();
+        }
+        let problem = self.problem;
+        let end = self.place();
+        let stored = self.stored_energy();
+        self.progress.finish();
+        Run {
+            subject: Subject {
+                model: problem.model.name.into(),
+                title: problem.title.clone().unwrap_or_default(),
+                choices: (problem.model.choices.iter().zip(problem.variant.options))
+                    .map(|(choice, option)| (choice.name.into(), (*option).into()))
+                    .collect(),
+                parameters: (problem.model.parameters.iter().zip(&problem.parameters))
+                    .map(|(p, &value)| (p.name.into(), value))
+                    .collect(),
+            },
+            layout: self.layout,
+            trajectory: self.recorder.finish(),
+            events: self.events,
+            failure: reason.map(|reason| Failure { reason: reason.to_string(), at: end.clone() }),
+            end,
+            solver: self.solver,
+            energy: self.ledger.close(stored),
+            wall: clock.elapsed(),
+        }
+    }
+}
+
+impl Here {
+    /// Free coordinates, velocities and accelerations.
+    pub fn free<const F: usize>(&self, free: &[usize]) -> [SVector<f64, F>; 3] {
+        let gather = |full: &[f64]| SVector::from_fn(|i, _| full[free[i]]);
+        [gather(&self.q), gather(&self.v), gather(&self.a)]
+    }
+
+    /// Sets the free coordinates.
+    pub fn set_free<const F: usize>(&mut self, free: &[usize], [q, v, a]: [&SVector<f64, F>; 3]) {
+        for (i, &full) in free.iter().enumerate() {
+            (self.q[full], self.v[full], self.a[full]) = (q[i], v[i], a[i]);
+        }
+    }
+}
