@@ -1,0 +1,204 @@
+//! Axes: ranges, scales, ticks.
+
+use super::symbol::{Display, display, superscript};
+use crate::record::number::rounded;
+
+/// How values are spread along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By their logarithm; values that are not positive are left out.
+    Log,
+}
+
+/// A tick.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tick {
+    /// Position from 0 to 1.
+    pub at: f64,
+    /// Label.
+    pub label: String,
+}
+
+/// An axis, which maps values to positions from 0 to 1.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    scale: Scale,
+    /// Lower and upper end, in the units of the labels.
+    low: f64,
+    high: f64,
+    /// Values are shown as their difference to this, in the model's unit.
+    offset: f64,
+    display: Display,
+}
+
+/// Differences below this part of the values are shown on their own, beside an offset: the labels
+/// would need more digits than anybody reads.
+const OFFSET_BELOW: f64 = 1e-4;
+
+impl Axis {
+    /// The axis of values between `low` and `high`, in `unit`, with `margin` times their
+    /// difference free at both ends.
+    pub fn new(scale: Scale, unit: &str, (low, high): (f64, f64), margin: f64) -> Axis {
+        match scale {
+            Scale::Linear => Self::linear(unit, low, high, margin),
+            Scale::Log => {
+                let (low, high) = (low.log10(), high.log10());
+                let room = if high > low {
+                    (high - low) * margin
+                } else {
+                    0.5
+                };
+                let display = display(unit, 0.0);
+                Axis {
+                    scale,
+                    low: low - room,
+                    high: high + room,
+                    offset: 0.0,
+                    display,
+                }
+            }
+        }
+    }
+
+    fn linear(unit: &str, low: f64, high: f64, margin: f64) -> Axis {
+        let largest = low.abs().max(high.abs());
+        let range = high - low;
+        let offset = if range > 0.0 && range < OFFSET_BELOW * largest {
+            let place = 10f64.powf(range.log10().ceil());
+            ((low + range / 2.0) / place).round() * place
+        } else {
+            0.0
+        };
+        let largest = (low - offset).abs().max((high - offset).abs());
+        let display = display(unit, largest);
+        let (low, high) = (
+            (low - offset) * display.factor,
+            (high - offset) * display.factor,
+        );
+        let room = match high - low {
+            range if range > 0.0 => range * margin,
+            _ if low != 0.0 => low.abs() / 2.0,
+            _ => 1.0,
+        };
+        Axis {
+            scale: Scale::Linear,
+            low: low - room,
+            high: high + room,
+            offset,
+            display,
+        }
+    }
+
+    /// Position of a value, 0 at the lower end and 1 at the upper; NaN where the scale has none.
+    pub fn position(&self, value: f64) -> f64 {
+        let shown = match self.scale {
+            Scale::Linear => (value - self.offset) * self.display.factor,
+            Scale::Log if value > 0.0 => value.log10(),
+            Scale::Log => f64::NAN,
+        };
+        (shown - self.low) / (self.high - self.low)
+    }
+
+    /// The title `what` with the offset and the unit.
+    pub fn title(&self, what: &str) -> String {
+        let mut title = what.to_owned();
+        if self.offset != 0.0 {
+            let sign = if self.offset > 0.0 { '−' } else { '+' };
+            title = format!("{title} {sign} {}", rounded(self.offset.abs(), 15));
+        }
+        if !self.display.unit.is_empty() {
+            title = format!("{title} ({})", self.display.unit);
+        }
+        title
+    }
+
+    /// Up to about `count` ticks at round values. A logarithmic axis has them at powers of ten, or
+    /// at 1, 2 and 5 times powers of ten where that leaves less than three.
+    pub fn ticks(&self, count: usize) -> Vec<Tick> {
+        let tick = |shown: f64, label: String| Tick {
+            at: (shown - self.low) / (self.high - self.low),
+            label: label.replace('-', "−"),
+        };
+        let steps = |step: f64| (self.low / step).ceil() as i32..=(self.high / step).floor() as i32;
+        let step = round_step((self.high - self.low) / count as f64);
+        match self.scale {
+            Scale::Linear => {
+                let decimals = (-step.log10().floor()).max(0.0) as usize;
+                let value = |i| f64::from(i) * step;
+                steps(step)
+                    .map(|i| tick(value(i), format!("{:.decimals$}", value(i))))
+                    .collect()
+            }
+            Scale::Log if self.high - self.low < 3.0 => {
+                let decades = self.low.floor() as i32..=self.high.floor() as i32;
+                let values = decades.flat_map(|e| [1.0, 2.0, 5.0].map(|d| d * 10f64.powi(e)));
+                let inside = values.filter(|v| (self.low..=self.high).contains(&v.log10()));
+                inside.map(|v| tick(v.log10(), rounded(v, 3))).collect()
+            }
+            Scale::Log => {
+                let step = step.max(1.0).ceil();
+                let exponent = |i| f64::from(i) * step;
+                steps(step)
+                    .map(|i| {
+                        tick(
+                            exponent(i),
+                            format!("10{}", superscript(exponent(i) as i32)),
+                        )
+                    })
+                    .collect()
+            }
+        }
+    }
+}
+
+/// The number 1, 2 or 5 times a power of ten that is next above `step`.
+fn round_step(step: f64) -> f64 {
+    let decade = 10f64.powf(step.log10().floor());
+    let digit = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|digit| digit * decade >= step);
+    digit.unwrap_or(10.0) * decade
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis, count: usize) -> Vec<String> {
+        axis.ticks(count).into_iter().map(|t| t.label).collect()
+    }
+
+    #[test]
+    fn small_values_are_shown_in_a_smaller_unit() {
+        let axis = Axis::new(Scale::Linear, "m", (-3.2e-6, 1.1e-6), 0.0);
+        assert_eq!(axis.title("x"), "x (µm)");
+        assert_eq!(labels(&axis, 4), ["−2", "0"]);
+        assert_eq!(axis.position(-3.2e-6), 0.0);
+        assert_eq!(axis.position(1.1e-6), 1.0);
+    }
+
+    #[test]
+    fn small_differences_are_shown_beside_an_offset() {
+        let axis = Axis::new(Scale::Linear, "m", (1.234_561_0, 1.234_563_0), 0.0);
+        assert_eq!(axis.title("y"), "y − 1.23456 (µm)");
+        assert_eq!(labels(&axis, 2), ["1", "2", "3"]);
+    }
+
+    #[test]
+    fn a_constant_has_an_axis() {
+        for value in [0.0, 5.0, -1e-9] {
+            let axis = Axis::new(Scale::Linear, "1", (value, value), 0.05);
+            assert!((axis.position(value) - 0.5).abs() < 1e-12);
+            assert!(!axis.ticks(4).is_empty());
+        }
+    }
+
+    #[test]
+    fn decades_are_the_ticks_of_a_logarithmic_axis() {
+        let axis = Axis::new(Scale::Log, "s", (1e-3, 1.0), 0.0);
+        assert_eq!(labels(&axis, 10), ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
+        assert!(axis.position(0.0).is_nan());
+    }
+}

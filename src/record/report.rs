@@ -1,0 +1,161 @@
+//! A short report for the terminal.
+
+use std::fmt::{self, Display, Formatter};
+
+use super::number::rounded;
+use super::{Run, Summary};
+
+/// Digits shown: enough to compare two runs by eye. The exact numbers are in the files.
+const DIGITS: usize = 6;
+
+/// Shows a run as a short table: where it ended, the extremes, the transitions, the balance of
+/// energies and the work of the solver.
+#[derive(Debug)]
+pub struct Report {
+    summary: Summary,
+}
+
+impl Report {
+    /// The report of a run.
+    pub fn new(run: &Run) -> Report {
+        Report {
+            summary: Summary::new(run),
+        }
+    }
+}
+
+impl Display for Report {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let summary = &self.summary;
+        let choices = summary
+            .choices
+            .0
+            .iter()
+            .map(|(choice, option)| format!(", {choice}: {option}"));
+        writeln!(f, "{}{}", summary.model, choices.collect::<String>())?;
+        let end = &summary.end;
+        match &summary.failure {
+            None => write!(f, "reached t = {} s", number(end.t))?,
+            Some(failure) => {
+                let at = &failure.at;
+                writeln!(
+                    f,
+                    "stopped early at t = {} s, after {} transitions, in mode {}:\n  {}",
+                    number(at.t),
+                    at.j,
+                    at.mode,
+                    failure.reason
+                )?;
+                write!(f, "computed up to t = {} s", number(end.t))?;
+            }
+        }
+        writeln!(f, ", mode {}{}\n", end.mode, discrete(summary))?;
+        table(f, &states(summary))?;
+        write!(f, "\ntransitions {}", summary.events.total)?;
+        for (i, (name, count)) in summary.events.by_transition.iter().enumerate() {
+            write!(f, "{} {count} {name}", if i == 0 { ":" } else { "," })?;
+        }
+        writeln!(f)?;
+        energies(f, summary)?;
+        let solver = &summary.solver;
+        writeln!(
+            f,
+            "solver      {}: {} steps, {} rejected; {} residuals, {} Jacobians, {} factorizations; {} s",
+            solver.method,
+            solver.steps,
+            solver.rejected,
+            solver.residual_evaluations,
+            solver.jacobian_evaluations,
+            solver.factorizations,
+            rounded(summary.wall_seconds, 3),
+        )
+    }
+}
+
+fn number(x: f64) -> String {
+    rounded(x, DIGITS)
+}
+
+fn discrete(summary: &Summary) -> String {
+    let states = summary
+        .end
+        .discrete
+        .0
+        .iter()
+        .map(|(name, x)| format!(", {name} = {}", number(*x)));
+    states.collect()
+}
+
+/// One row a coordinate, velocity or reaction.
+fn states(summary: &Summary) -> Vec<[String; 7]> {
+    let mut rows = vec![["", "unit", "end", "min", "at t/s", "max", "at t/s"].map(str::to_owned)];
+    let end = &summary.end;
+    for (name, peak) in &summary.peaks.0 {
+        let value = end.q.0.iter().chain(&end.v.0).find(|(n, _)| n == name);
+        rows.push([
+            name.clone(),
+            peak.unit.clone(),
+            value.map_or(String::new(), |(_, x)| number(*x)),
+            number(peak.min),
+            number(peak.t_min),
+            number(peak.max),
+            number(peak.t_max),
+        ]);
+    }
+    rows
+}
+
+/// Writes rows with aligned columns, the first two to the left.
+fn table<const N: usize>(f: &mut Formatter, rows: &[[String; N]]) -> fmt::Result {
+    let width = |i: usize| {
+        rows.iter()
+            .map(|row| row[i].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    for row in rows {
+        let cell = |(i, text): (usize, &String)| {
+            let width = width(i);
+            if i < 2 {
+                format!("{text:<width$}")
+            } else {
+                format!("{text:>width$}")
+            }
+        };
+        let line: Vec<String> = row.iter().enumerate().map(cell).collect();
+        writeln!(f, "{}", line.join("  ").trim_end())?;
+    }
+    Ok(())
+}
+
+fn energies(f: &mut Formatter, summary: &Summary) -> fmt::Result {
+    let energy = &summary.energy;
+    writeln!(
+        f,
+        "energy / J  initial {} + input work {} − dissipated {} − lost at impacts {} = final {}, off by {}",
+        number(energy.initial),
+        number(energy.input_work),
+        number(energy.dissipated),
+        number(energy.lost_at_impacts),
+        number(energy.final_),
+        rounded(energy.imbalance, 2),
+    )?;
+    if !energy.frame.is_empty() {
+        writeln!(f, "            {}", energy.frame)?;
+    }
+    for (name, impacts) in &summary.impacts.0 {
+        writeln!(
+            f,
+            "            {} × {name}: lost {} J, from {} to {} J each{}",
+            impacts.count,
+            number(impacts.lost),
+            rounded(impacts.smallest_loss, 3),
+            rounded(impacts.largest_loss, 3),
+            match impacts.gaining {
+                0 => String::new(),
+                n => format!("; {n} gained energy"),
+            },
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,231 @@
+//! Runs made by formula.
+
+use std::f64::consts::PI;
+use std::time::Duration;
+
+use dalembert::record::{
+    EnergyJump, Event, Group, Layout, Ledger, Place, Quantity, Recorder, Run, Snapshot, Solver,
+    Subject,
+};
+
+const G: f64 = 9.81;
+
+/// A ball of 1 kg dropped from `height` onto the ground, `samples` samples up to the end of the
+/// `bounces`-th flight, restitution 0.8. Its flights are parabolas.
+pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
+    let restitution = 0.8;
+    let layout = Layout {
+        coordinates: vec![Quantity::new("y", "m", "height of the ball above the ground")],
+        velocities: vec![Quantity::new("y.rate", "m/s", "rate of y")],
+        reactions: vec![Quantity::new("reaction.y", "N", "force of the ground on the ball")],
+        discretes: vec![Quantity::new("side", "1", "which side of the ball is up")],
+        energies: vec![Quantity::new("energy.stored", "J", "kinetic and potential energy")],
+        inputs: vec![],
+        modes: vec!["flies".into(), "rests".into()],
+    };
+    let snapshot = |y: f64, v: f64, side: f64| Snapshot {
+        q: vec![y],
+        v: vec![v],
+        discrete: vec![side],
+        reactions: vec![0.0],
+    };
+    // Flights: (start, duration, speed at the start).
+    let impact_speed = (2.0 * G * height).sqrt();
+    let mut flights = vec![(-impact_speed / G, 2.0 * impact_speed / G, impact_speed)];
+    let mut events = Vec::new();
+    let mut side = 1.0;
+    for j in 1..=bounces {
+        let (start, duration, speed) = *flights.last().unwrap();
+        let t = start + duration;
+        let after = restitution * speed;
+        events.push(Event {
+            t,
+            j,
+            transition: "bounce",
+            from: 0,
+            to: 0,
+            before: snapshot(0.0, -speed, side),
+            after: snapshot(0.0, after, -side),
+            energy: Some(EnergyJump { lost: (speed * speed - after * after) / 2.0, ground_work: 0.0 }),
+        });
+        side = -side;
+        flights.push((t, 2.0 * after / G, after));
+    }
+    let (start, duration, speed) = *flights.last().unwrap();
+    let end = start + duration;
+    events.push(Event {
+        t: end,
+        j: bounces + 1,
+        transition: "rest",
+        from: 0,
+        to: 1,
+        before: snapshot(0.0, -speed, side),
+        after: Snapshot { reactions: vec![G], ..snapshot(0.0, 0.0, side) },
+        energy: Some(EnergyJump { lost: speed * speed / 2.0, ground_work: 0.0 }),
+    });
+    let mut recorder = Recorder::new(&layout, samples);
+    for i in 0..samples {
+        let t = end * i as f64 / samples as f64;
+        let flight = flights.partition_point(|f| f.0 <= t) - 1;
+        let (start, _, speed) = flights[flight];
+        let (y, v) = (speed * (t - start) - G / 2.0 * (t - start).powi(2), speed - G * (t - start));
+        recorder.push_row(t, 0, |row| {
+            row.copy_from_slice(&[y, v, 0.0, if flight % 2 == 0 { 1.0 } else { -1.0 }, 0.0]);
+            row[layout.range(Group::Energy)][0] = G * y + v * v / 2.0;
+        });
+    }
+    Run {
+        subject: Subject {
+            model: "bouncing_ball".into(),
+            title: "A ball".into(),
+            choices: vec![("rules".into(), "reactions".into())],
+            parameters: vec![("m".into(), 1.0), ("e".into(), restitution)],
+        },
+        trajectory: recorder.finish(),
+        end: Place { t: end, j: bounces + 1, mode: 1, state: events[bounces as usize].after.clone() },
+        events,
+        layout,
+        solver: Solver { method: "by formula".into(), ..Solver::default() },
+        energy: Ledger {
+            initial: G * height,
+            lost_at_impacts: G * height,
+            frame: "The ground does not move.".into(),
+            ..Ledger::default()
+        },
+        wall: Duration::ZERO,
+        failure: None,
+    }
+}
+
+/// Something with the quantities, the units and the magnitudes of a tank: it slips by millimetres,
+/// bulges by micrometres, and changes its mode about `changes` times.
+pub fn tank_like(samples: usize, changes: usize) -> Run {
+    let coordinates = [
+        ("theta", "rad", "uplift about the pivot edge, ≥ 0", "N m"),
+        ("x_I", "m", "bulging displacement along the base line, to the right", "N"),
+        ("x", "m", "slip of the base, to the right", "N"),
+        ("y", "m", "height of the pivot edge", "N"),
+    ];
+    let rate = |(name, unit): (&str, &str)| {
+        Quantity::new(format!("{name}.rate"), format!("{unit}/s"), format!("rate of {name}"))
+    };
+    let reaction = |name: &str, unit: &str| {
+        let meaning = format!("generalized force that holds {name} still");
+        Quantity::new(format!("reaction.{name}"), unit, meaning)
+    };
+    let layout = Layout {
+        coordinates: coordinates.map(|(n, u, m, _)| Quantity::new(n, u, m)).into(),
+        velocities: coordinates.map(|(n, u, ..)| rate((n, u))).into(),
+        reactions: coordinates
+            .map(|(n, .., u)| reaction(n, u))
+            .into_iter()
+            .chain([Quantity::new("reaction.z_h", "N", "force of the ground on the system along z_h")])
+            .collect(),
+        discretes: vec![Quantity::new("side", "1", "pivot: +1 left edge, −1 right edge")],
+        energies: [
+            ("stored", "kinetic and potential energy"),
+            ("input_work", "work of the inputs so far"),
+            ("dissipated", "energy dissipated so far"),
+            ("lost_at_impacts", "energy lost at impacts so far"),
+        ]
+        .map(|(n, m)| Quantity::new(format!("energy.{n}"), "J", m))
+        .into(),
+        inputs: vec![Quantity::new("ground_acceleration", "m/s^2", "of the ground, to the right")],
+        modes: ["stands_sticks", "stands_slides", "rocks_sticks", "rocks_slides"]
+            .map(String::from)
+            .into(),
+    };
+    let end = 2.0;
+    let state = |t: f64, mode: usize| {
+        let (slides, rocks) = (mode % 2 == 1, mode > 1);
+        let s = 2.0 * PI * 7.0 * t;
+        let ring = (2.0 * PI * 26.0 * t).sin();
+        let theta = if rocks { 3e-6 * (1.0 - (s * 2.0).cos()) } else { 0.0 };
+        let slip = 2.3e-3 * (s - 0.6).sin() - 1.1e-3 * t;
+        let q = vec![theta, 34e-6 * (s.sin() + 0.3 * ring), slip, 0.0];
+        let v = vec![
+            if rocks { 2.6e-4 * (s * 2.0).sin() } else { 0.0 },
+            1.5e-3 * (s.cos() + ring),
+            if slides { 0.1 * (s - 0.6).cos() } else { 0.0 },
+            0.0,
+        ];
+        let shear = 110.0 * s.cos();
+        let moment = if rocks { 0.0 } else { 60.0 + 40.0 * s.sin() };
+        let reactions = vec![moment, 0.0, if slides { 0.0 } else { shear }, 612.0 + 3.0 * ring, shear];
+        Snapshot { q, v, discrete: vec![if s.sin() > 0.0 { 1.0 } else { -1.0 }], reactions }
+    };
+    let names = ["slip", "stick", "lift_off", "landing", "reversal"];
+    let mut events: Vec<Event> = Vec::new();
+    let mut mode = 0;
+    for i in 0..changes {
+        // Irregular intervals, and a pause in the middle.
+        let share = (i as f64 + 0.4 * ((i * i) as f64).sin()) / changes as f64;
+        let t = end * if share < 0.5 { share * 0.9 } else { 1.0 - (1.0 - share) * 0.9 };
+        let next = (mode + 1 + i % 3) % 4;
+        let energy = (i % 5 == 3).then_some(EnergyJump { lost: 1e-5, ground_work: 2e-6 });
+        events.push(Event {
+            t: t.max(events.last().map_or(0.0, |e| e.t)),
+            j: i as u64 + 1,
+            transition: names[(mode + next) % 5],
+            from: mode,
+            to: next,
+            before: state(t, mode),
+            after: state(t, next),
+            energy,
+        });
+        mode = next;
+    }
+    let mut recorder = Recorder::new(&layout, samples);
+    let mut passed = 0;
+    for i in 0..samples {
+        let t = end * i as f64 / (samples - 1) as f64;
+        while passed < events.len() && events[passed].t <= t {
+            passed += 1;
+        }
+        let mode = passed.checked_sub(1).map_or(0, |last| events[last].to);
+        let work = 4.0 * t + 0.4 * (40.0 * t).sin().powi(2);
+        recorder.push_row(t, mode, |row| {
+            let state: Vec<f64> = state(t, mode).values().collect();
+            row[..state.len()].copy_from_slice(&state);
+            row[layout.range(Group::Energy)].copy_from_slice(&[
+                0.3 + 0.2 * (40.0 * t).sin(),
+                work,
+                work * 0.9,
+                work * 0.05,
+            ]);
+            row[layout.range(Group::Input)][0] = 20.0 * (2.0 * PI * 7.0 * t).sin();
+        });
+    }
+    Run {
+        subject: Subject {
+            model: "walking_tank".into(),
+            title: "Something like a tank".into(),
+            choices: vec![("rules".into(), "reactions".into()), ("landing".into(), "momenta".into())],
+            parameters: vec![("mu_s".into(), 0.2)],
+        },
+        layout,
+        trajectory: recorder.finish(),
+        end: Place { t: end, j: changes as u64, mode, state: state(end, mode) },
+        events,
+        solver: Solver {
+            method: "by formula".into(),
+            steps: 12_345,
+            rejected: 67,
+            residual_evaluations: 98_765,
+            jacobian_evaluations: 4_321,
+            factorizations: 8_642,
+        },
+        energy: Ledger {
+            initial: 0.3,
+            final_: 0.7,
+            dissipated: 7.2,
+            input_work: 8.0,
+            lost_at_impacts: 0.4,
+            frame: "The ledger is kept in the inertial frame, where a landing on the moving ground \
+                    does work."
+                .into(),
+        },
+        wall: Duration::from_millis(123),
+        failure: None,
+    }
+}
