@@ -55,11 +55,6 @@ impl Accumulation {
         Accumulation { hops: vec![hop; Self::MEMORY], count: 0 }
     }
 
-    /// Forgets all events: something else has intervened.
-    pub fn clear(&mut self) {
-        self.count = 0;
-    }
-
     /// Remembers an event, with the state after it.
     pub fn push(&mut self, signature: u64, impact: bool, at: Instant, state: impl Iterator<Item = f64>) {
         let slot = self.count % Self::MEMORY;

@@ -140,7 +140,7 @@ fn inverse<const F: usize>(
     mass: &SMatrix<f64, F, F>,
     scale: &SVector<f64, F>,
 ) -> SMatrix<f64, F, F> {
-    let mut inverse = SMatrix::zeros();
+    let mut inverse = SMatrix::<f64, F, F>::zeros();
     for j in 0..F {
         let unit = SVector::from_fn(|i, _| if i == j { 1.0 } else { 0.0 });
         if let Ok(column) = solve(mass, &unit, scale) {

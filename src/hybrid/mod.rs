@@ -21,5 +21,5 @@ mod segment;
 mod simulation;
 
 pub use failure::Reason;
-pub use problem::{Accuracy, End, Initial, Problem, Record};
+pub use problem::{Accuracy, End, Initial, Problem, Record, Unknown};
 pub use simulation::simulate;

@@ -1,6 +1,6 @@
 //! What is to be simulated, validated.
 
-use crate::input::Signals;
+use crate::input::{Function, Signals};
 use crate::model::{Model, Variant};
 use crate::record::Recorded;
 
@@ -69,4 +69,135 @@ pub struct Record {
     pub every: Option<f64>,
     /// Which columns besides coordinates, velocities and discrete states.
     pub columns: Recorded,
+}
+
+/// A name that the model does not have.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("model `{model}` has no {what} `{name}`")]
+pub struct Unknown {
+    /// The model.
+    pub model: &'static str,
+    /// What was looked for.
+    pub what: &'static str,
+    /// The name.
+    pub name: String,
+}
+
+impl Problem {
+    /// A model with its default parameters and choices, at rest at zero without inputs, for 1 s at
+    /// a relative tolerance of 1e-8, recording nothing but the events and the end.
+    pub fn new(model: &'static Model) -> Self {
+        let variant = model.variants.iter().find(|v| v.defaults.iter().all(|&d| d));
+        let n = model.coordinates.len();
+        let mut problem = Problem {
+            model,
+            variant: variant.expect("codegen makes a variant of the defaults"),
+            title: None,
+            parameters: model.parameters.iter().map(|p| p.default).collect(),
+            signals: Signals::new(model.inputs, model.inputs.iter().map(|_| Function::zero()).collect()),
+            initial: Initial {
+                q: vec![0.0; n],
+                v: vec![0.0; n],
+                discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
+                mode: None,
+            },
+            freeze: Vec::new(),
+            end: End { time: 1.0, after: None },
+            accuracy: Accuracy {
+                relative: 0.0,
+                q_absolute: vec![0.0; n],
+                v_absolute: vec![0.0; n],
+            },
+            record: Record {
+                every: Some(f64::INFINITY),
+                columns: Recorded { reactions: false, energies: false, inputs: false },
+            },
+        };
+        problem.set_tolerance(1e-8);
+        problem
+    }
+
+    /// Sets the relative tolerance, and the absolute ones to it times the model's scales.
+    pub fn set_tolerance(&mut self, relative: f64) {
+        let coordinates = self.model.coordinates;
+        self.accuracy = Accuracy {
+            relative,
+            q_absolute: coordinates.iter().map(|c| relative * c.scale).collect(),
+            v_absolute: coordinates.iter().map(|c| relative * c.rate_scale).collect(),
+        };
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// [`Unknown`] if the model has no such parameter.
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Unknown> {
+        let index = self.model.parameter(name).ok_or_else(|| self.unknown("parameter", name))?;
+        self.parameters[index] = value;
+        Ok(())
+    }
+
+    /// Sets the initial value of a coordinate (`theta`), a rate (`theta.rate`) or a discrete state.
+    ///
+    /// # Errors
+    /// [`Unknown`] if the model has none of that name.
+    pub fn set_initial(&mut self, name: &str, value: f64) -> Result<(), Unknown> {
+        let (model, initial) = (self.model, &mut self.initial);
+        let rate = name.strip_suffix(".rate").and_then(|name| model.coordinate(name));
+        if let Some(i) = rate {
+            initial.v[i] = value;
+        } else if let Some(i) = model.coordinate(name) {
+            initial.q[i] = value;
+        } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
+            initial.discrete[i] = value;
+        } else {
+            return Err(self.unknown("coordinate, rate or discrete state", name));
+        }
+        Ok(())
+    }
+
+    /// Sets an input.
+    ///
+    /// # Errors
+    /// [`Unknown`] if the model has no such input.
+    pub fn set_input(&mut self, name: &str, function: Function) -> Result<(), Unknown> {
+        let inputs = self.model.inputs;
+        let found = inputs.iter().position(|i| i.name == name);
+        let index = found.ok_or_else(|| self.unknown("input", name))?;
+        let mut functions: Vec<Function> = self.signals.functions().cloned().collect();
+        functions[index] = function;
+        self.signals = Signals::new(inputs, functions);
+        Ok(())
+    }
+
+    /// Picks the variant with the given options, `(choice, option)`, and the defaults for all other
+    /// choices.
+    ///
+    /// # Errors
+    /// [`Unknown`] if the model has no such choice or option.
+    pub fn choose(&mut self, options: &[(&str, &str)]) -> Result<(), Unknown> {
+        let choices = self.model.choices;
+        for (choice, option) in options {
+            let known = choices.iter().find(|c| c.name == *choice);
+            let known = known.ok_or_else(|| self.unknown("choice", choice))?;
+            if !known.options.contains(option) {
+                return Err(self.unknown("option", option));
+            }
+        }
+        let wanted = |choice: &str| options.iter().find(|(c, _)| *c == choice).map(|(_, o)| *o);
+        let fits = |v: &&Variant| {
+            (choices.iter().enumerate()).all(|(i, c)| match wanted(c.name) {
+                Some(option) => v.options[i] == option,
+                None => v.defaults[i],
+            })
+        };
+        if let Some(variant) = self.model.variants.iter().find(fits) {
+            self.variant = variant;
+        }
+        Ok(())
+    }
+
+    fn unknown(&self, what: &'static str, name: &str) -> Unknown {
+        Unknown { model: self.model.name, what, name: name.into() }
+    }
 }

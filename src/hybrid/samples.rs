@@ -44,23 +44,28 @@ impl Row<'_> {
     }
 }
 
-impl Simulation<'_> {
-    /// Time of the next sample, s; infinite without a grid.
-    pub fn next_sample_time(&self) -> f64 {
-        match self.problem.record.every {
-            Some(every) => self.next_sample as f64 * every,
-            None => f64::INFINITY,
-        }
+/// Time of a sample of the grid, s; infinite without a grid.
+pub(super) fn sample_time(every: Option<f64>, index: u64) -> f64 {
+    match every {
+        Some(_) if index == 0 => 0.0,
+        Some(every) => index as f64 * every,
+        None => f64::INFINITY,
     }
+}
 
+impl Simulation<'_> {
     /// Records the samples up to the present instant that no segment has covered: the first one,
     /// and those that an accumulation left out.
     pub fn flush_samples(&mut self) {
         if self.problem.record.every.is_none() && self.recorder.last_time().is_none() {
             self.sample_here();
         }
-        while self.next_sample_time() <= self.here.now.seconds().min(self.problem.end.time) {
-            let t = self.next_sample_time();
+        let here = self.here.now.seconds().min(self.problem.end.time);
+        loop {
+            let t = sample_time(self.problem.record.every, self.next_sample);
+            if t > here {
+                break;
+            }
             self.sample_at(t);
             self.next_sample += 1;
         }

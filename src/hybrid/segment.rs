@@ -6,7 +6,7 @@ use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::locate::{Landing, land};
 use super::roots::{Kind, Search, Watch, earliest};
-use super::samples::Row;
+use super::samples::{Row, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use crate::integrate::{Counters, Radau, Tolerances};
 use crate::kernel::{Free, ModeKernel};
@@ -107,10 +107,10 @@ impl Simulation<'_> {
             let (state, beyond) = event.map_or((end, 0.0), |(_, state, beyond)| (state, beyond));
 
             // Samples before the ledger moves on to the end of the step.
-            while let Some(every) = problem.record.every {
-                let t = self.next_sample as f64 * every;
+            loop {
+                let t = sample_time(problem.record.every, self.next_sample);
                 let tau = Instant::new(t).since(start);
-                if tau > end.t + beyond {
+                if !tau.is_finite() || tau > end.t + beyond {
                     break;
                 }
                 let mut ledger = self.ledger.clone();

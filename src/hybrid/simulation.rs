@@ -153,10 +153,10 @@ impl<'p> Simulation<'p> {
             };
         }
         let mut best: Option<usize> = None;
-        for m in (0..modes.len()).filter(|&m| self.plan.allowed[m]) {
+        for m in 0..modes.len() {
             self.here.mode = m;
             let fewer = best.is_none_or(|b| modes[m].free.len() < modes[b].free.len());
-            if fewer && self.misfit(&modes[m]).is_none() {
+            if self.plan.allowed[m] && fewer && self.misfit(&modes[m]).is_none() {
                 best = Some(m);
             }
         }
@@ -369,7 +369,6 @@ impl<'p> Simulation<'p> {
         let problem = self.problem;
         let end = self.place();
         let stored = self.stored_energy();
-        self.progress.finish();
         Run {
             subject: Subject {
                 model: problem.model.name.into(),

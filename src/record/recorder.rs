@@ -44,6 +44,11 @@ impl Recorder {
         fill(&mut trajectory.values[start..]);
     }
 
+    /// Time of the last row, s.
+    pub fn last_time(&self) -> Option<f64> {
+        self.trajectory.t.last().copied()
+    }
+
     /// Number of rows so far.
     pub fn rows(&self) -> usize {
         self.trajectory.len()

@@ -36,7 +36,11 @@ pub(super) fn close(f: &mut impl FnMut(f64) -> f64, left: Point, right: Point) -
             } else {
                 r.0 + (r.0 - l.0) * (wr / (wl - wr))
             };
-            if secant.is_nan() { middle(l.0, r.0) } else { secant.clamp(above(l.0), below(r.0)) }
+            if secant.is_nan() {
+                middle(l.0, r.0)
+            } else {
+                secant.clamp(above(l.0), below(r.0))
+            }
         };
         let value = f(x);
         let negative = value < 0.0;
@@ -63,7 +67,11 @@ pub(super) fn close(f: &mut impl FnMut(f64) -> f64, left: Point, right: Point) -
 /// to neighbouring doubles, the right one negative. Halves by count, so a short flight near the
 /// start is looked for at every magnitude; if one is met, the fall that ends it is closed in on,
 /// and the last item is `true`.
-pub(super) fn departure(f: &mut impl FnMut(f64) -> f64, start: f64, right: Point) -> (Point, Point, bool) {
+pub(super) fn departure(
+    f: &mut impl FnMut(f64) -> f64,
+    start: f64,
+    right: Point,
+) -> (Point, Point, bool) {
     let (mut l, mut r) = ((start, 0.0), right);
     while steps(l.0, r.0) > 1 {
         let x = middle(l.0, r.0);
@@ -81,22 +89,23 @@ pub(super) fn departure(f: &mut impl FnMut(f64) -> f64, start: f64, right: Point
 }
 
 /// Lowest value near a minimum that is known but for its last digits: goes downhill along the
-/// doubles, in steps that double while they descend and halve when they do not, until both
+/// doubles, in strides that double while they descend and halve when they do not, until both
 /// neighbours are no lower or a value is negative.
 pub(super) fn lowest(f: &mut impl FnMut(f64) -> f64, near: Point, low: f64, high: f64) -> Point {
     let mut best = near;
-    for direction in [-1, 1] {
-        let mut stride = 1_i64;
-        while stride > 0 && best.1 >= 0.0 {
-            let x = moved(best.0, direction * stride, low, high);
+    let mut stride = 1_i64;
+    while stride > 0 && best.1 >= 0.0 {
+        let lower = [-stride, stride].into_iter().find_map(|count| {
+            let x = moved(best.0, count, low, high);
             let value = f(x);
-            if value < best.1 {
-                best = (x, value);
-                stride = stride.saturating_mul(2);
-            } else {
-                stride /= 2;
-            }
-        }
+            (value < best.1).then_some((x, value))
+        });
+        stride = if lower.is_some() {
+            stride.saturating_mul(2)
+        } else {
+            stride / 2
+        };
+        best = lower.unwrap_or(best);
     }
     best
 }
@@ -122,7 +131,10 @@ mod tests {
         let (x, _, n) = counted(|x| 0.5 - x * x, 0.0, 1.0);
         assert!((x - 0.5f64.sqrt()).abs() < 2e-16 && n <= 14, "{n}");
         let (x, _, n) = counted(|x| x.cos(), 0.0, 3.0);
-        assert!((x - std::f64::consts::FRAC_PI_2).abs() < 4e-16 && n <= 14, "{n}");
+        assert!(
+            (x - std::f64::consts::FRAC_PI_2).abs() < 4e-16 && n <= 14,
+            "{n}"
+        );
     }
 
     #[test]

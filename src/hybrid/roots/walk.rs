@@ -1,6 +1,6 @@
 //! The walk from left to right over the monotone pieces of a guard, with the remembered sign.
 
-use super::bracket::{close, lowest};
+use super::bracket::{Point, close, lowest};
 use super::doubles::above;
 use super::{Kind, Search, Watch};
 
@@ -15,6 +15,10 @@ pub(super) trait Pieces {
     fn value(&mut self, index: usize) -> Option<(f64, bool)>;
     /// The guard's own value anywhere in the window.
     fn own(&mut self, x: f64) -> f64;
+    /// What a change of sign between two neighbouring doubles is.
+    fn kind(&mut self, _inside: Point, _outside: Point) -> Kind {
+        Kind::Fall
+    }
 }
 
 /// The earliest event, or `None` if the representation does not decide. A dormant guard leaves zero
@@ -25,7 +29,12 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
     if watch == Watch::Dormant && left.1.abs() > noise {
         watch = Watch::of(left.1);
         if watch == Watch::Violated {
-            return Some(Search::found(start, above(start), Kind::LeavesNegative, watch));
+            return Some(Search::found(
+                start,
+                above(start),
+                Kind::LeavesNegative,
+                watch,
+            ));
         }
     }
     for index in 1..pieces.len() {
@@ -40,8 +49,17 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
             Watch::Dormant if right.1 > noise => watch = Watch::Armed,
             Watch::Dormant if right.1 < -noise => {
                 let mut beyond = |x| pieces.own(x) + noise;
-                let (l, r) = close(&mut beyond, (left.0, left.1 + noise), (right.0, right.1 + noise));
-                return Some(Search::found(l.0, r.0, Kind::LeavesNegative, Watch::Violated));
+                let (l, r) = close(
+                    &mut beyond,
+                    (left.0, left.1 + noise),
+                    (right.0, right.1 + noise),
+                );
+                return Some(Search::found(
+                    l.0,
+                    r.0,
+                    Kind::LeavesNegative,
+                    Watch::Violated,
+                ));
             }
             Watch::Violated if right.1 > 0.0 => watch = Watch::Armed,
             Watch::Armed => {
@@ -56,7 +74,8 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
                 }
                 if right.1 < 0.0 {
                     let (l, r) = close(&mut |x| pieces.own(x), left, right);
-                    return Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated));
+                    let kind = pieces.kind(l, r);
+                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
                 }
             }
             _ => {}

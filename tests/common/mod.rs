@@ -1,0 +1,58 @@
+//! Helpers of the tests that simulate.
+#![allow(dead_code)] // each test file uses some of them
+
+use dalembert::hybrid::{Problem, simulate};
+use dalembert::kernel::MODELS;
+use dalembert::record::{Run, Silent};
+use serde_json::Value;
+
+/// A problem of a model by name, with the given parameters.
+pub fn problem(model: &str, parameters: &[(&str, f64)]) -> Problem {
+    let model = MODELS.iter().find(|m| m.name == model).expect("the model exists");
+    let mut problem = Problem::new(model);
+    for (name, value) in parameters {
+        problem.set_parameter(name, *value).unwrap();
+    }
+    problem
+}
+
+/// Runs a problem that must reach its end.
+pub fn run(problem: &Problem) -> Run {
+    let run = simulate(problem, &mut Silent).expect("the problem can be started");
+    assert_eq!(run.failure, None);
+    run
+}
+
+/// Reference values: a file of tests/data, copied from the independent reference set.
+pub fn reference(file: &str) -> Value {
+    let path = format!("{}/tests/data/{file}.json", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A number written as a decimal string.
+pub fn number(value: &Value) -> f64 {
+    value.as_str().unwrap().parse().unwrap()
+}
+
+/// A list of numbers written as decimal strings.
+pub fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+/// Times of the events with the given transition.
+pub fn times(run: &Run, transition: &str) -> Vec<f64> {
+    run.events.iter().filter(|e| e.transition == transition).map(|e| e.t).collect()
+}
+
+/// Value of a coordinate, rate or discrete state at the end of a run.
+pub fn at_end(run: &Run, name: &str) -> f64 {
+    let layout = &run.layout;
+    let state = &run.end.state;
+    let find = |names: &[dalembert::record::Quantity], values: &[f64]| {
+        names.iter().position(|q| q.name == name).map(|i| values[i])
+    };
+    find(&layout.coordinates, &state.q)
+        .or_else(|| find(&layout.velocities, &state.v))
+        .or_else(|| find(&layout.discretes, &state.discrete))
+        .unwrap_or_else(|| panic!("no `{name}`"))
+}
