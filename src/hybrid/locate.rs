@@ -60,23 +60,25 @@ pub(super) fn land<const F: usize>(
             // Guard and condition together have no slope of their own.
             return Ok(match value < 0.0 {
                 true => Landing::On { state: end, beyond: 0.0 },
-                false => beyond_the_crossing(equations, conditions, guard, &end, 0.0),
+                false => beyond_the_crossing(
+                    equations, conditions, guard, &end, 0.0, TAYLOR * (window - start),
+                ),
             });
         }
         let rate = rate_at(equations, guard, &end);
         let correction = -value / rate;
-        if rate.is_nan() || rate >= 0.0 || !(start..=window).contains(&(end.t + correction)) {
+        if rate.is_nan() || rate >= 0.0 || end.t + correction > window {
             // No fall here: either the shortened step has its crossing earlier, or none at all.
-            return Ok(if value < 0.0 && end.t == window {
-                Landing::On { state: end, beyond: 0.0 }
-            } else {
-                Landing::Short
+            return Ok(match value < 0.0 && end.t == window {
+                true => Landing::On { state: end, beyond: 0.0 },
+                false => Landing::Short,
             });
         }
-        if correction.abs() <= TAYLOR * (end.t - start) {
-            return Ok(beyond_the_crossing(equations, conditions, guard, &end, correction));
+        let smooth = TAYLOR * (window - start);
+        if correction.abs() <= smooth {
+            return Ok(beyond_the_crossing(equations, conditions, guard, &end, correction, smooth));
         }
-        if correction.abs() >= correction_before {
+        if correction.abs() >= correction_before || end.t + correction <= start {
             return Ok(Landing::Short);
         }
         correction_before = correction.abs();
@@ -87,7 +89,7 @@ pub(super) fn land<const F: usize>(
 /// Moves a state by its Taylor polynomial.
 fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
     State {
-        t: state.t,
+        t: state.t + by,
         q: state.q + (state.v + state.a * (0.5 * by)) * by,
         v: state.v + state.a * by,
         a: state.a,
@@ -98,20 +100,21 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 ///
 /// The guard's own values decide. Its rounding may keep them at or above zero at the computed
 /// root: the move is lengthened by its own last place, doubled each time, until it is strictly
-/// crossed.
+/// crossed; after `smooth` the Taylor polynomial ends.
 fn beyond_the_crossing<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: &Guard,
     end: &State<F>,
     correction: f64,
+    smooth: f64,
 ) -> Landing<F> {
-    let mut place = f64::EPSILON * correction.abs().max(f64::MIN_POSITIVE);
+    let mut place = (f64::EPSILON * correction.abs()).max(f64::MIN_POSITIVE);
     let mut beyond = correction;
     loop {
         let mut state = moved(end, beyond);
         if !matches!(guard.shape, GuardShape::Linear { .. })
-            && equations.acceleration(end.t, &state.q, &state.v, &mut state.a).is_err()
+            && equations.acceleration(state.t, &state.q, &state.v, &mut state.a).is_err()
         {
             state.a = end.a;
         }
@@ -119,7 +122,7 @@ fn beyond_the_crossing<const F: usize>(
         if value < 0.0 || !value.is_finite() {
             return Landing::On { state, beyond };
         }
-        if place > TAYLOR * end.t.abs().max(correction.abs()) {
+        if place > smooth {
             return Landing::Short;
         }
         beyond += place;

@@ -140,13 +140,13 @@ impl Simulation<'_> {
                 self.ledger.add_powers(kernel.powers(equations.context, at), stage.weight);
             }
             ledger_from = end.t;
-            equations.at(end.t);
+            equations.at(state.t);
             let at = Free { q: &state.q, v: &state.v, a: &state.a };
             if beyond != 0.0 {
                 self.ledger.add_powers(kernel.powers(equations.context, at), beyond);
             }
 
-            self.here.now = start.plus(end.t).plus(beyond);
+            self.here.now = start.plus(state.t);
             self.here.set_free(mode.free, [&state.q, &state.v, &state.a]);
             copy_drifting(&mut self.here.q, mode.drifts, &equations.context.held);
 
