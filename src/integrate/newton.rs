@@ -64,8 +64,11 @@ pub(super) struct Newton<const S: usize, const F: usize> {
     complex: [Lu<Complex<f64>, F>; MAX_PAIRS],
     /// Step length of the factorization; NaN if there is none.
     h: f64,
-    /// Contraction θ of the last iteration.
+    /// Contraction θ of the last step that showed one.
     pub rate: f64,
+    /// θ/(1 − θ), the error after an iteration in units of its correction, with a growing caution
+    /// while no step shows a contraction.
+    remaining: f64,
 }
 
 impl<const S: usize, const F: usize> Newton<S, F>
@@ -87,7 +90,14 @@ where
             complex: [Lu::empty(); MAX_PAIRS],
             h: f64::NAN,
             rate: 1.0,
+            remaining: 1.0,
         }
+    }
+
+    /// Forgets what earlier steps showed about the contraction.
+    pub fn forget(&mut self) {
+        self.rate = 1.0;
+        self.remaining = 1.0;
     }
 
     /// Evaluates M, C and K at `state`.
@@ -157,15 +167,13 @@ where
         for i in 0..F {
             weight[i] = h * f64::max(weights.v[i], 0.5 * h * weights.q[i]);
         }
-        // Before two iterations have shown the contraction, last step's stands in, raised to the
+        // Before two iterations have shown the contraction, the last step's stands in, raised to the
         // power 3/4 out of caution (RADAU5: 0.8; square roots are exact everywhere).
-        let mut remaining = if system.is_linear() {
-            f64::EPSILON
-        } else {
-            let rate = self.rate.clamp(f64::EPSILON, DIVERGENCE);
-            rate / (1.0 - rate)
+        self.remaining = match system.is_linear() {
+            true => f64::EPSILON,
+            false => self.remaining.clamp(f64::EPSILON, 1.0),
         };
-        remaining = (remaining * remaining.sqrt()).sqrt();
+        self.remaining = (self.remaining * self.remaining.sqrt()).sqrt();
 
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
         stages.extend(start, h);
@@ -201,9 +209,9 @@ where
                     }
                     return Outcome::Slow { rate };
                 }
-                remaining = rate / (1.0 - rate);
+                self.remaining = rate / (1.0 - rate);
             }
-            if remaining * norm <= tolerance {
+            if self.remaining * norm <= tolerance {
                 return Outcome::Converged {
                     iterations: iteration,
                 };

@@ -167,7 +167,7 @@ where
         self.lost = Lost::nothing();
         self.lost_at_start = self.lost;
         self.controller = Controller::new();
-        self.newton.rate = 1.0;
+        self.newton.forget();
         self.linearized = false;
         self.proposal = None;
         self.dense = None;
@@ -278,13 +278,9 @@ where
             let failure = match self.attempt(system, &origin, h, &weights) {
                 Ok(iterations) => {
                     let raw = Estimate::raw(h, &origin, &self.stages);
-                    let mut filtered = raw.filtered(h, &self.newton);
-                    let mut error = filtered.norm(&weights);
-                    if error >= 1.0 && (after_restart || discarded > 0) {
-                        // A transient: the filter once more (Hairer & Wanner 1996, eq. 8.20).
-                        filtered = filtered.filtered(h, &self.newton);
-                        error = filtered.norm(&weights);
-                    }
+                    let filtered = raw.filtered(h, &self.newton);
+                    let loosening = self.control.loosening;
+                    let error = filtered.method_error(&raw, h, &self.newton, &weights, loosening);
                     let limit = Newton::<S, F>::LIMIT;
                     if error < 1.0 {
                         let t = (h == remaining).then_some(t_end);
@@ -299,6 +295,11 @@ where
                             iterations,
                             limit,
                             discarded > 0,
+                            if iterations > 1 {
+                                self.newton.rate
+                            } else {
+                                0.0
+                            },
                         );
                         // A step cut short by a limit says nothing against the longer one.
                         let cut = discarded == 0 && h < proposed;
@@ -325,7 +326,7 @@ where
                 }
                 Err(failure) => {
                     self.counters.newton_failures += 1;
-                    h *= 0.5;
+                    h *= self.controller.after_newton_failure(&failure);
                     failure
                 }
             };
