@@ -19,6 +19,18 @@ const KEEP: f64 = 1.2;
 /// is proportional to h, and iterations per unit of time are fewest near 1/e, where h ln(1/h) peaks.
 const CONTRACTION: f64 = 0.37;
 
+/// What an accepted step showed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pace {
+    /// Estimated error in units of the tolerance, below 1.
+    pub error: f64,
+    /// Newton iterations beyond the first, as part of twice the number allowed; a hard-won step
+    /// should not be followed by a much longer one (RADAU5).
+    pub effort: f64,
+    /// Contraction of Newton's iteration; 0 if not known.
+    pub rate: f64,
+}
+
 /// Memory of the controller.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Controller {
@@ -31,39 +43,32 @@ impl Controller {
         Controller { last: None }
     }
 
-    /// Length after an attempt of length `h`, rejected with `error` > 1.
-    #[inline]
-    pub fn after_rejection<const S: usize>(
-        &self,
-        h: f64,
-        error: f64,
-        iterations: u32,
-        limit: u32,
-    ) -> f64 {
-        h * (safety(iterations, limit) / root::<S>(error)).clamp(SHRINKAGE, GROWTH)
-    }
-
-    /// Factor for the length after Newton's iteration failed.
-    pub fn after_newton_failure(&self, failure: &StepError) -> f64 {
+    /// Factor for the length after a failed attempt.
+    pub fn after_failure<const S: usize>(&self, failure: &StepError) -> f64 {
         match failure {
+            StepError::Tolerance { error, .. } => {
+                (SAFETY / root::<S>(*error)).clamp(SHRINKAGE, SAFETY)
+            }
             StepError::Newton { rate, .. } => (CONTRACTION / rate).clamp(SHRINKAGE, 0.5),
             _ => 0.5,
         }
     }
 
-    /// Length after an accepted step of length `h` with `error` ≤ 1; `discarded`: attempts failed
-    /// before it, so the next step must not be longer.
+    /// Length after an accepted step of length `h`; `discarded`: attempts failed before it, so the
+    /// next step must not be longer.
     #[inline]
     pub fn after_acceptance<const S: usize>(
         &mut self,
         h: f64,
-        error: f64,
-        iterations: u32,
-        limit: u32,
+        pace: &Pace,
         discarded: bool,
-        rate: f64,
     ) -> f64 {
-        let mut factor = safety(iterations, limit) / root::<S>(error);
+        let Pace {
+            error,
+            effort,
+            rate,
+        } = *pace;
+        let mut factor = SAFETY / (1.0 + effort) / root::<S>(error);
         if let Some((last_h, last_error)) = self.last {
             // The error behaves as it did from the last step to this one.
             let trend = SAFETY * (h / last_h) / root::<S>(error * error / last_error);
@@ -80,12 +85,6 @@ impl Controller {
             h * factor
         }
     }
-}
-
-/// Safety factor, smaller after many Newton iterations (RADAU5).
-#[inline]
-fn safety(iterations: u32, limit: u32) -> f64 {
-    SAFETY * f64::from(1 + 2 * limit) / f64::from(iterations + 2 * limit)
 }
 
 /// error^(1/(S+1)): the estimate is of order h^(S+1). Errors so small that the step would grow by

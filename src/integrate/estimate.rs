@@ -4,7 +4,7 @@
 use super::newton::{Linearization, Newton, Stages};
 use super::radau::State;
 use super::tableau::{Coefficients, RadauIia};
-use super::tolerances::{Weights, power};
+use super::tolerances::{Weights, nth_root, power};
 use nalgebra::SVector;
 
 /// Difference of the embedded formula and the step, in q and v.
@@ -61,8 +61,8 @@ impl<const F: usize> Estimate<F> {
         }
     }
 
-    /// Size of the method's own error, in units of the tolerance that was asked for; `self` is the
-    /// filtered estimate, `raw` the unfiltered one.
+    /// Size of the filtered estimate `self` in units of its tolerance or, if that is larger, of the
+    /// method's own error in units of the tolerance that was asked for; `raw`: unfiltered estimate.
     ///
     /// The tolerance of the estimate rests on the method's error being smaller than the estimate by
     /// `error_quotient` |γhλ|^(S−1). That holds for what the step resolves. Of a stiff oscillation or
@@ -101,7 +101,14 @@ impl<const F: usize> Estimate<F> {
                 v: filtered.v - difference.v,
             };
         }
-        norm.max(factor * difference.norm(weights))
+        let error = factor * difference.norm(weights);
+        // For the controller, which takes the (S + 1)-th root: this one grows with h^2S where it is
+        // small.
+        norm.max(if error < 1.0 {
+            power(nth_root(error, 2 * S), S + 1)
+        } else {
+            error
+        })
     }
 
     /// Size of component `i` in units of the tolerance.

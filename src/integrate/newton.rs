@@ -94,6 +94,11 @@ where
         }
     }
 
+    /// Effort of a step with that many iterations: 0 for one, up to about ½.
+    pub fn effort(iterations: u32) -> f64 {
+        f64::from(iterations - 1) / f64::from(2 * Self::LIMIT + 1)
+    }
+
     /// Forgets what earlier steps showed about the contraction.
     pub fn forget(&mut self) {
         self.rate = 1.0;
@@ -149,7 +154,7 @@ where
     }
 
     /// Solves the stage equations of a step of length `h` from `start`, for which the matrices must be
-    /// factorized; `stages.a` holds starting values. Stops when the error is below `tolerance`, in
+    /// factorized; `stages` holds starting values. Stops when the error is below `tolerance`, in
     /// the norm of `weights`.
     #[inline]
     pub fn solve<Y: System<F>>(
@@ -176,7 +181,6 @@ where
         self.remaining = (self.remaining * self.remaining.sqrt()).sqrt();
 
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
-        stages.extend(start, h);
         for iteration in 1..=Self::LIMIT {
             let residual = stages.residual(system, start.t, h);
             counters.residual_evaluations += S as u64;
@@ -298,9 +302,20 @@ where
         }
     }
 
+    /// Stage `i` of the step of length `h` from time `t0`.
+    pub fn state(&self, i: usize, t0: f64, h: f64) -> State<F> {
+        let t = t0 + RadauIia::<S>::TABLEAU.c[i] * h;
+        State {
+            t,
+            q: self.q[i],
+            v: self.v[i],
+            a: self.a[i],
+        }
+    }
+
     /// Velocities and coordinates that belong to the accelerations.
     #[inline(always)]
-    fn extend(&mut self, start: &State<F>, h: f64) {
+    pub fn extend(&mut self, start: &State<F>, h: f64) {
         let tableau = RadauIia::<S>::TABLEAU;
         for i in 0..S {
             for l in 0..F {
