@@ -78,6 +78,11 @@ def tableau(s):
     ea = [sum(e[i] * a[i, j] for i in range(s)) for j in range(s)]
     constant = abs(sum(e[i] * c[i] ** s for i in range(s)) / factorial(s))
 
+    # The leading error of the method, R(z) - e^z = C z^(2s), against that of the estimate,
+    # error_constant z^(s+1); their quotient in powers of gamma z.
+    method = factorial(s) * factorial(s - 1) / (factorial(2 * s - 1) * factorial(2 * s))
+    quotient = method / (constant * gamma ** (s - 1))
+
     # Twice integrated interpolants of the acceleration; powers 2 .. s+2 of s.
     twice = lambda poly: [coefficient / ((k + 1) * (k + 2)) for k, coefficient in enumerate(poly)]
     if s == 1:
@@ -94,7 +99,7 @@ def tableau(s):
     return dict(
         c=c, a=a.tolist(), a2=a2.tolist(), gamma=gamma,
         pairs=[[re(z), im(z)] for z in pairs] + [[mpf(0), mpf(0)]] * (PAIRS - len(pairs)),
-        t=t.tolist(), t_inverse=t_inverse.tolist(), e=e, ea=ea, error_constant=constant,
+        t=t.tolist(), t_inverse=t_inverse.tolist(), e=e, ea=ea, error_constant=constant, error_quotient=quotient,
         collocation_square=collocation[0], collocation=collocation[1:], smooth=smooth,
     )
 

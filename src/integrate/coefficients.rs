@@ -14,6 +14,7 @@ impl Coefficients<1> for RadauIia<1> {
         e: [-1.0],
         ea: [-1.0],
         error_constant: 1.0,
+        error_quotient: 0.5,
         collocation_square: [2.0],
         collocation: [[-1.0]],
         smooth: [[0.0]],
@@ -80,6 +81,7 @@ impl Coefficients<3> for RadauIia<3> {
             -0.030543203288408597,
         ],
         error_constant: 0.004581480493261289,
+        error_quotient: 0.40118757795973403,
         collocation_square: [
             0.7790391023624612,
             -0.44570576902912784,
@@ -282,6 +284,7 @@ impl Coefficients<5> for RadauIia<5> {
             -0.006362633777098765,
         ],
         error_constant: 1.0520227806049545e-05,
+        error_quotient: 0.3247383176792658,
         collocation_square: [
             0.7932039500931641,
             -0.5040589407491864,
@@ -648,6 +651,7 @@ impl Coefficients<7> for RadauIia<7> {
             -0.002283601332653777,
         ],
         error_constant: 1.2938041738358294e-08,
+        error_quotient: 0.26321316642840664,
         collocation_square: [
             0.7970321092805209,
             -0.5182768760982382,

@@ -1,7 +1,8 @@
 //! Step sizes: the predictive controller of Gustafsson (1994) as in RADAU5 (Hairer & Wanner 1996,
 //! IV.8), with its constants.
 
-use super::tolerances::nth_root;
+use super::report::StepError;
+use super::tolerances::{nth_root, power};
 
 /// Aim below the tolerance by this factor in h, so that few steps are rejected (RADAU5).
 const SAFETY: f64 = 0.9;
@@ -13,6 +14,22 @@ const SHRINKAGE: f64 = 0.2;
 const SMALLEST_ERROR: f64 = 0.01;
 /// A step that would grow by less keeps its length, and with it the factorization (RADAU5).
 const KEEP: f64 = 1.2;
+
+/// Contraction of Newton's iteration that the step size aims at where the error would allow more: it
+/// is proportional to h, and iterations per unit of time are fewest near 1/e, where h ln(1/h) peaks.
+const CONTRACTION: f64 = 0.37;
+
+/// What an accepted step showed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pace {
+    /// Estimated error in units of the tolerance, below 1.
+    pub error: f64,
+    /// Newton iterations beyond the first, as part of twice the number allowed; a hard-won step
+    /// should not be followed by a much longer one (RADAU5).
+    pub effort: f64,
+    /// Contraction of Newton's iteration; 0 if not known.
+    pub rate: f64,
+}
 
 /// Memory of the controller.
 #[derive(Debug, Clone, Copy)]
@@ -26,37 +43,39 @@ impl Controller {
         Controller { last: None }
     }
 
-    /// Length after an attempt of length `h`, rejected with `error` > 1.
-    #[inline]
-    pub fn after_rejection<const S: usize>(
-        &self,
-        h: f64,
-        error: f64,
-        iterations: u32,
-        limit: u32,
-    ) -> f64 {
-        h * (safety(iterations, limit) / root::<S>(error)).clamp(SHRINKAGE, GROWTH)
+    /// Factor for the length after a failed attempt.
+    pub fn after_failure<const S: usize>(&self, failure: &StepError) -> f64 {
+        match failure {
+            StepError::Tolerance { error, .. } => {
+                (SAFETY / root::<S>(*error)).clamp(SHRINKAGE, SAFETY)
+            }
+            StepError::Newton { rate, .. } => (CONTRACTION / rate).clamp(SHRINKAGE, 0.5),
+            _ => 0.5,
+        }
     }
 
-    /// Length after an accepted step of length `h` with `error` ≤ 1; `discarded`: attempts failed
-    /// before it, so the next step must not be longer.
+    /// Length after an accepted step of length `h`; `discarded`: attempts failed before it, so the
+    /// next step must not be longer.
     #[inline]
     pub fn after_acceptance<const S: usize>(
         &mut self,
         h: f64,
-        error: f64,
-        iterations: u32,
-        limit: u32,
+        pace: &Pace,
         discarded: bool,
     ) -> f64 {
-        let mut factor = safety(iterations, limit) / root::<S>(error);
+        let Pace {
+            error,
+            effort,
+            rate,
+        } = *pace;
+        let mut factor = SAFETY / (1.0 + effort) / root::<S>(error);
         if let Some((last_h, last_error)) = self.last {
             // The error behaves as it did from the last step to this one.
             let trend = SAFETY * (h / last_h) / root::<S>(error * error / last_error);
             factor = factor.min(trend);
         }
         self.last = Some((h, error.max(SMALLEST_ERROR)));
-        let mut factor = factor.clamp(SHRINKAGE, GROWTH);
+        let mut factor = factor.min(CONTRACTION / rate).clamp(SHRINKAGE, GROWTH);
         if discarded {
             factor = factor.min(1.0);
         }
@@ -68,20 +87,16 @@ impl Controller {
     }
 }
 
-/// Safety factor, smaller after many Newton iterations (RADAU5).
-#[inline]
-fn safety(iterations: u32, limit: u32) -> f64 {
-    SAFETY * f64::from(1 + 2 * limit) / f64::from(iterations + 2 * limit)
-}
-
-/// error^(1/(S+1)): the estimate is of order h^(S+1).
+/// error^(1/(S+1)): the estimate is of order h^(S+1). Errors so small that the step would grow by
+/// more than allowed need not be told apart.
 #[inline]
 fn root<const S: usize>(error: f64) -> f64 {
+    let error = error.max(power(SAFETY / GROWTH, S + 1));
     match S {
         1 => error.sqrt(),
         3 => error.sqrt().sqrt(),
+        5 => nth_root(error.sqrt(), 3),
         7 => error.sqrt().sqrt().sqrt(),
-        _ if error > 0.0 => nth_root(error, S + 1),
-        _ => 0.0,
+        _ => nth_root(error, S + 1),
     }
 }

@@ -4,7 +4,7 @@
 use super::newton::{Linearization, Newton, Stages};
 use super::radau::State;
 use super::tableau::{Coefficients, RadauIia};
-use super::tolerances::Weights;
+use super::tolerances::{Weights, nth_root, power};
 use nalgebra::SVector;
 
 /// Difference of the embedded formula and the step, in q and v.
@@ -59,6 +59,56 @@ impl<const F: usize> Estimate<F> {
             q: self.q + v * z,
             v,
         }
+    }
+
+    /// Size of the filtered estimate `self` in units of its tolerance or, if that is larger, of the
+    /// method's own error in units of the tolerance that was asked for; `raw`: unfiltered estimate.
+    ///
+    /// The tolerance of the estimate rests on the method's error being smaller than the estimate by
+    /// `error_quotient` |γhλ|^(S−1). That holds for what the step resolves. Of a stiff oscillation or
+    /// decay it does not resolve (|hλ| > 1) the method gets nothing right, and the error is the
+    /// filtered estimate itself: undamped oscillations would be swallowed up to the size of the
+    /// loosened tolerance. With F = (I − hγJ)⁻¹, (F − I)^(S−1) has the effect of (γhλ)^(S−1) on the
+    /// first kind and leaves the second as it is.
+    #[inline]
+    pub fn method_error<const S: usize>(
+        &self,
+        raw: &Self,
+        h: f64,
+        newton: &Newton<S, F>,
+        weights: &Weights<F>,
+        loosening: f64,
+    ) -> f64
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let factor = loosening * RadauIia::<S>::TABLEAU.error_quotient;
+        // filtered − raw = hγJ filtered tells the size of γhλ without further work.
+        let norm = self.norm(weights);
+        let mut difference = Estimate {
+            q: self.q - raw.q,
+            v: self.v - raw.v,
+        };
+        let stiffness = difference.norm(weights) / norm;
+        if factor * norm * power(stiffness, S - 1) < norm {
+            return norm; // resolved, or there is no error at all
+        }
+        difference = *self;
+        for _ in 1..S {
+            let filtered = difference.filtered(h, newton);
+            difference = Estimate {
+                q: filtered.q - difference.q,
+                v: filtered.v - difference.v,
+            };
+        }
+        let error = factor * difference.norm(weights);
+        // For the controller, which takes the (S + 1)-th root: this one grows with h^2S where it is
+        // small.
+        norm.max(if error < 1.0 {
+            power(nth_root(error, 2 * S), S + 1)
+        } else {
+            error
+        })
     }
 
     /// Size of component `i` in units of the tolerance.

@@ -64,8 +64,11 @@ pub(super) struct Newton<const S: usize, const F: usize> {
     complex: [Lu<Complex<f64>, F>; MAX_PAIRS],
     /// Step length of the factorization; NaN if there is none.
     h: f64,
-    /// Contraction θ of the last iteration.
+    /// Contraction θ of the last step that showed one.
     pub rate: f64,
+    /// θ/(1 − θ), the error after an iteration in units of its correction, with a growing caution
+    /// while no step shows a contraction.
+    remaining: f64,
 }
 
 impl<const S: usize, const F: usize> Newton<S, F>
@@ -87,7 +90,19 @@ where
             complex: [Lu::empty(); MAX_PAIRS],
             h: f64::NAN,
             rate: 1.0,
+            remaining: 1.0,
         }
+    }
+
+    /// Effort of a step with that many iterations: 0 for one, up to about ½.
+    pub fn effort(iterations: u32) -> f64 {
+        f64::from(iterations - 1) / f64::from(2 * Self::LIMIT + 1)
+    }
+
+    /// Forgets what earlier steps showed about the contraction.
+    pub fn forget(&mut self) {
+        self.rate = 1.0;
+        self.remaining = 1.0;
     }
 
     /// Evaluates M, C and K at `state`.
@@ -139,7 +154,7 @@ where
     }
 
     /// Solves the stage equations of a step of length `h` from `start`, for which the matrices must be
-    /// factorized; `stages.a` holds starting values. Stops when the error is below `tolerance`, in
+    /// factorized; `stages` holds starting values. Stops when the error is below `tolerance`, in
     /// the norm of `weights`.
     #[inline]
     pub fn solve<Y: System<F>>(
@@ -157,18 +172,15 @@ where
         for i in 0..F {
             weight[i] = h * f64::max(weights.v[i], 0.5 * h * weights.q[i]);
         }
-        // Before two iterations have shown the contraction, last step's stands in, raised to the
+        // Before two iterations have shown the contraction, the last step's stands in, raised to the
         // power 3/4 out of caution (RADAU5: 0.8; square roots are exact everywhere).
-        let mut remaining = if system.is_linear() {
-            f64::EPSILON
-        } else {
-            let rate = self.rate.clamp(f64::EPSILON, DIVERGENCE);
-            rate / (1.0 - rate)
+        self.remaining = match system.is_linear() {
+            true => f64::EPSILON,
+            false => self.remaining.clamp(f64::EPSILON, 1.0),
         };
-        remaining = (remaining * remaining.sqrt()).sqrt();
+        self.remaining = (self.remaining * self.remaining.sqrt()).sqrt();
 
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
-        stages.extend(start, h);
         for iteration in 1..=Self::LIMIT {
             let residual = stages.residual(system, start.t, h);
             counters.residual_evaluations += S as u64;
@@ -201,9 +213,9 @@ where
                     }
                     return Outcome::Slow { rate };
                 }
-                remaining = rate / (1.0 - rate);
+                self.remaining = rate / (1.0 - rate);
             }
-            if remaining * norm <= tolerance {
+            if self.remaining * norm <= tolerance {
                 return Outcome::Converged {
                     iterations: iteration,
                 };
@@ -290,9 +302,20 @@ where
         }
     }
 
+    /// Stage `i` of the step of length `h` from time `t0`.
+    pub fn state(&self, i: usize, t0: f64, h: f64) -> State<F> {
+        let t = t0 + RadauIia::<S>::TABLEAU.c[i] * h;
+        State {
+            t,
+            q: self.q[i],
+            v: self.v[i],
+            a: self.a[i],
+        }
+    }
+
     /// Velocities and coordinates that belong to the accelerations.
     #[inline(always)]
-    fn extend(&mut self, start: &State<F>, h: f64) {
+    pub fn extend(&mut self, start: &State<F>, h: f64) {
         let tableau = RadauIia::<S>::TABLEAU;
         for i in 0..S {
             for l in 0..F {

@@ -1,6 +1,6 @@
 //! The step: attempts, acceptance, restarts, and steps of exact length.
 
-use super::controller::Controller;
+use super::controller::{Controller, Pace};
 use super::dense::Dense;
 use super::estimate::Estimate;
 use super::first_step;
@@ -87,6 +87,21 @@ fn add(x: f64, change: f64, lost: f64) -> (f64, f64) {
     )
 }
 
+/// A successful attempt.
+struct Trial {
+    error: f64,
+    iterations: u32,
+}
+
+/// Where the matrices in use come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Linearized {
+    /// The step being made.
+    Now,
+    /// A step before it.
+    Before,
+}
+
 /// Radau IIA with `S` stages for a [`System`] of `F` coordinates.
 ///
 /// Use: [`Radau::new`], [`Radau::restart`], then [`Radau::step`] as often as wanted; after each step
@@ -97,10 +112,8 @@ pub struct Radau<const S: usize, const F: usize> {
     control: Control<F>,
     controller: Controller,
     newton: Newton<S, F>,
-    /// M, C, K were evaluated at the start of the step being made.
-    fresh: bool,
-    /// There are matrices at all that belong to the system.
-    linearized: bool,
+    /// Where M, C and K were evaluated, if that is not to be done again.
+    linearization: Option<Linearized>,
     /// Proposed length of the next step; `None` after a restart.
     proposal: Option<f64>,
     start: State<F>,
@@ -132,8 +145,7 @@ where
             control: Control::new::<S>(tolerances),
             controller: Controller::new(),
             newton: Newton::new(),
-            fresh: false,
-            linearized: false,
+            linearization: None,
             proposal: None,
             start: origin,
             end: origin,
@@ -167,10 +179,11 @@ where
         self.lost = Lost::nothing();
         self.lost_at_start = self.lost;
         self.controller = Controller::new();
-        self.newton.rate = 1.0;
-        self.linearized = false;
+        self.newton.forget();
+        self.linearization = None;
         self.proposal = None;
         self.dense = None;
+        self.unresolved = [false; F];
     }
 
     /// Sets the length with which the next step is tried, s; positive.
@@ -199,7 +212,7 @@ where
     }
 
     /// The stages of the last step, in the order of time; the last is its end. Meaningless after a
-    /// restart.
+    /// restart or a failure.
     pub fn stages(&self) -> impl Iterator<Item = Stage<'_, F>> {
         let tableau = RadauIia::<S>::TABLEAU;
         let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
@@ -227,7 +240,8 @@ where
     /// step does not resolve.
     ///
     /// # Errors
-    /// [`StepError`] when no step, however short, succeeds. The state is unchanged then.
+    /// [`StepError`] when no step, however short, succeeds. State and dense output remain those of
+    /// the step before.
     ///
     /// # Panics
     /// If `t_end` is not after the present time, or `h_max` is not positive.
@@ -243,8 +257,7 @@ where
             self.end.t
         );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
-        let after_restart = self.dense.is_none();
-        if let (true, Some(what)) = (after_restart, self.end.not_finite()) {
+        if let (None, Some(what)) = (&self.dense, self.end.not_finite()) {
             return Err(StepError::NonFinite {
                 t: self.end.t,
                 h: 0.0,
@@ -253,138 +266,152 @@ where
         }
         let origin = self.end;
         let weights = self.control.weights(&origin.q, &origin.v);
-        let keep = self.linearized && (system.is_linear() || self.newton.rate <= REUSE);
-        self.fresh = false;
-        if !keep {
-            self.linearize(system, &origin);
-        }
+        let keep = system.is_linear() || self.newton.rate <= REUSE;
+        self.linearization = match self.linearization {
+            Some(_) if keep => Some(Linearized::Before),
+            _ => None,
+        };
         let remaining = (t_end - origin.t) - self.lost.t;
         let mut h = match self.proposal {
             Some(h) => h,
-            None => first_step::estimate(
-                system,
-                &origin,
-                h_max.min(remaining),
-                &self.control,
-                &weights,
-                &self.newton,
-                &mut self.counters,
-            ),
+            None => {
+                if self.linearization.is_none() {
+                    self.linearize(system, &origin);
+                }
+                let h_max = h_max.min(remaining);
+                let Radau {
+                    control,
+                    newton,
+                    counters,
+                    ..
+                } = self;
+                first_step::estimate(system, &origin, h_max, control, &weights, newton, counters)
+            }
         };
-        let mut discarded = 0;
         let proposed = h;
+        let mut discarded = 0;
         loop {
             h = fit(h, remaining, h_max);
-            let failure = match self.attempt(system, &origin, h, &weights) {
-                Ok(iterations) => {
-                    let raw = Estimate::raw(h, &origin, &self.stages);
-                    let mut filtered = raw.filtered(h, &self.newton);
-                    let mut error = filtered.norm(&weights);
-                    if error >= 1.0 && (after_restart || discarded > 0) {
-                        // A transient: the filter once more (Hairer & Wanner 1996, eq. 8.20).
-                        filtered = filtered.filtered(h, &self.newton);
-                        error = filtered.norm(&weights);
-                    }
-                    let limit = Newton::<S, F>::LIMIT;
-                    if error < 1.0 {
-                        let t = (h == remaining).then_some(t_end);
-                        self.unresolved = std::array::from_fn(|i| {
-                            let size = raw.size(i, &weights);
-                            size > 1.0 && filtered.size(i, &weights) < 0.5 * size
-                        });
-                        self.accept(&origin, self.lost, h, t);
-                        let next = self.controller.after_acceptance::<S>(
-                            h,
-                            error,
-                            iterations,
-                            limit,
-                            discarded > 0,
-                        );
-                        // A step cut short by a limit says nothing against the longer one.
-                        let cut = discarded == 0 && h < proposed;
-                        self.proposal = Some(if cut { next.max(proposed) } else { next });
-                        self.counters.steps += 1;
-                        return Ok(self.report(error, iterations, discarded));
-                    }
-                    self.counters.rejected += 1;
-                    let t = origin.t;
-                    let shorter = self
-                        .controller
-                        .after_rejection::<S>(h, error, iterations, limit);
-                    let failure = if error.is_nan() {
-                        StepError::NonFinite {
-                            t,
-                            h,
-                            what: "the error estimate",
-                        }
+            match self.trial(system, &origin, h, &weights) {
+                Ok(Trial { error, iterations }) => {
+                    let t = (h == remaining).then_some(t_end);
+                    self.accept(&origin, self.lost, h, t);
+                    let rate = if iterations > 1 {
+                        self.newton.rate
                     } else {
-                        StepError::Tolerance { t, h, error }
+                        0.0
                     };
-                    h = if error.is_nan() { 0.5 * h } else { shorter };
-                    failure
+                    let pace = Pace {
+                        error,
+                        effort: Newton::<S, F>::effort(iterations),
+                        rate,
+                    };
+                    let next = self
+                        .controller
+                        .after_acceptance::<S>(h, &pace, discarded > 0);
+                    // A step cut short by a limit says nothing against the longer one.
+                    let cut = discarded == 0 && h < proposed;
+                    self.proposal = Some(if cut { next.max(proposed) } else { next });
+                    self.counters.steps += 1;
+                    return Ok(self.report(error, iterations, discarded));
                 }
                 Err(failure) => {
-                    self.counters.newton_failures += 1;
-                    h *= 0.5;
-                    failure
+                    discarded += 1;
+                    self.discard(system, &origin, &failure);
+                    h *= self.controller.after_failure::<S>(&failure);
+                    if origin.t + h == origin.t {
+                        return Err(failure);
+                    }
                 }
-            };
-            discarded += 1;
-            if origin.t + h == origin.t {
-                return Err(failure);
             }
-            if !self.fresh && !system.is_linear() {
-                self.linearize(system, &origin);
-            }
+        }
+    }
+
+    /// One attempt of length `h` with its error estimate; an error above the tolerance is a failure.
+    #[inline]
+    fn trial<Y: System<F>>(
+        &mut self,
+        system: &mut Y,
+        origin: &State<F>,
+        h: f64,
+        weights: &Weights<F>,
+    ) -> Result<Trial, StepError> {
+        let t = origin.t;
+        let iterations = self.attempt(system, origin, h, weights)?;
+        let raw = Estimate::raw(h, origin, &self.stages);
+        let filtered = raw.filtered(h, &self.newton);
+        let error = filtered.method_error(&raw, h, &self.newton, weights, self.control.loosening);
+        if error.is_nan() {
+            return Err(StepError::NonFinite {
+                t,
+                h,
+                what: "the error estimate",
+            });
+        }
+        if error >= 1.0 {
+            return Err(StepError::Tolerance { t, h, error });
+        }
+        for i in 0..F {
+            let size = raw.size(i, weights);
+            self.unresolved[i] = size > 1.0 && filtered.size(i, weights) < 0.5 * size;
+        }
+        Ok(Trial { error, iterations })
+    }
+
+    /// Counts a failed attempt and decides on the matrices for the next.
+    #[cold]
+    fn discard<Y: System<F>>(&mut self, system: &mut Y, origin: &State<F>, failure: &StepError) {
+        let rejected = matches!(failure, StepError::Tolerance { .. });
+        match rejected {
+            true => self.counters.rejected += 1,
+            false => self.counters.newton_failures += 1,
+        }
+        if system.is_linear() {
+            return;
+        }
+        if !rejected {
+            // The extrapolation that gave the last Jacobian is not to be trusted.
+            self.linearize(system, origin);
+        } else if self.linearization == Some(Linearized::Before) {
+            self.linearization = None;
         }
     }
 
     /// Takes the last step again from its start, with exactly the length `h` and no error control:
     /// a state of full order where an event was located on the dense output, which serves for
-    /// starting values. May be repeated. The proposal for the next step is kept.
+    /// starting values. May be repeated. The proposal for the next step is kept. Right after a
+    /// restart it makes the first step.
     ///
     /// # Errors
-    /// [`StepError`] if the stage equations cannot be solved; then state and dense output are
-    /// those of the step before.
+    /// [`StepError`] if the stage equations cannot be solved. State and dense output remain those of
+    /// the step before.
     ///
     /// # Panics
-    /// If there was no step since the last restart, or `h` is not positive.
+    /// If `h` is not positive.
     pub fn step_exactly<Y: System<F>>(
         &mut self,
         system: &mut Y,
         h: f64,
     ) -> Result<StepReport, StepError> {
         assert!(h > 0.0, "h = {h} is not positive");
-        assert!(self.dense.is_some(), "there is no step to take again");
         let origin = self.start;
         let weights = self.control.weights(&origin.q, &origin.v);
-        let before = self.stages;
-        let solved = self
-            .attempt(system, &origin, h, &weights)
-            .or_else(|failure| {
-                if system.is_linear() {
-                    return Err(failure);
-                }
-                self.linearize(system, &origin);
-                self.attempt(system, &origin, h, &weights)
-            });
-        match solved {
-            Ok(iterations) => {
-                self.accept(&origin, self.lost_at_start, h, None);
-                self.counters.retaken += 1;
-                Ok(self.report(f64::NAN, iterations, 0))
-            }
-            Err(failure) => {
-                self.stages = before;
-                Err(failure)
-            }
+        let mut solved = self.attempt(system, &origin, h, &weights);
+        if solved.is_err() && !system.is_linear() {
+            self.linearize(system, &origin);
+            solved = self.attempt(system, &origin, h, &weights);
         }
+        let iterations = solved?;
+        self.accept(&origin, self.lost_at_start, h, None);
+        self.counters.retaken += 1;
+        Ok(self.report(f64::NAN, iterations, 0))
     }
 
-    fn linearize<Y: System<F>>(&mut self, system: &mut Y, origin: &State<F>) {
-        self.newton.linearize(system, origin, &mut self.counters);
-        self.fresh = true;
-        self.linearized = true;
+    /// Evaluates M, C and K at `state`.
+    #[inline]
+    fn linearize<Y: System<F>>(&mut self, system: &mut Y, state: &State<F>) {
+        self.newton.linearize(system, state, &mut self.counters);
+        self.linearization = Some(Linearized::Now);
     }
 
     /// Solves the stage equations of a step of length `h`; gives the number of iterations.
@@ -398,6 +425,22 @@ where
     ) -> Result<u32, StepError> {
         let t = origin.t;
         let tableau = RadauIia::<S>::TABLEAU;
+        match &self.dense {
+            // One stage: the polynomial passes through the end points, its second derivative says
+            // nothing.
+            Some(dense) if S > 1 => {
+                let offset = origin.t - dense.t0;
+                for i in 0..S {
+                    self.stages.a[i] = dense.acceleration(offset + tableau.c[i] * h);
+                }
+            }
+            _ => self.stages.a = [origin.a; S],
+        }
+        self.stages.extend(origin, h);
+        if self.linearization.is_none() {
+            // At a stage inside, the matrices are closer to those at all stages than at the start.
+            self.linearize(system, &self.stages.state(S / 2, t, h));
+        }
         if let Err(singular) =
             self.newton
                 .factorize(h, self.control.row_scale(), &mut self.counters)
@@ -415,27 +458,14 @@ where
                 },
             });
         }
-        match &self.dense {
-            // One stage: the polynomial passes through the end points, its second derivative says
-            // nothing.
-            Some(dense) if S > 1 => {
-                let offset = origin.t - dense.t0;
-                for i in 0..S {
-                    self.stages.a[i] = dense.acceleration(offset + tableau.c[i] * h);
-                }
-            }
-            _ => self.stages.a = [origin.a; S],
-        }
-        let outcome = self.newton.solve(
-            system,
-            origin,
-            h,
-            &mut self.stages,
-            weights,
-            self.control.newton,
-            &mut self.counters,
-        );
-        match outcome {
+        let Radau {
+            newton,
+            stages,
+            control,
+            counters,
+            ..
+        } = self;
+        match newton.solve(system, origin, h, stages, weights, control.newton, counters) {
             Outcome::Converged { iterations } => Ok(iterations),
             Outcome::Slow { rate } => Err(StepError::Newton { t, h, rate }),
             Outcome::NonFinite => Err(StepError::NonFinite {

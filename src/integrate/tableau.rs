@@ -45,6 +45,9 @@ pub struct Tableau<const S: usize> {
     /// |Σ e_i c_i^S| / S!: the unfiltered estimate is this × h^(S+1) × the S-th derivative of the
     /// acceleration, to leading order.
     pub error_constant: f64,
+    /// The error of the method is, to leading order and for y′ = λy, this × |γhλ|^(S−1) × the
+    /// unfiltered estimate.
+    pub error_quotient: f64,
     /// Collocation polynomial of the displacement: row k holds the weights of the stage
     /// accelerations in its power k + 3 of s ∈ [0, 1], in units of h².
     pub collocation: [[f64; S]; S],
@@ -68,61 +71,83 @@ impl<const S: usize> Tableau<S> {
 mod tests {
     use super::*;
 
-    /// Rounding of S products of numbers below 1 in size, with room for cancellation in T.
-    const ROUNDING: f64 = 64.0 * f64::EPSILON;
+    /// Roundings of the coefficients, their powers and the sums over up to 7 stages, in units of
+    /// the sum of the terms' sizes.
+    const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-    fn close(actual: f64, expected: f64, what: &str) {
+    /// The sum of the terms is `expected` to rounding.
+    fn close(terms: impl Iterator<Item = f64>, expected: f64, what: &str) {
+        let (sum, size) = terms.fold((0.0, 1.0), |(sum, size), x| (sum + x, size + x.abs()));
         assert!(
-            (actual - expected).abs() <= ROUNDING * (1.0 + expected.abs()),
-            "{what}: {actual} instead of {expected}"
+            f64::abs(sum - expected) <= ROUNDING * size,
+            "{what}: {sum:e} instead of {expected:e}"
         );
     }
 
-    fn check<const S: usize>()
-    where
-        RadauIia<S>: Coefficients<S>,
-    {
-        let tableau = RadauIia::<S>::TABLEAU;
-        let power = |x: f64, k: usize| x.powi(k as i32);
-        let sum = |weights: &[f64; S], k: usize| -> f64 {
-            (0..S).map(|i| weights[i] * power(tableau.c[i], k)).sum()
-        };
+    fn power(x: f64, k: usize) -> f64 {
+        x.powi(k as i32)
+    }
+
+    fn quadrature<const S: usize>(tableau: &Tableau<S>) {
+        let c = &tableau.c;
         let b = &tableau.a[S - 1];
-        assert_eq!(tableau.c[S - 1], 1.0, "stiffly accurate");
+        assert_eq!(c[S - 1], 1.0, "stiffly accurate");
         for k in 1..=Tableau::<S>::ORDER {
-            close(sum(b, k - 1), 1.0 / k as f64, "B(2S-1)");
+            let terms = (0..S).map(|i| b[i] * power(c[i], k - 1));
+            close(terms, 1.0 / k as f64, "B(2S-1)");
         }
         for i in 0..S {
             for k in 1..=S {
-                let expected = power(tableau.c[i], k) / k as f64;
-                close(sum(&tableau.a[i], k - 1), expected, "C(S)");
+                let terms = (0..S).map(|j| tableau.a[i][j] * power(c[j], k - 1));
+                close(terms, power(c[i], k) / k as f64, "C(S)");
             }
             for k in 1..S {
-                // ∫∫ τ^(k-1): exact for one degree less than C(S).
-                let expected = power(tableau.c[i], k + 1) / (k * (k + 1)) as f64;
-                close(sum(&tableau.a2[i], k - 1), expected, "C(S) twice");
+                let terms = (0..S).map(|j| tableau.a2[i][j] * power(c[j], k - 1));
+                close(
+                    terms,
+                    power(c[i], k + 1) / (k * (k + 1)) as f64,
+                    "C(S-1) twice",
+                );
             }
         }
         for j in 0..S {
             for k in 1..S {
-                let total: f64 = (0..S)
-                    .map(|i| b[i] * power(tableau.c[i], k - 1) * tableau.a[i][j])
-                    .sum();
-                close(
-                    total,
-                    b[j] * (1.0 - power(tableau.c[j], k)) / k as f64,
-                    "D(S-1)",
-                );
+                let terms = (0..S).map(|i| b[i] * power(c[i], k - 1) * tableau.a[i][j]);
+                close(terms, b[j] * (1.0 - power(c[j], k)) / k as f64, "D(S-1)");
             }
-            let ea: f64 = (0..S).map(|i| tableau.e[i] * tableau.a[i][j]).sum();
-            close(tableau.ea[j], ea, "e^T A");
         }
+    }
+
+    fn embedded<const S: usize>(tableau: &Tableau<S>) {
         for k in 0..S {
-            let expected = if k == 0 { -tableau.gamma } else { 0.0 };
-            close(sum(&tableau.e, k), expected, "embedded formula");
+            let terms = (0..S).map(|i| tableau.e[i] * power(tableau.c[i], k));
+            close(terms, if k == 0 { -tableau.gamma } else { 0.0 }, "e");
         }
-        transformation(tableau);
-        dense(tableau);
+        for j in 0..S {
+            close(
+                (0..S).map(|i| tableau.e[i] * tableau.a[i][j]),
+                tableau.ea[j],
+                "e^T A",
+            );
+        }
+        let factorial: f64 = (1..=S).map(|k| k as f64).product();
+        let terms = (0..S).map(|i| tableau.e[i] * power(tableau.c[i], S) / factorial);
+        close(terms, -tableau.error_constant, "error constant");
+        // R(z) − e^z = C z^2S + …: the coefficient of z^2S in R = 1 + z bᵀ(I − zA)⁻¹1 is bᵀA^(2S−1)1.
+        let mut x = [1.0; S];
+        for _ in 0..2 * S - 1 {
+            x = std::array::from_fn(|i| (0..S).map(|j| tableau.a[i][j] * x[j]).sum());
+        }
+        let factorial: f64 = (1..=2 * S).map(|k| k as f64).product();
+        let method = (x[S - 1] - 1.0 / factorial).abs();
+        let expected = method / (tableau.error_constant * power(tableau.gamma, S - 1));
+        // Powers of A cancel down to 1/(2S)!, which leaves few digits at 7 stages.
+        let error = (tableau.error_quotient / expected - 1.0).abs();
+        assert!(
+            error < 1e-2,
+            "error quotient: {} instead of {expected}",
+            tableau.error_quotient
+        );
     }
 
     fn transformation<const S: usize>(tableau: &Tableau<S>) {
@@ -135,49 +160,54 @@ mod tests {
             lambda[i][j] = -beta;
             lambda[j][i] = *beta;
         }
+        let (a, t) = (&tableau.a, &tableau.t);
         for i in 0..S {
             for j in 0..S {
-                let at: f64 = (0..S).map(|k| tableau.a[i][k] * tableau.t[k][j]).sum();
-                let tl: f64 = (0..S).map(|k| tableau.t[i][k] * lambda[k][j]).sum();
-                close(at, tl, "A T = T Lambda");
-                let product: f64 = (0..S)
-                    .map(|k| tableau.t[i][k] * tableau.t_inverse[k][j])
-                    .sum();
+                let difference = (0..S).flat_map(|k| [a[i][k] * t[k][j], -t[i][k] * lambda[k][j]]);
+                close(difference, 0.0, "A T = T Lambda");
+                let product = (0..S).map(|k| t[i][k] * tableau.t_inverse[k][j]);
                 close(product, if i == j { 1.0 } else { 0.0 }, "T T^-1 = 1");
             }
         }
     }
 
     fn dense<const S: usize>(tableau: &Tableau<S>) {
-        let last = S - 1;
+        let (a, a2) = (&tableau.a[S - 1], &tableau.a2[S - 1]);
+        let (collocation, smooth) = (&tableau.collocation, &tableau.smooth);
         for j in 0..S {
-            let column = |rows: &[[f64; S]; S]| -> f64 { rows.iter().map(|row| row[j]).sum() };
-            let slope = |rows: &[[f64; S]; S]| -> f64 {
-                rows.iter()
-                    .enumerate()
-                    .map(|(k, row)| (k + 3) as f64 * row[j])
-                    .sum()
-            };
             let square = tableau.collocation_square[j];
-            close(
-                square + column(&tableau.collocation),
-                tableau.a2[last][j],
-                "collocation q(1)",
-            );
-            close(
-                2.0 * square + slope(&tableau.collocation),
-                tableau.a[last][j],
-                "collocation v(1)",
-            );
+            let terms = (0..S).map(|k| collocation[k][j]).chain([square]);
+            close(terms, a2[j], "collocation q(1)");
+            let terms = (0..S)
+                .map(|k| (k + 3) as f64 * collocation[k][j])
+                .chain([2.0 * square]);
+            close(terms, a[j], "collocation v(1)");
             if S > 1 {
-                close(column(&tableau.smooth), tableau.a2[last][j], "smooth q(1)");
-                close(slope(&tableau.smooth), tableau.a[last][j], "smooth v(1)");
-                let curvature: f64 = (0..S)
-                    .map(|k| ((k + 3) * (k + 2)) as f64 * tableau.smooth[k][j])
-                    .sum();
-                close(curvature, if j == last { 1.0 } else { 0.0 }, "smooth a(1)");
+                let derivative = |order: usize| {
+                    (0..S).map(move |k| {
+                        let factors: usize = (0..order).map(|l| k + 3 - l).product();
+                        factors as f64 * smooth[k][j]
+                    })
+                };
+                close(derivative(0), a2[j], "smooth q(1)");
+                close(derivative(1), a[j], "smooth v(1)");
+                close(
+                    derivative(2),
+                    if j == S - 1 { 1.0 } else { 0.0 },
+                    "smooth a(1)",
+                );
             }
         }
+    }
+
+    fn check<const S: usize>()
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        quadrature(RadauIia::<S>::TABLEAU);
+        embedded(RadauIia::<S>::TABLEAU);
+        transformation(RadauIia::<S>::TABLEAU);
+        dense(RadauIia::<S>::TABLEAU);
     }
 
     #[test]

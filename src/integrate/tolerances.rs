@@ -102,6 +102,8 @@ impl<const F: usize> Tolerances<F> {
 pub(super) struct Control<const F: usize> {
     /// Tolerance of the estimate, relative.
     pub relative: f64,
+    /// Tolerance of the estimate ÷ tolerance asked for.
+    pub loosening: f64,
     /// Absolute tolerance ÷ relative tolerance: the typical sizes.
     q_size: SVector<f64, F>,
     v_size: SVector<f64, F>,
@@ -124,6 +126,7 @@ impl<const F: usize> Control<F> {
         let asked = 0.03 * (tolerances.relative / relative).min(1.0);
         Control {
             relative,
+            loosening: relative / tolerances.relative,
             q_size: tolerances.q_absolute / tolerances.relative,
             v_size: tolerances.v_absolute / tolerances.relative,
             newton: asked.max(10.0 * f64::EPSILON / relative),
@@ -159,7 +162,7 @@ pub(super) struct Weights<const F: usize> {
     pub v: SVector<f64, F>,
 }
 
-/// x^(1/n) by Newton's method, to a few roundings; x > 0. The mathematical library's `pow` may
+/// x^(1/n), n ≥ 2, by Newton's method, to a few roundings; x > 0, cheap unless x is tiny. The mathematical library's `pow` may
 /// differ in the last bit between processors; +, −, × and ÷ may not.
 pub(super) fn nth_root(x: f64, n: usize) -> f64 {
     // From above, the iteration falls monotonically until rounding stops it.
@@ -184,13 +187,12 @@ mod tests {
 
     #[test]
     fn roots_are_accurate() {
-        for n in 1..=14 {
+        for n in 2..=14 {
             for x in [1e-300, 1e-13, 0.3, 1.0, 2.0, 7e5] {
                 let root = nth_root(x, n);
-                assert!(
-                    (power(root, n) / x - 1.0).abs() < 2.0 * n as f64 * f64::EPSILON,
-                    "{x} {n}"
-                );
+                // n multiplications, and n times the error of the root of one or two roundings.
+                let error = (power(root, n) / x - 1.0).abs();
+                assert!(error < 3.0 * n as f64 * f64::EPSILON, "{x} {n}: {error:e}");
             }
         }
     }
