@@ -48,6 +48,7 @@ pub fn run() -> Result<(), Error> {
     let cache = Cache::shared(&out_dir)?;
     let environment = Environment::provide(&lock, &cache)?;
     announce(&environment, &lock);
+    announce_build(&target)?;
 
     let models = generate::discover(&project, with_tests)?;
     let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
@@ -101,6 +102,17 @@ fn announce(environment: &Environment, lock: &Lock) {
             python::SETTING
         );
     }
+}
+
+/// Passes the build script itself on to its tests (`tests/provisioning/`), and what it builds for.
+fn announce_build(target: &str) -> Result<(), Error> {
+    let script = env::current_exe().map_err(Error::io("find", Path::new("the build script")))?;
+    println!(
+        "cargo::rustc-env=DALEMBERT_BUILD_SCRIPT={}",
+        script.display()
+    );
+    println!("cargo::rustc-env=DALEMBERT_TARGET={target}");
+    Ok(())
 }
 
 /// A variable that cargo sets for build scripts.
