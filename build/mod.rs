@@ -78,7 +78,9 @@ fn watch(project: &Path, with_tests: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// Passes the interpreter on to the crate, which runs Python for verification and in tests.
+/// Passes the interpreter on to the crate, which runs Python for verification and in tests: with
+/// `DALEMBERT_PYTHON_PATH` as its `PYTHONPATH`, unless that is empty. At run time the variable
+/// `DALEMBERT_PYTHON` names another interpreter, with its own packages, as it does here.
 fn announce(environment: &Environment, lock: &Lock) {
     let packages = environment.packages.as_deref();
     println!(

@@ -101,7 +101,7 @@ impl Fixture {
         path
     }
 
-    /// An interpreter that has a stand-in for CasADi of its own.
+    /// An interpreter that has a stand-in for CasADi of its own, and no other package.
     pub fn python_with_casadi(&self, version: &str) -> PathBuf {
         let packages = format!("packages-{version}");
         self.write(
@@ -111,7 +111,10 @@ impl Fixture {
         let packages = self.path(&packages);
         self.program(
             &format!("python-with-casadi-{version}"),
-            &format!("PYTHONPATH='{}' exec '{PYTHON}' \"$@\"", packages.display()),
+            &format!(
+                "PYTHONPATH='{}' exec '{PYTHON}' -S \"$@\"",
+                packages.display()
+            ),
         )
     }
 
