@@ -53,6 +53,11 @@ fn a_touched_model_is_regenerated_alone() {
     fixture.model("beta", "3.0");
     succeeds(&mut fixture.script());
     assert_eq!(fixture.log(), ["generate beta"]);
+    // The library of the old model is gone.
+    only_folder(
+        &fixture.path("target/debug/build/project/out/libraries"),
+        "beta-",
+    );
     // A second file of a model counts, its prose does not.
     fixture.write("project/models/alpha/README.md", "prose");
     succeeds(&mut fixture.script());

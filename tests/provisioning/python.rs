@@ -136,7 +136,7 @@ fn without_a_network_our_message_comes_before_that_of_pip() {
 }
 
 #[test]
-fn a_package_with_another_hash_is_refused() {
+fn a_package_with_another_hash_or_none_is_refused() {
     let Some(fixture) = Fixture::if_pip() else {
         return;
     };
@@ -147,6 +147,15 @@ fn a_package_with_another_hash_is_refused() {
         &message,
         &["codegen/requirements.lock", "pip says:\n", "Got "],
     );
+    // And so is one without a hash.
+    let lock = format!("casadi=={VERSION}\n");
+    fixture.write("project/codegen/requirements.lock", &lock);
+    let message = fails(&mut fixture.installing());
+    assert!(
+        message.starts_with("cannot install CasADi 1.2.3: "),
+        "{message}"
+    );
+    has(&message, &["to do: ", "Hashes are required"]);
     assert!(fixture.log().is_empty());
 }
 
@@ -167,6 +176,8 @@ fn the_python_environment_of_the_caller_changes_nothing() {
     };
     fixture.write("intruder/casadi.py", "raise RuntimeError('an intruder')");
     let intruder = fixture.path("intruder");
+    let settings = "[global]\nrequire-virtualenv = true\n[install]\nuser = true\n";
+    let settings = fixture.write("pip.conf", settings);
     succeeds(
         fixture
             .installing()
@@ -174,9 +185,8 @@ fn the_python_environment_of_the_caller_changes_nothing() {
             .env("PYTHONHOME", &intruder)
             .env("PYTHONWARNINGS", "error")
             .env("VIRTUAL_ENV", &intruder)
-            .env("PIP_TARGET", &intruder)
-            .env("PIP_USER", "1")
-            .env("PIP_REQUIRE_VIRTUALENV", "1"),
+            .env("PIP_PREFIX", &intruder)
+            .env("PIP_CONFIG_FILE", settings),
     );
     assert_eq!(fixture.log(), ALL);
 }
