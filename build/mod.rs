@@ -48,6 +48,7 @@ pub fn run() -> Result<(), Error> {
     let cache = Cache::shared(&out_dir)?;
     let environment = Environment::provide(&lock, &cache)?;
     announce(&environment, &lock);
+    announce_build(&target)?;
 
     let models = generate::discover(&project, with_tests)?;
     let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
@@ -77,7 +78,9 @@ fn watch(project: &Path, with_tests: bool) -> Result<(), Error> {
     Ok(())
 }
 
-/// Passes the interpreter on to the crate, which runs Python for verification and in tests.
+/// Passes the interpreter on to the crate, which runs Python for verification and in tests: with
+/// `DALEMBERT_PYTHON_PATH` as its `PYTHONPATH`, unless that is empty. At run time the variable
+/// `DALEMBERT_PYTHON` names another interpreter, with its own packages, as it does here.
 fn announce(environment: &Environment, lock: &Lock) {
     let packages = environment.packages.as_deref();
     println!(
@@ -101,6 +104,17 @@ fn announce(environment: &Environment, lock: &Lock) {
             python::SETTING
         );
     }
+}
+
+/// Passes the build script itself on to its tests (`tests/provisioning/`), and what it builds for.
+fn announce_build(target: &str) -> Result<(), Error> {
+    let script = env::current_exe().map_err(Error::io("find", Path::new("the build script")))?;
+    println!(
+        "cargo::rustc-env=DALEMBERT_BUILD_SCRIPT={}",
+        script.display()
+    );
+    println!("cargo::rustc-env=DALEMBERT_TARGET={target}");
+    Ok(())
 }
 
 /// A variable that cargo sets for build scripts.

@@ -4,7 +4,7 @@ use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{self, Path, PathBuf};
 use std::process::Command;
 
 use super::error::Error;
@@ -197,7 +197,15 @@ pub fn discover(installed: impl Fn(&Python) -> bool) -> Result<Python, Error> {
 /// The interpreter that [`SETTING`] names, if it is set.
 pub fn named() -> Option<Result<Python, Error>> {
     let program = env::var_os(SETTING).filter(|value| !value.is_empty())?;
-    Some(Python::probe(&program).map_err(|reason| {
+    let probed = Python::probe(&program).map(|python| Python {
+        // A path is run as it was given: it may be a script that sets up what its Python needs.
+        executable: path::absolute(&program)
+            .ok()
+            .filter(|_| Path::new(&program).components().count() > 1)
+            .unwrap_or(python.executable),
+        ..python
+    });
+    Some(probed.map_err(|reason| {
         Error::Setting {
             name: SETTING,
             value: program.to_string_lossy().into_owned(),
