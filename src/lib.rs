@@ -9,3 +9,4 @@ pub mod integrate;
 pub mod kernel;
 pub mod model;
 pub mod record;
+pub mod scene;

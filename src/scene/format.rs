@@ -1,0 +1,361 @@
+//! The scene format: every key, its meaning, its unit and its range.
+//!
+//! Reading a scene and `dalembert schema` both follow these tables.
+
+use super::shape::{Key, Object, Quantity, Shape};
+use crate::model::{Coordinate, Input, Model, Variant};
+
+/// Relative tolerance of a scene that asks for none: eight digits, well above the rounding of long
+/// runs and well below what a plot shows.
+pub(crate) const DEFAULT_RELATIVE: f64 = 1e-8;
+
+/// The shape of a scene of a model; of any model, with less detail, for `None`.
+pub(crate) fn scene(model: Option<&Model>) -> Object {
+    let name = match model {
+        Some(model) => Shape::Choice("model", vec![model.name]),
+        None => Shape::Text,
+    };
+    let mut keys = vec![
+        Key::new(
+            "$schema",
+            "JSON Schema of this file, for editors",
+            Shape::Text,
+        ),
+        Key::new("model", "name of the model", name).required(),
+        Key::new("title", "what the scene shows", Shape::Text),
+        Key::new(
+            "parameters",
+            "parameters that differ from their defaults",
+            parameters(model),
+        ),
+    ];
+    for choice in model.map_or(&[][..], |m| m.choices) {
+        let options = Shape::Choice("choice", choice.options.to_vec());
+        keys.push(Key::new(choice.name, choice.meaning, options));
+    }
+    keys.extend([
+        Key::new(
+            "inputs",
+            "prescribed functions of time; zero if absent",
+            inputs(model),
+        ),
+        Key::new("initial", "state at t = 0", initial(model)),
+        Key::new("freeze", "coordinates held still throughout", freeze(model)),
+        Key::new("end", "when the run ends", end(model)).required(),
+        Key::new("accuracy", "error tolerances", accuracy(model)),
+        Key::new("record", "what is written", record()),
+    ]);
+    let object = Object::new("key", keys);
+    if model.is_some() {
+        object
+    } else {
+        object.others(Shape::Text)
+    }
+}
+
+fn parameters(model: Option<&Model>) -> Object {
+    let meaning = "named set of parameters to start from";
+    let Some(model) = model else {
+        let keys = vec![Key::new("set", meaning, Shape::Text)];
+        return Object::new("parameter", keys).others(Quantity::any(""));
+    };
+    let mut keys = Vec::new();
+    if !model.parameter_sets.is_empty() {
+        let sets = model.parameter_sets.iter().map(|set| set.name).collect();
+        keys.push(Key::new(
+            "set",
+            meaning,
+            Shape::Choice("parameter set", sets),
+        ));
+    }
+    keys.extend(model.parameters.iter().map(|p| {
+        let quantity = Quantity {
+            unit: p.unit.into(),
+            minimum: p.minimum,
+            minimum_exclusive: p.minimum_exclusive,
+            maximum: p.maximum,
+        };
+        let meaning = match p.at_most {
+            Some(limit) => format!("{}; at most {limit}", p.meaning),
+            None => p.meaning.into(),
+        };
+        Key::new(p.name, meaning, quantity).default(p.default)
+    }));
+    Object::new("parameter", keys)
+}
+
+fn inputs(model: Option<&Model>) -> Object {
+    match model {
+        None => Object::new("input", Vec::new()).others(input("")),
+        Some(model) => {
+            let key = |i: &Input| Key::new(i.name, i.meaning, input(i.unit));
+            Object::new("input", model.inputs.iter().map(key).collect())
+        }
+    }
+}
+
+/// An input: nothing, one function, or a sum.
+fn input(unit: &str) -> Shape {
+    let mut alternatives = functions(unit);
+    let summand = Shape::List(Box::new(Shape::Tagged(functions(unit))));
+    alternatives.push(Object::new(
+        "key of a sum",
+        vec![Key::new("sum", "functions that add up", summand).required()],
+    ));
+    Shape::Either(vec![Shape::Null, Shape::Tagged(alternatives)])
+}
+
+fn functions(unit: &str) -> Vec<Object> {
+    let amplitude = Key::new("amplitude", "largest value", Quantity::any(unit)).required();
+    let sine = Object::new(
+        "key of a sine",
+        vec![
+            amplitude,
+            Key::new("frequency", "cycles per second", Quantity::positive("Hz")),
+            Key::new(
+                "angular_frequency",
+                "2π times the frequency",
+                Quantity::positive("rad/s"),
+            ),
+            Key::new("phase", "angle at the start", Quantity::any("rad")).default(0.0),
+            Key::new(
+                "start",
+                "time before which it is zero",
+                Quantity::at_least(0.0, "s"),
+            )
+            .default(0.0),
+            Key::new(
+                "end",
+                "time from which on it is zero",
+                Quantity::positive("s"),
+            ),
+            Key::new(
+                "cycles",
+                "cycles after which it is zero",
+                Quantity::positive("1"),
+            ),
+        ],
+    )
+    .exactly_one(["frequency", "angular_frequency"])
+    .at_most_one(["end", "cycles"]);
+
+    let mut table = vec![
+        Key::new(
+            "file",
+            "CSV file with the columns time (s), value; relative to the scene",
+            Shape::Text,
+        )
+        .required(),
+        Key::new("scale", "factor for the values", Quantity::any("1")).default(1.0),
+    ];
+    table.extend(between_rows());
+
+    let row = Shape::Tuple(
+        "[time, value]",
+        vec![Quantity::any("s").into(), Quantity::any(unit).into()],
+    );
+    let mut knots =
+        vec![Key::new("knots", "rows [time, value]", Shape::List(Box::new(row))).required()];
+    knots.extend(between_rows());
+
+    let constant = Quantity::any(unit);
+    vec![
+        Object::new(
+            "key beside a sine",
+            vec![
+                Key::new(
+                    "sine",
+                    "amplitude sin(2π frequency (t − start) + phase)",
+                    sine,
+                )
+                .required(),
+            ],
+        ),
+        Object::new(
+            "key beside a table",
+            vec![
+                Key::new(
+                    "table",
+                    "rows from a file",
+                    Object::new("key of a table", table),
+                )
+                .required(),
+            ],
+        ),
+        Object::new("key beside knots", knots),
+        Object::new(
+            "key beside a constant",
+            vec![Key::new("constant", "the same at all times", constant).required()],
+        ),
+    ]
+}
+
+fn between_rows() -> [Key; 2] {
+    let interpolation = Shape::Choice("interpolation", vec!["linear", "cubic", "previous"]);
+    let outside = Shape::Choice("extension", vec!["zero", "hold"]);
+    [
+        Key::new(
+            "interpolation",
+            "straight lines; a twice differentiable spline; or the value of the row before",
+            interpolation,
+        )
+        .default("linear"),
+        Key::new(
+            "outside",
+            "zero, or the first and the last value, outside the rows",
+            outside,
+        )
+        .default("zero"),
+    ]
+}
+
+/// The key of a coordinate's velocity.
+pub(crate) fn rate_key(coordinate: &Coordinate) -> String {
+    format!("{}.rate", coordinate.name)
+}
+
+/// The unit of a coordinate's velocity.
+pub(crate) fn rate_unit(coordinate: &Coordinate) -> String {
+    format!("{}/s", coordinate.unit)
+}
+
+fn initial(model: Option<&Model>) -> Object {
+    let meaning = "mode at t = 0; by default the one that fits the state";
+    let Some(model) = model else {
+        let keys = vec![Key::new("mode", meaning, Shape::Text)];
+        return Object::new("coordinate", keys).others(Quantity::any(""));
+    };
+    let mut keys = vec![Key::new(
+        "mode",
+        meaning,
+        Shape::Choice("mode", mode_names(model.variants)),
+    )];
+    for c in model.coordinates {
+        let position = Quantity::at_least(c.minimum.unwrap_or(f64::NEG_INFINITY), c.unit);
+        keys.push(Key::new(c.name, c.meaning, position));
+        let rate = format!("velocity of {}", c.name);
+        keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
+    }
+    for d in model.discretes {
+        let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values));
+        key.default = d.values.first().map(|&v| v.into());
+        keys.push(key);
+    }
+    Object::new("coordinate", keys)
+}
+
+fn freeze(model: Option<&Model>) -> Shape {
+    let name = match model {
+        Some(model) => Shape::Choice(
+            "coordinate",
+            model.coordinates.iter().map(|c| c.name).collect(),
+        ),
+        None => Shape::Text,
+    };
+    Shape::List(Box::new(name))
+}
+
+fn end(model: Option<&Model>) -> Shape {
+    let time = Quantity::positive("s");
+    let transitions = match model {
+        Some(model) => {
+            let key = |name| Key::new(name, "how many of these transitions", Shape::Count);
+            Object::new(
+                "transition",
+                transition_names(model.variants)
+                    .into_iter()
+                    .map(key)
+                    .collect(),
+            )
+        }
+        None => Object::new("transition", Vec::new()).others(Shape::Count),
+    };
+    let object = Object::new(
+        "key of the end",
+        vec![
+            Key::new("time", "latest end", time.clone()).required(),
+            Key::new(
+                "after",
+                "the transition that ends the run and its number",
+                transitions,
+            ),
+        ],
+    );
+    Shape::Either(vec![time.into(), object.into()])
+}
+
+fn accuracy(model: Option<&Model>) -> Object {
+    // No tolerance can be below the distance of neighbouring doubles.
+    let relative = Quantity {
+        unit: "1".into(),
+        minimum: f64::EPSILON,
+        minimum_exclusive: false,
+        maximum: 1.0,
+    };
+    let each = match model {
+        None => Object::new("coordinate", Vec::new()).others(Quantity::positive("")),
+        Some(model) => {
+            let keys = model.coordinates.iter().flat_map(|c| {
+                let rate = format!("of the velocity of {}", c.name);
+                [
+                    Key::new(c.name, format!("of {}", c.name), Quantity::positive(c.unit)),
+                    Key::new(rate_key(c), rate, Quantity::positive(rate_unit(c))),
+                ]
+            });
+            Object::new("coordinate", keys.collect())
+        }
+    };
+    let all = Quantity::positive("1");
+    let meaning = "absolute tolerance: one number for every coordinate and velocity, each in its \
+                   unit, or an object; by default the relative one times the typical magnitude";
+    Object::new(
+        "key of the accuracy",
+        vec![
+            Key::new("relative", "relative tolerance of a step", relative)
+                .default(DEFAULT_RELATIVE),
+            Key::new(
+                "absolute",
+                meaning,
+                Shape::Either(vec![all.into(), each.into()]),
+            ),
+        ],
+    )
+}
+
+fn record() -> Object {
+    let flag = |name, meaning| Key::new(name, meaning, Shape::Flag).default(true);
+    Object::new(
+        "key of the record",
+        vec![
+            Key::new(
+                "every",
+                "time between rows of the trajectory; by default every step is a row",
+                Quantity::positive("s"),
+            ),
+            flag("reactions", "whether reactions are computed and written"),
+            flag("energies", "whether the energy ledger is kept"),
+            flag("inputs", "whether inputs are written"),
+        ],
+    )
+}
+
+/// The names of the modes of some variants, each once.
+pub(crate) fn mode_names(variants: &[Variant]) -> Vec<&'static str> {
+    unique(variants.iter().flat_map(|v| v.modes).map(|m| m.name))
+}
+
+/// The names of the transitions of some variants, each once.
+pub(crate) fn transition_names(variants: &[Variant]) -> Vec<&'static str> {
+    let guards = variants.iter().flat_map(|v| v.modes).flat_map(|m| m.guards);
+    unique(guards.flat_map(|g| g.transitions).map(|t| t.name))
+}
+
+fn unique(names: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
+    let mut unique = Vec::new();
+    for name in names {
+        if !unique.contains(&name) {
+            unique.push(name);
+        }
+    }
+    unique
+}

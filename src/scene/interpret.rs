@@ -1,0 +1,265 @@
+//! From a checked tree to a [`Scene`]: what no table of keys can say.
+
+use std::path::Path;
+
+use super::check::{Checked, check, unknown_name};
+use super::error::{Errors, SceneError, SceneErrorKind, SceneErrors};
+use super::files::Files;
+use super::shape::Shape;
+use super::tree::{Node, Value};
+use super::wording::listing;
+use super::{Accuracy, End, Record, Scene, SceneSource, format, inputs, state};
+use crate::model::{Model, Variant};
+
+/// Checks a tree and makes a scene of it. `folder` is what tables are relative to.
+pub(crate) fn scene(
+    root: Node,
+    models: &[&'static Model],
+    files: &dyn Files,
+    folder: &Path,
+) -> Result<Scene, SceneErrors> {
+    let mut errors = Errors::default();
+    let model = model(&root, models)?;
+    let checked = check(
+        &root,
+        &Shape::Object(format::scene(Some(model))),
+        &mut errors,
+    );
+    errors.check()?;
+    // Without an error there is a value.
+    let Some(checked) = checked else {
+        unreachable!("{root:?} failed its check without an error")
+    };
+
+    let variant = variant(model, &checked)?;
+    let parameters = errors.note(parameters(model, &checked));
+    let signals = inputs::signals(
+        model,
+        &checked,
+        &inputs::Reader { files, folder },
+        &mut errors,
+    );
+    let freeze = state::freeze(model, variant, &checked, &mut errors);
+    let initial = state::initial(model, variant, &checked, &freeze, &mut errors);
+    let end = errors.note(end(variant, &checked));
+    errors.check()?;
+    let (Some(parameters), Some(signals), Some(initial), Some(end)) =
+        (parameters, signals, initial, end)
+    else {
+        unreachable!("a part of the scene is absent without an error")
+    };
+    Ok(Scene {
+        model,
+        variant,
+        title: checked.get("title").map(|title| title.text().to_owned()),
+        parameters,
+        signals,
+        initial,
+        freeze,
+        end,
+        accuracy: accuracy(model, &checked),
+        record: record(&checked),
+        source: SceneSource { root },
+    })
+}
+
+fn model(root: &Node, models: &[&'static Model]) -> Result<&'static Model, SceneError> {
+    let known: Vec<&str> = models.iter().map(|m| m.name).collect();
+    let wrong_type = |node: &Node, expected: &str| {
+        let (expected, found) = (expected.to_owned(), node.type_name().to_owned());
+        SceneError::new(SceneErrorKind::WrongType { expected, found }, &node.place())
+    };
+    if !matches!(root.value, Value::Object(_)) {
+        return Err(wrong_type(root, "an object").help("a scene begins with { \"model\": …"));
+    }
+    let Some(node) = root.get("model") else {
+        let kind = SceneErrorKind::MissingKey {
+            keys: vec!["model".into()],
+        };
+        let help = format!("known models: {}", listing(known));
+        return Err(SceneError::new(kind, &root.place()).help(help));
+    };
+    let Value::Text(name) = &node.value else {
+        return Err(wrong_type(node, "the name of a model"));
+    };
+    models
+        .iter()
+        .find(|m| m.name == name)
+        .copied()
+        .ok_or_else(|| unknown_name("model", name, &known, &node.place()))
+}
+
+/// The variant that has the options the scene names, and the defaults for the others.
+fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, SceneError> {
+    let named: Vec<Option<&Checked>> = model.choices.iter().map(|c| scene.get(c.name)).collect();
+    let fits = |variant: &&Variant| {
+        named.iter().enumerate().all(|(i, name)| match name {
+            Some(name) => variant.options[i] == name.text(),
+            None => variant.defaults[i],
+        })
+    };
+    model.variants.iter().find(fits).ok_or_else(|| {
+        let pairs = |options: &[&str]| {
+            let pairs = model.choices.iter().zip(options);
+            pairs
+                .map(|(c, option)| format!("{} = {option}", c.name))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        let chosen: Vec<String> = model
+            .choices
+            .iter()
+            .zip(&named)
+            .filter_map(|(c, name)| name.map(|name| format!("{} = {}", c.name, name.text())))
+            .collect();
+        let place = named
+            .iter()
+            .flatten()
+            .last()
+            .map_or(&scene.place, |name| &name.place);
+        let offered: Vec<String> = model.variants.iter().map(|v| pairs(v.options)).collect();
+        let kind = SceneErrorKind::NoVariant {
+            chosen: chosen.join(", "),
+        };
+        SceneError::new(kind, place).help(format!("it offers {}", offered.join("; ")))
+    })
+}
+
+/// The variant as text, for errors: ` under rules = paper, landing = velocities`.
+pub(crate) fn under(model: &Model, variant: &Variant) -> String {
+    let pairs = model.choices.iter().zip(variant.options);
+    let pairs: Vec<String> = pairs
+        .map(|(c, option)| format!("{} = {option}", c.name))
+        .collect();
+    if pairs.is_empty() {
+        String::new()
+    } else {
+        format!(" under {}", pairs.join(", "))
+    }
+}
+
+/// Defaults, then the parameter set, then what the scene says.
+fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
+    let mut values: Vec<f64> = model.parameters.iter().map(|p| p.default).collect();
+    let object = scene.get("parameters");
+    let entry = |name: &str| object.and_then(|o| o.get(name));
+    let set = entry("set").and_then(|name| {
+        model
+            .parameter_sets
+            .iter()
+            .find(|set| set.name == name.text())
+    });
+    for (name, value) in set.map_or(&[][..], |set| set.values) {
+        if let Some(i) = model.parameter(name) {
+            values[i] = *value;
+        }
+    }
+    for (parameter, value) in model.parameters.iter().zip(&mut values) {
+        if let Some(given) = entry(parameter.name) {
+            *value = given.number();
+        }
+    }
+    for (i, parameter) in model.parameters.iter().enumerate() {
+        let Some(limit) = parameter.at_most else {
+            continue;
+        };
+        let Some(j) = model.parameter(limit) else {
+            continue;
+        };
+        if values[i] > values[j] {
+            let place = [parameter.name, limit, "set"].into_iter().find_map(entry);
+            let place = place
+                .or(object)
+                .map_or(&scene.place, |checked| &checked.place);
+            let (name, value, limit_value) = (parameter.name, values[i], values[j]);
+            let kind = SceneErrorKind::Exceeds {
+                name,
+                value,
+                limit,
+                limit_value,
+            };
+            let help = format!("lower `{name}` or raise `{limit}`");
+            return Err(SceneError::new(kind, place).help(help));
+        }
+    }
+    Ok(values)
+}
+
+fn end(variant: &'static Variant, scene: &Checked) -> Result<End, SceneError> {
+    let Some(end) = scene.get("end") else {
+        unreachable!("`end` is a required key")
+    };
+    let Some(time) = end.get("time") else {
+        return Ok(End {
+            time: end.number(),
+            after: None,
+        });
+    };
+    let time = time.number();
+    let Some(after) = end.get("after") else {
+        return Ok(End { time, after: None });
+    };
+    let (name, count) = match after.entries() {
+        [(name, count)] => (name, count),
+        [] => {
+            let keys = vec!["the name of a transition".into()];
+            return Err(SceneError::new(
+                SceneErrorKind::MissingKey { keys },
+                &after.place,
+            ));
+        }
+        [(first, _), (second, at), ..] => {
+            let (first, second) = (first.clone(), second.clone());
+            return Err(
+                SceneError::new(SceneErrorKind::Conflict { first, second }, &at.place)
+                    .help("a run ends after one kind of transition"),
+            );
+        }
+    };
+    let known = format::transition_names(std::slice::from_ref(variant));
+    match known.iter().find(|k| *k == name) {
+        // Checked to be a whole number that a double holds exactly.
+        Some(name) => Ok(End {
+            time,
+            after: Some((name, count.number() as u64)),
+        }),
+        None => Err(unknown_name("transition", name, &known, &count.place)),
+    }
+}
+
+fn accuracy(model: &Model, scene: &Checked) -> Accuracy {
+    let accuracy = scene.get("accuracy");
+    let relative = accuracy
+        .and_then(|a| a.get("relative"))
+        .map_or(format::DEFAULT_RELATIVE, Checked::number);
+    let absolute = accuracy.and_then(|a| a.get("absolute"));
+    let tolerance = |key: &str, scale: f64| match absolute {
+        Some(map) if map.is_object() => map.get(key).map_or(relative * scale, Checked::number),
+        Some(all) => all.number(),
+        None => relative * scale,
+    };
+    let coordinates = model.coordinates;
+    Accuracy {
+        relative,
+        q_absolute: coordinates
+            .iter()
+            .map(|c| tolerance(c.name, c.scale))
+            .collect(),
+        v_absolute: coordinates
+            .iter()
+            .map(|c| tolerance(&format::rate_key(c), c.rate_scale))
+            .collect(),
+    }
+}
+
+fn record(scene: &Checked) -> Record {
+    let record = scene.get("record");
+    let entry = |key: &str| record.and_then(|r| r.get(key));
+    let flag = |key: &str| entry(key).is_none_or(Checked::flag);
+    Record {
+        every: entry("every").map(Checked::number),
+        reactions: flag("reactions"),
+        energies: flag("energies"),
+        inputs: flag("inputs"),
+    }
+}

@@ -1,0 +1,202 @@
+//! The initial state and the coordinates that a scene freezes, as far as the model's tables can
+//! judge them. The engine judges the rest, with the model's functions.
+
+use super::check::{Checked, unknown_name};
+use super::error::{Errors, SceneError, SceneErrorKind};
+use super::interpret::under;
+use super::wording::{listing, shown};
+use super::{Initial, format};
+use crate::model::{Mode, Model, Variant};
+
+/// The coordinates to freeze, increasing. Each must be held still by some mode, or no equations
+/// without it exist.
+pub(crate) fn freeze(
+    model: &Model,
+    variant: &Variant,
+    scene: &Checked,
+    errors: &mut Errors,
+) -> Vec<usize> {
+    let mut frozen = Vec::new();
+    for name in scene.get("freeze").map_or(&[][..], Checked::list) {
+        let Some(i) = model.coordinate(name.text()) else {
+            unreachable!("checked to name a coordinate: {name:?}")
+        };
+        let coordinate = model.coordinates[i].name;
+        if frozen.contains(&i) {
+            let kind = SceneErrorKind::DuplicateKey {
+                key: coordinate.to_owned(),
+            };
+            errors.push(SceneError::new(kind, &name.place));
+        } else if variant.modes.iter().all(|mode| mode.free.contains(&i)) {
+            let kind = SceneErrorKind::NeverFrozen { coordinate };
+            let held = model.coordinates.iter().enumerate();
+            let held = held.filter(|(i, _)| variant.modes.iter().any(|m| !m.free.contains(i)));
+            let held = listing(held.map(|(_, c)| c.name));
+            errors
+                .push(SceneError::new(kind, &name.place).help(format!("modes hold {held} still")));
+        } else {
+            frozen.push(i);
+        }
+    }
+    frozen.sort_unstable();
+    frozen
+}
+
+/// The initial state. What the scene does not say is zero, or where the modes hold it.
+pub(crate) fn initial(
+    model: &Model,
+    variant: &Variant,
+    scene: &Checked,
+    freeze: &[usize],
+    errors: &mut Errors,
+) -> Option<Initial> {
+    let object = scene.get("initial");
+    let entry = |key: &str| object.and_then(|o| o.get(key));
+    let keeps_frozen = |mode: &Mode| freeze.iter().all(|i| !mode.free.contains(i));
+
+    let mode = match entry("mode") {
+        Some(name) => Some(errors.note(named_mode(model, variant, name))?),
+        None => None,
+    };
+    let modes: Vec<&Mode> = match mode {
+        Some(i) => vec![&variant.modes[i]],
+        None => variant.modes.iter().filter(|m| keeps_frozen(m)).collect(),
+    };
+    if let (Some(i), Some(at)) = (mode, entry("mode")) {
+        let mode = &variant.modes[i];
+        if let Some(&i) = freeze.iter().find(|i| mode.free.contains(i)) {
+            let (name, coordinate) = (mode.name, model.coordinates[i].name);
+            let message =
+                format!("mode `{name}` leaves `{coordinate}` free, but the scene freezes it");
+            errors.push(SceneError::new(
+                SceneErrorKind::State { message },
+                &at.place,
+            ));
+            return None;
+        }
+    }
+    if modes.is_empty() {
+        let message = "no mode holds all of these coordinates still".to_owned();
+        let at = scene.get("freeze").map_or(&scene.place, |f| &f.place);
+        errors.push(SceneError::new(SceneErrorKind::State { message }, at));
+        return None;
+    }
+
+    let states: Vec<Given> = model
+        .coordinates
+        .iter()
+        .map(|c| Given {
+            position: entry(c.name),
+            rate: entry(&format::rate_key(c)),
+        })
+        .collect();
+    let fits =
+        |mode: &&&Mode| (0..states.len()).all(|i| states[i].objection(model, i, mode).is_none());
+    if !modes.iter().any(|mode| fits(&mode)) {
+        let place = object.map_or(&scene.place, |o| &o.place);
+        errors.push(misfit(model, &states, &modes, place));
+        return None;
+    }
+
+    let q = model
+        .coordinates
+        .iter()
+        .enumerate()
+        .map(|(i, c)| match states[i].position {
+            Some(position) => position.number(),
+            None => held_by_all(&modes, i).unwrap_or(0.0_f64.max(c.minimum.unwrap_or(0.0))),
+        });
+    let discrete = model.discretes.iter().map(|d| match entry(d.name) {
+        Some(value) => value.number(),
+        None => d.values.first().copied().unwrap_or(0.0),
+    });
+    Some(Initial {
+        q: q.collect(),
+        v: states
+            .iter()
+            .map(|s| s.rate.map_or(0.0, Checked::number))
+            .collect(),
+        discrete: discrete.collect(),
+        mode,
+    })
+}
+
+fn named_mode(model: &Model, variant: &Variant, name: &Checked) -> Result<usize, SceneError> {
+    variant
+        .modes
+        .iter()
+        .position(|m| m.name == name.text())
+        .ok_or_else(|| {
+            // The name is a mode of the model, but of another variant.
+            let known = format::mode_names(std::slice::from_ref(variant));
+            let what = format!("mode{}:", under(model, variant));
+            unknown_name(&what, name.text(), &known, &name.place)
+        })
+}
+
+/// The value at which the modes that hold a coordinate hold it, if there is one and they agree.
+fn held_by_all(modes: &[&Mode], i: usize) -> Option<f64> {
+    let mut held = modes.iter().filter_map(|m| m.held_at[i]);
+    let first = held.next()?;
+    held.all(|other| other == first).then_some(first)
+}
+
+/// What a scene says about a coordinate.
+struct Given<'s> {
+    position: Option<&'s Checked>,
+    rate: Option<&'s Checked>,
+}
+
+impl<'s> Given<'s> {
+    /// Why coordinate `i` cannot start like this in a mode, and the value at fault.
+    fn objection(&self, model: &Model, i: usize, mode: &Mode) -> Option<(String, &'s Checked)> {
+        if mode.free.contains(&i) {
+            return None;
+        }
+        let (name, unit) = (model.coordinates[i].name, model.coordinates[i].unit);
+        if let Some(held) = mode.held_at[i] {
+            let elsewhere = self.position.filter(|position| position.number() != held);
+            if let Some(position) = elsewhere {
+                let held = shown(held);
+                let message = format!("mode `{}` holds `{name}` at {held} {unit}", mode.name);
+                return Some((message, position));
+            }
+        }
+        // The rate at which a mode lets a coordinate drift is a function of the model.
+        let moving = self
+            .rate
+            .filter(|rate| rate.number() != 0.0 && !mode.drifts[i])?;
+        Some((format!("mode `{}` holds `{name}` still", mode.name), moving))
+    }
+}
+
+/// The error for a state that fits none of the modes: about a coordinate that none admits, if
+/// there is one, else about the state as a whole.
+fn misfit(
+    model: &Model,
+    states: &[Given],
+    modes: &[&Mode],
+    place: &super::source::Span,
+) -> SceneError {
+    let objections = |i: usize| -> Option<Vec<_>> {
+        modes
+            .iter()
+            .map(|mode| states[i].objection(model, i, mode))
+            .collect()
+    };
+    let error = |message, at| SceneError::new(SceneErrorKind::State { message }, at);
+    let names = |modes: &[&Mode]| listing(modes.iter().map(|m| m.name));
+    match (0..states.len()).find_map(objections).as_deref() {
+        Some([(message, at), others @ ..]) => {
+            let message = match others {
+                [] => message.clone(),
+                _ => format!("{message}, and so does every other mode it could start in"),
+            };
+            error(message, &at.place).help("change it, leave it out, or start in another mode")
+        }
+        _ => error("no mode admits this state".to_owned(), place).help(format!(
+            "each of the modes {} holds a coordinate that is elsewhere or moves",
+            names(modes)
+        )),
+    }
+}
