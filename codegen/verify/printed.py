@@ -1,0 +1,212 @@
+"""What a paper prints: its symbols with their units, and its equations as lists of terms.
+
+A printed equation is a Python function of a namespace `s` of symbols and a namespace `m` of
+functions (`sin`, `cos`, `sign`, `Abs`). It returns its terms in printed order, every bracketed
+sum multiplied out into its parts, each part as one expression. The same function is evaluated
+with SymPy symbols (verification) and with CasADi symbols or numbers (simulation).
+
+Names: a coordinate or input `x` has the rate `dx` and the acceleration `ddx`.
+"""
+
+from dataclasses import dataclass, field, replace
+from typing import Callable, Dict, Optional, Tuple
+
+
+class PaperError(Exception):
+    """A paper, correction or energy file that contradicts itself; the message says where."""
+
+
+class Namespace:
+    """Symbols by attribute; an unknown name is an error that names it."""
+
+    def __init__(self, values, owner="the paper"):
+        self.__dict__.update(values)
+        self.__dict__["_owner"] = owner
+
+    def __getattr__(self, name):
+        raise PaperError(f"{self._owner} does not declare the symbol '{name}'")
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A symbol that the paper uses.
+
+    `role` is coordinate, input, parameter, discrete or force. `mirror` is the sign that the
+    symbol takes in the mirror image of the system. `dissipative` marks what must vanish for the
+    equations to have a Lagrangian (damping constants, friction forces). `minimum` is a bound
+    that every admissible state respects.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    role: str
+    latex: str
+    mirror: int = 1
+    dissipative: bool = False
+    minimum: Optional[float] = None
+    values: Tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A printed equation.
+
+    `kind` says what the terms mean:
+
+    - motion: they sum to zero (left side minus right side); `of` is the coordinate
+    - value: they sum to the symbol `of`
+    - condition: the function returns two lists, left and right of `relation`
+    - rule: the discrete state `of` takes `result` when the terms' sum is `relation` 0
+    - reset: they sum to the rate of the coordinate `of` after an impact, in the state before it
+    """
+
+    number: str
+    kind: str
+    of: str
+    latex: str
+    function: Callable
+    title: str = ""
+    relation: str = ""
+    result: int = 0
+
+    def terms(self, s, m):
+        """The printed terms, in printed order; of a condition, (left, right)."""
+        return self.function(s, m)
+
+    def value(self, s, m):
+        """The sum of the terms; of a condition, right minus left."""
+        terms = self.function(s, m)
+        if self.kind == "condition":
+            left, right = terms
+            return sum(right[1:], right[0]) - sum(left[1:], left[0])
+        return sum(terms[1:], terms[0])
+
+
+def group(factor, *terms):
+    """`factor {a + b + ...}` of a printed equation as the list of its terms."""
+    return [factor * term for term in terms]
+
+
+@dataclass
+class Paper:
+    """The symbols and equations of one paper, in the order in which it prints them.
+
+    `translation` names a coordinate and an input that may enter the energies only as their sum
+    (slip and ground displacement): Galilean invariance is judged for it. `definitions` give
+    symbols that the paper uses without defining them, by what they must mean.
+    """
+
+    title: str
+    source: str
+    symbols: Dict[str, Symbol] = field(default_factory=dict)
+    equations: Dict[str, Equation] = field(default_factory=dict)
+    definitions: Dict[str, Callable] = field(default_factory=dict)
+    translation: Optional[Tuple[str, str]] = None
+
+    def _declare(self, symbol):
+        if symbol.name in self.symbols:
+            raise PaperError(f"the symbol '{symbol.name}' is declared twice")
+        self.symbols[symbol.name] = symbol
+
+    def coordinate(self, name, unit, meaning, latex=None, mirror=1, minimum=None):
+        """Declare a generalized coordinate; `minimum` where it is one-sided (an uplift)."""
+        self._declare(Symbol(name, unit, meaning, "coordinate", latex or latex_name(name), mirror, minimum=minimum))
+
+    def input(self, name, unit, meaning, latex=None, mirror=1):
+        """Declare a prescribed displacement; equations use its rates `dname`, `ddname`."""
+        self._declare(Symbol(name, unit, meaning, "input", latex or latex_name(name), mirror))
+
+    def parameter(self, name, unit, meaning, latex=None, dissipative=False):
+        """Declare a constant."""
+        self._declare(Symbol(name, unit, meaning, "parameter", latex or latex_name(name), dissipative=dissipative))
+
+    def discrete(self, name, values, meaning, latex=None, mirror=1):
+        """Declare a discrete state; only the values (+1, -1) are known to the algebra."""
+        if tuple(sorted(values)) != (-1, 1):
+            raise PaperError(f"the discrete state '{name}' must take the values +1 and -1, not {values}")
+        self._declare(Symbol(name, "1", meaning, "discrete", latex or latex_name(name), mirror, values=tuple(values)))
+
+    def force(self, name, unit, meaning, latex=None, mirror=1, dissipative=True):
+        """Declare a symbol for a force that another equation gives (friction, a reaction)."""
+        self._declare(Symbol(name, unit, meaning, "force", latex or latex_name(name), mirror, dissipative=dissipative))
+
+    def undefined(self, name, unit, meaning, latex=None):
+        """Declare a symbol that the paper prints but does not define, read as the decorated
+        function of the other symbols."""
+
+        def register(function):
+            self.parameter(name, unit, meaning, latex)
+            self.definitions[name] = function
+            return function
+
+        return register
+
+    def _equation(self, number, kind, of, latex, title, relation="", result=0):
+        def register(function):
+            if number in self.equations:
+                raise PaperError(f"equation ({number}) is given twice")
+            self.equations[number] = Equation(number, kind, of, latex, function, title, relation, result)
+            return function
+
+        return register
+
+    def motion(self, number, of, title="", latex=""):
+        """Register an equation of motion of the coordinate `of`."""
+        return self._equation(number, "motion", of, latex, title)
+
+    def value(self, number, of, title="", latex=""):
+        """Register an equation that gives the value of the symbol `of`."""
+        return self._equation(number, "value", of, latex, title)
+
+    def condition(self, number, of, relation, title="", latex=""):
+        """Register an inequality; `of` is the coordinate or symbol that it decides about."""
+        return self._equation(number, "condition", of, latex, title, relation)
+
+    def rule(self, number, of, result, relation, title="", latex=""):
+        """Register a sign rule for the discrete state `of`."""
+        return self._equation(number, "rule", of, latex, title, relation, result)
+
+    def reset(self, number, of, title="", latex=""):
+        """Register an impact law for the rate of the coordinate `of`."""
+        return self._equation(number, "reset", of, latex, title)
+
+    def coordinates(self):
+        """Names of the coordinates, in declared order."""
+        return [name for name, symbol in self.symbols.items() if symbol.role == "coordinate"]
+
+    def motions(self):
+        """Equations of motion, in printed order."""
+        return [equation for equation in self.equations.values() if equation.kind == "motion"]
+
+    def names(self):
+        """Every name that the namespace `s` offers: symbols, rates and accelerations."""
+        names = []
+        for symbol in self.symbols.values():
+            names.append(symbol.name)
+            if symbol.role in ("coordinate", "input"):
+                names += ["d" + symbol.name, "dd" + symbol.name]
+        return names
+
+    def namespace(self, values, m):
+        """The namespace `s` from values by name; undefined symbols follow from their reading."""
+        known = dict(values)
+        for name, reading in self.definitions.items():
+            if name not in known:
+                known[name] = reading(Namespace(known, self.title), m)
+        return Namespace(known, self.title)
+
+    def with_equations(self, equations):
+        """The same paper with some equations replaced (corrected or mutated)."""
+        return replace(self, equations={**self.equations, **{e.number: e for e in equations}})
+
+
+GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "lambda", "mu", "nu",
+         "xi", "pi", "rho", "sigma", "tau", "phi", "psi", "omega", "Omega", "Delta")
+
+
+def latex_name(name):
+    """LaTeX of a symbol's name: `alpha_0` is \\alpha_{0}, `M_rb` is M_{rb}."""
+    head, _, index = name.partition("_")
+    head = "\\" + head if head in GREEK else head
+    return f"{head}_{{{index}}}" if index else head
