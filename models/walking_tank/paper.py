@@ -13,6 +13,14 @@ paper = Paper(
     source="Taniguchi, Governing equations of motion of walking behavior of unanchored flat-bottom "
            "cylindrical shell tanks subjected to horizontal sinusoidal ground motion",
     translation=("x", "z_h"),
+    negligible=("M_S", "I_S"),
+    # uplift and bulging well beyond the motions of the scenes (some 0.02 rad and 1 mm)
+    special={
+        "M_rb = M_I": {"M_rb": "M_I"},
+        "M_S = I_S = 0": {"M_S": 0, "I_S": 0},
+        "theta = 0": {"theta": 0},
+    },
+    box={"theta": (0.0, 0.1), "x_I": (-0.01, 0.01)},
 )
 
 paper.coordinate("theta", "rad", "uplift angle about the pivot edge", minimum=0.0)
