@@ -144,6 +144,27 @@ def lagrangian(subject, motion=None) -> List[Violation]:
         if j < i and (form := x[i][j] - x[j][i] - (v[i][j] - v[j][i]).rate(chain) * Fraction(1, 2)):
             report(i, j, f"the terms of ({number_i}) in {q[j]} and of ({number_j}) in {q[i]} do not come from one "
                          "energy; left over: ", form)
+    for number, equation in subject.paper.equations.items():
+        if equation.momentum:
+            violations += _momentum(subject, number, q, chain)
+    return violations
+
+
+def _momentum(subject, number, q, chain):
+    """The Helmholtz conditions of a reaction of a translation of the whole system. No other
+    equation depends on its displacement or velocity, so they concern its own terms only."""
+    total = subject.total(number)
+    violations = []
+    for name in q:
+        velocity, mass = total.diff("d" + name), total.diff("dd" + name)
+        if form := velocity - mass.rate(chain) * 2:
+            violations.append(Violation("lagrangian", (number,), (), [
+                f"({number}) is not the rate of a momentum: its terms in the velocity of {name} do not belong to those in "
+                "the acceleration; left over: ", form]))
+        if form := total.diff(name) - velocity.rate(chain) * Fraction(1, 2):
+            violations.append(Violation("lagrangian", (number,), (), [
+                f"({number}) is not the rate of a momentum: its terms in {name} do not belong to those in the velocities; "
+                "left over: ", form]))
     return violations
 
 
@@ -213,6 +234,11 @@ def difference(subject, motion) -> List[Violation]:
                 "the energies do not give ", subject.forms[number][index]]))
         for form in comparison.absent:
             violations.append(Violation("difference", (number,), (), ["the energies give also ", form]))
+        equation = subject.paper.equations[number]
+        moduli = [i for i, form in enumerate(subject.forms[number]) if _opaque(form)]
+        if equation.kind == "condition" and len(moduli) > 1 and not _opaque(motion.reference(equation)):
+            violations.append(Violation("difference", (number,), tuple(moduli), [
+                "the condition sums moduli where the energies give the modulus of a sum"]))
     return violations
 
 

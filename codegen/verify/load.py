@@ -13,7 +13,7 @@ from .printed import PaperError
 @dataclass
 class Case:
     """All that a model folder offers to verification: `paper.py` (`paper`), `paper_energies.py`
-    (`energies`, a list; the first explains the paper best), `corrections.py` (`corrections`) and
+    (`energies`, a list; the first explains the paper best; also `candidates` for that place), `corrections.py` (`corrections`) and
     `paper_numbers.py` (`numbers`)."""
 
     name: str
@@ -22,6 +22,7 @@ class Case:
     energies: List = field(default_factory=list)
     corrections: List = field(default_factory=list)
     numbers: List = field(default_factory=list)
+    candidates: List = field(default_factory=list)
 
 
 def load(folder, name: Optional[str] = None) -> Case:
@@ -46,5 +47,7 @@ def load(folder, name: Optional[str] = None) -> Case:
             raise PaperError(f"{folder / (file + '.py')} does not define '{attribute}'")
         return getattr(module, attribute)
 
-    return Case(name, folder, offered("paper", "paper", None), list(offered("paper_energies", "energies", [])),
-                list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])))
+    energies = offered("paper_energies", "energies", [])
+    candidates = getattr(sys.modules.get(f"{package}.paper_energies"), "candidates", [])
+    return Case(name, folder, offered("paper", "paper", None), list(energies),
+                list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates))

@@ -60,7 +60,8 @@ class Equation:
     - rule: the discrete state `of` takes `result` when the terms' sum is `relation` 0
     - reset: they sum to the rate of the coordinate `of` after an impact, in the state before it
 
-    `margin` marks a condition whose function already gives the terms of its margin.
+    `margin` marks a condition whose function already gives the terms of its margin, `momentum` a
+    force that is the rate of a momentum: the reaction of a translation of the whole system.
     """
 
     number: str
@@ -72,6 +73,7 @@ class Equation:
     relation: str = ""
     result: int = 0
     margin: bool = False
+    momentum: bool = False
 
     def terms(self, s, m):
         """The printed terms, in printed order. Of a condition, with the signs that make their
@@ -157,11 +159,12 @@ class Paper:
 
         return register
 
-    def _equation(self, number, kind, of, latex, title, relation="", result=0):
+    def _equation(self, number, kind, of, latex, title, relation="", result=0, momentum=False):
         def register(function):
             if number in self.equations:
                 raise PaperError(f"equation ({number}) is given twice")
-            self.equations[number] = Equation(number, kind, of, latex, function, title, relation, result)
+            self.equations[number] = Equation(
+                number, kind, of, latex, function, title, relation, result, momentum=momentum)
             return function
 
         return register
@@ -170,9 +173,10 @@ class Paper:
         """Register an equation of motion of the coordinate `of`."""
         return self._equation(number, "motion", of, latex, title)
 
-    def value(self, number, of, title="", latex=""):
-        """Register an equation that gives the value of the symbol `of`."""
-        return self._equation(number, "value", of, latex, title)
+    def value(self, number, of, title="", latex="", momentum=False):
+        """Register an equation that gives the value of the symbol `of`; `momentum` if that is the
+        force on a translation of the whole system (base shear, normal force)."""
+        return self._equation(number, "value", of, latex, title, momentum=momentum)
 
     def condition(self, number, of, relation, title="", latex=""):
         """Register an inequality; `of` is the coordinate or symbol that it decides about."""

@@ -124,7 +124,7 @@ def _bodies(s, m):
     return (energy + s.M_T * s.dy**2 + 2 * s.dy * vertical) / 2
 
 
-CANDIDATES = [candidate(bulging, rocking) for bulging in BULGING for rocking in ROCKING]
+candidates = [candidate(bulging, rocking) for bulging in BULGING for rocking in ROCKING]
 
 consistent = _references(Energies(
     name="energy-consistent bodies",
