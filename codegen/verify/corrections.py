@@ -8,7 +8,7 @@ from .printed import PaperError
 
 KINDS = {
     "misprint": "a misprint: what it must say follows from the other printed equations",
-    "approximation": "an approximation: a small term is left out in one place and kept in another",
+    "approximation": "an approximation: something small is left out",
     "choice": "a modelling choice: the paper can be read, or the model made, either way",
 }
 

@@ -46,13 +46,15 @@ def printed_mass(subject, symmetric=False):
     return [[(matrix[i][j] + matrix[j][i]) * HALF for j in range(len(matrix))] for i in range(len(matrix))]
 
 
-def states(paper):
-    """All combinations of the discrete states, as dictionaries."""
+def states(paper, forms=None):
+    """All combinations of the discrete states (of those that the forms contain), as dictionaries."""
     names = [x.name for x in paper.symbols.values() if x.role == "discrete"]
+    if forms is not None:
+        names = [n for n in names if any(n in form.names() for form in forms)]
     return [dict(zip(names, values)) for values in product((1, -1), repeat=len(names))]
 
 
-def _interval(values):
+def intervals(values):
     """Intervals by name from decimal strings, numbers or (low, high) pairs."""
     from mpmath import iv
 
@@ -82,18 +84,18 @@ class Verdict:
 
 def prove(forms, fixed, box, limit=BISECTIONS) -> Verdict:
     """Whether all forms are positive over a box {name: (low, high)} with the other values fixed."""
-    fixed = _interval(fixed)
+    fixed = intervals(fixed)
     queue, count = [dict(box)], 0
     while queue:
         part = queue.pop()
         count += 1
-        found = signs(forms, {**fixed, **_interval(part)})
+        found = signs(forms, {**fixed, **intervals(part)})
         if -1 in found:
             return Verdict("refuted", count, part)
         if all(sign == 1 for sign in found):
             continue
         middle = {n: ((low + high) / 2,) * 2 for n, (low, high) in part.items()}
-        if -1 in signs(forms, {**fixed, **_interval(middle)}):
+        if -1 in signs(forms, {**fixed, **intervals(middle)}):
             return Verdict("refuted", count, middle)
         widths = {n: (part[n][1] - part[n][0]) / (box[n][1] - box[n][0]) for n in part if box[n][1] > box[n][0]}
         if count >= limit or not widths:
@@ -114,7 +116,7 @@ def definite(subject, motion=None) -> List[Violation]:
     violations = []
     numbers = tuple(e.number for e in subject.paper.motions())
     for (name, values), state in product(subject.paper.sets.items(), states(subject.paper)):
-        found = signs(forms, _interval({**values, **state}))
+        found = signs(forms, intervals({**values, **state}))
         if any(sign != 1 for sign in found):
             bad = next(k for k, sign in enumerate(found) if sign != 1)
             at = ", ".join([f"parameter set {name}"] + [f"{n} = {v:+d}" for n, v in state.items()])
@@ -145,7 +147,7 @@ def critical(form, parameter, paper) -> Optional[Critical]:
     zero = {parameter: 0}
     coefficients = [form.substitute(zero), first.substitute(zero), second.substitute(zero) * HALF]
     roots = {}
-    for (name, values), state in product(paper.sets.items(), states(paper)):
+    for (name, values), state in product(paper.sets.items(), states(paper, coefficients)):
         number = {**{n: float(v) for n, v in values.items()}, **state}
         c, b, a = (x.evaluate(number, math.sin, math.cos, 0.0) for x in coefficients)
         if a:
@@ -155,6 +157,7 @@ def critical(form, parameter, paper) -> Optional[Critical]:
             found = sorted({large / a, c / large}) if square >= 0 and large else [0.0] if square >= 0 else []
         else:
             found = [-c / b] if b else []
+        found = [root + 0.0 for root in found]  # -0.0 prints as 0
         key = ", ".join([name] + [f"{n} = {v:+d}" for n, v in state.items()])
         roots[key] = found
     return Critical(parameter, form, coefficients, roots)

@@ -15,9 +15,9 @@ JUDGEMENTS = {**FIVE, "definite": definite}
 
 @dataclass
 class Finding:
-    """One slip. `printed` and `consistent` are forms (terms), `ordinals` those of the printed terms
+    """One slip. `printed` and `consistent` are forms (terms) or words, `ordinals` those of the printed terms
     (from 0); `judgements` the names of those that find it when everything else is right;
-    `order` the lowest degree in the coordinates of what it changes; `vanishes` the special cases in
+    `order` the lowest degree in the coordinates of what it changes (None: not a term); `vanishes` the special cases in
     which it changes nothing; `effects` what a simulation made of it, by scene."""
 
     key: str
@@ -90,17 +90,7 @@ def unexplained(subject, motion, violations):
         comparison = motion and compare(subject, motion, number)
         if comparison is None:
             continue
-        absent = list(comparison.absent)
-        pairs = []
-        for index in comparison.differ:
-            form = subject.forms[number][index]
-            like = max(absent, key=lambda other: _likeness(form, other), default=None)
-            if like is not None and _likeness(form, like):
-                absent.remove(like)
-            else:
-                like = None
-            pairs.append(((index,), [form], [like] if like is not None else []))
-        pairs += [((), [], [form]) for form in absent]
+        pairs = _pairs(subject, comparison)
         for k, (ordinals, printed, consistent) in enumerate(pairs, 1):
             found = [name for name, list_ in violations.items()
                      if any(number in v.equations and (not v.terms or set(v.terms) & set(ordinals)) for v in list_)]
@@ -110,8 +100,22 @@ def unexplained(subject, motion, violations):
     return findings
 
 
+def _pairs(subject, comparison):
+    """(ordinals, printed, derived) of one equation: differing and absent terms, the most alike first."""
+    differ, absent = list(comparison.differ), list(comparison.absent)
+    forms = subject.forms[comparison.number]
+    ranked = sorted(((-_likeness(forms[i], other), i, k) for i in differ for k, other in enumerate(absent)))
+    partner, taken = {}, set()
+    for score, i, k in ranked:
+        if score < 0 and i not in partner and k not in taken:
+            partner[i] = k
+            taken.add(k)
+    pairs = [((i,), [forms[i]], [absent[partner[i]]] if i in partner else []) for i in differ]
+    return pairs + [((), [], [form]) for k, form in enumerate(absent) if k not in taken]
+
+
 def _likeness(form, other):
-    """Number of factors that two terms share, rates and accelerations counted by their symbol."""
+    """Number of factors that two terms share."""
     def factors(x):
         found = []
         for monomial, harmonic in list(x.terms)[:1]:
@@ -138,6 +142,8 @@ def simulate(findings, case, scenes, simulator):
     for scene in scenes:
         reference = run(corrected, scene)
         for finding in findings:
+            if finding.key not in {c.key for c in case.corrections}:
+                continue  # a remark on a number or on the text changes no equation
             keys = without(case.corrections, finding.key)
             finding.effects[scene] = {"without": reference, "with": run(apply(case.paper, case.corrections, keys), scene)}
 

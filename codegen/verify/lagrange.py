@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Callable, Dict, Optional
 
 from .algebra import Ring
-from .printed import Namespace, PaperError, Symbol, latex_name
+from .printed import PaperError, Symbol, latex_name
 
 
 @dataclass
@@ -95,6 +95,7 @@ class Motion:
         self._residuals = {}
 
     def _read(self, function):
+        """The form of a function of the namespaces."""
         return self.ring.read(function(self.s, self.m))
 
     def residual(self, name):
@@ -130,10 +131,7 @@ class Motion:
         function = self.energies.scales.get(number)
         return self.ring.read(function(self.s, self.m)) if function else self.ring.number(1)
 
-    def mass(self, rows=None):
+    def mass(self):
         """Mass matrix of the paper's coordinates, as a list of rows."""
-        rows = rows or self.paper.coordinates()
+        rows = self.paper.coordinates()
         return [[self.kinetic.diff("d" + i).diff("d" + j).substitute(self.held) for j in rows] for i in rows]
-
-
-__all__ = ["Energies", "Mathematics", "Motion", "Namespace", "ring_of", "sympy_namespace"]

@@ -288,6 +288,7 @@ def terms(tree, paper, s, m):
 
 
 def _plain(latex):
+    """LaTeX of a symbol without braces, backslashes and spaces."""
     return re.sub(r"[\\{}\s]", "", latex)
 
 
@@ -348,8 +349,8 @@ def mathml(tree, marks=None):
                 to += [f'<mrow class="{mark}">' + "".join(x for x in inside if x is not BREAK) + "</mrow>"] if mark else inside
         else:
             text = node.text[6:-1] if node.kind == "text" else node.text
-            tag = "mtext" if node.kind == "text" else "mo"
-            to.append('<mspace width="0.5em"/>' * (tag == "mtext") + f"<{tag}>{escape(text)}</{tag}>" + '<mspace width="0.5em"/>' * (tag == "mtext"))
+            space = '<mspace width="0.5em"/>'
+            to.append(f"{space}<mtext>{escape(text)}</mtext>{space}" if node.kind == "text" else f"<mo>{escape(text)}</mo>")
 
     for child in tree.children:
         if child.kind != "sum" and child.broken:

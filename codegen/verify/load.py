@@ -13,7 +13,7 @@ from .printed import PaperError
 @dataclass
 class Case:
     """All that a model folder offers to verification: `paper.py` (`paper`), `paper_energies.py`
-    (`energies`, a list; the first explains the paper best; also `candidates` for that place), `corrections.py` (`corrections`) and
+    (`energies`, a list, the best first; also `candidates` for that place), `corrections.py` (`corrections`) and
     `paper_numbers.py` (`numbers`)."""
 
     name: str

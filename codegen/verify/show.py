@@ -6,6 +6,9 @@ from .algebra import Opaque
 from .latex import ENTITIES
 from .printed import latex_name
 
+# combining dots above, by their number
+ACCENTS = {1: "\u0307", 2: "\u0308", 3: "\u20db"}
+
 
 def _split(name, paper):
     """A name as (dots, symbol name): `ddx_I` is (2, `x_I`)."""
@@ -17,6 +20,7 @@ def _split(name, paper):
 
 
 def _latex(name, paper):
+    """LaTeX of a symbol, a rate or an opaque factor."""
     if isinstance(name, Opaque):
         inner = form_latex(name.argument, paper)
         return f"|{inner}|" if name.function == "Abs" else rf"\operatorname{{sign}}({inner})"
@@ -62,8 +66,10 @@ def term_latex(key, value, paper):
 
 
 def _power(name, exponent, paper):
+    """LaTeX of a power of a symbol."""
     text = _latex(name, paper)
-    return text if exponent == 1 else f"{text}^{exponent}" if exponent >= 0 else rf"\frac{{1}}{{{text}{'^' + str(-exponent) if exponent < -1 else ''}}}"
+    raised = text if abs(exponent) == 1 else f"{text}^{abs(exponent)}"
+    return raised if exponent > 0 else rf"\frac{{1}}{{{raised}}}"
 
 
 def form_latex(form, paper):
@@ -77,7 +83,7 @@ def form_latex(form, paper):
 
 def plain(latex):
     """LaTeX as plain text with Greek letters and dots over the symbols."""
-    text = re.sub(r"\\(d+)ot\{\\?(\w+)\}", lambda x: ENTITIES.get(x[2], x[2]) + {1: "\u0307", 2: "\u0308", 3: "\u20db"}[len(x[1])], latex)
+    text = re.sub(r"\\(d+)ot\{\\?(\w+)\}", lambda x: ENTITIES.get(x[2], x[2]) + ACCENTS[len(x[1])], latex)
     text = re.sub(r"\\frac\{(\w+)\}\{([^{}]+)\}", r"\1/\2", text)
     text = re.sub(r"\\operatorname\{(\w+)\}", r"\1", text)
     text = re.sub(r"\\(sin|cos)", r"\1", text)
@@ -89,3 +95,8 @@ def plain(latex):
 def form_text(form, paper):
     """A form as plain text."""
     return plain(form_latex(form, paper))
+
+
+def shown(part, paper):
+    """A form, or words, as plain text."""
+    return part if isinstance(part, str) else form_text(part, paper)
