@@ -19,7 +19,7 @@ class Correction:
 
     `terms` maps the ordinals of printed terms (from 1) to functions of (s, m, on) that return the
     term instead, or to None where the term must go; `adds` are functions that return a term that
-    is absent; `whole` returns all terms anew. `on(key)` says whether another correction is applied
+    is absent; `whole` returns all terms anew, whatever other corrections made of them. `on(key)` says whether another correction is applied
     too: two slips in one term are two corrections, each written with the other's switch.
     `requires` names corrections that are applied with this one.
     """
@@ -79,9 +79,6 @@ def _corrected(equation, corrections, keys):
         slots = {i + 1: term for i, term in enumerate(equation.terms(s, m))}
         count = len(slots)
         for correction in corrections:
-            if correction.whole:
-                slots = dict(enumerate(correction.whole(s, m), 1))
-                continue
             for ordinal, make in (correction.terms or {}).items():
                 if not 1 <= ordinal <= count:
                     raise PaperError(f"the correction '{correction.key}' names term {ordinal}; "
@@ -92,6 +89,9 @@ def _corrected(equation, corrections, keys):
                     slots[ordinal] = make(s, m, keys.__contains__)
             for make in correction.adds:
                 slots[max(slots) + 1] = make(s, m)
+        for correction in corrections:
+            if correction.whole:
+                return list(correction.whole(s, m))
         return list(slots.values())
 
     # a corrected condition is already written as the terms of its margin

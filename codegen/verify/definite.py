@@ -12,8 +12,8 @@ from typing import Dict, List, Optional, Tuple
 
 from .judgements import Violation
 
-# A box that is still undecided after this many bisections contains, for all practical purposes, a
-# point where the matrix is singular; the verdict then says "undecided", never "positive".
+# A budget of some ten seconds. What is undecided by then lies at a point where the matrix is nearly
+# singular; the verdict then says "undecided" and names the box.
 BISECTIONS = 400
 
 HALF = Fraction(1, 2)
@@ -112,7 +112,21 @@ def definite(subject, motion=None) -> List[Violation]:
     if not subject.paper.sets or not subject.paper.motions():
         return []
     rest = {p + n: 0 for n in subject.paper.coordinates() for p in ("", "d", "dd")}
-    forms = [form.substitute(rest) for form in minors(printed_mass(subject, symmetric=True))]
+    matrix = [[form.substitute(rest) for form in row] for row in printed_mass(subject, symmetric=True)]
+    key = ("definite", None, str(matrix))
+    if key not in subject.memo:
+        # all equations together may have been multiplied by a constant
+        found = []
+        for factor in subject.factors():
+            found.append(_indefinite(subject, minors([[factor * form for form in row] for row in matrix])))
+            if not found[-1]:
+                break
+        subject.memo[key] = [] if [] in found else found[0]
+    return subject.memo[key]
+
+
+def _indefinite(subject, forms):
+    """Violations for each parameter set and state in which some leading minor is not positive."""
     violations = []
     numbers = tuple(e.number for e in subject.paper.motions())
     for (name, values), state in product(subject.paper.sets.items(), states(subject.paper)):

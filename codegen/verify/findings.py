@@ -64,7 +64,9 @@ def from_corrections(case, motion):
     whole = Subject(apply(paper, corrections), printed)
     findings = []
     for correction in corrections:
-        slipped = Subject(apply(paper, corrections, without(corrections, correction.key)), printed)
+        others = without(corrections, correction.key)
+        slipped = Subject(apply(paper, corrections, others), printed)
+        right = Subject(apply(paper, corrections, [*others, correction.key]), printed)
         number = correction.equation
         if correction.whole:
             ordinals = tuple(range(len(printed.forms[number])))
@@ -74,7 +76,7 @@ def from_corrections(case, motion):
             made = [make(whole.s, whole.m, lambda key: True) for make in (correction.terms or {}).values() if make]
             made += [make(whole.s, whole.m) for make in correction.adds]
             consistent = [whole.ring.read(x) for x in made]
-        change = slipped.total(number) - whole.total(number)
+        change = slipped.total(number) - right.total(number)
         findings.append(Finding(
             correction.key, number, correction.kind, correction.reason, ordinals,
             [printed.forms[number][k] for k in ordinals], consistent, detected(slipped, motion),

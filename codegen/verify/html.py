@@ -104,7 +104,7 @@ def _finding(finding, paper):
         return ", ".join(inline(form, paper) for form in forms) or "(nothing)"
 
     out = [f'<div class="finding {finding.kind}"><h3>{escape(finding.key)}: equation ({escape(finding.equation)})</h3>',
-           f'<p>printed: <span class="differ">{terms(finding.printed)}</span><br>consistent: {terms(finding.consistent)}</p>']
+           f'<p>printed: <span class="differ">{terms(finding.printed)}</span><br/>consistent: {terms(finding.consistent)}</p>']
     if finding.kind in KINDS:
         out.append(f"<p>{escape(finding.reason)}</p><p><em>{escape(KINDS[finding.kind])}</em></p>")
     out.append("<p>" + "".join(f'<span class="tag">{escape(TITLES[name])}</span>' for name in finding.judgements) + "</p>")

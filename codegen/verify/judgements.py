@@ -45,14 +45,29 @@ class Subject:
         self.s = base.s if base else sympy_namespace(paper)
         self.m = base.m if base else Mathematics()
         self.dimension = base.dimension if base else units.table(paper.symbols.values())
-        self.expressions, self.forms = {}, {}
+        self.expressions, self.forms, self.memo = {}, {}, {}
+        kept = set()
         for number, equation in paper.equations.items():
             if base and base.paper.equations.get(number) is equation:
                 self.expressions[number], self.forms[number] = base.expressions[number], base.forms[number]
+                kept.add(number)
             else:
                 self.expressions[number] = equation.terms(self.s, self.m)
                 self.forms[number] = [self.ring.read(term) for term in self.expressions[number]]
+        if base:
+            self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
         self.multipliers = self._multipliers()
+
+    def each(self, name, judge, *context):
+        """The violations of all equations, where `judge(number)` gives those of one: what is known
+        from the base about an equation that has not changed is not judged again."""
+        violations = []
+        for number in self.paper.equations:
+            key = (name, number, *context)
+            if key not in self.memo:
+                self.memo[key] = judge(number)
+            violations += self.memo[key]
+        return violations
 
     def total(self, number):
         """The sum of an equation's terms."""
@@ -88,10 +103,10 @@ class Subject:
 
 def dimensions(subject, motion=None) -> List[Violation]:
     """Judgement 1: every term of an equation has the unit of the equation."""
-    violations = []
     symbols = subject.paper.symbols
-    for number, equation in subject.paper.equations.items():
-        found = []
+
+    def judge(number):
+        equation, found, violations = subject.paper.equations[number], [], []
         for term in subject.expressions[number]:
             try:
                 found.append(units.measure(term, subject.dimension))
@@ -109,7 +124,9 @@ def dimensions(subject, motion=None) -> List[Violation]:
             if dimension != expected:
                 violations.append(Violation("dimensions", (number,), (index,), [
                     "the term ", subject.forms[number][index], f" is in {dimension}, the equation in {expected}"]))
-    return violations
+        return violations
+
+    return subject.each("dimensions", judge)
 
 
 def lagrangian(subject, motion=None) -> List[Violation]:
@@ -224,11 +241,11 @@ def compare(subject, motion, number):
 
 def difference(subject, motion) -> List[Violation]:
     """Judgement 3: every term against the equations derived from the energies."""
-    violations = []
-    for number in subject.paper.equations:
+    def judge(number):
+        violations = []
         comparison = motion and compare(subject, motion, number)
         if not comparison:
-            continue
+            return violations
         for index in comparison.differ:
             violations.append(Violation("difference", (number,), (index,), [
                 "the energies do not give ", subject.forms[number][index]]))
@@ -239,7 +256,9 @@ def difference(subject, motion) -> List[Violation]:
         if equation.kind == "condition" and len(moduli) > 1 and not _opaque(motion.reference(equation)):
             violations.append(Violation("difference", (number,), tuple(moduli), [
                 "the condition sums moduli where the energies give the modulus of a sum"]))
-    return violations
+        return violations
+
+    return subject.each("difference", judge, motion)
 
 
 def mirror(subject, motion=None) -> List[Violation]:
@@ -252,10 +271,11 @@ def mirror(subject, motion=None) -> List[Violation]:
             moving = symbol.role in ("coordinate", "input")
             for name in [symbol.name] + (["d" + symbol.name, "dd" + symbol.name] if moving else []):
                 flip[name] = -subject.ring.symbol(name)
-    violations = []
     if not flip:
-        return violations
-    for number, equation in subject.paper.equations.items():
+        return []
+
+    def judge(number):
+        equation, violations = subject.paper.equations[number], []
         images = [form.substitute(flip) for form in subject.forms[number]]
         signs = [1 if image == form else -1 if image == -form else 0 for form, image in zip(subject.forms[number], images)]
         if equation.kind == "motion":
@@ -270,23 +290,26 @@ def mirror(subject, motion=None) -> List[Violation]:
                 change = {1: "keeps its sign", -1: "changes its sign", 0: "becomes another term"}[sign]
                 violations.append(Violation("mirror", (number,), (index,), [
                     "in the mirror image ", form, f" {change}, against the rest of the equation"]))
-    return violations
+        return violations
+
+    return subject.each("mirror", judge)
 
 
 def galilei(subject, motion=None) -> List[Violation]:
     """Judgement 5: a coordinate and the ground's displacement enter as their sum, and neither
     that sum nor its rate exerts a force. Friction, which acts on the slip alone, is left out."""
-    violations = []
     if subject.paper.translation is None:
-        return violations
+        return []
     x, z = subject.paper.translation
     ring = subject.ring
     shift = ring.symbol("(shift)")
     swap = {"dd" + x: ring.symbol("dd" + x) + shift, "dd" + z: ring.symbol("dd" + z) - shift}
-    for number, equation in subject.paper.equations.items():
+    dissipative = {s.name: 0 for s in subject.paper.symbols.values() if s.dissipative}
+
+    def judge(number):
+        equation, violations = subject.paper.equations[number], []
         if equation.kind == "reset":
-            continue
-        dissipative = {s.name: 0 for s in subject.paper.symbols.values() if s.dissipative}
+            return violations
         forms = [form.substitute(dissipative) for form in subject.forms[number]]
         total = subject.conservative(number)
         for name in (x, z, "d" + x, "d" + z):
@@ -300,7 +323,9 @@ def galilei(subject, motion=None) -> List[Violation]:
             violations.append(Violation("galilei", (number,), (), [
                 f"the accelerations of {x} and {z} do not enter as their sum; the factor of dd{x} less that of dd{z} is ",
                 left.coefficient("(shift)")]))
-    return violations
+        return violations
+
+    return subject.each("galilei", judge)
 
 
 FIVE = {"dimensions": dimensions, "lagrangian": lagrangian, "difference": difference, "mirror": mirror, "galilei": galilei}
