@@ -59,6 +59,9 @@ class Equation:
     - condition: the function returns two lists, left and right of `relation`
     - rule: the discrete state `of` takes `result` when the terms' sum is `relation` 0
     - reset: they sum to the rate of the coordinate `of` after an impact, in the state before it
+
+    `margin` marks a condition whose function already gives the terms of its margin, `momentum` a
+    force that is the rate of a momentum: the reaction of a translation of the whole system.
     """
 
     number: str
@@ -69,17 +72,23 @@ class Equation:
     title: str = ""
     relation: str = ""
     result: int = 0
+    margin: bool = False
+    momentum: bool = False
 
     def terms(self, s, m):
-        """The printed terms, in printed order; of a condition, (left, right)."""
-        return self.function(s, m)
+        """The printed terms, in printed order. Of a condition, with the signs that make their
+        sum positive where the condition holds."""
+        if self.kind != "condition" or self.margin:
+            return list(self.function(s, m))
+        left, right = self.function(s, m)
+        if self.relation == "<":
+            return [-term for term in left] + list(right)
+        return list(left) + [-term for term in right]
 
     def value(self, s, m):
-        """The sum of the terms; of a condition, right minus left."""
-        terms = self.function(s, m)
-        if self.kind == "condition":
-            left, right = terms
-            return sum(right[1:], right[0]) - sum(left[1:], left[0])
+        """The sum of the terms: the residual of an equation of motion, the value of a force or
+        reaction, the margin of a condition (positive where it holds), the rate after an impact."""
+        terms = self.terms(s, m)
         return sum(terms[1:], terms[0])
 
 
@@ -94,7 +103,11 @@ class Paper:
 
     `translation` names a coordinate and an input that may enter the energies only as their sum
     (slip and ground displacement): Galilean invariance is judged for it. `definitions` give
-    symbols that the paper uses without defining them, by what they must mean.
+    symbols that the paper uses without defining them, by what they must mean. `sets` are the
+    parameter values of its examples; `box` bounds the coordinates and parameters for which the
+    mass matrix must be positive definite (what it does not name is taken from the sets);
+    `negligible` are the parameters that the paper allows to be left out; `special` names special
+    cases by what they put (a number or another symbol's name) for which symbols.
     """
 
     title: str
@@ -103,6 +116,10 @@ class Paper:
     equations: Dict[str, Equation] = field(default_factory=dict)
     definitions: Dict[str, Callable] = field(default_factory=dict)
     translation: Optional[Tuple[str, str]] = None
+    sets: Dict[str, Dict[str, float]] = field(default_factory=dict)
+    box: Dict[str, Tuple[float, float]] = field(default_factory=dict)
+    negligible: Tuple[str, ...] = ()
+    special: Dict[str, Dict[str, object]] = field(default_factory=dict)
 
     def _declare(self, symbol):
         if symbol.name in self.symbols:
@@ -142,11 +159,12 @@ class Paper:
 
         return register
 
-    def _equation(self, number, kind, of, latex, title, relation="", result=0):
+    def _equation(self, number, kind, of, latex, title, relation="", result=0, momentum=False):
         def register(function):
             if number in self.equations:
                 raise PaperError(f"equation ({number}) is given twice")
-            self.equations[number] = Equation(number, kind, of, latex, function, title, relation, result)
+            self.equations[number] = Equation(
+                number, kind, of, latex, function, title, relation, result, momentum=momentum)
             return function
 
         return register
@@ -155,9 +173,10 @@ class Paper:
         """Register an equation of motion of the coordinate `of`."""
         return self._equation(number, "motion", of, latex, title)
 
-    def value(self, number, of, title="", latex=""):
-        """Register an equation that gives the value of the symbol `of`."""
-        return self._equation(number, "value", of, latex, title)
+    def value(self, number, of, title="", latex="", momentum=False):
+        """Register an equation that gives the value of the symbol `of`; `momentum` if that is the
+        force on a translation of the whole system (base shear, normal force)."""
+        return self._equation(number, "value", of, latex, title, momentum=momentum)
 
     def condition(self, number, of, relation, title="", latex=""):
         """Register an inequality; `of` is the coordinate or symbol that it decides about."""

@@ -59,13 +59,10 @@ pub(super) struct Chebyshev {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interpolant {
     pub(super) expansion: Chebyshev,
-    degree: usize,
-    /// Sum of the coefficients' magnitudes from 1 to half the degree, and from there on.
-    halves: [f64; 2],
+    /// Sum of the upper half of the coefficients: what is taken for the truncation error.
+    pub(super) tail: f64,
     /// Bound of the rounding errors of interpolation and evaluation.
-    rounding: f64,
-    /// Largest magnitude of the function at the nodes.
-    pub(super) magnitude: f64,
+    pub(super) rounding: f64,
 }
 
 impl Interpolant {
@@ -85,72 +82,77 @@ impl Interpolant {
             let weight = if k == 0 || k == degree { 1.0 } else { 2.0 };
             *coefficient = sign * weight * sum / degree as f64;
         }
-        let magnitude = values.iter().step_by(stride).fold(0.0, |m: f64, v| m.max(v.abs()));
+        let magnitude = values
+            .iter()
+            .step_by(stride)
+            .fold(0.0, |m: f64, v| m.max(v.abs()));
         // Two sums, over the nodes and over the coefficients, of degree + 1 terms each: γ ≈ 2nu.
         let rounding = degree as f64 * f64::EPSILON * magnitude;
-        let sum = |range: &[f64]| range.iter().map(|c| c.abs()).sum();
-        let half = degree / 2;
-        let halves = [sum(&coefficients[1..=half]), sum(&coefficients[half + 1..=degree])];
+        let tail = coefficients[degree / 2 + 1..=degree]
+            .iter()
+            .map(|c| c.abs())
+            .sum();
         // Trailing coefficients that no bit of the sum depends on only cost time.
         let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         let mut used = degree;
         while used > 0 && coefficients[used].abs() <= f64::EPSILON * largest {
             used -= 1;
         }
-        let expansion = Chebyshev { coefficients, degree: used };
-        Self { expansion, degree, halves, rounding, magnitude }
+        let expansion = Chebyshev {
+            coefficients,
+            degree: used,
+        };
+        Self {
+            expansion,
+            tail,
+            rounding,
+        }
     }
 
-    /// Divides a zero of order `order` at the left end out of `values`: at the other nodes by the
-    /// power of their distance, at the end itself by the interpolant through the others, which is
-    /// the condition that the last coefficient is zero. Returns the quotients as well.
+    /// Divides a zero of order `order` at the left end out of `values`, in place: at the other
+    /// nodes by the power of the distance, at the end itself by the interpolant through the others,
+    /// which is the condition that the last coefficient is zero. `distances` are the nodes' own.
     pub(super) fn deflated(
         values: &[f64; NODES],
         distances: &[f64; NODES],
         order: usize,
         degree: usize,
     ) -> (Self, [f64; NODES]) {
-        let mut quotients = *values;
-        for (quotient, distance) in quotients.iter_mut().zip(distances).skip(1) {
+        let stride = DEGREE / degree;
+        let mut quotients = [0.0; NODES];
+        let mut start = 0.0;
+        for j in 1..=degree {
+            let node = j * stride;
+            let mut quotient = values[node];
             for _ in 0..order {
-                *quotient /= distance;
+                quotient /= distances[node];
             }
-        }
-        quotients[0] = 0.0;
-        for (j, &quotient) in quotients.clone().iter().step_by(DEGREE / degree).enumerate().skip(1) {
+            quotients[node] = quotient;
             let sign = if j % 2 == 0 { -1.0 } else { 1.0 };
-            quotients[0] += sign * if j == degree { quotient } else { 2.0 * quotient };
+            start += sign
+                * if j == degree {
+                    quotient
+                } else {
+                    2.0 * quotient
+                };
         }
+        quotients[0] = start;
         let mut interpolant = Self::through(&quotients, degree);
         // The value at the end carries the errors of all the others, up to twice each.
         interpolant.rounding *= 2.0;
         (interpolant, quotients)
     }
 
-    /// The node of the next higher degree that shows the error best: the error is close to a
-    /// multiple of sin θ sin nθ, which is largest next to the middle of the window. `None` at the
-    /// highest degree.
-    pub(super) fn test_node(degree: usize) -> Option<usize> {
-        (degree < DEGREE).then_some(DEGREE / 2 - DEGREE / (2 * degree))
-    }
-
     /// Whether the function is represented as well as doubles, and a rounding error of `noise` in
-    /// each value, allow: such an error enters each of the n/2 coefficients of the upper half by
-    /// twice its size at most.
-    pub(super) fn is_resolved(&self, noise: f64) -> bool {
-        self.halves[1] <= self.degree as f64 * noise + self.rounding
+    /// each value, allow: such an error enters each of the n/2 coefficients of the tail by twice
+    /// its size at most.
+    pub(super) fn is_resolved(&self, noise: f64, degree: usize) -> bool {
+        self.tail <= degree as f64 * noise + self.rounding
     }
 
     /// What the interpolant may differ from the function.
-    ///
-    /// If the halves of the coefficients decay by a ratio r from each to the next, what follows
-    /// sums to r/(1 − r) of the upper half; it acts twice, as truncated and as aliased. That is no
-    /// more than the upper half for r ≤ 1/3. Without such a decay, only the size of the variation
-    /// is known.
     pub(super) fn error(&self) -> f64 {
-        let [lower, upper] = self.halves;
-        let decays = 3.0 * upper <= lower || upper <= self.rounding;
-        self.rounding + if decays { upper } else { lower + upper }
+        self.tail + self.rounding
     }
 }
 
@@ -223,7 +225,7 @@ mod tests {
             // d/ds is twice d/dx, and the derivative is a multiple: here one half.
             assert!((2.0 * slope.value(s) - exact).abs() <= 1e-11, "{s}");
         }
-        assert!(interpolant.error() < 1e-5 && !interpolant.is_resolved(0.0));
+        assert!(interpolant.tail < 1e-5 && interpolant.tail > interpolant.rounding);
     }
 
     #[test]

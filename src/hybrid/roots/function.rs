@@ -5,7 +5,7 @@ use super::chebyshev::{DEGREE, Interpolant, NODES, place};
 use super::doubles::{middle, moved};
 use super::extrema::{Expansion, Places, extrema};
 use super::walk::{Pieces, walk};
-use super::{Kind, Search, Watch};
+use super::{Crossing, Kind, Search, Watch};
 
 /// Evaluations after which a search stops halving windows. One singular place (a jump, a kink at
 /// zero) is halved down to neighbouring doubles in 53 halvings, with two windows each.
@@ -21,7 +21,7 @@ const HALF_DIGITS: u32 = f64::MANTISSA_DIGITS / 2;
 /// `guard`, in its unit, used while it is dormant and to see when it is resolved (0: unknown). A
 /// dormant guard is exactly 0 at `from`, or has not left zero since it was.
 ///
-/// A guard far from zero takes 6 evaluations, one that falls about 15; see the
+/// A guard far from zero takes 5 evaluations, one that falls about 15; see the
 /// [module's page](super) for what is guaranteed.
 pub fn search(
     guard: impl FnMut(f64) -> f64,
@@ -88,15 +88,11 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         let mut samples = Samples::new(from, to);
         for degree in [4, 8, DEGREE] {
             let stride = DEGREE / degree;
-            for node in (0..NODES).step_by(stride) {
-                // Every second node is one of the lower degree, and one more has tested that.
-                let known = node % (2 * stride) == 0 || Interpolant::test_node(degree / 2) == Some(node);
-                if degree == 4 || !known {
-                    samples.values[node] = self.value(samples.nodes[node]);
+            for index in 0..=degree {
+                // Every second node is one of the lower degree.
+                if degree == 4 || index % 2 == 1 {
+                    samples.values[index * stride] = self.value(samples.nodes[index * stride]);
                 }
-            }
-            if let Some(node) = Interpolant::test_node(degree) {
-                samples.values[node] = self.value(samples.nodes[node]);
             }
             if let Some(search) = self.decide(&samples, degree, watch) {
                 return search;
@@ -134,9 +130,6 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
             return self.leave_zero(samples, degree);
         }
         let interpolant = Interpolant::through(&samples.values, degree);
-        if !stands_test(&interpolant, &samples.values, degree) {
-            return None;
-        }
         let error = interpolant.error();
         let (below, above) = interpolant.expansion.bounds();
         if watch == Watch::Armed && below > error || watch == Watch::Violated && above < -error {
@@ -148,7 +141,7 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         let noise = if unknown { error } else { self.noise };
         let ends = (at_start, samples.values[DEGREE]);
         walk(
-            &mut Cut::new(self, samples, interpolant, ends, 0, noise),
+            &mut Cut::new(self, samples, degree, interpolant, ends, 0, noise),
             watch,
             noise,
         )
@@ -170,23 +163,22 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         for order in 1..degree {
             let (interpolant, quotients) =
                 Interpolant::deflated(&samples.values, &fractions, order, degree);
-            if !stands_test(&interpolant, &quotients, degree) {
-                return None;
-            }
             let start = quotients[0];
-            if start.abs() > interpolant.error() {
-                let near = samples.nodes[DEGREE / degree];
-                let right = if start < 0.0 { self.negative_near(from, near) } else { None };
-                if let Some(right) = right {
-                    let (l, r, flew) = departure(&mut |t| self.value(t), from, right);
-                    let kind = if flew { Kind::Fall } else { Kind::LeavesNegative };
-                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
-                }
+            if start < -interpolant.error()
+                && let Some(right) = self.negative_near(from, samples.nodes[DEGREE / degree])
+            {
+                let (l, r, flew) = departure(&mut |t| self.value(t), from, right);
+                let kind = if flew {
+                    Kind::Fall
+                } else {
+                    Kind::LeavesNegative
+                };
+                return Some(Search::found(l.0, r.0, kind, Watch::Violated));
+            } else if start.abs() > interpolant.error() {
                 let ends = (start, quotients[DEGREE]);
-                let cut = &mut Cut::new(self, samples, interpolant, ends, order, 0.0);
+                let cut = &mut Cut::new(self, samples, degree, interpolant, ends, order, 0.0);
                 return walk(cut, Watch::Armed, 0.0);
-            }
-            if !interpolant.is_resolved(0.0) {
+            } else if !interpolant.is_resolved(0.0, degree) {
                 return None;
             }
         }
@@ -227,33 +219,46 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
             return Search::quiet(watch);
         }
         let noise = self.noise;
-        walk(&mut Values { guard: self, samples }, watch, noise).expect("every node has a value")
+        let search = walk(
+            &mut Values {
+                guard: self,
+                samples,
+            },
+            watch,
+            noise,
+        )
+        .expect("every node has a value");
+        match search.crossing {
+            Some(crossing) if crossing.kind == Kind::Fall => {
+                let kind = self.classify(crossing, samples);
+                Search {
+                    crossing: Some(Crossing { kind, ..crossing }),
+                    ..search
+                }
+            }
+            _ => search,
+        }
     }
 
     /// Tells a jump and a pole from a fall by comparing the bracket with places 2²⁶ doubles away:
     /// what is continuous has changed by much more there, a jump by no more, and next to a pole
     /// the value, even that of a logarithm, is at least twice the value there.
-    fn classify(&mut self, inside: Point, outside: Point, samples: &Samples) -> Kind {
+    fn classify(&mut self, crossing: Crossing, samples: &Samples) -> Kind {
         let away = 1_i64 << HALF_DIGITS;
-        let before = self.value(moved(inside.0, -away, samples.from, samples.to));
-        let after = self.value(moved(outside.0, away, samples.from, samples.to));
+        let inside = self.value(crossing.inside);
+        let outside = self.value(crossing.outside);
+        let before = self.value(moved(crossing.inside, -away, samples.from, samples.to));
+        let after = self.value(moved(crossing.outside, away, samples.from, samples.to));
         // A value at the pole itself may be infinite or not a number.
         let grows = |near: f64, far: f64| near.is_nan() || near.abs() >= 2.0 * far.abs();
-        if grows(inside.1, before) && grows(outside.1, after) {
+        if grows(inside, before) && grows(outside, after) {
             Kind::Pole
-        } else if inside.1 - outside.1 > 0.5 * (before - after) {
+        } else if inside - outside > 0.5 * (before - after) {
             Kind::Jump
         } else {
             Kind::Fall
         }
     }
-}
-
-/// Whether the value at the test node agrees with the interpolant.
-fn stands_test(interpolant: &Interpolant, values: &[f64; NODES], degree: usize) -> bool {
-    Interpolant::test_node(degree).is_none_or(|node| {
-        (interpolant.expansion.value(place(node)) - values[node]).abs() <= interpolant.error()
-    })
 }
 
 /// The guard cut at the extrema of its interpolant, divided by the `order`-th power of the fraction
@@ -275,12 +280,13 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
     fn new(
         guard: &'g mut Guard<F>,
         samples: &'g Samples,
+        degree: usize,
         interpolant: Interpolant,
         ends: (f64, f64),
         order: usize,
         noise: f64,
     ) -> Self {
-        let resolved = interpolant.is_resolved(guard.noise);
+        let resolved = interpolant.is_resolved(guard.noise, degree);
         let extrema = extrema(&interpolant.expansion);
         Self {
             guard,
@@ -331,18 +337,6 @@ impl<F: FnMut(f64) -> f64> Pieces for Cut<'_, F> {
         let value = self.guard.value(t);
         (0..self.order).fold(value, |quotient, _| quotient / fraction)
     }
-
-    fn kind(&mut self, inside: Point, outside: Point) -> Kind {
-        // A continuous guard changes from a double to the next by a few roundings.
-        let continuous = self.interpolant.magnitude / f64::from(1_u32 << HALF_DIGITS);
-        if inside.1 - outside.1 <= continuous {
-            Kind::Fall
-        } else {
-            let own = |guard: &mut Guard<F>, point: Point| (point.0, guard.value(point.0));
-            let (inside, outside) = (own(self.guard, inside), own(self.guard, outside));
-            self.guard.classify(inside, outside, self.samples)
-        }
-    }
 }
 
 /// The guard at the nodes, taken at its word.
@@ -366,9 +360,5 @@ impl<F: FnMut(f64) -> f64> Pieces for Values<'_, F> {
 
     fn own(&mut self, t: f64) -> f64 {
         self.guard.value(t)
-    }
-
-    fn kind(&mut self, inside: Point, outside: Point) -> Kind {
-        self.guard.classify(inside, outside, self.samples)
     }
 }

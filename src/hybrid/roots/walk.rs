@@ -1,6 +1,6 @@
 //! The walk from left to right over the monotone pieces of a guard, with the remembered sign.
 
-use super::bracket::{Point, close, lowest};
+use super::bracket::{close, lowest};
 use super::doubles::above;
 use super::{Kind, Search, Watch};
 
@@ -15,10 +15,6 @@ pub(super) trait Pieces {
     fn value(&mut self, index: usize) -> Option<(f64, bool)>;
     /// The guard's own value anywhere in the window.
     fn own(&mut self, x: f64) -> f64;
-    /// What a change of sign between two neighbouring doubles is.
-    fn kind(&mut self, _inside: Point, _outside: Point) -> Kind {
-        Kind::Fall
-    }
 }
 
 /// The earliest event, or `None` if the representation does not decide. A dormant guard leaves zero
@@ -74,8 +70,7 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
                 }
                 if right.1 < 0.0 {
                     let (l, r) = close(&mut |x| pieces.own(x), left, right);
-                    let kind = pieces.kind(l, r);
-                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
+                    return Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated));
                 }
             }
             _ => {}

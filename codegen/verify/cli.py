@@ -1,0 +1,82 @@
+"""`python -m codegen verify`: judge the hand-written equations of a model.
+
+    verify MODEL [--models DIR] [--json] [--html FILE] [--quick]
+    verify --seeded [--json]
+
+MODEL is the name of a folder under DIR (default: models) or the path of one. Exit status: 0 the
+equations were judged (whatever the verdict); 2 the input is wrong.
+"""
+
+import argparse
+import importlib.util
+import json
+import sys
+from pathlib import Path
+
+
+def parser():
+    """The arguments."""
+    result = argparse.ArgumentParser(prog="verify", description="Judge a model's hand-written equations against its energies.")
+    result.add_argument("model", nargs="?", help="name of a model folder, or its path")
+    result.add_argument("--models", default="models", help="folder that holds the model folders")
+    result.add_argument("--json", action="store_true", help="print the report as JSON")
+    result.add_argument("--html", metavar="FILE", help="also write a self-contained HTML page")
+    result.add_argument("--quick", action="store_true", help="skip the proof over the whole box of coordinates")
+    result.add_argument("--seeded", action="store_true", help="print the detection table of seeded errors instead")
+    return result
+
+
+def main(argv=None):
+    """Run the command and return its exit status."""
+    arguments = parser().parse_args(argv)
+    if importlib.util.find_spec("sympy") is None:
+        print("verify: SymPy is not installed for this Python; install it with: pip install sympy", file=sys.stderr)
+        return 2
+    from .algebra import NotInClass
+    from .latex import LatexError
+    from .printed import PaperError
+    from .units import UnitError
+
+    try:
+        if arguments.seeded:
+            from . import seeded
+
+            results = seeded.run_all()
+            print(json.dumps(seeded.as_dictionary(results), indent=2) if arguments.json else seeded.as_text(results))
+            return 0
+        if not arguments.model:
+            print("verify: name a model, for example: verify walking_tank", file=sys.stderr)
+            return 2
+        return _judge(arguments)
+    except (PaperError, LatexError, UnitError, NotInClass) as error:
+        print(f"verify: {error}", file=sys.stderr)
+        return 2
+
+
+def _judge(arguments):
+    """Judge one model and write the report."""
+    from . import html, report
+    from .load import load
+
+    folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
+    if not folder.is_dir():
+        offered = sorted(p.parent.name for p in Path(arguments.models).glob("*/paper.py"))
+        print(f"verify: there is no model '{arguments.model}' in {arguments.models}; "
+              f"with hand-written equations: {', '.join(offered) or 'none'}", file=sys.stderr)
+        return 2
+    result = report.verify(load(folder), thorough=not arguments.quick)
+    print(report.as_json(result) if arguments.json else report.as_text(result), end="")
+    if arguments.html:
+        path = Path(arguments.html)
+        partial = path.with_name(path.name + ".tmp")
+        try:
+            partial.write_text(html.as_html(result), encoding="utf-8")
+            partial.replace(path)
+        except OSError as error:
+            print(f"verify: cannot write {path}: {error.strerror}", file=sys.stderr)
+            return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,331 @@
+"""Five of the six judgements on printed equations; definite.py has the sixth.
+
+Each takes a `Subject` and returns its violations. Each is exact: a violation is a non-zero
+normal form, and none means that the identity is proved.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import List, Tuple
+
+from . import units
+from .algebra import Opaque
+from .lagrange import Mathematics, ring_of, sympy_namespace
+
+TITLES = {
+    "dimensions": "Dimensions of each term",
+    "lagrangian": "Symmetric mass matrix and Helmholtz conditions",
+    "difference": "Term by term against the energies",
+    "mirror": "Mirror symmetry",
+    "galilei": "Galilean invariance",
+    "definite": "Positive definite kinetic energy",
+}
+
+
+@dataclass
+class Violation:
+    """What one judgement objects to: equation numbers, ordinals of the terms to blame (from 0,
+    within the first equation; empty if the whole is to blame) and the message, a list of strings
+    and normal forms."""
+
+    judgement: str
+    equations: Tuple[str, ...]
+    terms: Tuple[int, ...]
+    message: list
+
+
+class Subject:
+    """Printed equations in normal form: `forms[number]` lists one form for each term."""
+
+    def __init__(self, paper, base=None):
+        """`base` is a subject that shares all but a few equations: their forms are not redone."""
+        self.paper = paper
+        self.ring = base.ring if base else ring_of(paper)
+        self.s = base.s if base else sympy_namespace(paper)
+        self.m = base.m if base else Mathematics()
+        self.dimension = base.dimension if base else units.table(paper.symbols.values())
+        self.expressions, self.forms, self.memo = {}, {}, {}
+        kept = set()
+        for number, equation in paper.equations.items():
+            if base and base.paper.equations.get(number) is equation:
+                self.expressions[number], self.forms[number] = base.expressions[number], base.forms[number]
+                kept.add(number)
+            else:
+                self.expressions[number] = equation.terms(self.s, self.m)
+                self.forms[number] = [self.ring.read(term) for term in self.expressions[number]]
+        if base:
+            self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
+        self.multipliers = self._multipliers()
+
+    def each(self, name, judge, *context):
+        """The violations of all equations, where `judge(number)` gives those of one: what is known
+        from the base about an equation that has not changed is not judged again."""
+        violations = []
+        for number in self.paper.equations:
+            key = (name, number, *context)
+            if key not in self.memo:
+                self.memo[key] = judge(number)
+            violations += self.memo[key]
+        return violations
+
+    def total(self, number):
+        """The sum of an equation's terms."""
+        return sum(self.forms[number], self.ring.number(0))
+
+    def conservative(self, number):
+        """The sum without what is declared dissipative."""
+        dissipative = {x.name: 0 for x in self.paper.symbols.values() if x.dissipative}
+        return self.total(number).substitute(dissipative)
+
+    def factors(self):
+        """The constants that an equation may have been multiplied by: 1, -1 and these times
+        each discrete state."""
+        one = self.ring.number(1)
+        return [one, -one] + [sign * self.ring.symbol(n) for n in sorted(self.ring.involutions) for sign in (one, -one)]
+
+    def _multipliers(self):
+        """For each equation of motion, the constant that makes the mass matrix most nearly
+        symmetric; the first equation keeps 1, and 1 is preferred."""
+        motions = self.paper.motions()
+        rows = [[self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
+        if not motions or not any(row[i] != rows[i][j] for j, row in enumerate(rows) for i in range(len(motions))):
+            return {e.number: self.ring.number(1) for e in motions}
+        best = None
+        for choice in product(self.factors(), repeat=len(motions) - 1):
+            choice = (self.ring.number(1),) + choice
+            cost = sum(len((choice[i] * rows[i][j] - choice[j] * rows[j][i]).terms)
+                       for i in range(len(motions)) for j in range(i))
+            if best is None or cost < best[0]:
+                best = (cost, choice)
+        return {e.number: factor for e, factor in zip(motions, best[1])}
+
+
+def dimensions(subject, motion=None) -> List[Violation]:
+    """Judgement 1: every term of an equation has the unit of the equation."""
+    symbols = subject.paper.symbols
+
+    def judge(number):
+        equation, found, violations = subject.paper.equations[number], [], []
+        for term in subject.expressions[number]:
+            try:
+                found.append(units.measure(term, subject.dimension))
+            except units.UnitError as error:
+                found.append(str(error))
+        if equation.kind == "motion":
+            expected = units.parse("J").times(units.parse(symbols[equation.of].unit), -1)
+        elif equation.kind == "value":
+            expected = units.parse(symbols[equation.of].unit)
+        elif equation.kind == "reset":
+            expected = subject.dimension["d" + equation.of]
+        else:
+            expected = max(found, key=found.count)
+        for index, dimension in enumerate(found):
+            if dimension != expected:
+                violations.append(Violation("dimensions", (number,), (index,), [
+                    "the term ", subject.forms[number][index], f" is in {dimension}, the equation in {expected}"]))
+        return violations
+
+    return subject.each("dimensions", judge)
+
+
+def lagrangian(subject, motion=None) -> List[Violation]:
+    """Judgement 2: the Helmholtz conditions on the part that is not dissipative. They hold
+    exactly if some Lagrangian has these equations of motion, each multiplied by its constant."""
+    motions = subject.paper.motions()
+    rows = [subject.multipliers[e.number] * subject.conservative(e.number) for e in motions]
+    q = [e.of for e in motions]
+    inputs = [x.name for x in subject.paper.symbols.values() if x.role == "input"]
+    chain = {}
+    for name in q + inputs:
+        chain.update({name: "d" + name, "d" + name: "dd" + name, "dd" + name: "ddd" + name})
+    a = [[row.diff("dd" + name) for name in q] for row in rows]
+    v = [[row.diff("d" + name) for name in q] for row in rows]
+    x = [[row.diff(name) for name in q] for row in rows]
+    violations = []
+
+    def report(i, j, what, form):
+        violations.append(Violation("lagrangian", (motions[i].number, motions[j].number), (), [what, form]))
+
+    for i, j in product(range(len(q)), repeat=2):
+        number_i, number_j = motions[i].number, motions[j].number
+        for name in q:
+            if a[i][j].diff("dd" + name):
+                report(i, j, f"({number_i}) is not linear in the accelerations: ", a[i][j])
+        if j < i and (form := a[i][j] - a[j][i]):
+            report(i, j, f"the mass matrix is not symmetric: acceleration of {q[j]} in ({number_i}) minus "
+                         f"acceleration of {q[i]} in ({number_j}) leaves ", form)
+        if j <= i and (form := v[i][j] + v[j][i] - (a[i][j] + a[j][i]).rate(chain)):
+            report(i, j, f"the velocity terms of ({number_i}) and ({number_j}) do not belong to their mass "
+                         "matrix; left over: ", form)
+        if j < i and (form := x[i][j] - x[j][i] - (v[i][j] - v[j][i]).rate(chain) * Fraction(1, 2)):
+            report(i, j, f"the terms of ({number_i}) in {q[j]} and of ({number_j}) in {q[i]} do not come from one "
+                         "energy; left over: ", form)
+    for number, equation in subject.paper.equations.items():
+        if equation.momentum:
+            violations += _momentum(subject, number, q, chain)
+    return violations
+
+
+def _momentum(subject, number, q, chain):
+    """The Helmholtz conditions of a reaction of a translation of the whole system. No other
+    equation depends on its displacement or velocity, so they concern its own terms only."""
+    total = subject.total(number)
+    violations = []
+    for name in q:
+        velocity, mass = total.diff("d" + name), total.diff("dd" + name)
+        if form := velocity - mass.rate(chain) * 2:
+            violations.append(Violation("lagrangian", (number,), (), [
+                f"({number}) is not the rate of a momentum: its terms in the velocity of {name} do not belong to those in "
+                "the acceleration; left over: ", form]))
+        if form := total.diff(name) - velocity.rate(chain) * Fraction(1, 2):
+            violations.append(Violation("lagrangian", (number,), (), [
+                f"({number}) is not the rate of a momentum: its terms in {name} do not belong to those in the velocities; "
+                "left over: ", form]))
+    return violations
+
+
+@dataclass
+class Comparison:
+    """A printed equation beside what the energies give: the ordinals of the terms that agree and
+    that differ, the derived terms that no printed term covers, the constant by which the derived
+    equation was multiplied, and printed minus derived."""
+
+    number: str
+    agree: List[int]
+    differ: List[int]
+    absent: list
+    factor: object
+    difference: object
+
+
+def _opaque(form):
+    """Whether a form has sign(...) or Abs(...) in it."""
+    return any(isinstance(name, Opaque) for monomial, _ in form.terms for name, _ in monomial)
+
+
+def _aligned(form):
+    """A form with |u| read as (discrete state) u: a condition that sums moduli can only be right
+    where everything pushes to the side of the pivot."""
+    states = sorted(form.ring.involutions)
+    moduli = {n for monomial, _ in form.terms for n, _ in monomial if isinstance(n, Opaque) and n.function == "Abs"}
+    if len(states) != 1:
+        return form
+    return form.substitute({modulus: modulus.argument * form.ring.symbol(states[0]) for modulus in moduli})
+
+
+def compare(subject, motion, number):
+    """Judgement 3 for one equation, or None where the energies say nothing about it. A term
+    agrees if none of its parts occurs in the difference of printed and derived."""
+    reference = motion.reference(subject.paper.equations[number])
+    if reference is None:
+        return None
+    kind = subject.paper.equations[number].kind
+    forms = subject.forms[number]
+    if kind == "rule":
+        # only the sign counts: the printed sum may be the derived one over a positive factor
+        scaled = [form * motion.scale(number) for form in forms]
+        forms = min((forms, scaled), key=lambda f: len((sum(f, subject.ring.number(0)) - reference).terms))
+    if kind == "condition" and not _opaque(reference):
+        forms = [_aligned(form) for form in forms]
+    total = sum(forms, subject.ring.number(0))
+    factors = subject.factors() if kind == "motion" else [subject.ring.number(1)]
+    factor = min(factors, key=lambda c: len((total - c * reference).terms))
+    difference = total - factor * reference
+    differ = [i for i, form in enumerate(forms) if form.terms.keys() & difference.terms.keys()]
+    printed = set().union(*(form.terms for form in forms))
+    derived = (factor * reference).terms
+    absent = [subject.ring.form({key: derived[key]}) for key in difference.terms if key in derived and key not in printed]
+    return Comparison(number, [i for i in range(len(forms)) if i not in differ], differ, absent, factor, difference)
+
+
+def difference(subject, motion) -> List[Violation]:
+    """Judgement 3: every term against the equations derived from the energies."""
+    def judge(number):
+        violations = []
+        comparison = motion and compare(subject, motion, number)
+        if not comparison:
+            return violations
+        for index in comparison.differ:
+            violations.append(Violation("difference", (number,), (index,), [
+                "the energies do not give ", subject.forms[number][index]]))
+        for form in comparison.absent:
+            violations.append(Violation("difference", (number,), (), ["the energies give also ", form]))
+        equation = subject.paper.equations[number]
+        moduli = [i for i, form in enumerate(subject.forms[number]) if _opaque(form)]
+        if equation.kind == "condition" and len(moduli) > 1 and not _opaque(motion.reference(equation)):
+            violations.append(Violation("difference", (number,), tuple(moduli), [
+                "the condition sums moduli where the energies give the modulus of a sum"]))
+        return violations
+
+    return subject.each("difference", judge, motion)
+
+
+def mirror(subject, motion=None) -> List[Violation]:
+    """Judgement 4: in the mirror image each term of an equation takes the same sign, that of the
+    coordinate or symbol that the equation is for."""
+    symbols = subject.paper.symbols
+    flip = {}
+    for symbol in symbols.values():
+        if symbol.mirror == -1:
+            moving = symbol.role in ("coordinate", "input")
+            for name in [symbol.name] + (["d" + symbol.name, "dd" + symbol.name] if moving else []):
+                flip[name] = -subject.ring.symbol(name)
+    if not flip:
+        return []
+
+    def judge(number):
+        equation, violations = subject.paper.equations[number], []
+        images = [form.substitute(flip) for form in subject.forms[number]]
+        signs = [1 if image == form else -1 if image == -form else 0 for form, image in zip(subject.forms[number], images)]
+        if equation.kind == "motion":
+            # an equation may have been multiplied by lambda: the majority decides its sign
+            expected = max((symbols[equation.of].mirror, -symbols[equation.of].mirror), key=signs.count)
+        elif equation.kind == "condition":
+            expected = 1
+        else:
+            expected = symbols[equation.of].mirror
+        for index, (form, sign) in enumerate(zip(subject.forms[number], signs)):
+            if form and sign != expected:
+                change = {1: "keeps its sign", -1: "changes its sign", 0: "becomes another term"}[sign]
+                violations.append(Violation("mirror", (number,), (index,), [
+                    "in the mirror image ", form, f" {change}, against the rest of the equation"]))
+        return violations
+
+    return subject.each("mirror", judge)
+
+
+def galilei(subject, motion=None) -> List[Violation]:
+    """Judgement 5: a coordinate and the ground's displacement enter as their sum, and neither
+    that sum nor its rate exerts a force. Friction, which acts on the slip alone, is left out."""
+    if subject.paper.translation is None:
+        return []
+    x, z = subject.paper.translation
+    ring = subject.ring
+    shift = ring.symbol("(shift)")
+    swap = {"dd" + x: ring.symbol("dd" + x) + shift, "dd" + z: ring.symbol("dd" + z) - shift}
+    dissipative = {s.name: 0 for s in subject.paper.symbols.values() if s.dissipative}
+
+    def judge(number):
+        equation, violations = subject.paper.equations[number], []
+        if equation.kind == "reset":
+            return violations
+        forms = [form.substitute(dissipative) for form in subject.forms[number]]
+        total = subject.conservative(number)
+        for name in (x, z, "d" + x, "d" + z):
+            if total.diff(name):
+                blame = tuple(i for i, form in enumerate(forms) if form.diff(name))
+                what = "velocity" if name.startswith("d") else "displacement"
+                violations.append(Violation("galilei", (number,), blame, [
+                    f"a constant {what} added to that of the ground and tank changes ", total - total.substitute({name: 0})]))
+        left = total.substitute(swap) - total
+        if left and ("dd" + x in total.names() or equation.kind != "value"):
+            violations.append(Violation("galilei", (number,), (), [
+                f"the accelerations of {x} and {z} do not enter as their sum; the factor of dd{x} less that of dd{z} is ",
+                left.coefficient("(shift)")]))
+        return violations
+
+    return subject.each("galilei", judge)
+
+
+FIVE = {"dimensions": dimensions, "lagrangian": lagrangian, "difference": difference, "mirror": mirror, "galilei": galilei}

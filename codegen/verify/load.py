@@ -1,0 +1,53 @@
+"""Finds the verification files of a model folder and imports them."""
+
+import importlib
+import sys
+import types
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import List, Optional
+
+from .printed import PaperError
+
+
+@dataclass
+class Case:
+    """All that a model folder offers to verification: `paper.py` (`paper`), `paper_energies.py`
+    (`energies`, a list, the best first; also `candidates` for that place), `corrections.py` (`corrections`) and
+    `paper_numbers.py` (`numbers`)."""
+
+    name: str
+    folder: Path
+    paper: object
+    energies: List = field(default_factory=list)
+    corrections: List = field(default_factory=list)
+    numbers: List = field(default_factory=list)
+    candidates: List = field(default_factory=list)
+
+
+def load(folder, name: Optional[str] = None) -> Case:
+    """The case in a model folder. The files may import one another as `.paper`."""
+    folder = Path(folder)
+    name = name or folder.name
+    if not (folder / "paper.py").is_file():
+        raise PaperError(f"the model '{name}' has no hand-written equations: {folder / 'paper.py'} does not exist")
+    package = "printed_" + name
+    for module in [m for m in sys.modules if m == package or m.startswith(package + ".")]:
+        del sys.modules[module]
+    parent = types.ModuleType(package)
+    parent.__path__ = [str(folder)]
+    sys.modules[package] = parent
+    importlib.invalidate_caches()
+
+    def offered(file, attribute, fallback):
+        if not (folder / (file + ".py")).is_file():
+            return fallback
+        module = importlib.import_module(f"{package}.{file}")
+        if not hasattr(module, attribute):
+            raise PaperError(f"{folder / (file + '.py')} does not define '{attribute}'")
+        return getattr(module, attribute)
+
+    energies = offered("paper_energies", "energies", [])
+    candidates = getattr(sys.modules.get(f"{package}.paper_energies"), "candidates", [])
+    return Case(name, folder, offered("paper", "paper", None), list(energies),
+                list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates))

@@ -1,0 +1,158 @@
+"""Seeded errors: correct hand-written equations, every kind of slip put in one at a time, and the
+table of which judgement finds what."""
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Callable, List
+
+from .findings import JUDGEMENTS, detected
+from .judgements import Subject
+from .lagrange import Motion
+from .load import load
+from .units import parse
+
+EXAMPLES = Path(__file__).parent / "examples"
+
+KINDS = (
+    "sign", "missing discrete state", "swapped symbol", "lost dot", "lost power", "dropped velocity term", "dropped term",
+    "sine for cosine", "factor 2", "asymmetric coupling", "rewritten (no error)",
+)
+
+
+@dataclass
+class Seed:
+    """A mutated equation: which one, which term (from 0), what was done, and the new terms."""
+
+    system: str
+    equation: str
+    term: int
+    kind: str
+    terms: Callable
+
+
+@dataclass
+class Outcome:
+    """Which judgements object to a seed; `equivalent` if its normal form is unchanged, up to a
+    constant factor of the whole equation: then it is no error, and none must object."""
+
+    seed: Seed
+    equivalent: bool
+    found: List[str]
+
+
+def variants(term, equation, paper):
+    """All slips of one term: (kind, the expressions in its place)."""
+    import sympy
+
+    names = {x.name: x for x in term.free_symbols}
+    symbols = paper.symbols
+    yield "sign", [-term]
+    yield "factor 2", [2 * term]
+    moving = [n for n, x in symbols.items() if x.role in ("coordinate", "input")]
+    # rates as they stand, outside of sign(...) and the like
+    rates = {n for n in names if n not in symbols and n in {d + c for c in moving for d in ("d", "dd")}}
+    quadratic = sum(sympy.degree(term, names[n]) for n in rates if not n.startswith("dd") and term.is_polynomial(names[n]))
+    yield ("dropped velocity term" if quadratic >= 2 else "dropped term"), []
+    for name in sorted(rates):
+        if term.is_polynomial(names[name]):
+            # ddx is the acceleration of x also where x itself begins with d
+            lower = name[1:]
+            yield "lost dot", [term.subs(names[name], sympy.Symbol(lower, real=True))]
+    for factor in sympy.Mul.make_args(term):
+        if factor.is_Pow and factor.exp == 2:
+            yield "lost power", [term / factor.base]
+        if factor.func in (sympy.sin, sympy.cos):
+            other = sympy.cos if factor.func == sympy.sin else sympy.sin
+            yield "sine for cosine", [term.subs(factor, other(factor.args[0]))]
+        if factor.is_Symbol and factor.name in symbols:
+            symbol = symbols[factor.name]
+            if symbol.role == "discrete":
+                yield "missing discrete state", [term / factor]
+            if symbol.role == "parameter":
+                alike = [n for n, x in symbols.items() if x.role == "parameter" and n != symbol.name
+                         and parse(x.unit) == parse(symbol.unit)]
+                if alike:
+                    later = [n for n in alike if list(symbols).index(n) > list(symbols).index(symbol.name)]
+                    yield "swapped symbol", [term.subs(factor, sympy.Symbol((later or alike)[0], real=True))]
+    accelerated = [c for c in paper.coordinates() if "dd" + c in rates]
+    if equation.kind == "motion" and accelerated and accelerated[0] != equation.of:
+        yield "asymmetric coupling", [term * sympy.Rational(3, 4)]
+    expanded = sympy.expand_trig(term)
+    if expanded != term:
+        yield "rewritten (no error)", [expanded]
+
+
+def seeds(name, paper, subject):
+    """All seeds of a system."""
+    for number, equation in paper.equations.items():
+        terms = subject.expressions[number]
+        for index, term in enumerate(terms):
+            for kind, instead in variants(term, equation, paper):
+                yield Seed(name, number, index, kind, _replaced(terms, index, instead))
+        if equation.kind == "motion":
+            for constant in [-1] + [getattr(subject.s, n) for n in sorted(subject.ring.involutions)]:
+                scaled = [constant * term for term in terms]
+                yield Seed(name, number, 0, "rewritten (no error)", _replaced(scaled, 0, scaled[:1]))
+
+
+def _replaced(terms, index, instead):
+    """A function that gives the terms with one of them replaced."""
+    return lambda s, m: [*terms[:index], *instead, *terms[index + 1:]]
+
+
+def run(name, folder=None):
+    """All outcomes of a system; the unmutated equations must raise no objection."""
+    case = load(folder or EXAMPLES / name, name)
+    subject, motion = Subject(case.paper), Motion(case.paper, case.energies[0])
+    objections = detected(subject, motion)
+    if objections:
+        raise ArithmeticError(f"the correct equations of {name} are objected to by: {', '.join(objections)}")
+    outcomes = []
+    for seed in seeds(name, case.paper, subject):
+        equation = case.paper.equations[seed.equation]
+        mutated = Subject(case.paper.with_equations([replace(equation, function=seed.terms, latex="")]), subject)
+        before, after = subject.total(seed.equation), mutated.total(seed.equation)
+        factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
+        outcomes.append(Outcome(seed, any(after == factor * before for factor in factors), detected(mutated, motion)))
+    return outcomes
+
+
+def run_all():
+    """Outcomes of all example systems, by name."""
+    return {folder.name: run(folder.name) for folder in sorted(EXAMPLES.iterdir()) if (folder / "paper.py").is_file()}
+
+
+def table(outcomes):
+    """Rows (kind, errors, equal, found, found without the energies, {judgement: found by it})."""
+    rows = []
+    for kind in KINDS:
+        chosen = [o for o in outcomes if o.seed.kind == kind]
+        errors = [o for o in chosen if not o.equivalent]
+        counts = Counter(name for o in errors for name in o.found)
+        if chosen:
+            rows.append((kind, len(errors), len(chosen) - len(errors), sum(bool(o.found) for o in errors),
+                         sum(bool(set(o.found) - {"difference"}) for o in errors), {name: counts[name] for name in JUDGEMENTS}))
+    return rows
+
+
+def as_text(results):
+    """The detection table of each system and of all."""
+    head = f"{'slip':24}{'errors':>7}{'equal':>6}{'found':>6}{'blind':>6} " + "".join(f"{n:>12}" for n in JUDGEMENTS)
+    lines = ["Seeded errors: each slip put into correct equations, one at a time. 'equal': provably no change;",
+             "'blind': found without the energies, by the other five judgements."]
+    for name, outcomes in [*results.items(), ("all systems", [o for x in results.values() for o in x])]:
+        lines += ["", name, head]
+        rows = table(outcomes)
+        for kind, errors, equal, found, blind, by in rows:
+            lines.append(f"{kind:24}{errors:7}{equal:6}{found:6}{blind:6} " + "".join(f"{by[n]:12}" for n in JUDGEMENTS))
+        total = [sum(r[k] for r in rows) for k in (1, 2, 3, 4)]
+        lines.append(f"{'sum':24}{total[0]:7}{total[1]:6}{total[2]:6}{total[3]:6} "
+                     + "".join(f"{sum(r[5][n] for r in rows):12}" for n in JUDGEMENTS))
+    return "\n".join(lines)
+
+
+def as_dictionary(results):
+    """The tables for machines."""
+    return {name: [dict(zip(("slip", "errors", "equal", "found", "blind", "by"), row)) for row in table(outcomes)]
+            for name, outcomes in results.items()}

@@ -1,0 +1,143 @@
+"""The exact normal form against numbers and against SymPy, and Lagrange's equations against
+SymPy's own derivation."""
+
+import math
+import random
+import unittest
+from fractions import Fraction
+
+import sympy
+
+from codegen.verify.algebra import NotInClass, Ring, expression
+from codegen.verify.definite import determinant, prove
+from codegen.verify.lagrange import Motion
+from codegen.verify.load import load
+from codegen.verify.seeded import EXAMPLES
+
+A, B, Q, V, LAM, M = sympy.symbols("a b q v lam m", real=True)
+
+
+def random_expression(generator, depth=3):
+    """A random expression of the class."""
+    if depth == 0:
+        return generator.choice([A, B, Q, V, LAM, M, sympy.Integer(generator.randint(-3, 3)), sympy.Rational(1, 3)])
+    kind = generator.choice(["add", "mul", "mul", "pow", "sin", "cos"])
+    if kind in ("sin", "cos"):
+        angle = generator.randint(-2, 2) * A + generator.randint(-2, 2) * LAM * Q + sympy.Rational(generator.randint(-3, 3), 2) * B
+        return getattr(sympy, kind)(angle)
+    left, right = random_expression(generator, depth - 1), random_expression(generator, depth - 1)
+    return {"add": left + right, "mul": left * right, "pow": left**2 - right}[kind]
+
+
+class NormalForm(unittest.TestCase):
+    def setUp(self):
+        self.ring = Ring(["lam"], ["a", "b"])
+
+    def test_has_the_value_of_the_expression_for_both_discrete_states(self):
+        generator = random.Random(1)
+        for _ in range(60):
+            term = random_expression(generator)
+            form = self.ring.read(term)
+            for state in (1, -1):
+                values = {"a": 0.3, "b": -1.1, "q": 0.7, "v": 1.3, "m": 2.0, "lam": state}
+                expected = float(term.subs({sympy.Symbol(n, real=True): v for n, v in values.items()}))
+                self.assertAlmostEqual(form.evaluate(values, math.sin, math.cos), expected, delta=1e-9 * max(1, abs(expected)))
+
+    def test_of_identical_expressions_is_equal(self):
+        for left, right in [
+            (sympy.sin(A - Q), sympy.sin(A) * sympy.cos(Q) - sympy.cos(A) * sympy.sin(Q)),
+            (sympy.sin(Q)**2 + sympy.cos(Q)**2, 1),
+            (sympy.cos(LAM * Q), sympy.cos(Q)),
+            (sympy.sin(LAM * Q), LAM * sympy.sin(Q)),
+            (LAM**3, LAM),
+            (sympy.cos(3 * Q), 4 * sympy.cos(Q)**3 - 3 * sympy.cos(Q)),
+            (sympy.sign(-LAM * V), -LAM * sympy.sign(V)),
+            (sympy.Abs(-LAM * V), sympy.Abs(V)),
+            (1 / (A * M), A**-1 / M),
+        ]:
+            self.assertEqual(self.ring.read(left), self.ring.read(right), (left, right))
+
+    def test_of_different_expressions_differs(self):
+        for left, right in [(sympy.sin(Q), Q), (LAM * Q, Q), (sympy.cos(A - Q), sympy.cos(A + Q)), (sympy.Abs(V), V)]:
+            self.assertNotEqual(self.ring.read(left), self.ring.read(right), (left, right))
+
+    def test_differentiates_like_sympy(self):
+        generator = random.Random(2)
+        for _ in range(30):
+            term = random_expression(generator)
+            for symbol in (Q, V, A):
+                self.assertEqual(self.ring.read(term).diff(symbol.name), self.ring.read(sympy.diff(term, symbol)), term)
+
+    def test_comes_back_as_an_expression(self):
+        generator = random.Random(3)
+        for _ in range(30):
+            form = self.ring.read(random_expression(generator))
+            self.assertEqual(self.ring.read(expression(form)), form)
+
+    def test_rejects_what_it_cannot_prove_and_names_it(self):
+        for term in (sympy.exp(Q), sympy.sin(Q**2), 1 / (A + B), sympy.sqrt(Q), sympy.Float(0.1) * Q, sympy.sin(Q + 1)):
+            with self.assertRaises(NotInClass, msg=str(term)):
+                self.ring.read(term)
+
+    def test_order_is_the_lowest_degree(self):
+        self.assertEqual(self.ring.read(sympy.cos(Q) - 1).order(["q"]), 2)
+        self.assertEqual(self.ring.read(V * sympy.sin(Q)).order(["q"]), 1)
+        self.assertEqual(self.ring.read(V).order(["q"]), 0)
+        self.assertIsNone(self.ring.read(V - V).order(["q"]))
+
+
+class Derivation(unittest.TestCase):
+    def test_agrees_with_sympy_for_every_example(self):
+        for name in ("double_pendulum", "rocking_block", "tank"):
+            case = load(EXAMPLES / name)
+            motion = Motion(case.paper, case.energies[0])
+            t = sympy.Symbol("t")
+            inputs = [x.name for x in case.paper.symbols.values() if x.role == "input"]
+            functions = {n: sympy.Function(n)(t) for n in motion.coordinates + inputs}
+            stand_in = {}
+            for n, f in functions.items():
+                stand_in.update({"dd" + n: f.diff(t, 2), "d" + n: f.diff(t), n: f})
+            symbols = {n: sympy.Symbol(n, real=True) for n in stand_in}
+            forward = {symbols[n]: stand_in[n] for n in stand_in}
+            backward = [(stand_in[n], symbols[n]) for n in sorted(stand_in, key=lambda n: (not n.startswith("dd"), not n.startswith("d")))]
+            energies = case.energies[0]
+            kinetic = energies.kinetic(motion.s, motion.m).subs(forward, simultaneous=True)
+            potential = energies.potential(motion.s, motion.m).subs(forward, simultaneous=True)
+            lagrangian = kinetic - potential
+            for n in motion.coordinates:
+                expected = lagrangian.diff(functions[n].diff(t)).diff(t) - lagrangian.diff(functions[n])
+                expected = motion.ring.read(expected.subs(backward)).substitute(motion.held)
+                extra = motion.ring.number(0)
+                if energies.dissipation:
+                    extra += motion.ring.read(energies.dissipation(motion.s, motion.m)).diff("d" + n)
+                if n in energies.forces:
+                    extra -= motion.ring.read(energies.forces[n](motion.s, motion.m))
+                self.assertEqual(motion.residual(n), expected + extra, (name, n))
+
+
+class Definiteness(unittest.TestCase):
+    def setUp(self):
+        self.ring = Ring([], [])
+
+    def test_determinant_is_that_of_sympy(self):
+        rows = [[A, Q, sympy.sin(Q)], [Q, B, V], [sympy.sin(Q), V, M]]
+        mine = determinant([[self.ring.read(x) for x in row] for row in rows])
+        self.assertEqual(mine, self.ring.read(sympy.expand(sympy.Matrix(rows).det())))
+
+    def test_proof_refutation_and_doubt(self):
+        form = self.ring.read(2 + sympy.cos(Q))
+        self.assertEqual(prove([form], {}, {"q": (-4.0, 4.0)}).status, "proved")
+        form = self.ring.read(sympy.Rational(99, 100) + sympy.cos(Q))
+        refuted = prove([form], {}, {"q": (-4.0, 4.0)})
+        self.assertEqual(refuted.status, "refuted")
+        low, high = refuted.point["q"]
+        self.assertLess(0.99 + math.cos((low + high) / 2), 0)
+        touching = self.ring.read(Q**2)
+        self.assertEqual(prove([touching], {}, {"q": (-1.0, 2.0)}, limit=50).status, "undecided")
+
+    def test_fractions_stay_exact(self):
+        self.assertEqual(self.ring.read(sympy.Rational(1, 3) * Q).terms[((("q", 1),), ("cos", ()))], Fraction(1, 3))
+
+
+if __name__ == "__main__":
+    unittest.main()
