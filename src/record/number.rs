@@ -9,8 +9,8 @@ const EXACT: usize = 17;
 /// bits (of a NaN: some NaN). Whole numbers have no decimal point; the negative zero keeps one,
 /// because `-0` is read as an integer by many. Non-finite numbers become `NaN`, `inf`, `-inf`.
 pub(super) fn push_exact(out: &mut String, x: f64) {
-    if x == 0.0 && x.is_sign_negative() {
-        out.push_str("-0.0");
+    if x == 0.0 {
+        out.push_str(if x.is_sign_negative() { "-0.0" } else { "0" });
     } else {
         push_general(out, x, EXACT);
     }
@@ -23,7 +23,7 @@ pub(super) fn rounded(x: f64, digits: usize) -> String {
     out
 }
 
-/// As C's `%.{digits}g`: positional where the exponent is in `-4..digits`, else scientific.
+/// As C's `%.{digits}g`, up to 17 digits: positional where the exponent is in `-4..digits`, else scientific.
 fn push_general(out: &mut String, x: f64, digits: usize) {
     if !x.is_finite() {
         write!(out, "{x}").expect("writing to a string succeeds");
@@ -35,13 +35,20 @@ fn push_general(out: &mut String, x: f64, digits: usize) {
         .split_once('e')
         .expect("{:e} writes an exponent");
     let exponent: i32 = exponent.parse().expect("{:e} writes a whole exponent");
-    let figures: String = mantissa.chars().filter(|&c| c != '.').collect();
+    // The figures without the point, on the stack: this runs for every number of a table.
+    let mut figures = [0; EXACT];
+    let mut count = 0;
+    for &figure in mantissa.as_bytes().iter().filter(|&&c| c != b'.') {
+        figures[count] = figure;
+        count += 1;
+    }
+    let figures = str::from_utf8(&figures[..count]).expect("figures are ASCII");
     let figures = match figures.trim_end_matches('0') {
         "" => "0",
         trimmed => trimmed,
     };
     out.truncate(start);
-    if x.is_sign_negative() && x != 0.0 {
+    if x < 0.0 {
         out.push('-');
     }
     let last = figures.len() as i32 - 1;

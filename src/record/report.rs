@@ -91,7 +91,8 @@ fn states(summary: &Summary) -> Vec<[String; 7]> {
     let mut rows = vec![["", "unit", "end", "min", "at t/s", "max", "at t/s"].map(str::to_owned)];
     let end = &summary.end;
     for (name, peak) in &summary.peaks.0 {
-        let value = end.q.0.iter().chain(&end.v.0).find(|(n, _)| n == name);
+        let mut state = end.q.0.iter().chain(&end.v.0).chain(&end.reactions.0);
+        let value = state.find(|(n, _)| n == name);
         rows.push([
             name.clone(),
             peak.unit.clone(),
@@ -132,7 +133,8 @@ fn energies(f: &mut Formatter, summary: &Summary) -> fmt::Result {
     let energy = &summary.energy;
     writeln!(
         f,
-        "energy / J  initial {} + input work {} − dissipated {} − lost at impacts {} = final {}, off by {}",
+        "energy / J  initial {} + input work {} − dissipated {} − lost at impacts {} = final {}\n            \
+         imbalance {}",
         number(energy.initial),
         number(energy.input_work),
         number(energy.dissipated),

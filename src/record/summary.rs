@@ -60,6 +60,8 @@ pub struct Point {
     pub v: Named<f64>,
     /// Discrete states.
     pub discrete: Named<f64>,
+    /// Reactions; none where they are not recorded.
+    pub reactions: Named<f64>,
 }
 
 /// Why and where a run stopped early.
@@ -223,6 +225,7 @@ fn point(run: &Run, place: &Place) -> Point {
         q: named(&run.layout.coordinates, &place.state.q),
         v: named(&run.layout.velocities, &place.state.v),
         discrete: named(&run.layout.discretes, &place.state.discrete),
+        reactions: named(&run.layout.reactions, &place.state.reactions),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Axes: ranges, scales, ticks.
 
-use super::symbol::{Display, display, superscript};
+use super::symbol::{Display, display, printed, superscript};
 use crate::record::number::rounded;
 
 /// How values are spread along an axis.
@@ -30,6 +30,8 @@ pub(super) struct Axis {
     high: f64,
     /// Values are shown as their difference to this, in the model's unit.
     offset: f64,
+    /// The model's unit, as it is printed.
+    unit: String,
     display: Display,
 }
 
@@ -56,6 +58,7 @@ impl Axis {
                     low: low - room,
                     high: high + room,
                     offset: 0.0,
+                    unit: printed(unit),
                     display,
                 }
             }
@@ -87,6 +90,7 @@ impl Axis {
             low: low - room,
             high: high + room,
             offset,
+            unit: printed(unit),
             display,
         }
     }
@@ -106,7 +110,11 @@ impl Axis {
         let mut title = what.to_owned();
         if self.offset != 0.0 {
             let sign = if self.offset > 0.0 { '−' } else { '+' };
-            title = format!("{title} {sign} {}", rounded(self.offset.abs(), 15));
+            title = format!(
+                "{title} {sign} {} {}",
+                rounded(self.offset.abs(), 15),
+                self.unit
+            );
         }
         if !self.display.unit.is_empty() {
             title = format!("{title} ({})", self.display.unit);
@@ -114,22 +122,24 @@ impl Axis {
         title
     }
 
-    /// Up to about `count` ticks at round values. A logarithmic axis has them at powers of ten, or
-    /// at 1, 2 and 5 times powers of ten where that leaves less than three.
-    pub fn ticks(&self, count: usize) -> Vec<Tick> {
+    /// The ticks at the finest round values of which there are no more than `most`. A logarithmic
+    /// axis has them at powers of ten; below three decades also at 2 and 5 times powers of ten.
+    pub fn ticks(&self, most: usize) -> Vec<Tick> {
         let tick = |shown: f64, label: String| Tick {
             at: (shown - self.low) / (self.high - self.low),
             label: label.replace('-', "−"),
         };
-        let steps = |step: f64| (self.low / step).ceil() as i32..=(self.high / step).floor() as i32;
-        let step = round_step((self.high - self.low) / count as f64);
+        let multiples = |step: f64| {
+            let first = (self.low / step).ceil() as i32;
+            let last = (self.high / step).floor() as i32;
+            (first..=last).map(move |i| f64::from(i) * step)
+        };
+        let step = self.step(most);
         match self.scale {
             Scale::Linear => {
                 let decimals = (-step.log10().floor()).max(0.0) as usize;
-                let value = |i| f64::from(i) * step;
-                steps(step)
-                    .map(|i| tick(value(i), format!("{:.decimals$}", value(i))))
-                    .collect()
+                let labelled = |x| tick(x, format!("{x:.decimals$}"));
+                multiples(step).map(labelled).collect()
             }
             Scale::Log if self.high - self.low < 3.0 => {
                 let decades = self.low.floor() as i32..=self.high.floor() as i32;
@@ -138,28 +148,24 @@ impl Axis {
                 inside.map(|v| tick(v.log10(), rounded(v, 3))).collect()
             }
             Scale::Log => {
-                let step = step.max(1.0).ceil();
-                let exponent = |i| f64::from(i) * step;
-                steps(step)
-                    .map(|i| {
-                        tick(
-                            exponent(i),
-                            format!("10{}", superscript(exponent(i) as i32)),
-                        )
-                    })
-                    .collect()
+                let labelled = |x| tick(x, format!("10{}", superscript(x as i32)));
+                multiples(step.max(1.0)).map(labelled).collect()
             }
         }
     }
-}
 
-/// The number 1, 2 or 5 times a power of ten that is next above `step`.
-fn round_step(step: f64) -> f64 {
-    let decade = 10f64.powf(step.log10().floor());
-    let digit = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|digit| digit * decade >= step);
-    digit.unwrap_or(10.0) * decade
+    /// The least distance 1, 2 or 5 times a power of ten that leaves no more than `most` multiples
+    /// inside.
+    fn step(&self, most: usize) -> f64 {
+        let inside = |step: f64| (self.high / step).floor() - (self.low / step).ceil() + 1.0;
+        // `most` multiples span at most `most + 1` distances, so no answer is below this power.
+        let start = ((self.high - self.low) / (most + 1) as f64).log10().floor() as i32;
+        let steps = (start..).flat_map(|e| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(e)));
+        let mut fitting = steps.filter(|&step| inside(step) <= most as f64);
+        fitting
+            .next()
+            .expect("a distance longer than the axis leaves three multiples at most")
+    }
 }
 
 #[cfg(test)]
@@ -174,6 +180,7 @@ mod tests {
     fn small_values_are_shown_in_a_smaller_unit() {
         let axis = Axis::new(Scale::Linear, "m", (-3.2e-6, 1.1e-6), 0.0);
         assert_eq!(axis.title("x"), "x (µm)");
+        assert_eq!(labels(&axis, 5), ["−3", "−2", "−1", "0", "1"]);
         assert_eq!(labels(&axis, 4), ["−2", "0"]);
         assert_eq!(axis.position(-3.2e-6), 0.0);
         assert_eq!(axis.position(1.1e-6), 1.0);
@@ -181,9 +188,9 @@ mod tests {
 
     #[test]
     fn small_differences_are_shown_beside_an_offset() {
-        let axis = Axis::new(Scale::Linear, "m", (1.234_561_0, 1.234_563_0), 0.0);
-        assert_eq!(axis.title("y"), "y − 1.23456 (µm)");
-        assert_eq!(labels(&axis, 2), ["1", "2", "3"]);
+        let axis = Axis::new(Scale::Linear, "m", (1.234_560_9, 1.234_563_1), 0.0);
+        assert_eq!(axis.title("y"), "y − 1.23456 m (µm)");
+        assert_eq!(labels(&axis, 3), ["1", "2", "3"]);
     }
 
     #[test]

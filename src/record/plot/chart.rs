@@ -29,7 +29,7 @@ pub struct Chart {
     pub x: Dimension,
     /// Vertical axis.
     pub y: Dimension,
-    /// The curves, drawn in order. A single one without a label has no legend.
+    /// The curves, drawn in order.
     pub curves: Vec<Curve>,
     /// Whether every point gets a mark.
     pub marks: bool,
@@ -116,12 +116,9 @@ impl Chart {
             canvas.text(&self.title, (left, top + 6.0), Anchor::Left, TITLE);
             top += 20.0;
         }
-        if self.curves.iter().any(|c| !c.label.is_empty()) {
-            let entries = entries(&self.curves);
-            legend(canvas, &entries, (left, top), width);
-            top += legend_height(&entries, width);
-        }
-        top += 4.0;
+        let entries = entries(&self.curves);
+        legend(canvas, &entries, (left, top), width);
+        top += legend_height(&entries, width) + 4.0;
         let inner = Area {
             left,
             top,

@@ -53,17 +53,12 @@ pub fn overview(run: &Run) -> String {
     let (panels, constants) = panels(run);
     let time = time_axis(run);
     let strip = Strip::new(run);
-    let panels: Vec<(Panel, Vec<Curve>)> = panels
-        .into_iter()
-        .map(|panel| {
-            let c = panel_curves(run, &panel);
-            (panel, c)
-        })
-        .collect();
+    let with_curves = |panel| (panel_curves(run, &panel), panel);
+    let panels: Vec<(Vec<Curve>, Panel)> = panels.into_iter().map(with_curves).collect();
     let notes = wrapped(&constants, INNER);
     let panel_height = |c: &[Curve]| legend_height(&entries(c), INNER) + PANEL + GAP;
     let height = HEAD
-        + panels.iter().map(|(_, c)| panel_height(c)).sum::<f64>()
+        + panels.iter().map(|(c, _)| panel_height(c)).sum::<f64>()
         + TIME_AXIS
         + strip.height(INNER)
         + notes.len() as f64 * ROW
@@ -77,7 +72,7 @@ pub fn overview(run: &Run) -> String {
             width: INNER,
             height: 0.0,
         };
-        for (panel, c) in &panels {
+        for (c, panel) in &panels {
             let legend_entries = entries(c);
             legend(canvas, &legend_entries, (LEFT, top), INNER);
             top += legend_height(&legend_entries, INNER);
@@ -211,7 +206,12 @@ impl Panel {
 fn panel_curves(run: &Run, panel: &Panel) -> Vec<Curve> {
     let curve = |&(i, _): &(usize, (f64, f64))| {
         let column = &run.trajectory.columns[i];
-        let label = format!("{}  {}", symbol(&column.name), column.meaning);
+        // Of a rate the symbol says it all, and a lone one has it beside its axis.
+        let label = match (panel.group, panel.columns.len()) {
+            (Group::Velocity, 1) => String::new(),
+            (Group::Velocity, _) => symbol(&column.name),
+            _ => format!("{}: {}", symbol(&column.name), column.meaning),
+        };
         Curve {
             label,
             points: run.curve(i).collect(),

@@ -27,13 +27,17 @@ const HAIR: f64 = 0.7;
 /// Width of the piece of line or area in front of a text in a legend, and the space around it.
 const SWATCH: f64 = 16.0;
 const SPACE: f64 = 5.0;
+/// Vertical labels this far apart [px] have nearly as much white as text between them; with more
+/// labels than this, the grid draws the eye away from the curves.
+const LABEL_DISTANCE: f64 = 18.0;
+const MOST_LABELS: usize = 8;
 /// Radius of the mark at a point.
 const MARK: f64 = 2.6;
 
 /// A curve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curve {
-    /// Label in the legend.
+    /// Label in the legend; empty for none.
     pub label: String,
     /// The points.
     pub points: Vec<(f64, f64)>,
@@ -70,14 +74,18 @@ pub(super) struct Entry {
     pub filled: bool,
 }
 
-/// The entries of curves drawn by [`curves`].
+/// The entries of curves drawn by [`curves`], without those that have no label.
 pub(super) fn entries(curves: &[Curve]) -> Vec<Entry> {
     let entry = |(i, c): (usize, &Curve)| Entry {
         label: c.label.clone(),
         colour: line(i),
         filled: false,
     };
-    curves.iter().enumerate().map(entry).collect()
+    let labelled = curves
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| !c.label.is_empty());
+    labelled.map(entry).collect()
 }
 
 /// The places of the entries of a legend of the given width: offset to the right and row.
@@ -120,8 +128,7 @@ pub(super) fn grid(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, title: &
     for tick in x.ticks(horizontal_ticks(area)) {
         canvas.line([area.at(tick.at, 0.0), area.at(tick.at, 1.0)], HAIR, GRID);
     }
-    // Labels 24 px apart leave as much white as text.
-    for tick in y.ticks(((area.height / 24.0) as usize).max(2)) {
+    for tick in y.ticks(((area.height / LABEL_DISTANCE) as usize).min(MOST_LABELS)) {
         let colour = if tick.label == "0" { ZERO } else { GRID };
         canvas.line([area.at(0.0, tick.at), area.at(1.0, tick.at)], HAIR, colour);
         let (left, at) = area.at(0.0, tick.at);
@@ -158,9 +165,9 @@ pub(super) fn horizontal_axis(canvas: &mut Canvas, area: Area, x: &Axis, title: 
     );
 }
 
-/// Labels 70 px apart do not touch.
+/// Labels 55 px apart do not touch.
 fn horizontal_ticks(area: Area) -> usize {
-    ((area.width / 70.0) as usize).max(2)
+    (area.width / 55.0) as usize
 }
 
 /// Draws curves into an area, each in its colour, with marks at the points if wanted.

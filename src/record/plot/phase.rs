@@ -6,6 +6,7 @@ use super::canvas::picture;
 use super::chart::{Chart, Dimension};
 use super::panel::{Area, Curve, range};
 use super::symbol::symbol;
+use crate::record::number::rounded;
 use crate::record::{Group, Run};
 
 /// Size of a portrait.
@@ -13,9 +14,9 @@ const SIZE: (f64, f64) = (380.0, 330.0);
 /// Portraits side by side.
 const ACROSS: usize = 3;
 /// Cells across a portrait: pieces of a curve between the same two cells are the same.
-const CELLS: f64 = 300.0;
-/// Pieces of a curve drawn, at about 10 bytes each.
-const PIECES: usize = 20_000;
+const CELLS: f64 = 200.0;
+/// Pieces of a curve drawn: 10 to 100 bytes each, so that a portrait stays near a megabyte at worst.
+const PIECES: usize = 16_000;
 
 /// Draws the phase portrait of every coordinate that moves, as SVG; `None` when none does.
 pub fn phase_portraits(run: &Run) -> Option<String> {
@@ -65,36 +66,48 @@ fn portrait(run: &Run, q: usize, v: usize) -> Option<Chart> {
         let part = |x: f64, from: f64, to: f64| ((x - from) / (to - from) * CELLS) as i32;
         (part(p.0, low, high), part(p.1, slow, fast))
     };
+    let (pieces, from) = distinct(&points, cell);
+    let title = match run.curve(q).nth(from) {
+        Some((t, _)) if from > 0 => format!("from t = {} s on", rounded(t, 4)),
+        _ => String::new(),
+    };
     let (q, v) = (&run.trajectory.columns[q], &run.trajectory.columns[v]);
     Some(Chart {
-        title: String::new(),
+        title,
         x: Dimension::linear(&symbol(&q.name), &q.unit),
         y: Dimension::linear(&symbol(&v.name), &v.unit),
         curves: vec![Curve {
             label: String::new(),
-            points: distinct(&points, cell),
+            points: pieces,
         }],
         marks: false,
     })
 }
 
-/// The curve without the pieces that would be drawn over earlier ones of the same run, and of what
-/// then remains the last [`PIECES`]. Points that are not numbers separate what is left.
-fn distinct(points: &[(f64, f64)], cell: impl Fn((f64, f64)) -> (i32, i32)) -> Vec<(f64, f64)> {
-    const GAP: (f64, f64) = (f64::NAN, f64::NAN);
+/// The curve in pieces from one cell to another, without those that an earlier one covers, and of
+/// what then remains the last [`PIECES`]; also the index of the first point that is left. Points
+/// that are not numbers separate what is left.
+fn distinct(
+    points: &[(f64, f64)],
+    cell: impl Fn((f64, f64)) -> (i32, i32),
+) -> (Vec<(f64, f64)>, usize) {
+    let mut steps: Vec<usize> = (0..points.len()).collect();
+    steps.dedup_by_key(|&mut i| cell(points[i]));
     let mut seen = HashSet::new();
+    let mut is_new = |a: (i32, i32), b: (i32, i32)| seen.insert((a.min(b), a.max(b)));
+    let mut pieces: Vec<(usize, usize)> = steps.windows(2).map(|w| (w[0], w[1])).collect();
+    pieces.retain(|&(from, to)| is_new(cell(points[from]), cell(points[to])));
+    let pieces = &pieces[pieces.len().saturating_sub(PIECES)..];
     let mut kept = Vec::new();
-    for piece in points.windows(2) {
-        let (a, b) = (cell(piece[0]), cell(piece[1]));
-        if !seen.insert((a.min(b), a.max(b))) {
-            continue;
+    let mut last = None;
+    for &(from, to) in pieces {
+        if last != Some(from) {
+            kept.extend([(f64::NAN, f64::NAN), points[from]]);
         }
-        if kept.last() != Some(&piece[0]) {
-            kept.extend([GAP, piece[0]]);
-        }
-        kept.push(piece[1]);
+        kept.push(points[to]);
+        last = Some(to);
     }
-    kept.split_off(kept.len().saturating_sub(PIECES))
+    (kept, pieces.first().map_or(0, |piece| piece.0))
 }
 
 #[cfg(test)]
@@ -106,7 +119,8 @@ mod tests {
         let circle = |i: i32| (f64::from(i) * 0.1 * std::f64::consts::PI).sin_cos();
         let turns: Vec<_> = (0..10_000).map(circle).collect();
         let cell = |p: (f64, f64)| ((p.0 * 50.0).round() as i32, (p.1 * 50.0).round() as i32);
-        let kept = distinct(&turns, cell);
+        let (kept, from) = distinct(&turns, cell);
+        assert_eq!(from, 0);
         assert_eq!(kept.iter().filter(|p| p.0.is_finite()).count(), 21);
     }
 }

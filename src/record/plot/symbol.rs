@@ -124,7 +124,7 @@ pub(super) fn display(unit: &str, largest: f64) -> Display {
 }
 
 /// `m/s^2` with a raised 2, `N m` with a dot, nothing for `1`.
-fn printed(unit: &str) -> String {
+pub(super) fn printed(unit: &str) -> String {
     if unit == "1" {
         return String::new();
     }
