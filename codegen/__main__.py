@@ -1,4 +1,4 @@
-"""Command line of the package: `python -m codegen generate --model-dir DIR --out DIR`."""
+"""Command line of the package: `generate` writes code, `verify` judges printed equations."""
 
 import argparse
 import os
@@ -9,6 +9,9 @@ from .errors import ModelError
 
 def main(argv):
     """Runs a command; returns the exit status."""
+    if argv[:1] == ["verify"]:
+        from .verify.cli import main as verify
+        return verify(argv[1:])
     parser = argparse.ArgumentParser(prog="python -m codegen", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     generator = commands.add_parser("generate", help="write C, Rust tables and manifest of models")

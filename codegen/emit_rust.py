@@ -71,7 +71,9 @@ def _option(value, show):
 
 
 def _reaction_unit(unit):
-    return units.text(units.combine(units.parse("kg m^2/s^2"), units.parse(unit), -1))
+    """Unit of the generalized force of a coordinate: N for lengths, N m for angles."""
+    force = units.combine(units.parse("N m"), units.parse(unit), -1)
+    return next((name for name in ("N", "N m") if units.parse(name) == force), units.text(force))
 
 
 def _coordinate(c):

@@ -203,7 +203,12 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
-    pub fn inertia(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> SMatrix<f64, F, F> {
+    pub fn inertia(
+        &self,
+        x: &Context,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+    ) -> SMatrix<f64, F, F> {
         let mut out = SMatrix::<f64, F, F>::zeros();
         let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F outputs; `a` is not read.
@@ -326,7 +331,12 @@ impl<const F: usize> ModeKernel<F> {
 
     /// The smallest condition of a transition into this mode, which is taken only if it is ≥ 0;
     /// None if the transition is unconditional.
-    pub fn condition(&self, x: &Context, transition: &TransitionKernel, at: Free<F>) -> Option<f64> {
+    pub fn condition(
+        &self,
+        x: &Context,
+        transition: &TransitionKernel,
+        at: Free<F>,
+    ) -> Option<f64> {
         let (function, free, count) = transition.condition?;
         assert_eq!(free, F, "a condition is evaluated in the target mode");
         let mut out = [0.0; MOST_CONDITIONS];

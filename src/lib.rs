@@ -3,6 +3,7 @@
 //!
 //! energies → derivation → C → [`kernel`] → [`integrate`] → [`hybrid`] (events) → [`record`]
 
+pub mod cli;
 pub mod hybrid;
 pub mod input;
 pub mod integrate;

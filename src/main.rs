@@ -1,1 +1,7 @@
-fn main() {}
+//! The command `dalembert`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    dalembert::cli::main()
+}

@@ -11,7 +11,6 @@ use super::instant::Instant;
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 const LONGEST_PATTERN: usize = 8;
 
-
 /// What is remembered of an event.
 #[derive(Debug, Clone, Default)]
 struct Hop {
@@ -56,7 +55,13 @@ impl Accumulation {
     }
 
     /// Remembers an event, with the state after it.
-    pub fn push(&mut self, signature: u64, impact: bool, at: Instant, state: impl Iterator<Item = f64>) {
+    pub fn push(
+        &mut self,
+        signature: u64,
+        impact: bool,
+        at: Instant,
+        state: impl Iterator<Item = f64>,
+    ) {
         let slot = self.count % Self::MEMORY;
         let hop = &mut self.hops[slot];
         hop.signature = signature;
@@ -119,8 +124,9 @@ impl Accumulation {
             let spread = (0..p).map(|k| (self.hop(k).state[i] - now.state[i]).abs());
             let movement = spread.fold(change.abs(), f64::max);
             negligible &= movement <= tolerance(i, now.state[i]);
-            let limit_before =
-                before.state[i] + (before.state[i] - self.hop(2 * p).state[i]) * ratio_before / (1.0 - ratio_before);
+            let limit_before = before.state[i]
+                + (before.state[i] - self.hop(2 * p).state[i]) * ratio_before
+                    / (1.0 - ratio_before);
             *value += change;
             // A component whose limit is not told from zero by two successive predictions dies
             // with the pattern.
@@ -129,8 +135,12 @@ impl Accumulation {
             }
         }
         // Below one unit in the last place of t the series cannot advance the time any more.
-        (negligible || remaining < one_place)
-            .then_some(Limit { at: limit, state, pattern: p, ratio })
+        (negligible || remaining < one_place).then_some(Limit {
+            at: limit,
+            state,
+            pattern: p,
+            ratio,
+        })
     }
 
     /// Whether the memory is full of events that together do not advance the time by one unit in

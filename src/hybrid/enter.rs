@@ -59,7 +59,8 @@ impl Simulation<'_> {
             let mut watch = Watch::of(value);
             let mut at_once = false;
             if watch == Watch::Dormant && !conditional {
-                let departure = departure(kernel, &self.context, guard, [&q, &v], &mut a, &noise, &jerk);
+                let departure =
+                    departure(kernel, &self.context, guard, [&q, &v], &mut a, &noise, &jerk);
                 at_once = departure < 0.0;
             }
             if at_once {
@@ -90,7 +91,11 @@ impl Simulation<'_> {
                     if rest.is_nan() || rest <= rounding {
                         let mode = self.mode();
                         let coordinate = self.problem.model.coordinates[mode.free[i]].name;
-                        return Err(Reason::Indefinite { mode: mode.name, coordinate, pivot: rest });
+                        return Err(Reason::Indefinite {
+                            mode: mode.name,
+                            coordinate,
+                            pivot: rest,
+                        });
                     }
                     lower[(i, i)] = rest.sqrt();
                 } else {

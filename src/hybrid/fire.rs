@@ -39,15 +39,12 @@ impl Simulation<'_> {
         let mode = self.mode();
         let [q, v, a] = self.here.free::<F>(mode.free);
         let at = Free { q: &q, v: &v, a: &a };
-        let mut conditions = Conditions {
-            variant: self.problem.variant,
-            plan: &self.plan,
-            next: &mut self.next,
-        };
+        let mut conditions =
+            Conditions { variant: self.problem.variant, plan: &self.plan, next: &mut self.next };
         let transitions = mode.guards[guard].transitions;
-        (0..transitions.len()).filter(|&t| self.plan.allowed[transitions[t].target]).find(|&t| {
-            conditions.of(kernel, &mut self.context, &transitions[t], at) >= 0.0
-        })
+        (0..transitions.len())
+            .filter(|&t| self.plan.allowed[transitions[t].target])
+            .find(|&t| conditions.of(kernel, &mut self.context, &transitions[t], at) >= 0.0)
     }
 
     /// Makes `next` the present state, in mode `target`, and records the event.
@@ -75,10 +72,8 @@ impl Simulation<'_> {
         let impulses = self.ground_momenta().into_iter().zip(momenta_before);
         let ground_work: f64 =
             impulses.map(|((after, rate), (before, _))| (after - before) * rate).sum();
-        let energy = EnergyJump {
-            lost: energy_before - self.stored_energy() + ground_work,
-            ground_work,
-        };
+        let energy =
+            EnergyJump { lost: energy_before - self.stored_energy() + ground_work, ground_work };
         self.ledger.add_jump(energy);
         let event = Event {
             t: self.here.now.seconds(),

@@ -154,7 +154,11 @@ fn search_linear<const F: usize>(
         let coefficient = |power: usize| {
             if power < COEFFICIENTS { dense.coefficient(power)[index] } else { 0.0 }
         };
-        if rate { factor * (k + 1) as f64 * coefficient(k + 1) / h } else { factor * coefficient(k) }
+        if rate {
+            factor * (k + 1) as f64 * coefficient(k + 1) / h
+        } else {
+            factor * coefficient(k)
+        }
     });
     let polynomial = Polynomial::<COEFFICIENTS> { coefficients };
     let local = |tau: f64| ((tau - dense.start()) / h).clamp(0.0, 1.0);

@@ -61,7 +61,12 @@ pub(super) fn land<const F: usize>(
             return Ok(match value < 0.0 {
                 true => Landing::On { state: end, beyond: 0.0 },
                 false => beyond_the_crossing(
-                    equations, conditions, guard, &end, 0.0, TAYLOR * (window - start),
+                    equations,
+                    conditions,
+                    guard,
+                    &end,
+                    0.0,
+                    TAYLOR * (window - start),
                 ),
             });
         }

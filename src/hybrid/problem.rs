@@ -94,7 +94,10 @@ impl Problem {
             variant: variant.expect("codegen makes a variant of the defaults"),
             title: None,
             parameters: model.parameters.iter().map(|p| p.default).collect(),
-            signals: Signals::new(model.inputs, model.inputs.iter().map(|_| Function::zero()).collect()),
+            signals: Signals::new(
+                model.inputs,
+                model.inputs.iter().map(|_| Function::zero()).collect(),
+            ),
             initial: Initial {
                 q: vec![0.0; n],
                 v: vec![0.0; n],

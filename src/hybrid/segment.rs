@@ -65,10 +65,18 @@ impl Simulation<'_> {
             loop {
                 let dense = *radau.dense().expect("a step was made");
                 let to = radau.state().t;
-                let hit = earliest(from, to, &self.watches, &mut self.found, |i, from, to, watch| {
-                    let guard = &mode.guards[watched[i]];
-                    guards::search(&mut equations, &mut conditions, &dense, guard, (from, to), watch)
-                });
+                let hit =
+                    earliest(from, to, &self.watches, &mut self.found, |i, from, to, watch| {
+                        let guard = &mode.guards[watched[i]];
+                        guards::search(
+                            &mut equations,
+                            &mut conditions,
+                            &dense,
+                            guard,
+                            (from, to),
+                            watch,
+                        )
+                    });
                 if hit.time.is_none() {
                     break;
                 }
@@ -83,7 +91,10 @@ impl Simulation<'_> {
                         continue;
                     }
                     Kind::LeavesNegative if from == 0.0 => {
-                        return Ok(Stop::Violated(Violation { guard: watched[first], at_once: true }));
+                        return Ok(Stop::Violated(Violation {
+                            guard: watched[first],
+                            at_once: true,
+                        }));
                     }
                     _ => {}
                 }
@@ -127,7 +138,8 @@ impl Simulation<'_> {
                 let here = &mut self.here;
                 here.set_free(mode.free, [&q, &v, &a]);
                 copy_drifting(&mut here.q, mode.drifts, &equations.context.held);
-                let row = Row { layout: &self.layout, q: &here.q, v: &here.v, ledger: ledger.row(0.0) };
+                let row =
+                    Row { layout: &self.layout, q: &here.q, v: &here.v, ledger: ledger.row(0.0) };
                 self.recorder.push_row(t, here.mode, |values| {
                     row.fill(kernel, equations.context, Free { q: &q, v: &v, a: &a }, values)
                 });

@@ -99,7 +99,8 @@ impl<'p> Simulation<'p> {
         context.discrete.copy_from_slice(&problem.initial.discrete);
         let n = model.coordinates.len();
         let layout = Layout::new(model, problem.variant, problem.record.columns);
-        let rows = problem.record.every.map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
+        let rows =
+            problem.record.every.map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
         let mut simulation = Simulation {
             problem,
             plan,

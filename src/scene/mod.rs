@@ -115,9 +115,7 @@ impl Scene {
         overrides: &[String],
         models: &[&'static Model],
     ) -> Result<Scene, SceneErrors> {
-        let bytes = Disk
-            .read(path)
-            .map_err(|e| SceneError::unreadable(path.to_owned(), &e))?;
+        let bytes = Disk.read(path).map_err(|e| SceneError::unreadable(path.to_owned(), &e))?;
         Scene::parse(&bytes, path, overrides, models, &Disk)
     }
 
@@ -150,9 +148,7 @@ fn decode(bytes: &[u8], path: &Path) -> Result<Arc<Source>, SceneError> {
         Err(error) => {
             // Up to there both texts are the same; then the lossy one has a replacement character.
             let place = Span::new(&source, error.valid_up_to()..source.text.len()).start();
-            let kind = SceneErrorKind::Syntax {
-                message: "the text is not UTF-8".into(),
-            };
+            let kind = SceneErrorKind::Syntax { message: "the text is not UTF-8".into() };
             Err(SceneError::new(kind, &place).help("save the file as UTF-8"))
         }
     }
@@ -174,10 +170,7 @@ impl SceneSource {
         message: impl Into<String>,
         help: Option<&str>,
     ) -> SceneError {
-        let path = Arc::new(Source {
-            name: String::new(),
-            text: path.to_owned(),
-        });
+        let path = Arc::new(Source { name: String::new(), text: path.to_owned() });
         let mut node = &self.root;
         let mut place = node.place();
         for segment in set::segments(&Span::new(&path, 0..path.text.len())) {
@@ -193,12 +186,7 @@ impl SceneSource {
                 _ => node.place(),
             };
         }
-        let error = SceneError::new(
-            SceneErrorKind::State {
-                message: message.into(),
-            },
-            &place,
-        );
+        let error = SceneError::new(SceneErrorKind::State { message: message.into() }, &place);
         match help {
             Some(help) => error.help(help),
             None => error,
@@ -208,3 +196,38 @@ impl SceneSource {
 
 #[cfg(test)]
 mod tests;
+
+impl Scene {
+    /// The problem to be simulated.
+    pub fn problem(&self) -> crate::hybrid::Problem {
+        use crate::hybrid as h;
+        h::Problem {
+            model: self.model,
+            variant: self.variant,
+            title: self.title.clone(),
+            parameters: self.parameters.clone(),
+            signals: self.signals.clone(),
+            initial: h::Initial {
+                q: self.initial.q.clone(),
+                v: self.initial.v.clone(),
+                discrete: self.initial.discrete.clone(),
+                mode: self.initial.mode,
+            },
+            freeze: self.freeze.clone(),
+            end: h::End { time: self.end.time, after: self.end.after },
+            accuracy: h::Accuracy {
+                relative: self.accuracy.relative,
+                q_absolute: self.accuracy.q_absolute.clone(),
+                v_absolute: self.accuracy.v_absolute.clone(),
+            },
+            record: h::Record {
+                every: self.record.every,
+                columns: crate::record::Recorded {
+                    reactions: self.record.reactions,
+                    energies: self.record.energies,
+                    inputs: self.record.inputs,
+                },
+            },
+        }
+    }
+}
