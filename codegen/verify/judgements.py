@@ -9,9 +9,12 @@ from fractions import Fraction
 from itertools import product
 from typing import List, Tuple
 
+from sympy import sympify
+
 from . import units
 from .algebra import Opaque
 from .lagrange import Mathematics, ring_of, sympy_namespace
+from .printed import PaperError
 
 TITLES = {
     "dimensions": "Dimensions of each term",
@@ -52,11 +55,18 @@ class Subject:
                 self.expressions[number], self.forms[number] = base.expressions[number], base.forms[number]
                 kept.add(number)
             else:
-                self.expressions[number] = equation.terms(self.s, self.m)
+                self.expressions[number] = self._terms(equation)
                 self.forms[number] = [self.ring.read(term) for term in self.expressions[number]]
         if base:
             self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
         self.multipliers = self._multipliers()
+
+    def _terms(self, equation):
+        """The terms of an equation as SymPy expressions; an error in its function names it."""
+        try:
+            return [sympify(term) for term in equation.terms(self.s, self.m)]
+        except Exception as error:  # whatever a model file does wrong is its author's to read
+            raise PaperError(f"equation ({equation.number}): {error}") from error
 
     def each(self, name, judge, *context):
         """The violations of all equations, where `judge(number)` gives those of one: what is known

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import List, Optional
 
+from ..errors import error_location
 from .printed import PaperError
 
 
@@ -42,7 +43,13 @@ def load(folder, name: Optional[str] = None) -> Case:
     def offered(file, attribute, fallback):
         if not (folder / (file + ".py")).is_file():
             return fallback
-        module = importlib.import_module(f"{package}.{file}")
+        path = folder / (file + ".py")
+        try:
+            module = importlib.import_module(f"{package}.{file}")
+        except PaperError as error:
+            raise PaperError(f"{error_location(error, str(path))}: {error}") from error
+        except Exception as error:  # whatever a model file does wrong is its author's to read
+            raise PaperError(f"{error_location(error, str(path))}: {type(error).__name__}: {error}") from error
         if not hasattr(module, attribute):
             raise PaperError(f"{folder / (file + '.py')} does not define '{attribute}'")
         return getattr(module, attribute)

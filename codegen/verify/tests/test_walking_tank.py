@@ -203,6 +203,20 @@ class Command(unittest.TestCase):
             self.assertEqual((status, out), (2, ""))
             self.assertIn("paper.py", err)
 
+    def test_errors_of_a_model_file_name_file_and_equation(self):
+        head = "from codegen.verify.printed import Paper\npaper = Paper('t', 's')\npaper.coordinate('q', 'm', 'q')\n"
+        for text, expected in (
+                (head + "paper.coordinate('q', 'm', 'q')\n", r"paper\.py:4: the symbol 'q' is declared twice"),
+                (head + "nonsense\n", r"paper\.py:4: NameError"),
+                (head + "paper.motion('1', of='q')(lambda s, m: [s.ddp])\n", r"equation \(1\).*'ddp'"),
+                (head + "paper.motion('1', of='q')(lambda s, m: [m.tan(s.q)])\n", r"equation \(1\).*'tan'")):
+            with tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / "wrong").mkdir()
+                (Path(folder) / "wrong" / "paper.py").write_text(text, encoding="utf-8")
+                status, out, err = self.run_command("wrong", "--models", folder)
+                self.assertEqual((status, out), (2, ""))
+                self.assertRegex(err, expected)
+
     def test_a_paper_outside_the_class_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             model = Path(folder) / "strange"
