@@ -27,7 +27,9 @@ pub struct Cache {
 impl Cache {
     /// A cache in the folder `root`, which exists and is ours.
     pub fn at(root: &Path) -> Self {
-        Self { root: root.to_owned() }
+        Self {
+            root: root.to_owned(),
+        }
     }
 
     /// The cache shared by all builds of this user: the folder that [`SETTING`] names, else the
@@ -136,13 +138,21 @@ pub fn files(folder: &Path, skip: &dyn Fn(&Path) -> bool) -> Result<Vec<PathBuf>
 /// Creates the folder and shows that files can be written in it.
 fn claim(root: &Path) -> std::io::Result<()> {
     fs::create_dir_all(root)?;
-    OpenOptions::new().create(true).append(true).open(root.join("writable")).map(drop)
+    OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(root.join("writable"))
+        .map(drop)
 }
 
 /// The platform's folder for caches; `None` if the variables that lead to it are unset or lead to
 /// nothing. A home folder that does not exist is not created.
 fn user_caches() -> Option<PathBuf> {
-    let folder = |name| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let folder = |name| {
+        env::var_os(name)
+            .map(PathBuf::from)
+            .filter(|path| path.is_absolute())
+    };
     let home = || folder("HOME").filter(|home| home.is_dir());
     if let Some(caches) = folder("XDG_CACHE_HOME") {
         Some(caches)
@@ -157,7 +167,10 @@ fn user_caches() -> Option<PathBuf> {
 
 /// Cargo's target directory, which cargo marks as a folder that backups may leave out.
 fn target_dir(out_dir: &Path) -> &Path {
-    out_dir.ancestors().find(|folder| folder.join("CACHEDIR.TAG").is_file()).unwrap_or(out_dir)
+    out_dir
+        .ancestors()
+        .find(|folder| folder.join("CACHEDIR.TAG").is_file())
+        .unwrap_or(out_dir)
 }
 
 /// The sizes and names of the files of an entry, a line each.

@@ -18,7 +18,10 @@ const KIND: &str = "libraries";
 /// that generated the same C as before is not compiled again.
 pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
     let build = compiler();
-    let failed = |what: &str, problem: String| Error::Compiler { what: what.to_owned(), problem };
+    let failed = |what: &str, problem: String| Error::Compiler {
+        what: what.to_owned(),
+        problem,
+    };
     let command = command(&build).map_err(|problem| failed("the models", problem))?;
     let command = Fingerprint::default().with(command);
     let libraries = Cache::at(out_dir);
@@ -37,7 +40,10 @@ pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
                 .out_dir(folder)
                 .try_compile(&library(model))
                 .map_err(|error| {
-                    failed(&format!("the C code of {}", model.folder), error.to_string())
+                    failed(
+                        &format!("the C code of {}", model.folder),
+                        error.to_string(),
+                    )
                 })
         })?;
         Ok((key, folder))
@@ -81,7 +87,9 @@ fn command(build: &cc::Build) -> Result<String, String> {
         .arg("--version")
         .output()
         .map_err(|error| format!("{}: {error}", program.display()))?;
-    let tool = build.try_get_compiler().map_err(|error| error.to_string())?;
+    let tool = build
+        .try_get_compiler()
+        .map_err(|error| error.to_string())?;
     Ok(format!("{:?}", tool.to_command()))
 }
 

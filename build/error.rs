@@ -120,14 +120,23 @@ impl Error {
     /// Wraps an I/O error: `.map_err(Error::io("create", path))`.
     pub fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Error + use<> {
         let path = path.to_owned();
-        move |source| Error::Io { action, path, source }
+        move |source| Error::Io {
+            action,
+            path,
+            source,
+        }
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::Setting { name, value, problem, advice } => {
+            Error::Setting {
+                name,
+                value,
+                problem,
+                advice,
+            } => {
                 writeln!(f, "{name}={value}: {problem}")?;
                 write!(f, "to do: {advice}")
             }
@@ -138,9 +147,12 @@ impl fmt::Display for Error {
                  requirements.in beside it says",
                 path.display()
             ),
-            Error::Install { package, python, cause, output } => {
-                install(f, package, python, *cause, output)
-            }
+            Error::Install {
+                package,
+                python,
+                cause,
+                output,
+            } => install(f, package, python, *cause, output),
             Error::Import { python, output } => {
                 writeln!(
                     f,
@@ -159,7 +171,9 @@ impl fmt::Display for Error {
                  to do: rename the folder: lower-case letters, digits and single underscores, \
                  a letter first and no underscore last"
             ),
-            Error::DuplicateModel { folders: [first, second] } => write!(
+            Error::DuplicateModel {
+                folders: [first, second],
+            } => write!(
                 f,
                 "{first} and {second} have the same name\nto do: rename one of the folders"
             ),
@@ -174,11 +188,18 @@ impl fmt::Display for Error {
                 "cannot compile {what}: {problem}\n\
                  to do: install a C compiler (cc, gcc or clang), or let CC name one"
             ),
-            Error::Io { action, path, source } => {
+            Error::Io {
+                action,
+                path,
+                source,
+            } => {
                 write!(f, "cannot {action} {}: {source}", path.display())
             }
             Error::NotUnderCargo { variable } => {
-                write!(f, "{variable} is not set\nto do: run the build script through cargo")
+                write!(
+                    f,
+                    "{variable} is not set\nto do: run the build script through cargo"
+                )
             }
         }
     }
@@ -201,8 +222,10 @@ fn quote(f: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
 }
 
 fn no_interpreter(f: &mut fmt::Formatter<'_>, rejected: &[(String, Rejection)]) -> fmt::Result {
-    let found: Vec<_> =
-        rejected.iter().filter(|(_, reason)| !matches!(reason, Rejection::NotFound)).collect();
+    let found: Vec<_> = rejected
+        .iter()
+        .filter(|(_, reason)| !matches!(reason, Rejection::NotFound))
+        .collect();
     if found.is_empty() {
         let names: Vec<_> = rejected.iter().map(|(name, _)| name.as_str()).collect();
         writeln!(f, "no Python found: none of {}", names.join(", "))?;

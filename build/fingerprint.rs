@@ -39,6 +39,9 @@ impl Fingerprint {
     /// and need not resist an attacker (pip checks the full hashes of what it installs).
     pub fn finish(self) -> String {
         let digest = self.0.finalize();
-        digest[..8].iter().map(|byte| format!("{byte:02x}")).collect()
+        digest[..8]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 }

@@ -63,14 +63,18 @@ pub fn discover(project: &Path, with_tests: bool) -> Result<Vec<Model>, Error> {
             if !is_module_name(&name) {
                 return Err(Error::ModelName { folder });
             }
-            models.push(Model { name: name.into_owned(), folder, for_tests });
+            models.push(Model {
+                name: name.into_owned(),
+                folder,
+                for_tests,
+            });
         }
     }
     models.sort_by(|a, b| a.name.cmp(&b.name));
     match models.windows(2).find(|pair| pair[0].name == pair[1].name) {
-        Some([first, second]) => {
-            Err(Error::DuplicateModel { folders: [first.folder.clone(), second.folder.clone()] })
-        }
+        Some([first, second]) => Err(Error::DuplicateModel {
+            folders: [first.folder.clone(), second.folder.clone()],
+        }),
         _ => Ok(models),
     }
 }
@@ -97,7 +101,10 @@ pub fn generate(
         .with_files(project, generator.iter().map(PathBuf::as_path))?;
     let results = parallel::map(models, |model| {
         let files = inputs(&project.join(&model.folder))?;
-        let hash = common.clone().with_files(project, files.iter().map(PathBuf::as_path))?.finish();
+        let hash = common
+            .clone()
+            .with_files(project, files.iter().map(PathBuf::as_path))?
+            .finish();
         let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
             run(project, model, environment, folder)
         })?;
@@ -112,7 +119,11 @@ pub fn generate(
             Err(other) => return Err(other),
         }
     }
-    if failures.is_empty() { Ok(generated) } else { Err(Error::Models(failures)) }
+    if failures.is_empty() {
+        Ok(generated)
+    } else {
+        Err(Error::Models(failures))
+    }
 }
 
 /// Runs the generator on one model, for which it makes a sub-folder of `folder`.
@@ -129,7 +140,9 @@ fn run(
         .arg("--out")
         .arg(folder)
         .args(model.for_tests.then_some("--for-tests"));
-    let output = command.output().map_err(Error::io("run", Path::new(command.get_program())))?;
+    let output = command
+        .output()
+        .map_err(Error::io("run", Path::new(command.get_program())))?;
     if output.status.success() {
         return Ok(());
     }
@@ -185,7 +198,9 @@ fn inputs(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 /// CasADi allows no double underscore.
 fn is_module_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase())
-        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        && name
+            .chars()
+            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
         && !name.contains("__")
         && !name.ends_with('_')
 }

@@ -48,7 +48,12 @@ impl Lock {
 
     /// Name of the cache entry that holds these packages for an interpreter.
     fn key(&self, python: &Python) -> String {
-        let Python { implementation, version, platform, .. } = python;
+        let Python {
+            implementation,
+            version,
+            platform,
+            ..
+        } = python;
         let hash = Fingerprint::default()
             .with(&self.text)
             .with(implementation)
@@ -99,7 +104,9 @@ impl Environment {
             let complaint = String::from_utf8_lossy(&output.stderr);
             // A traceback names the error last.
             let complaint = complaint.trim().lines().last().unwrap_or_default();
-            return Err(refuse(format!("this interpreter cannot import CasADi: {complaint}")));
+            return Err(refuse(format!(
+                "this interpreter cannot import CasADi: {complaint}"
+            )));
         };
         if version != lock.casadi {
             return Err(refuse(format!(
@@ -108,14 +115,23 @@ impl Environment {
             )));
         }
         let can_verify = answer.next() == Some("True");
-        Ok(Self { python, packages: None, can_verify })
+        Ok(Self {
+            python,
+            packages: None,
+            can_verify,
+        })
     }
 
     fn managed(lock: &Lock, cache: &Cache) -> Result<Self, Error> {
         let python = python::discover(|python| cache.contains(KIND, &lock.key(python)))?;
-        let packages =
-            cache.entry(KIND, &lock.key(&python), |folder| install(lock, &python, folder))?;
-        Ok(Self { python, packages: Some(packages), can_verify: true })
+        let packages = cache.entry(KIND, &lock.key(&python), |folder| {
+            install(lock, &python, folder)
+        })?;
+        Ok(Self {
+            python,
+            packages: Some(packages),
+            can_verify: true,
+        })
     }
 
     /// A command that runs the interpreter with its packages.
@@ -130,7 +146,14 @@ impl Environment {
 fn install(lock: &Lock, python: &Python, folder: &Path) -> Result<(), Error> {
     let output = run(python
         .command()
-        .args(["-m", "pip", "install", "--no-deps", "--only-binary", ":all:"])
+        .args([
+            "-m",
+            "pip",
+            "install",
+            "--no-deps",
+            "--only-binary",
+            ":all:",
+        ])
         .args(["--no-compile", "--require-hashes", "--no-input"])
         .args(["--disable-pip-version-check", "--target"])
         .args([folder, "-r".as_ref(), &lock.path])
@@ -148,8 +171,10 @@ fn install(lock: &Lock, python: &Python, folder: &Path) -> Result<(), Error> {
     // Shows that the packages work. As the only run without -B it also leaves the bytecode of
     // what code generation imports, which later runs then need not compile: 0.14 s for the
     // import instead of 0.44 s. `pip --compile` would spend many seconds on all of SymPy.
-    let output =
-        run(python.command_that_keeps_bytecode().env("PYTHONPATH", folder).args(["-c", CHECK]))?;
+    let output = run(python
+        .command_that_keeps_bytecode()
+        .env("PYTHONPATH", folder)
+        .args(["-c", CHECK]))?;
     if output.status.success() {
         Ok(())
     } else {
@@ -173,5 +198,7 @@ fn cause(output: &str) -> InstallCause {
 
 /// Runs a command to its end.
 fn run(command: &mut Command) -> Result<Output, Error> {
-    command.output().map_err(Error::io("run", Path::new(command.get_program())))
+    command
+        .output()
+        .map_err(Error::io("run", Path::new(command.get_program())))
 }

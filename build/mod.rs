@@ -83,7 +83,10 @@ fn watch(project: &Path, with_tests: bool) -> Result<(), Error> {
 /// `DALEMBERT_PYTHON` names another interpreter, with its own packages, as it does here.
 fn announce(environment: &Environment, lock: &Lock) {
     let packages = environment.packages.as_deref();
-    println!("cargo::rustc-env=DALEMBERT_PYTHON_EXE={}", environment.python.executable.display());
+    println!(
+        "cargo::rustc-env=DALEMBERT_PYTHON_EXE={}",
+        environment.python.executable.display()
+    );
     println!(
         "cargo::rustc-env=DALEMBERT_PYTHON_PATH={}",
         packages.unwrap_or(Path::new("")).display()
@@ -106,7 +109,10 @@ fn announce(environment: &Environment, lock: &Lock) {
 /// Passes the build script itself on to its tests (`tests/provisioning/`), and what it builds for.
 fn announce_build(target: &str) -> Result<(), Error> {
     let script = env::current_exe().map_err(Error::io("find", Path::new("the build script")))?;
-    println!("cargo::rustc-env=DALEMBERT_BUILD_SCRIPT={}", script.display());
+    println!(
+        "cargo::rustc-env=DALEMBERT_BUILD_SCRIPT={}",
+        script.display()
+    );
     println!("cargo::rustc-env=DALEMBERT_TARGET={target}");
     Ok(())
 }

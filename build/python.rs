@@ -121,15 +121,20 @@ impl fmt::Display for Rejection {
 impl Python {
     /// Asks `program` (a path, or a name on the search path) what it is.
     pub fn probe(program: &OsStr) -> Result<Self, Rejection> {
-        let output =
-            command(program).args(["-c", PROBE]).output().map_err(|error| match error.kind() {
+        let output = command(program)
+            .args(["-c", PROBE])
+            .output()
+            .map_err(|error| match error.kind() {
                 io::ErrorKind::NotFound => Rejection::NotFound,
                 _ => Rejection::Unusable(error.to_string()),
             })?;
         let answer = String::from_utf8_lossy(&output.stdout);
         Self::parse(&answer).unwrap_or_else(|| {
             let complaint = String::from_utf8_lossy(&output.stderr);
-            let complaint = complaint.lines().map(str::trim).find(|line| !line.is_empty());
+            let complaint = complaint
+                .lines()
+                .map(str::trim)
+                .find(|line| !line.is_empty());
             let status = output.status.to_string();
             Err(Rejection::Unusable(complaint.unwrap_or(&status).to_owned()))
         })

@@ -17,7 +17,14 @@ pub fn write(models: &[Generated], path: &Path) -> Result<(), Error> {
 fn text(models: &[Generated]) -> String {
     let mut text = String::new();
     let mut list = String::new();
-    for Generated { name, folder, fragment, item, .. } in models {
+    for Generated {
+        name,
+        folder,
+        fragment,
+        item,
+        ..
+    } in models
+    {
         // Writing to a string cannot fail.
         let _ = write!(
             text,

@@ -114,7 +114,11 @@ pub struct ConstantsKernel {
 
 impl ConstantsKernel {
     fn evaluate(&self, parameters: &[f64]) -> Box<[f64]> {
-        assert_eq!(parameters.len(), self.dimensions.parameters, "number of parameters");
+        assert_eq!(
+            parameters.len(),
+            self.dimensions.parameters,
+            "number of parameters"
+        );
         let mut out = vec![0.0; self.dimensions.constants].into_boxed_slice();
         let raw = RawContext {
             u: std::ptr::null(),
@@ -145,7 +149,12 @@ pub struct Free<'a, const F: usize> {
 impl<const F: usize> Free<'_, F> {
     #[inline(always)]
     fn pointers(&self) -> [*const f64; 4] {
-        [self.q.as_ptr(), self.v.as_ptr(), self.a.as_ptr(), self.a.as_ptr()]
+        [
+            self.q.as_ptr(),
+            self.v.as_ptr(),
+            self.a.as_ptr(),
+            self.a.as_ptr(),
+        ]
     }
 }
 
@@ -182,20 +191,37 @@ impl<const F: usize> ModeKernel<F> {
     #[inline]
     pub fn residual(&self, x: &Context, at: Free<F>, r: &mut SVector<f64, F>) {
         // SAFETY: F outputs.
-        unsafe { x.call(self.residual, self.dimensions, at.pointers(), r.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.residual,
+                self.dimensions,
+                at.pointers(),
+                r.as_mut_ptr(),
+            )
+        }
     }
 
     /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
     #[inline]
     pub fn jacobian(&self, x: &Context, at: Free<F>, out: &mut [SMatrix<f64, F, F>; 3]) {
         // SAFETY: three dense column-major F × F outputs, contiguous in the array.
-        unsafe { x.call(self.jacobian, self.dimensions, at.pointers(), out.as_mut_ptr().cast()) }
+        unsafe {
+            x.call(
+                self.jacobian,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr().cast(),
+            )
+        }
     }
 
     /// Mass matrix and load at (q, v).
     #[inline]
     pub fn system(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> LinearSystem<F> {
-        let mut out = LinearSystem { mass: SMatrix::zeros(), load: SVector::zeros() };
+        let mut out = LinearSystem {
+            mass: SMatrix::zeros(),
+            load: SVector::zeros(),
+        };
         let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
         unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
@@ -220,7 +246,14 @@ impl<const F: usize> ModeKernel<F> {
     pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
         let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
-        unsafe { x.call(self.jerk_load, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.jerk_load,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
         out
     }
 
@@ -229,7 +262,14 @@ impl<const F: usize> ModeKernel<F> {
     pub fn magnitude(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
         let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
-        unsafe { x.call(self.magnitude, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.magnitude,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
         out
     }
 
@@ -239,16 +279,33 @@ impl<const F: usize> ModeKernel<F> {
     /// If `out` has not one entry a coordinate and motion.
     #[inline]
     pub fn reactions(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
-        assert_eq!(out.len(), self.dimensions.coordinates + self.dimensions.motions);
+        assert_eq!(
+            out.len(),
+            self.dimensions.coordinates + self.dimensions.motions
+        );
         // SAFETY: the length was checked.
-        unsafe { x.call(self.reactions, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.reactions,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
     }
 
     /// [kinetic, potential] energy, J, in the inertial frame.
     pub fn energies(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];
         // SAFETY: two outputs.
-        unsafe { x.call(self.energies, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.energies,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
         out
     }
 
@@ -257,7 +314,14 @@ impl<const F: usize> ModeKernel<F> {
     pub fn powers(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];
         // SAFETY: two outputs.
-        unsafe { x.call(self.powers, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.powers,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
         out
     }
 
@@ -266,9 +330,19 @@ impl<const F: usize> ModeKernel<F> {
     /// # Panics
     /// If `out` has not one entry a coordinate and motion.
     pub fn momenta(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
-        assert_eq!(out.len(), self.dimensions.coordinates + self.dimensions.motions);
+        assert_eq!(
+            out.len(),
+            self.dimensions.coordinates + self.dimensions.motions
+        );
         // SAFETY: the length was checked.
-        unsafe { x.call(self.momenta, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.momenta,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
     }
 
     /// What must be positive in this mode.
@@ -287,9 +361,20 @@ impl<const F: usize> ModeKernel<F> {
     pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
         assert_eq!(out.len(), self.dimensions.coordinates);
         let none = SVector::<f64, F>::zeros();
-        let at = Free { q: &none, v: &none, a: &none };
+        let at = Free {
+            q: &none,
+            v: &none,
+            a: &none,
+        };
         // SAFETY: the length was checked.
-        unsafe { x.call(self.held_rates, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                self.held_rates,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
     }
 
     /// Value of a guard of this mode.
@@ -323,10 +408,23 @@ impl<const F: usize> ModeKernel<F> {
     /// # Panics
     /// If `out` has not two entries a coordinate and one a discrete state.
     pub fn reset(&self, x: &Context, transition: &TransitionKernel, at: Free<F>, out: &mut [f64]) {
-        assert_eq!(transition.source_free, F, "a reset is evaluated in its source mode");
-        assert_eq!(out.len(), 2 * self.dimensions.coordinates + self.dimensions.discretes);
+        assert_eq!(
+            transition.source_free, F,
+            "a reset is evaluated in its source mode"
+        );
+        assert_eq!(
+            out.len(),
+            2 * self.dimensions.coordinates + self.dimensions.discretes
+        );
         // SAFETY: the lengths were checked.
-        unsafe { x.call(transition.reset, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                transition.reset,
+                self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
     }
 
     /// The smallest condition of a transition into this mode, which is taken only if it is ≥ 0;

@@ -17,12 +17,19 @@ fn a_dropped_ball_comes_to_rest_at_the_limit_of_its_bounces() {
         let run = run(&problem);
         let found = times(&run, "impact");
         for (k, (t, exact)) in found.iter().zip(numbers(&case["impact_times"])).enumerate() {
-            assert!((t / exact - 1.0).abs() < 1e-13, "e = {e}, impact {k}: {t:.17} {exact:.17}");
+            assert!(
+                (t / exact - 1.0).abs() < 1e-13,
+                "e = {e}, impact {k}: {t:.17} {exact:.17}"
+            );
         }
         let exact = number(&case["accumulation_time"]);
         let rest = times(&run, "rest");
         assert_eq!(rest.len(), 1, "e = {e}");
-        assert!((rest[0] / exact - 1.0).abs() < 1e-10, "e = {e}: {} {exact}", rest[0]);
+        assert!(
+            (rest[0] / exact - 1.0).abs() < 1e-10,
+            "e = {e}: {} {exact}",
+            rest[0]
+        );
         assert_eq!(run.layout.modes[run.end.mode], "rests");
         assert_eq!((at_end(&run, "h"), at_end(&run, "h.rate")), (0.0, 0.0));
     }
@@ -33,7 +40,9 @@ fn a_dropped_ball_comes_to_rest_at_the_limit_of_its_bounces() {
 fn table(gamma: f64, e: f64, start: f64) -> dalembert::hybrid::Problem {
     let mut problem = problem("vibrating_table_ball", &[("e", e), ("g", 1.0 / gamma)]);
     let acceleration = Sine::new(1.0, 1.0, start + std::f64::consts::PI);
-    problem.set_input("table_acceleration", Function::from(acceleration)).unwrap();
+    problem
+        .set_input("table_acceleration", Function::from(acceleration))
+        .unwrap();
     problem.set_tolerance(1e-13);
     problem
 }
@@ -41,11 +50,16 @@ fn table(gamma: f64, e: f64, start: f64) -> dalembert::hybrid::Problem {
 #[test]
 fn fifty_impacts_on_a_vibrating_table() {
     let reference = reference("05_bouncing_ball");
-    for case in reference["reference"]["vibrating_table_50_impacts"].as_array().unwrap() {
+    for case in reference["reference"]["vibrating_table_50_impacts"]
+        .as_array()
+        .unwrap()
+    {
         let (gamma, start) = (number(&case["Gamma"]), number(&case["t0"]));
         let mut problem = table(gamma, number(&case["e"]), start);
         // Absolute velocity v⁺ of the ball after the impact at t0, on a table that moves at cos t0.
-        problem.set_initial("gap.rate", number(&case["v_plus0"]) - start.cos()).unwrap();
+        problem
+            .set_initial("gap.rate", number(&case["v_plus0"]) - start.cos())
+            .unwrap();
         let exact = numbers(&case["impact_times"]);
         problem.end.time = exact[49] - start + 1.0;
         let run = run(&problem);
@@ -58,7 +72,10 @@ fn fifty_impacts_on_a_vibrating_table() {
                 break;
             }
             let error = (found[k] + start - exact[k]).abs();
-            assert!(error <= allowed, "Γ = {gamma}, impact {k}: error {error:e} > {allowed:e}");
+            assert!(
+                error <= allowed,
+                "Γ = {gamma}, impact {k}: error {error:e} > {allowed:e}"
+            );
             compared += 1;
         }
         assert!(compared >= 10, "Γ = {gamma}: {compared} impacts compared");
@@ -79,18 +96,26 @@ fn chattering(case: &Value) {
     }
     let rest = times(&run, "rest")[0] + release;
     let exact = number(&case["accumulation_time(stick begins)"]);
-    assert!((rest - exact).abs() < 1e-8, "Γ = {gamma}: stick begins at {rest}, not {exact}");
+    assert!(
+        (rest - exact).abs() < 1e-8,
+        "Γ = {gamma}: stick begins at {rest}, not {exact}"
+    );
     let releases = times(&run, "take_off");
     let next = releases.iter().find(|&&t| t > 1.0).unwrap() + release;
     let exact = number(&case["next_release"]);
-    assert!((next / exact - 1.0).abs() < 1e-12, "Γ = {gamma}: released at {next}, not {exact}");
+    assert!(
+        (next / exact - 1.0).abs() < 1e-12,
+        "Γ = {gamma}: released at {next}, not {exact}"
+    );
 }
 
 #[test]
 fn chattering_ends_in_sticking_and_release() {
     let reference = reference("05_bouncing_ball");
     for gamma in ["1.2", "1.5"] {
-        let cases = reference["reference"]["chattering_sticking"].as_array().unwrap();
+        let cases = reference["reference"]["chattering_sticking"]
+            .as_array()
+            .unwrap();
         let matches = |c: &&Value| number(&c["Gamma"]) == gamma.parse::<f64>().unwrap();
         chattering(cases.iter().find(matches).unwrap());
     }

@@ -8,9 +8,15 @@ fn free_rocking(case: &serde_json::Value, end: f64) -> dalembert::record::Run {
     // p² = m g R / (I + m R²) = 3 g / (4 R) for the homogeneous block.
     let mut problem = problem(
         "rocking_block",
-        &[("alpha", alpha), ("e", number(&case["e"])), ("R", 3.0 * 9.81 / (4.0 * p * p))],
+        &[
+            ("alpha", alpha),
+            ("e", number(&case["e"])),
+            ("R", 3.0 * 9.81 / (4.0 * p * p)),
+        ],
     );
-    problem.set_initial("theta", number(&case["theta0"])).unwrap();
+    problem
+        .set_initial("theta", number(&case["theta0"]))
+        .unwrap();
     problem.set_tolerance(1e-13);
     problem.end.time = end;
     run(&problem)
@@ -21,7 +27,10 @@ fn check_impacts(case: &serde_json::Value, run: &dalembert::record::Run) {
     let found = times(run, "landing");
     assert!(found.len() >= 40, "{} landings", found.len());
     for (k, (t, exact)) in found.iter().zip(&exact).enumerate() {
-        assert!((t / exact - 1.0).abs() < 1e-11, "impact {k}: {t:.17} instead of {exact:.17}");
+        assert!(
+            (t / exact - 1.0).abs() < 1e-11,
+            "impact {k}: {t:.17} instead of {exact:.17}"
+        );
     }
 }
 
@@ -35,7 +44,11 @@ fn forty_impacts_and_the_accumulation_of_a_damped_block() {
     let rest = times(&run, "rest");
     let exact = number(&case["reference"]["accumulation_time"]);
     assert_eq!(rest.len(), 1);
-    assert!((rest[0] / exact - 1.0).abs() < 1e-9, "{} instead of {exact}", rest[0]);
+    assert!(
+        (rest[0] / exact - 1.0).abs() < 1e-9,
+        "{} instead of {exact}",
+        rest[0]
+    );
     assert_eq!(run.layout.modes[run.end.mode], "stands");
     assert_eq!(at_end(&run, "theta"), 0.0);
     let before = run.events[0].before.v[0];

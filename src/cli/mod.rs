@@ -11,7 +11,10 @@ const WRONG_INPUT: u8 = 2;
 const STOPPED_EARLY: u8 = 3;
 
 #[derive(Debug, Parser)]
-#[command(version, about = "Simulates mechanical systems that stick, slip, rock and impact")]
+#[command(
+    version,
+    about = "Simulates mechanical systems that stick, slip, rock and impact"
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -36,7 +36,11 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
         Ok(run) => run,
         Err(reason) => {
             let help = "change the initial state, or name another mode in `initial.mode`";
-            return wrong_input(&scene.source.error_at("initial", reason.to_string(), Some(help)));
+            return wrong_input(
+                &scene
+                    .source
+                    .error_at("initial", reason.to_string(), Some(help)),
+            );
         }
     };
     drop(progress);
@@ -49,7 +53,10 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
     match &run.failure {
         None => ExitCode::SUCCESS,
         Some(failure) => {
-            eprintln!("stopped early at t = {} s: {}", failure.at.t, failure.reason);
+            eprintln!(
+                "stopped early at t = {} s: {}",
+                failure.at.t, failure.reason
+            );
             ExitCode::from(STOPPED_EARLY)
         }
     }

@@ -50,8 +50,14 @@ impl Accumulation {
 
     /// No events yet; `width` is the number of coordinates and velocities.
     pub fn new(width: usize) -> Self {
-        let hop = Hop { state: vec![0.0; width], ..Hop::default() };
-        Accumulation { hops: vec![hop; Self::MEMORY], count: 0 }
+        let hop = Hop {
+            state: vec![0.0; width],
+            ..Hop::default()
+        };
+        Accumulation {
+            hops: vec![hop; Self::MEMORY],
+            count: 0,
+        }
     }
 
     /// Remembers an event, with the state after it.
@@ -108,7 +114,10 @@ impl Accumulation {
         let now = self.hop(0);
         let remaining = last * series;
         let limit = now.at.plus(remaining);
-        let predicted_before = self.hop(p).at.plus(middle * ratio_before / (1.0 - ratio_before));
+        let predicted_before = self
+            .hop(p)
+            .at
+            .plus(middle * ratio_before / (1.0 - ratio_before));
         let uncertainty = limit.since(predicted_before).abs();
         let one_place = limit.seconds().abs() * f64::EPSILON;
         if uncertainty > (relative * limit.seconds().abs()).max(one_place) {
@@ -181,7 +190,10 @@ mod tests {
             (0.99, 89.853_204_556_160_45),
         ] {
             let (_, limit) = bounce(e, 1e-12);
-            assert!((limit.at.seconds() / exact - 1.0).abs() < 1e-13, "{e}: {limit:?}");
+            assert!(
+                (limit.at.seconds() / exact - 1.0).abs() < 1e-13,
+                "{e}: {limit:?}"
+            );
             assert_eq!(limit.state, [0.0, 0.0]);
         }
     }

@@ -37,10 +37,16 @@ impl Simulation<'_> {
             .map_err(|s| Reason::singular(mode, self.problem.model, s))?;
 
         let inverse = inverse(&system.mass, &scale);
-        let at = Free { q: &q, v: &v, a: &a };
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
         let size = kernel.magnitude(&self.context, at);
         let noise = SVector::<f64, F>::from_fn(|i, _| {
-            (0..F).map(|j| inverse[(i, j)].abs() * size[j] * ROUNDOFF).sum()
+            (0..F)
+                .map(|j| inverse[(i, j)].abs() * size[j] * ROUNDOFF)
+                .sum()
         });
         let jerk = -inverse * kernel.jerk_load(&self.context, at);
 
@@ -54,13 +60,24 @@ impl Simulation<'_> {
                 next: &mut self.next,
             };
             let conditional = conditions.are_part_of(guard);
-            let at = Free { q: &q, v: &v, a: &a };
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
             let value = value(kernel, &mut self.context, &mut conditions, guard, at);
             let mut watch = Watch::of(value);
             let mut at_once = false;
             if watch == Watch::Dormant && !conditional {
-                let departure =
-                    departure(kernel, &self.context, guard, [&q, &v], &mut a, &noise, &jerk);
+                let departure = departure(
+                    kernel,
+                    &self.context,
+                    guard,
+                    [&q, &v],
+                    &mut a,
+                    &noise,
+                    &jerk,
+                );
                 at_once = departure < 0.0;
             }
             if at_once {
@@ -72,7 +89,8 @@ impl Simulation<'_> {
             self.watches.push(watch);
         }
         self.found.clear();
-        self.found.resize(self.watches.len(), Search::quiet(Watch::Dormant));
+        self.found
+            .resize(self.watches.len(), Search::quiet(Watch::Dormant));
         self.here.a.fill(0.0);
         self.here.set_free(mode.free, [&q, &v, &a]);
         Ok(violation)
@@ -123,7 +141,12 @@ fn departure<const F: usize>(
     jerk: &SVector<f64, F>,
 ) -> f64 {
     match guard.shape {
-        GuardShape::Linear { index, rate, factor, discrete } => {
+        GuardShape::Linear {
+            index,
+            rate,
+            factor,
+            discrete,
+        } => {
             let factor = factor * discrete.map_or(1.0, |d| context.discrete[d]);
             if !rate && v[index] != 0.0 {
                 return factor * v[index];

@@ -26,9 +26,11 @@ impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
     fn set(&self, tau: f64, context: &mut Context) {
         if tau < self.until.0 {
-            self.signals.evaluate(self.start.plus(tau).seconds(), &mut context.signals);
+            self.signals
+                .evaluate(self.start.plus(tau).seconds(), &mut context.signals);
         } else {
-            self.signals.evaluate_left(self.until.1, &mut context.signals);
+            self.signals
+                .evaluate_left(self.until.1, &mut context.signals);
         }
         for ((h, q), rate) in context.held.iter_mut().zip(self.held).zip(self.drift) {
             *h = q + rate * tau;
@@ -54,7 +56,13 @@ impl<'a, const F: usize> Equations<'a, F> {
         clock: Clock<'a>,
         scale: SVector<f64, F>,
     ) -> Self {
-        Equations { kernel, context, clock, scale, set_for: f64::NAN }
+        Equations {
+            kernel,
+            context,
+            clock,
+            scale,
+            set_for: f64::NAN,
+        }
     }
 
     /// Sets the context to local time `tau`.
@@ -69,14 +77,20 @@ impl<'a, const F: usize> Equations<'a, F> {
     /// The jerk at a point whose time the context and its signal rates are set for.
     pub fn jerk(&self, at: Free<F>) -> Result<SVector<f64, F>, Singular> {
         let mass = self.kernel.system(self.context, at.q, at.v).mass;
-        solve(&mass, &-self.kernel.jerk_load(self.context, at), &self.scale)
+        solve(
+            &mass,
+            &-self.kernel.jerk_load(self.context, at),
+            &self.scale,
+        )
     }
 
     /// Sets the time derivatives of the signals at local time `tau`, for jerks and guard rates.
     pub fn rates_at(&mut self, tau: f64) {
         let rates = &mut self.context.signal_rates;
         if tau < self.clock.until.0 {
-            self.clock.signals.rate(self.clock.start.plus(tau).seconds(), rates);
+            self.clock
+                .signals
+                .rate(self.clock.start.plus(tau).seconds(), rates);
         } else {
             self.clock.signals.rate_left(self.clock.until.1, rates);
         }
@@ -110,7 +124,8 @@ impl<const F: usize> System<F> for Equations<'_, F> {
     ) {
         self.at(t);
         let mut out = [SMatrix::zeros(); 3];
-        self.kernel.jacobian(self.context, Free { q, v, a }, &mut out);
+        self.kernel
+            .jacobian(self.context, Free { q, v, a }, &mut out);
         [*m, *c, *k] = out;
     }
 

@@ -99,6 +99,9 @@ impl Reason {
         singular: Singular,
     ) -> Self {
         let coordinate = model.coordinates[mode.free[singular.coordinate]].name;
-        Reason::Singular { mode: mode.name, coordinate }
+        Reason::Singular {
+            mode: mode.name,
+            coordinate,
+        }
     }
 }

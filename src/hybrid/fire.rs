@@ -22,10 +22,20 @@ impl Simulation<'_> {
             return Err(Reason::Cycle { cycle });
         };
         let transition = &mode.guards[guard].transitions[t];
-        if self.problem.end.after.is_some_and(|(name, _)| name == transition.name) {
+        if self
+            .problem
+            .end
+            .after
+            .is_some_and(|(name, _)| name == transition.name)
+        {
             self.counted += 1;
         }
-        self.commit(transition.name, transition.impact, transition.target, before)?;
+        self.commit(
+            transition.name,
+            transition.impact,
+            transition.target,
+            before,
+        )?;
         self.remember(guard, t, is_impact(&mode.guards[guard]))
     }
 
@@ -38,9 +48,16 @@ impl Simulation<'_> {
         self.set_context();
         let mode = self.mode();
         let [q, v, a] = self.here.free::<F>(mode.free);
-        let at = Free { q: &q, v: &v, a: &a };
-        let mut conditions =
-            Conditions { variant: self.problem.variant, plan: &self.plan, next: &mut self.next };
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let mut conditions = Conditions {
+            variant: self.problem.variant,
+            plan: &self.plan,
+            next: &mut self.next,
+        };
         let transitions = mode.guards[guard].transitions;
         (0..transitions.len())
             .filter(|&t| self.plan.allowed[transitions[t].target])
@@ -70,10 +87,13 @@ impl Simulation<'_> {
 
         // The impulse of the ground on the system works on the velocity of the ground.
         let impulses = self.ground_momenta().into_iter().zip(momenta_before);
-        let ground_work: f64 =
-            impulses.map(|((after, rate), (before, _))| (after - before) * rate).sum();
-        let energy =
-            EnergyJump { lost: energy_before - self.stored_energy() + ground_work, ground_work };
+        let ground_work: f64 = impulses
+            .map(|((after, rate), (before, _))| (after - before) * rate)
+            .sum();
+        let energy = EnergyJump {
+            lost: energy_before - self.stored_energy() + ground_work,
+            ground_work,
+        };
         self.ledger.add_jump(energy);
         let event = Event {
             t: self.here.now.seconds(),
@@ -122,9 +142,13 @@ impl Simulation<'_> {
     fn remember(&mut self, guard: usize, transition: usize, impact: bool) -> Result<(), Reason> {
         let mut hasher = DefaultHasher::new();
         (guard, transition, self.here.mode).hash(&mut hasher);
-        self.context.discrete.iter().for_each(|d| d.to_bits().hash(&mut hasher));
+        self.context
+            .discrete
+            .iter()
+            .for_each(|d| d.to_bits().hash(&mut hasher));
         let state = self.here.q.iter().chain(&self.here.v).copied();
-        self.accumulation.push(hasher.finish(), impact, self.here.now, state);
+        self.accumulation
+            .push(hasher.finish(), impact, self.here.now, state);
         self.look_for_accumulation()
     }
 
@@ -133,12 +157,22 @@ impl Simulation<'_> {
         let modes = self.problem.variant.modes;
         let mut hasher = DefaultHasher::new();
         self.here.mode.hash(&mut hasher);
-        let state = self.here.q.iter().chain(&self.here.v).chain(&self.context.discrete);
+        let state = self
+            .here
+            .q
+            .iter()
+            .chain(&self.here.v)
+            .chain(&self.context.discrete);
         state.for_each(|x| x.to_bits().hash(&mut hasher));
         let key = hasher.finish();
-        let step = format!("{name} ({} → {})", modes[from].name, modes[self.here.mode].name);
+        let step = format!(
+            "{name} ({} → {})",
+            modes[from].name, modes[self.here.mode].name
+        );
         if let Some(first) = self.visited.iter().position(|(seen, _)| *seen == key) {
-            let steps = self.visited[first + 1..].iter().map(|(_, step)| step.clone());
+            let steps = self.visited[first + 1..]
+                .iter()
+                .map(|(_, step)| step.clone());
             let cycle = steps.chain([step]).collect::<Vec<_>>().join(", ");
             return Err(Reason::Cycle { cycle });
         }

@@ -29,7 +29,10 @@ impl Conditions<'_> {
 
     /// The transitions of a guard whose targets the scene may visit.
     pub fn admissible<'g>(&self, guard: &'g Guard) -> impl Iterator<Item = &'g Transition> {
-        guard.transitions.iter().filter(|t| self.plan.allowed[t.target])
+        guard
+            .transitions
+            .iter()
+            .filter(|t| self.plan.allowed[t.target])
     }
 
     /// The condition of a transition out of the present mode, evaluated in its target after the
@@ -73,8 +76,14 @@ fn condition_in<const F: usize>(
     let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
         return f64::NAN;
     };
-    let at = Free { q: &q, v: &v, a: &a };
-    kernel.condition(context, &transition.kernel, at).unwrap_or(f64::INFINITY)
+    let at = Free {
+        q: &q,
+        v: &v,
+        a: &a,
+    };
+    kernel
+        .condition(context, &transition.kernel, at)
+        .unwrap_or(f64::INFINITY)
 }
 
 /// Value of a guard of the present mode; a conditional one is respected as well where none of its
@@ -92,7 +101,11 @@ pub(super) fn value<const F: usize>(
         return value;
     }
     let mut best = f64::NEG_INFINITY;
-    for transition in guard.transitions.iter().filter(|t| conditions.plan.allowed[t.target]) {
+    for transition in guard
+        .transitions
+        .iter()
+        .filter(|t| conditions.plan.allowed[t.target])
+    {
         best = best.max(conditions.of(kernel, context, transition, at));
     }
     value.max(-best)
@@ -123,16 +136,30 @@ pub(super) fn search<const F: usize>(
     watch: Watch,
 ) -> Search {
     match guard.shape {
-        GuardShape::Linear { index, rate, factor, discrete } if !conditions.are_part_of(guard) => {
+        GuardShape::Linear {
+            index,
+            rate,
+            factor,
+            discrete,
+        } if !conditions.are_part_of(guard) => {
             let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
             search_linear(dense, index, rate, factor, window, watch)
         }
         _ => {
-            let accelerations =
-                !matches!(guard.shape, GuardShape::General { accelerations: false, .. });
+            let accelerations = !matches!(
+                guard.shape,
+                GuardShape::General {
+                    accelerations: false,
+                    ..
+                }
+            );
             let evaluate = |tau: f64| {
                 let [q, v, a] = motion(equations, dense, tau, accelerations);
-                let at = Free { q: &q, v: &v, a: &a };
+                let at = Free {
+                    q: &q,
+                    v: &v,
+                    a: &a,
+                };
                 value(equations.kernel, equations.context, conditions, guard, at)
             };
             roots::search(evaluate, window.0, window.1, watch, 0.0)
@@ -152,7 +179,11 @@ fn search_linear<const F: usize>(
     let h = dense.length();
     let coefficients = std::array::from_fn(|k| {
         let coefficient = |power: usize| {
-            if power < COEFFICIENTS { dense.coefficient(power)[index] } else { 0.0 }
+            if power < COEFFICIENTS {
+                dense.coefficient(power)[index]
+            } else {
+                0.0
+            }
         };
         if rate {
             factor * (k + 1) as f64 * coefficient(k + 1) / h

@@ -41,7 +41,10 @@ pub(super) struct RunningLedger {
 
 impl RunningLedger {
     pub fn starting_with(initial: f64) -> Self {
-        RunningLedger { initial, ..Self::default() }
+        RunningLedger {
+            initial,
+            ..Self::default()
+        }
     }
 
     /// Adds powers [dissipated, input], W, over a time `weight`, s.
@@ -58,7 +61,12 @@ impl RunningLedger {
 
     /// The entries of a row: stored, input work, dissipated, lost at impacts.
     pub fn row(&self, stored: f64) -> [f64; 4] {
-        [stored, self.input_work.value(), self.dissipated.value(), self.lost_at_impacts.value()]
+        [
+            stored,
+            self.input_work.value(),
+            self.dissipated.value(),
+            self.lost_at_impacts.value(),
+        ]
     }
 
     pub fn close(&self, stored: f64) -> Ledger {

@@ -52,14 +52,20 @@ pub(super) fn land<const F: usize>(
         if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
             // There is no slope to follow: the place is as good as the dense output.
             return Ok(match crossing.kind == Kind::Touch || value < 0.0 {
-                true => Landing::On { state: end, beyond: 0.0 },
+                true => Landing::On {
+                    state: end,
+                    beyond: 0.0,
+                },
                 false => Landing::Short,
             });
         }
         if conditions.are_part_of(guard) {
             // Guard and condition together have no slope of their own.
             return Ok(match value < 0.0 {
-                true => Landing::On { state: end, beyond: 0.0 },
+                true => Landing::On {
+                    state: end,
+                    beyond: 0.0,
+                },
                 false => beyond_the_crossing(
                     equations,
                     conditions,
@@ -75,13 +81,18 @@ pub(super) fn land<const F: usize>(
         if rate.is_nan() || rate >= 0.0 || end.t + correction > window {
             // No fall here: either the shortened step has its crossing earlier, or none at all.
             return Ok(match value < 0.0 && end.t == window {
-                true => Landing::On { state: end, beyond: 0.0 },
+                true => Landing::On {
+                    state: end,
+                    beyond: 0.0,
+                },
                 false => Landing::Short,
             });
         }
         let smooth = TAYLOR * (window - start);
         if correction.abs() <= smooth {
-            return Ok(beyond_the_crossing(equations, conditions, guard, &end, correction, smooth));
+            return Ok(beyond_the_crossing(
+                equations, conditions, guard, &end, correction, smooth,
+            ));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {
             return Ok(Landing::Short);
@@ -119,7 +130,9 @@ fn beyond_the_crossing<const F: usize>(
     loop {
         let mut state = moved(end, beyond);
         if !matches!(guard.shape, GuardShape::Linear { .. })
-            && equations.acceleration(state.t, &state.q, &state.v, &mut state.a).is_err()
+            && equations
+                .acceleration(state.t, &state.q, &state.v, &mut state.a)
+                .is_err()
         {
             state.a = end.a;
         }
@@ -142,19 +155,35 @@ fn value_at<const F: usize>(
     state: &State<F>,
 ) -> f64 {
     equations.at(state.t);
-    let at = Free { q: &state.q, v: &state.v, a: &state.a };
+    let at = Free {
+        q: &state.q,
+        v: &state.v,
+        a: &state.a,
+    };
     guards::value(equations.kernel, equations.context, conditions, guard, at)
 }
 
 /// Derivative of a guard along the flow.
 fn rate_at<const F: usize>(equations: &mut Equations<F>, guard: &Guard, state: &State<F>) -> f64 {
-    let at = Free { q: &state.q, v: &state.v, a: &state.a };
-    if let GuardShape::Linear { index, rate, factor, discrete } = guard.shape {
+    let at = Free {
+        q: &state.q,
+        v: &state.v,
+        a: &state.a,
+    };
+    if let GuardShape::Linear {
+        index,
+        rate,
+        factor,
+        discrete,
+    } = guard.shape
+    {
         let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
         return factor * if rate { state.a[index] } else { state.v[index] };
     }
     equations.at(state.t);
     equations.rates_at(state.t);
     let jerk = equations.jerk(at).unwrap_or(SVector::repeat(f64::NAN));
-    equations.kernel.guard_rate(equations.context, &guard.kernel, at, &jerk)
+    equations
+        .kernel
+        .guard_rate(equations.context, &guard.kernel, at, &jerk)
 }

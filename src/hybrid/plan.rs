@@ -21,14 +21,21 @@ impl Plan {
             .map(|m| problem.freeze.iter().all(|frozen| !m.free.contains(frozen)))
             .collect();
         if !allowed.contains(&true) {
-            let names = problem.freeze.iter().map(|&i| problem.model.coordinates[i].name);
+            let names = problem
+                .freeze
+                .iter()
+                .map(|&i| problem.model.coordinates[i].name);
             let frozen = names.collect::<Vec<_>>().join(", ");
             return Err(Reason::NoModeLeft { frozen });
         }
         let can_fire = |g: &Guard| g.transitions.iter().any(|t| allowed[t.target]);
         let watched = modes
             .iter()
-            .map(|m| (0..m.guards.len()).filter(|&g| can_fire(&m.guards[g])).collect())
+            .map(|m| {
+                (0..m.guards.len())
+                    .filter(|&g| can_fire(&m.guards[g]))
+                    .collect()
+            })
             .collect();
         Ok(Plan { allowed, watched })
     }

@@ -87,7 +87,10 @@ impl Problem {
     /// A model with its default parameters and choices, at rest at zero without inputs, for 1 s at
     /// a relative tolerance of 1e-8, recording nothing but the events and the end.
     pub fn new(model: &'static Model) -> Self {
-        let variant = model.variants.iter().find(|v| v.defaults.iter().all(|&d| d));
+        let variant = model
+            .variants
+            .iter()
+            .find(|v| v.defaults.iter().all(|&d| d));
         let n = model.coordinates.len();
         let mut problem = Problem {
             model,
@@ -105,7 +108,10 @@ impl Problem {
                 mode: None,
             },
             freeze: Vec::new(),
-            end: End { time: 1.0, after: None },
+            end: End {
+                time: 1.0,
+                after: None,
+            },
             accuracy: Accuracy {
                 relative: 0.0,
                 q_absolute: vec![0.0; n],
@@ -113,7 +119,11 @@ impl Problem {
             },
             record: Record {
                 every: Some(f64::INFINITY),
-                columns: Recorded { reactions: false, energies: false, inputs: false },
+                columns: Recorded {
+                    reactions: false,
+                    energies: false,
+                    inputs: false,
+                },
             },
         };
         problem.set_tolerance(1e-8);
@@ -126,7 +136,10 @@ impl Problem {
         self.accuracy = Accuracy {
             relative,
             q_absolute: coordinates.iter().map(|c| relative * c.scale).collect(),
-            v_absolute: coordinates.iter().map(|c| relative * c.rate_scale).collect(),
+            v_absolute: coordinates
+                .iter()
+                .map(|c| relative * c.rate_scale)
+                .collect(),
         };
     }
 
@@ -135,7 +148,10 @@ impl Problem {
     /// # Errors
     /// [`Unknown`] if the model has no such parameter.
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Unknown> {
-        let index = self.model.parameter(name).ok_or_else(|| self.unknown("parameter", name))?;
+        let index = self
+            .model
+            .parameter(name)
+            .ok_or_else(|| self.unknown("parameter", name))?;
         self.parameters[index] = value;
         Ok(())
     }
@@ -146,7 +162,9 @@ impl Problem {
     /// [`Unknown`] if the model has none of that name.
     pub fn set_initial(&mut self, name: &str, value: f64) -> Result<(), Unknown> {
         let (model, initial) = (self.model, &mut self.initial);
-        let rate = name.strip_suffix(".rate").and_then(|name| model.coordinate(name));
+        let rate = name
+            .strip_suffix(".rate")
+            .and_then(|name| model.coordinate(name));
         if let Some(i) = rate {
             initial.v[i] = value;
         } else if let Some(i) = model.coordinate(name) {
@@ -201,6 +219,10 @@ impl Problem {
     }
 
     fn unknown(&self, what: &'static str, name: &str) -> Unknown {
-        Unknown { model: self.model.name, what, name: name.into() }
+        Unknown {
+            model: self.model.name,
+            what,
+            name: name.into(),
+        }
     }
 }

@@ -78,8 +78,20 @@ impl Simulation<'_> {
 
     fn sample_at(&mut self, t: f64) {
         let mode = self.mode();
-        let Simulation { recorder, here, context, layout, ledger, .. } = self;
-        let row = Row { layout, q: &here.q, v: &here.v, ledger: ledger.row(0.0) };
+        let Simulation {
+            recorder,
+            here,
+            context,
+            layout,
+            ledger,
+            ..
+        } = self;
+        let row = Row {
+            layout,
+            q: &here.q,
+            v: &here.v,
+            ledger: ledger.row(0.0),
+        };
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = here.free(mode.free);
             recorder.push_row(t, here.mode, |values| {

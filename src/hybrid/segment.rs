@@ -39,7 +39,11 @@ impl Simulation<'_> {
         let [q, v, a] = self.here.free::<F>(mode.free);
         radau.restart(0.0, &q, &v, &a);
         let held = self.here.q.clone();
-        let drift = if mode.drifts.contains(&true) { self.drift.clone() } else { [].into() };
+        let drift = if mode.drifts.contains(&true) {
+            self.drift.clone()
+        } else {
+            [].into()
+        };
         let clock = Clock {
             start,
             signals: &problem.signals,
@@ -49,8 +53,11 @@ impl Simulation<'_> {
         };
         let mut equations = Equations::new(kernel, &mut self.context, clock, scale);
         let watched = &self.plan.watched[self.here.mode];
-        let mut conditions =
-            Conditions { variant: problem.variant, plan: &self.plan, next: &mut self.next };
+        let mut conditions = Conditions {
+            variant: problem.variant,
+            plan: &self.plan,
+            next: &mut self.next,
+        };
         let mut determinant = determinant_sign(&kernel.system(equations.context, &q, &v).mass);
         let mut ledger_from = 0.0;
 
@@ -65,8 +72,12 @@ impl Simulation<'_> {
             loop {
                 let dense = *radau.dense().expect("a step was made");
                 let to = radau.state().t;
-                let hit =
-                    earliest(from, to, &self.watches, &mut self.found, |i, from, to, watch| {
+                let hit = earliest(
+                    from,
+                    to,
+                    &self.watches,
+                    &mut self.found,
+                    |i, from, to, watch| {
                         let guard = &mode.guards[watched[i]];
                         guards::search(
                             &mut equations,
@@ -76,7 +87,8 @@ impl Simulation<'_> {
                             (from, to),
                             watch,
                         )
-                    });
+                    },
+                );
                 if hit.time.is_none() {
                     break;
                 }
@@ -129,7 +141,11 @@ impl Simulation<'_> {
                 if energies {
                     for (node, weight) in gauss(ledger_from, tau) {
                         let [q, v, a] = guards::motion(&mut equations, &dense, node, true);
-                        let at = Free { q: &q, v: &v, a: &a };
+                        let at = Free {
+                            q: &q,
+                            v: &v,
+                            a: &a,
+                        };
                         ledger.add_powers(kernel.powers(equations.context, at), weight);
                     }
                 }
@@ -138,28 +154,52 @@ impl Simulation<'_> {
                 let here = &mut self.here;
                 here.set_free(mode.free, [&q, &v, &a]);
                 copy_drifting(&mut here.q, mode.drifts, &equations.context.held);
-                let row =
-                    Row { layout: &self.layout, q: &here.q, v: &here.v, ledger: ledger.row(0.0) };
+                let row = Row {
+                    layout: &self.layout,
+                    q: &here.q,
+                    v: &here.v,
+                    ledger: ledger.row(0.0),
+                };
                 self.recorder.push_row(t, here.mode, |values| {
-                    row.fill(kernel, equations.context, Free { q: &q, v: &v, a: &a }, values)
+                    row.fill(
+                        kernel,
+                        equations.context,
+                        Free {
+                            q: &q,
+                            v: &v,
+                            a: &a,
+                        },
+                        values,
+                    )
                 });
                 self.next_sample += 1;
             }
 
             for stage in radau.stages() {
                 equations.at(stage.t);
-                let at = Free { q: stage.q, v: stage.v, a: stage.a };
-                self.ledger.add_powers(kernel.powers(equations.context, at), stage.weight);
+                let at = Free {
+                    q: stage.q,
+                    v: stage.v,
+                    a: stage.a,
+                };
+                self.ledger
+                    .add_powers(kernel.powers(equations.context, at), stage.weight);
             }
             ledger_from = end.t;
             equations.at(state.t);
-            let at = Free { q: &state.q, v: &state.v, a: &state.a };
+            let at = Free {
+                q: &state.q,
+                v: &state.v,
+                a: &state.a,
+            };
             if beyond != 0.0 {
-                self.ledger.add_powers(kernel.powers(equations.context, at), beyond);
+                self.ledger
+                    .add_powers(kernel.powers(equations.context, at), beyond);
             }
 
             self.here.now = start.plus(state.t);
-            self.here.set_free(mode.free, [&state.q, &state.v, &state.a]);
+            self.here
+                .set_free(mode.free, [&state.q, &state.v, &state.a]);
             copy_drifting(&mut self.here.q, mode.drifts, &equations.context.held);
 
             let mass = kernel.system(equations.context, &state.q, &state.v).mass;
@@ -185,12 +225,22 @@ impl Simulation<'_> {
             if problem.record.every.is_none() {
                 let ledger = self.ledger.row(0.0);
                 let Here { q, v, .. } = &self.here;
-                let row = Row { layout: &self.layout, q, v, ledger };
-                self.recorder.push_row(self.here.now.seconds(), self.here.mode, |values| {
-                    row.fill(kernel, equations.context, at, values)
-                });
+                let row = Row {
+                    layout: &self.layout,
+                    q,
+                    v,
+                    ledger,
+                };
+                self.recorder
+                    .push_row(self.here.now.seconds(), self.here.mode, |values| {
+                        row.fill(kernel, equations.context, at, values)
+                    });
             }
-            if self.progress.advance(self.here.now.seconds(), self.here.j).is_break() {
+            if self
+                .progress
+                .advance(self.here.now.seconds(), self.here.j)
+                .is_break()
+            {
                 return Err(Reason::Interrupted);
             }
 
@@ -202,7 +252,11 @@ impl Simulation<'_> {
             }
             if end.t >= until {
                 self.here.now = Instant::new(last);
-                return Ok(if last >= problem.end.time { Stop::End } else { Stop::Breakpoint });
+                return Ok(if last >= problem.end.time {
+                    Stop::End
+                } else {
+                    Stop::Breakpoint
+                });
             }
         }
     }
@@ -211,8 +265,12 @@ impl Simulation<'_> {
         let accuracy = &self.problem.accuracy;
         let free = self.mode().free;
         let pick = |full: &[f64]| SVector::from_fn(|i, _| full[free[i]]);
-        Tolerances::new(accuracy.relative, pick(&accuracy.q_absolute), pick(&accuracy.v_absolute))
-            .expect("a problem's tolerances are positive")
+        Tolerances::new(
+            accuracy.relative,
+            pick(&accuracy.q_absolute),
+            pick(&accuracy.v_absolute),
+        )
+        .expect("a problem's tolerances are positive")
     }
 
     fn count(&mut self, counters: &Counters) {

@@ -99,8 +99,10 @@ impl<'p> Simulation<'p> {
         context.discrete.copy_from_slice(&problem.initial.discrete);
         let n = model.coordinates.len();
         let layout = Layout::new(model, problem.variant, problem.record.columns);
-        let rows =
-            problem.record.every.map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
+        let rows = problem
+            .record
+            .every
+            .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
         let mut simulation = Simulation {
             problem,
             plan,
@@ -123,7 +125,10 @@ impl<'p> Simulation<'p> {
             recorder: Recorder::new(&layout, rows + 1),
             layout,
             events: Vec::new(),
-            solver: Solver { method: "Radau IIA, order 5".into(), ..Solver::default() },
+            solver: Solver {
+                method: "Radau IIA, order 5".into(),
+                ..Solver::default()
+            },
             next_sample: 0,
             counted: 0,
             progress,
@@ -150,7 +155,10 @@ impl<'p> Simulation<'p> {
                     mode: modes[chosen].name,
                     why: "the scene freezes a coordinate that is free in it".into(),
                 }),
-                Some(why) => Err(Reason::Initial { mode: modes[chosen].name, why }),
+                Some(why) => Err(Reason::Initial {
+                    mode: modes[chosen].name,
+                    why,
+                }),
             };
         }
         let mut best: Option<usize> = None;
@@ -169,7 +177,10 @@ impl<'p> Simulation<'p> {
             }
             None => {
                 let why = self.misfit(&modes[fallback]).unwrap_or_default();
-                Err(Reason::Initial { mode: modes[fallback].name, why })
+                Err(Reason::Initial {
+                    mode: modes[fallback].name,
+                    why,
+                })
             }
         }
     }
@@ -192,9 +203,10 @@ impl<'p> Simulation<'p> {
                 Some(value) if self.here.q[i] != value => {
                     Some(format!("it holds `{}` at {value} {}", c.name, c.unit))
                 }
-                _ if self.here.v[i] != rates[i] => {
-                    Some(format!("it holds `{}.rate` at {} {}/s", c.name, rates[i], c.unit))
-                }
+                _ if self.here.v[i] != rates[i] => Some(format!(
+                    "it holds `{}.rate` at {} {}/s",
+                    c.name, rates[i], c.unit
+                )),
                 _ => None,
             }
         })
@@ -270,7 +282,11 @@ impl<'p> Simulation<'p> {
         let accuracy = &self.problem.accuracy;
         let n = self.here.q.len();
         let tolerance = |i: usize, value: f64| {
-            let absolute = if i < n { accuracy.q_absolute[i] } else { accuracy.v_absolute[i - n] };
+            let absolute = if i < n {
+                accuracy.q_absolute[i]
+            } else {
+                accuracy.v_absolute[i - n]
+            };
             absolute + accuracy.relative * value.abs()
         };
         if let Some(rest) = self.plan.rest(self.mode())
@@ -384,7 +400,10 @@ impl<'p> Simulation<'p> {
             layout: self.layout,
             trajectory: self.recorder.finish(),
             events: self.events,
-            failure: reason.map(|reason| Failure { reason: reason.to_string(), at: end.clone() }),
+            failure: reason.map(|reason| Failure {
+                reason: reason.to_string(),
+                at: end.clone(),
+            }),
             end,
             solver: self.solver,
             energy: self.ledger.close(stored),

@@ -58,23 +58,32 @@ impl Function {
 
     /// A constant.
     pub fn constant(value: f64) -> Self {
-        Function { terms: vec![Term::Constant(value)] }
+        Function {
+            terms: vec![Term::Constant(value)],
+        }
     }
 
     /// The sum of functions.
     pub fn sum(functions: impl IntoIterator<Item = Function>) -> Self {
-        Function { terms: functions.into_iter().flat_map(|f| f.terms).collect() }
+        Function {
+            terms: functions.into_iter().flat_map(|f| f.terms).collect(),
+        }
     }
 
     /// Value, rate and antiderivatives at time `t` (s).
     pub fn at(&self, t: f64, side: Side) -> Jet {
-        self.terms.iter().fold(Jet::default(), |sum, term| sum + term.at(t, side))
+        self.terms
+            .iter()
+            .fold(Jet::default(), |sum, term| sum + term.at(t, side))
     }
 
     /// The first time after `t` at which the function is not smooth, in s; infinite if there is
     /// none.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
-        self.terms.iter().map(|term| term.next_breakpoint(t)).fold(f64::INFINITY, f64::min)
+        self.terms
+            .iter()
+            .map(|term| term.next_breakpoint(t))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The longest window after `t` over which the function is close to a polynomial of low
@@ -82,28 +91,38 @@ impl Function {
     /// piece, so that it has at most one knot inside. Infinite for polynomials between
     /// breakpoints.
     pub fn resolution(&self, t: f64) -> f64 {
-        self.terms.iter().map(|term| term.resolution(t)).fold(f64::INFINITY, f64::min)
+        self.terms
+            .iter()
+            .map(|term| term.resolution(t))
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
 impl From<Sine> for Function {
     fn from(sine: Sine) -> Self {
-        Function { terms: vec![Term::Sine(sine)] }
+        Function {
+            terms: vec![Term::Sine(sine)],
+        }
     }
 }
 
 impl From<Table> for Function {
     fn from(table: Table) -> Self {
-        Function { terms: vec![Term::Table(table)] }
+        Function {
+            terms: vec![Term::Table(table)],
+        }
     }
 }
 
 impl Term {
     fn at(&self, t: f64, side: Side) -> Jet {
         match self {
-            Term::Constant(c) => {
-                Jet { rate: 0.0, value: *c, integral: c * t, double_integral: 0.5 * c * t * t }
-            }
+            Term::Constant(c) => Jet {
+                rate: 0.0,
+                value: *c,
+                integral: c * t,
+                double_integral: 0.5 * c * t * t,
+            },
             Term::Sine(sine) => sine.at(t, side),
             Term::Table(table) => table.at(t, side),
         }

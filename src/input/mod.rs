@@ -46,7 +46,11 @@ impl Signals {
         let channels = inputs
             .iter()
             .zip(functions)
-            .map(|(input, function)| Channel { kind: input.kind, signal: input.signal, function })
+            .map(|(input, function)| Channel {
+                kind: input.kind,
+                signal: input.signal,
+                function,
+            })
             .collect();
         Signals { channels }
     }
@@ -81,14 +85,20 @@ impl Signals {
     /// The first time after `t` at which some input is not smooth (a jump, a kink, the start or
     /// the end of a pulse), in s; infinite if there is none.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
-        self.channels.iter().map(|c| c.function.next_breakpoint(t)).fold(f64::INFINITY, f64::min)
+        self.channels
+            .iter()
+            .map(|c| c.function.next_breakpoint(t))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The longest window after `t` over which every input is close to a polynomial of low degree,
     /// in s; infinite where breakpoints alone limit it. It keeps a step from stepping over a
     /// pulse that its stages do not see; see [`Function::resolution`].
     pub fn resolution(&self, t: f64) -> f64 {
-        self.channels.iter().map(|c| c.function.resolution(t)).fold(f64::INFINITY, f64::min)
+        self.channels
+            .iter()
+            .map(|c| c.function.resolution(t))
+            .fold(f64::INFINITY, f64::min)
     }
 
     fn fill_values(&self, t: f64, side: Side, u: &mut [f64]) {

@@ -22,7 +22,14 @@ impl Sine {
     pub fn new(amplitude: f64, angular_frequency: f64, phase: f64) -> Self {
         let (sin_phase, cos_phase) = phase.sin_cos();
         let (start, end) = (0.0, f64::INFINITY);
-        Sine { amplitude, angular_frequency, start, end, sin_phase, cos_phase }
+        Sine {
+            amplitude,
+            angular_frequency,
+            start,
+            end,
+            sin_phase,
+            cos_phase,
+        }
     }
 
     /// The same sine, counted from `start` ≥ 0 and zero from `end` ≥ `start` on; both in s.
@@ -60,12 +67,20 @@ impl Sine {
         };
         // After the end the integral stays and its own integral goes on.
         let after = if t > self.end { t - self.end } else { 0.0 };
-        Jet { rate, value, integral, double_integral: double_integral + integral * after }
+        Jet {
+            rate,
+            value,
+            integral,
+            double_integral: double_integral + integral * after,
+        }
     }
 
     /// Start and end, if they are after `t`.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
-        [self.start, self.end].into_iter().find(|&b| b > t).unwrap_or(f64::INFINITY)
+        [self.start, self.end]
+            .into_iter()
+            .find(|&b| b > t)
+            .unwrap_or(f64::INFINITY)
     }
 
     /// A quarter period while the sine acts; infinite before its start and after its end.

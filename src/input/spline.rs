@@ -8,7 +8,11 @@
 /// chapter IV).
 pub(super) fn not_a_knot(times: &[f64], values: &[f64]) -> Vec<[f64; 4]> {
     let h: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
-    let secants: Vec<f64> = values.windows(2).zip(&h).map(|(y, h)| (y[1] - y[0]) / h).collect();
+    let secants: Vec<f64> = values
+        .windows(2)
+        .zip(&h)
+        .map(|(y, h)| (y[1] - y[0]) / h)
+        .collect();
     let slopes = match secants[..] {
         [d] => vec![d, d],
         [d0, d1] => {

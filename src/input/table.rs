@@ -109,7 +109,10 @@ impl Table {
         if (interpolation, outside) == (Interpolation::Previous, Outside::Zero)
             && values[last] != 0.0
         {
-            return Err(TableError::LastValueUnused { row: last, value: values[last] });
+            return Err(TableError::LastValueUnused {
+                row: last,
+                value: values[last],
+            });
         }
 
         let (before, after) = match outside {
@@ -130,10 +133,13 @@ impl Table {
         }
 
         let origins = std::iter::once(times[0]).chain(times.iter().copied());
-        let coefficients =
-            std::iter::once(constant(before)).chain(inner).chain(std::iter::once(constant(after)));
-        let pieces =
-            origins.zip(coefficients).map(|(origin, c)| Piece::new(origin, c)).collect::<Vec<_>>();
+        let coefficients = std::iter::once(constant(before))
+            .chain(inner)
+            .chain(std::iter::once(constant(after)));
+        let pieces = origins
+            .zip(coefficients)
+            .map(|(origin, c)| Piece::new(origin, c))
+            .collect::<Vec<_>>();
 
         let mut table = Table {
             knots: times.to_vec(),
@@ -142,8 +148,10 @@ impl Table {
             interpolation,
             density: last as f64 / (times[last] - times[0]),
         };
-        table.breakpoints =
-            (0..=last).filter(|&i| !table.is_smooth_at(i)).map(|i| times[i]).collect();
+        table.breakpoints = (0..=last)
+            .filter(|&i| !table.is_smooth_at(i))
+            .map(|i| times[i])
+            .collect();
         table.integrate();
         Ok(table)
     }
@@ -222,7 +230,10 @@ impl Table {
         self.pieces[base].integral = -from_origin.integral;
         self.pieces[base].double_integral = -self.pieces[base].at(0.0).double_integral;
 
-        let start = (self.pieces[base].integral, self.pieces[base].double_integral);
+        let start = (
+            self.pieces[base].integral,
+            self.pieces[base].double_integral,
+        );
         let (mut integral, mut double) = (Sum::new(start.0), Sum::new(start.1));
         for i in base..self.knots.len() {
             let increment = self.pieces[i].increment(self.knots[i]);
@@ -241,7 +252,12 @@ impl Table {
 
 impl Piece {
     fn new(origin: f64, coefficients: [f64; 4]) -> Self {
-        Piece { origin, coefficients, integral: 0.0, double_integral: 0.0 }
+        Piece {
+            origin,
+            coefficients,
+            integral: 0.0,
+            double_integral: 0.0,
+        }
     }
 
     fn at(&self, t: f64) -> Jet {
@@ -277,7 +293,10 @@ struct Sum {
 
 impl Sum {
     fn new(start: f64) -> Self {
-        Sum { sum: start, compensation: 0.0 }
+        Sum {
+            sum: start,
+            compensation: 0.0,
+        }
     }
 
     /// Adds a term and gives the sum so far.
@@ -296,7 +315,10 @@ impl Sum {
 fn check_rows(times: &[f64], values: &[f64]) -> Result<(), TableError> {
     // One row has no extent in time, whatever the interpolation.
     const NEEDED: usize = 2;
-    if let Some(row) = times.iter().zip(values).position(|(t, y)| !t.is_finite() || !y.is_finite())
+    if let Some(row) = times
+        .iter()
+        .zip(values)
+        .position(|(t, y)| !t.is_finite() || !y.is_finite())
     {
         return Err(TableError::NotFinite { row });
     }
@@ -308,7 +330,10 @@ fn check_rows(times: &[f64], values: &[f64]) -> Result<(), TableError> {
         });
     }
     if times.len() < NEEDED {
-        return Err(TableError::TooFewRows { found: times.len(), needed: NEEDED });
+        return Err(TableError::TooFewRows {
+            found: times.len(),
+            needed: NEEDED,
+        });
     }
     Ok(())
 }

@@ -10,14 +10,25 @@ use super::*;
 fn quadrature(f: impl Fn(f64) -> f64, a: f64, b: f64, panels: usize) -> f64 {
     let inner = (5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
     let outer = (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
-    let (near, far) =
-        ((322.0 + 13.0 * 70.0_f64.sqrt()) / 900.0, (322.0 - 13.0 * 70.0_f64.sqrt()) / 900.0);
-    let nodes = [(0.0, 128.0 / 225.0), (inner, near), (-inner, near), (outer, far), (-outer, far)];
+    let (near, far) = (
+        (322.0 + 13.0 * 70.0_f64.sqrt()) / 900.0,
+        (322.0 - 13.0 * 70.0_f64.sqrt()) / 900.0,
+    );
+    let nodes = [
+        (0.0, 128.0 / 225.0),
+        (inner, near),
+        (-inner, near),
+        (outer, far),
+        (-outer, far),
+    ];
     let half = (b - a) / (2 * panels) as f64;
     (0..panels)
         .map(|i| {
             let middle = a + (2 * i + 1) as f64 * half;
-            half * nodes.iter().map(|(x, w)| w * f(middle + x * half)).sum::<f64>()
+            half * nodes
+                .iter()
+                .map(|(x, w)| w * f(middle + x * half))
+                .sum::<f64>()
         })
         .sum()
 }
@@ -100,7 +111,10 @@ fn sine_pulse_is_zero_outside_and_jumps_at_both_ends() {
     assert!(f.at(2.5, Side::Left).value.abs() < 1e-15);
     assert!((f.at(2.5, Side::Left).rate - 2.0 * PI).abs() < 1e-14);
     assert_eq!(f.at(2.5, Side::Right).rate, 0.0);
-    assert_eq!(f.at(3.0, Side::Right).integral, f.at(2.5, Side::Left).integral);
+    assert_eq!(
+        f.at(3.0, Side::Right).integral,
+        f.at(2.5, Side::Left).integral
+    );
     let breaks: Vec<f64> = breakpoints(&f);
     assert_eq!(breaks, [1.0, 2.5]);
     assert_eq!(
@@ -124,14 +138,23 @@ fn table(
     Table::new(&times, &values, interpolation, outside)
 }
 
-const ROWS: [(f64, f64); 5] = [(0.0, 0.0), (0.5, 1.0), (0.75, -2.0), (1.5, -2.0), (2.0, 0.0)];
+const ROWS: [(f64, f64); 5] = [
+    (0.0, 0.0),
+    (0.5, 1.0),
+    (0.75, -2.0),
+    (1.5, -2.0),
+    (2.0, 0.0),
+];
 
 #[test]
 fn linear_table_interpolates_and_has_a_breakpoint_at_every_kink() {
     let f = Function::from(table(&ROWS, Interpolation::Linear, Outside::Zero).unwrap());
     assert_eq!(f.at(0.25, Side::Right).value, 0.5);
     assert_eq!(f.at(0.5, Side::Right).value, 1.0);
-    assert_eq!((f.at(0.5, Side::Left).rate, f.at(0.5, Side::Right).rate), (2.0, -12.0));
+    assert_eq!(
+        (f.at(0.5, Side::Left).rate, f.at(0.5, Side::Right).rate),
+        (2.0, -12.0)
+    );
     assert_eq!(f.at(2.5, Side::Right).value, 0.0);
     // ∫ = 0.25 − 0.125 − 1.5 − 0.5
     assert_eq!(f.at(7.0, Side::Right).integral, -1.875);
@@ -150,10 +173,16 @@ fn knots_on_a_straight_line_are_no_breakpoints() {
 fn previous_holds_each_value_and_jumps() {
     let rows = [(0.0, 1.0), (1.0, 1.0), (2.0, -3.0), (4.0, 0.0)];
     let f = Function::from(table(&rows, Interpolation::Previous, Outside::Zero).unwrap());
-    assert_eq!((f.at(2.0, Side::Left).value, f.at(2.0, Side::Right).value), (1.0, -3.0));
+    assert_eq!(
+        (f.at(2.0, Side::Left).value, f.at(2.0, Side::Right).value),
+        (1.0, -3.0)
+    );
     assert_eq!(f.at(4.0, Side::Right).value, 0.0);
     assert_eq!(
-        (f.at(4.0, Side::Right).integral, f.at(5.0, Side::Right).double_integral),
+        (
+            f.at(4.0, Side::Right).integral,
+            f.at(5.0, Side::Right).double_integral
+        ),
         (-4.0, -4.0)
     );
     assert_eq!(breakpoints(&f), [0.0, 2.0, 4.0]);
@@ -165,7 +194,10 @@ fn previous_does_not_drop_its_last_value_silently() {
     let error = table(&rows, Interpolation::Previous, Outside::Zero).unwrap_err();
     assert_eq!(error, TableError::LastValueUnused { row: 1, value: 2.0 });
     let f = Function::from(table(&rows, Interpolation::Previous, Outside::Hold).unwrap());
-    assert_eq!((f.at(-1.0, Side::Right).value, f.at(9.0, Side::Right).value), (1.0, 2.0));
+    assert_eq!(
+        (f.at(-1.0, Side::Right).value, f.at(9.0, Side::Right).value),
+        (1.0, 2.0)
+    );
 }
 
 #[test]
@@ -190,7 +222,12 @@ fn spline_gives_a_cubic_back() {
 #[test]
 fn spline_of_two_points_is_a_line_and_of_three_a_parabola() {
     let f = Function::from(
-        table(&[(0.0, 1.0), (2.0, 5.0)], Interpolation::Cubic, Outside::Hold).unwrap(),
+        table(
+            &[(0.0, 1.0), (2.0, 5.0)],
+            Interpolation::Cubic,
+            Outside::Hold,
+        )
+        .unwrap(),
     );
     assert_eq!(f.at(0.5, Side::Right).value, 2.0);
     let rows = [(0.0, 0.0), (1.0, 1.0), (3.0, 9.0)];
@@ -204,8 +241,10 @@ fn spline_of_two_points_is_a_line_and_of_three_a_parabola() {
 #[test]
 fn spline_converges_with_order_four_up_to_its_ends() {
     let error = |n: usize| {
-        let rows: Vec<_> =
-            (0..=n).map(|i| i as f64 / n as f64).map(|t| (t, (5.0 * t).cos())).collect();
+        let rows: Vec<_> = (0..=n)
+            .map(|i| i as f64 / n as f64)
+            .map(|t| (t, (5.0 * t).cos()))
+            .collect();
         let f = Function::from(table(&rows, Interpolation::Cubic, Outside::Zero).unwrap());
         (0..1000)
             .map(|i| i as f64 / 1000.0)
@@ -228,8 +267,11 @@ fn spline_resolution_reaches_over_one_knot_at_most() {
 #[test]
 fn antiderivatives_start_at_t_0_wherever_the_table_starts() {
     for shift in [-1.1, -0.6, 0.0, 0.4] {
-        for interpolation in [Interpolation::Linear, Interpolation::Cubic, Interpolation::Previous]
-        {
+        for interpolation in [
+            Interpolation::Linear,
+            Interpolation::Cubic,
+            Interpolation::Previous,
+        ] {
             for outside in [Outside::Zero, Outside::Hold] {
                 let rows = ROWS.map(|(t, y)| (t + shift, y));
                 let f = Function::from(table(&rows, interpolation, outside).unwrap());
@@ -258,7 +300,10 @@ fn long_record_keeps_its_accuracy() {
     let end = rows[n].0;
     let jet = f.at(end, Side::Left);
     assert!((jet.integral / (0.1 * end) - 1.0).abs() < 1e-15, "{jet:?}");
-    assert!((jet.double_integral / (0.05 * end * end) - 1.0).abs() < 1e-15, "{jet:?}");
+    assert!(
+        (jet.double_integral / (0.05 * end * end) - 1.0).abs() < 1e-15,
+        "{jet:?}"
+    );
 }
 
 #[test]
@@ -267,26 +312,46 @@ fn wrong_rows_are_named() {
     use Outside::Zero;
     assert_eq!(
         table(&[(0.0, 1.0)], Linear, Zero),
-        Err(TableError::TooFewRows { found: 1, needed: 2 })
+        Err(TableError::TooFewRows {
+            found: 1,
+            needed: 2
+        })
     );
     assert_eq!(
         table(&[(0.0, 1.0), (1.0, 1.0), (1.0, 2.0)], Linear, Zero),
-        Err(TableError::UnsortedTime { row: 2, time: 1.0, previous: 1.0 })
+        Err(TableError::UnsortedTime {
+            row: 2,
+            time: 1.0,
+            previous: 1.0
+        })
     );
     assert_eq!(
         table(&[(0.0, 1.0), (1.0, f64::NAN)], Linear, Zero),
         Err(TableError::NotFinite { row: 1 })
     );
     assert_eq!(
-        table(&[(0.0, 1.0), (1.0, 0.0), (1.0 + f64::EPSILON, 1e300)], Linear, Zero),
+        table(
+            &[(0.0, 1.0), (1.0, 0.0), (1.0 + f64::EPSILON, 1e300)],
+            Linear,
+            Zero
+        ),
         Err(TableError::TooSteep { row: 1 })
     );
 }
 
 #[test]
 fn signals_follow_the_layout_of_the_model() {
-    let input = |name, kind, signal| Input { name, unit: "", meaning: "", kind, signal };
-    let inputs = [input("force", InputKind::Value, 3), input("ground", InputKind::Acceleration, 0)];
+    let input = |name, kind, signal| Input {
+        name,
+        unit: "",
+        meaning: "",
+        kind,
+        signal,
+    };
+    let inputs = [
+        input("force", InputKind::Value, 3),
+        input("ground", InputKind::Acceleration, 0),
+    ];
     let force = Function::from(Sine::new(1.0, 1.0, 0.0));
     let ground = Function::sum([Function::constant(2.0), Function::constant(1.0)]);
     let signals = Signals::new(&inputs, vec![force, ground]);
@@ -318,7 +383,11 @@ fn rows() -> impl Strategy<Value = Vec<(f64, f64)>> {
 }
 
 fn interpolation() -> impl Strategy<Value = Interpolation> {
-    prop::sample::select(vec![Interpolation::Linear, Interpolation::Cubic, Interpolation::Previous])
+    prop::sample::select(vec![
+        Interpolation::Linear,
+        Interpolation::Cubic,
+        Interpolation::Previous,
+    ])
 }
 
 proptest! {

@@ -63,7 +63,11 @@ impl Controller {
         pace: &Pace,
         discarded: bool,
     ) -> f64 {
-        let Pace { error, effort, rate } = *pace;
+        let Pace {
+            error,
+            effort,
+            rate,
+        } = *pace;
         let mut factor = SAFETY / (1.0 + effort) / root::<S>(error);
         if let Some((last_h, last_error)) = self.last {
             // The error behaves as it did from the last step to this one.
@@ -75,7 +79,11 @@ impl Controller {
         if discarded {
             factor = factor.min(1.0);
         }
-        if (1.0..KEEP).contains(&factor) { h } else { h * factor }
+        if (1.0..KEEP).contains(&factor) {
+            h
+        } else {
+            h * factor
+        }
     }
 }
 

@@ -23,7 +23,10 @@ impl<const F: usize> Estimate<F> {
         RadauIia<S>: Coefficients<S>,
     {
         let tableau = RadauIia::<S>::TABLEAU;
-        let mut raw = Estimate { q: SVector::zeros(), v: SVector::zeros() };
+        let mut raw = Estimate {
+            q: SVector::zeros(),
+            v: SVector::zeros(),
+        };
         for l in 0..F {
             let (mut first, mut second) = (0.0, 0.0);
             for i in 0..S {
@@ -52,7 +55,10 @@ impl<const F: usize> Estimate<F> {
             }
             sum
         }));
-        Estimate { q: self.q + v * z, v }
+        Estimate {
+            q: self.q + v * z,
+            v,
+        }
     }
 
     /// Size of the filtered estimate `self` in units of its tolerance or, if that is larger, of the
@@ -79,7 +85,10 @@ impl<const F: usize> Estimate<F> {
         let factor = loosening * RadauIia::<S>::TABLEAU.error_quotient;
         // filtered − raw = hγJ filtered tells the size of γhλ without further work.
         let norm = self.norm(weights);
-        let mut difference = Estimate { q: self.q - raw.q, v: self.v - raw.v };
+        let mut difference = Estimate {
+            q: self.q - raw.q,
+            v: self.v - raw.v,
+        };
         let stiffness = difference.norm(weights) / norm;
         if factor * norm * power(stiffness, S - 1) < norm {
             return norm; // resolved, or there is no error at all
@@ -87,18 +96,28 @@ impl<const F: usize> Estimate<F> {
         difference = *self;
         for _ in 1..S {
             let filtered = difference.filtered(h, newton);
-            difference = Estimate { q: filtered.q - difference.q, v: filtered.v - difference.v };
+            difference = Estimate {
+                q: filtered.q - difference.q,
+                v: filtered.v - difference.v,
+            };
         }
         let error = factor * difference.norm(weights);
         // For the controller, which takes the (S + 1)-th root: this one grows with h^2S where it is
         // small.
-        norm.max(if error < 1.0 { power(nth_root(error, 2 * S), S + 1) } else { error })
+        norm.max(if error < 1.0 {
+            power(nth_root(error, 2 * S), S + 1)
+        } else {
+            error
+        })
     }
 
     /// Size of component `i` in units of the tolerance.
     #[inline]
     pub fn size(&self, i: usize, weights: &Weights<F>) -> f64 {
-        f64::max(self.q[i].abs() * weights.q[i], self.v[i].abs() * weights.v[i])
+        f64::max(
+            self.q[i].abs() * weights.q[i],
+            self.v[i].abs() * weights.v[i],
+        )
     }
 
     /// Largest component in units of the tolerance; NaN if one is not finite.

@@ -33,7 +33,9 @@ where
     RadauIia<S>: Coefficients<S>,
 {
     let per_size = |rate: &SVector<f64, F>, weight: &SVector<f64, F>| -> f64 {
-        (0..F).fold(0.0, |most, i| most.max(rate[i].abs() * weight[i] * control.relative))
+        (0..F).fold(0.0, |most, i| {
+            most.max(rate[i].abs() * weight[i] * control.relative)
+        })
     };
     let factor = control.step_per_scale;
     let fastest = per_size(&start.v, &weights.q).max(per_size(&start.a, &weights.v));

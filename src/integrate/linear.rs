@@ -60,7 +60,11 @@ pub(super) struct Lu<T, const F: usize> {
 impl<T: Scalar, const F: usize> Lu<T, F> {
     /// Placeholder until the first factorization.
     pub fn empty() -> Self {
-        Lu { rows: [[T::default(); F]; F], reciprocals: [T::default(); F], order: [0; F] }
+        Lu {
+            rows: [[T::default(); F]; F],
+            reciprocals: [T::default(); F],
+            order: [0; F],
+        }
     }
 
     /// Factorizes the matrix with the given entry (row, column); `row_scale` as in the module's
@@ -171,7 +175,9 @@ mod tests {
 
     /// Entries without structure in (−1, 1), the same in every run.
     fn noise(seed: &mut u64) -> f64 {
-        *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        *seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
@@ -237,7 +243,11 @@ mod tests {
 
     #[test]
     fn no_coordinates_no_work() {
-        let x = solve(&SMatrix::<f64, 0, 0>::zeros(), &SVector::zeros(), &SVector::zeros());
+        let x = solve(
+            &SMatrix::<f64, 0, 0>::zeros(),
+            &SVector::zeros(),
+            &SVector::zeros(),
+        );
         assert_eq!(x, Ok(SVector::<f64, 0>::zeros()));
     }
 }

@@ -49,7 +49,10 @@ pub(super) struct Linearization<const F: usize> {
 impl<const F: usize> Linearization<F> {
     /// True if no entry is NaN or infinite.
     pub fn is_finite(&self) -> bool {
-        [&self.m, &self.c, &self.k].into_iter().flatten().all(|x| x.is_finite())
+        [&self.m, &self.c, &self.k]
+            .into_iter()
+            .flatten()
+            .all(|x| x.is_finite())
     }
 }
 
@@ -78,7 +81,11 @@ where
     pub fn new() -> Self {
         let zero = SMatrix::zeros();
         Newton {
-            matrices: Linearization { m: zero, c: zero, k: zero },
+            matrices: Linearization {
+                m: zero,
+                c: zero,
+                k: zero,
+            },
             real: Lu::empty(),
             complex: [Lu::empty(); MAX_PAIRS],
             h: f64::NAN,
@@ -185,8 +192,11 @@ where
             stages.extend(start, h);
             if iteration > 1 {
                 let quotient = norm / last_norm;
-                self.rate =
-                    if iteration == 2 { quotient } else { f64::sqrt(quotient * last_quotient) };
+                self.rate = if iteration == 2 {
+                    quotient
+                } else {
+                    f64::sqrt(quotient * last_quotient)
+                };
                 last_quotient = quotient;
                 let rate = self.rate;
                 // Below DIVERGENCE, but so slow that the iterations left will not do?
@@ -197,14 +207,18 @@ where
                 };
                 if rate >= DIVERGENCE || norm * rate / (1.0 - rate) > tolerance && hopeless() {
                     if self.is_rounding(&residual, stages) {
-                        return Outcome::Converged { iterations: iteration };
+                        return Outcome::Converged {
+                            iterations: iteration,
+                        };
                     }
                     return Outcome::Slow { rate };
                 }
                 self.remaining = rate / (1.0 - rate);
             }
             if self.remaining * norm <= tolerance {
-                return Outcome::Converged { iterations: iteration };
+                return Outcome::Converged {
+                    iterations: iteration,
+                };
             }
             last_norm = norm;
         }
@@ -279,13 +293,24 @@ where
 {
     pub fn zeros() -> Self {
         let zero = SVector::zeros();
-        Stages { a: [zero; S], v: [zero; S], q: [zero; S], v_change: zero, q_change: zero }
+        Stages {
+            a: [zero; S],
+            v: [zero; S],
+            q: [zero; S],
+            v_change: zero,
+            q_change: zero,
+        }
     }
 
     /// Stage `i` of the step of length `h` from time `t0`.
     pub fn state(&self, i: usize, t0: f64, h: f64) -> State<F> {
         let t = t0 + RadauIia::<S>::TABLEAU.c[i] * h;
-        State { t, q: self.q[i], v: self.v[i], a: self.a[i] }
+        State {
+            t,
+            q: self.q[i],
+            v: self.v[i],
+            a: self.a[i],
+        }
     }
 
     /// Velocities and coordinates that belong to the accelerations.

@@ -67,7 +67,11 @@ struct Lost<const F: usize> {
 
 impl<const F: usize> Lost<F> {
     fn nothing() -> Self {
-        Lost { t: 0.0, q: SVector::zeros(), v: SVector::zeros() }
+        Lost {
+            t: 0.0,
+            q: SVector::zeros(),
+            v: SVector::zeros(),
+        }
     }
 }
 
@@ -77,7 +81,10 @@ fn add(x: f64, change: f64, lost: f64) -> (f64, f64) {
     let change = change + lost;
     let sum = x + change;
     let virtual_change = sum - x;
-    (sum, (x - (sum - virtual_change)) + (change - virtual_change))
+    (
+        sum,
+        (x - (sum - virtual_change)) + (change - virtual_change),
+    )
 }
 
 /// A successful attempt.
@@ -128,7 +135,12 @@ where
     /// An integrator at rest at zero; call [`Radau::restart`] before the first step.
     pub fn new(tolerances: &Tolerances<F>) -> Self {
         let zero = SVector::zeros();
-        let origin = State { t: 0.0, q: zero, v: zero, a: zero };
+        let origin = State {
+            t: 0.0,
+            q: zero,
+            v: zero,
+            a: zero,
+        };
         Radau {
             control: Control::new::<S>(tolerances),
             controller: Controller::new(),
@@ -157,7 +169,12 @@ where
         v: &SVector<f64, F>,
         a: &SVector<f64, F>,
     ) {
-        self.end = State { t, q: *q, v: *v, a: *a };
+        self.end = State {
+            t,
+            q: *q,
+            v: *v,
+            a: *a,
+        };
         self.start = self.end;
         self.lost = Lost::nothing();
         self.lost_at_start = self.lost;
@@ -234,10 +251,18 @@ where
         t_end: f64,
         h_max: f64,
     ) -> Result<StepReport, StepError> {
-        assert!(t_end > self.end.t, "t_end = {t_end} is not after t = {}", self.end.t);
+        assert!(
+            t_end > self.end.t,
+            "t_end = {t_end} is not after t = {}",
+            self.end.t
+        );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
         if let (None, Some(what)) = (&self.dense, self.end.not_finite()) {
-            return Err(StepError::NonFinite { t: self.end.t, h: 0.0, what });
+            return Err(StepError::NonFinite {
+                t: self.end.t,
+                h: 0.0,
+                what,
+            });
         }
         let origin = self.end;
         let weights = self.control.weights(&origin.q, &origin.v);
@@ -254,7 +279,12 @@ where
                     self.linearize(system, &origin);
                 }
                 let h_max = h_max.min(remaining);
-                let Radau { control, newton, counters, .. } = self;
+                let Radau {
+                    control,
+                    newton,
+                    counters,
+                    ..
+                } = self;
                 first_step::estimate(system, &origin, h_max, control, &weights, newton, counters)
             }
         };
@@ -266,9 +296,19 @@ where
                 Ok(Trial { error, iterations }) => {
                     let t = (h == remaining).then_some(t_end);
                     self.accept(&origin, self.lost, h, t);
-                    let rate = if iterations > 1 { self.newton.rate } else { 0.0 };
-                    let pace = Pace { error, effort: Newton::<S, F>::effort(iterations), rate };
-                    let next = self.controller.after_acceptance::<S>(h, &pace, discarded > 0);
+                    let rate = if iterations > 1 {
+                        self.newton.rate
+                    } else {
+                        0.0
+                    };
+                    let pace = Pace {
+                        error,
+                        effort: Newton::<S, F>::effort(iterations),
+                        rate,
+                    };
+                    let next = self
+                        .controller
+                        .after_acceptance::<S>(h, &pace, discarded > 0);
                     // A step cut short by a limit says nothing against the longer one.
                     let cut = discarded == 0 && h < proposed;
                     self.proposal = Some(if cut { next.max(proposed) } else { next });
@@ -302,7 +342,11 @@ where
         let filtered = raw.filtered(h, &self.newton);
         let error = filtered.method_error(&raw, h, &self.newton, weights, self.control.loosening);
         if error.is_nan() {
-            return Err(StepError::NonFinite { t, h, what: "the error estimate" });
+            return Err(StepError::NonFinite {
+                t,
+                h,
+                what: "the error estimate",
+            });
         }
         if error >= 1.0 {
             return Err(StepError::Tolerance { t, h, error });
@@ -398,25 +442,47 @@ where
             self.linearize(system, &self.stages.state(S / 2, t, h));
         }
         if let Err(singular) =
-            self.newton.factorize(h, self.control.row_scale(), &mut self.counters)
+            self.newton
+                .factorize(h, self.control.row_scale(), &mut self.counters)
         {
             return Err(match self.newton.matrices.is_finite() {
-                true => StepError::Singular { t, h, coordinate: singular.coordinate },
-                false => StepError::NonFinite { t, h, what: "the Jacobian" },
+                true => StepError::Singular {
+                    t,
+                    h,
+                    coordinate: singular.coordinate,
+                },
+                false => StepError::NonFinite {
+                    t,
+                    h,
+                    what: "the Jacobian",
+                },
             });
         }
-        let Radau { newton, stages, control, counters, .. } = self;
+        let Radau {
+            newton,
+            stages,
+            control,
+            counters,
+            ..
+        } = self;
         match newton.solve(system, origin, h, stages, weights, control.newton, counters) {
             Outcome::Converged { iterations } => Ok(iterations),
             Outcome::Slow { rate } => Err(StepError::Newton { t, h, rate }),
-            Outcome::NonFinite => Err(StepError::NonFinite { t, h, what: "the residual" }),
+            Outcome::NonFinite => Err(StepError::NonFinite {
+                t,
+                h,
+                what: "the residual",
+            }),
         }
     }
 
     /// Makes the solved stages the step from `origin`; it ends at `t` if that is given.
     #[inline]
     fn accept(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, t: Option<f64>) {
-        let mut end = State { a: self.stages.a[S - 1], ..*origin };
+        let mut end = State {
+            a: self.stages.a[S - 1],
+            ..*origin
+        };
         let mut now_lost = Lost::nothing();
         match t {
             Some(t) => end.t = t,
@@ -447,7 +513,14 @@ where
     fn report(&self, error: f64, iterations: u32, discarded: u32) -> StepReport {
         let (t_start, t_end) = (self.start.t, self.end.t);
         let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
-        StepReport { t_start, t_end, h, error, iterations, discarded }
+        StepReport {
+            t_start,
+            t_end,
+            h,
+            error,
+            iterations,
+            discarded,
+        }
     }
 }
 

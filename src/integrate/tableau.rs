@@ -103,7 +103,11 @@ mod tests {
             }
             for k in 1..S {
                 let terms = (0..S).map(|j| tableau.a2[i][j] * power(c[j], k - 1));
-                close(terms, power(c[i], k + 1) / (k * (k + 1)) as f64, "C(S-1) twice");
+                close(
+                    terms,
+                    power(c[i], k + 1) / (k * (k + 1)) as f64,
+                    "C(S-1) twice",
+                );
             }
         }
         for j in 0..S {
@@ -120,7 +124,11 @@ mod tests {
             close(terms, if k == 0 { -tableau.gamma } else { 0.0 }, "e");
         }
         for j in 0..S {
-            close((0..S).map(|i| tableau.e[i] * tableau.a[i][j]), tableau.ea[j], "e^T A");
+            close(
+                (0..S).map(|i| tableau.e[i] * tableau.a[i][j]),
+                tableau.ea[j],
+                "e^T A",
+            );
         }
         let factorial: f64 = (1..=S).map(|k| k as f64).product();
         let terms = (0..S).map(|i| tableau.e[i] * power(tableau.c[i], S) / factorial);
@@ -135,7 +143,11 @@ mod tests {
         let expected = method / (tableau.error_constant * power(tableau.gamma, S - 1));
         // Powers of A cancel down to 1/(2S)!, which leaves few digits at 7 stages.
         let error = (tableau.error_quotient / expected - 1.0).abs();
-        assert!(error < 1e-2, "error quotient: {} instead of {expected}", tableau.error_quotient);
+        assert!(
+            error < 1e-2,
+            "error quotient: {} instead of {expected}",
+            tableau.error_quotient
+        );
     }
 
     fn transformation<const S: usize>(tableau: &Tableau<S>) {
@@ -166,7 +178,9 @@ mod tests {
             let square = tableau.collocation_square[j];
             let terms = (0..S).map(|k| collocation[k][j]).chain([square]);
             close(terms, a2[j], "collocation q(1)");
-            let terms = (0..S).map(|k| (k + 3) as f64 * collocation[k][j]).chain([2.0 * square]);
+            let terms = (0..S)
+                .map(|k| (k + 3) as f64 * collocation[k][j])
+                .chain([2.0 * square]);
             close(terms, a[j], "collocation v(1)");
             if S > 1 {
                 let derivative = |order: usize| {
@@ -177,7 +191,11 @@ mod tests {
                 };
                 close(derivative(0), a2[j], "smooth q(1)");
                 close(derivative(1), a[j], "smooth v(1)");
-                close(derivative(2), if j == S - 1 { 1.0 } else { 0.0 }, "smooth a(1)");
+                close(
+                    derivative(2),
+                    if j == S - 1 { 1.0 } else { 0.0 },
+                    "smooth a(1)",
+                );
             }
         }
     }

@@ -58,13 +58,23 @@ impl<const F: usize> Tolerances<F> {
         for coordinate in 0..F {
             let (q, v) = (q_absolute[coordinate], v_absolute[coordinate]);
             if q.is_nan() || q <= 0.0 {
-                return Err(ToleranceError::Coordinate { coordinate, value: q });
+                return Err(ToleranceError::Coordinate {
+                    coordinate,
+                    value: q,
+                });
             }
             if !(v > 0.0 && v.is_finite()) {
-                return Err(ToleranceError::Velocity { coordinate, value: v });
+                return Err(ToleranceError::Velocity {
+                    coordinate,
+                    value: v,
+                });
             }
         }
-        Ok(Tolerances { relative, q_absolute, v_absolute })
+        Ok(Tolerances {
+            relative,
+            q_absolute,
+            v_absolute,
+        })
     }
 
     /// Relative tolerance, dimensionless.
@@ -132,7 +142,10 @@ impl<const F: usize> Control<F> {
     /// Reciprocal tolerances of the estimate at the state (q, v).
     #[inline]
     pub fn weights(&self, q: &SVector<f64, F>, v: &SVector<f64, F>) -> Weights<F> {
-        let mut weights = Weights { q: SVector::zeros(), v: SVector::zeros() };
+        let mut weights = Weights {
+            q: SVector::zeros(),
+            v: SVector::zeros(),
+        };
         for i in 0..F {
             weights.q[i] = 1.0 / (self.relative * (self.q_size[i] + q[i].abs()));
             weights.v[i] = 1.0 / (self.relative * (self.v_size[i] + v[i].abs()));
@@ -195,11 +208,17 @@ mod tests {
         }
         for q in [0.0, -1.0, f64::NAN] {
             let error = Tolerances::new(1e-6, one * q, one).unwrap_err();
-            assert!(matches!(error, ToleranceError::Coordinate { coordinate: 0, .. }));
+            assert!(matches!(
+                error,
+                ToleranceError::Coordinate { coordinate: 0, .. }
+            ));
         }
         for v in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let error = Tolerances::new(1e-6, one, one * v).unwrap_err();
-            assert!(matches!(error, ToleranceError::Velocity { coordinate: 0, .. }));
+            assert!(matches!(
+                error,
+                ToleranceError::Velocity { coordinate: 0, .. }
+            ));
         }
         assert!(Tolerances::new(1e-6, one * f64::INFINITY, one).is_ok());
     }

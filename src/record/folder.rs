@@ -95,7 +95,9 @@ impl OutputFolder {
     /// Checks that `path` is a place where output may be written, and writes nothing: it does not
     /// exist, or is an empty folder, or was written by dalembert.
     pub fn new(path: &Path) -> Result<OutputFolder, FolderError> {
-        let folder = OutputFolder { path: path.to_owned() };
+        let folder = OutputFolder {
+            path: path.to_owned(),
+        };
         folder.target()?;
         Ok(folder)
     }
@@ -117,7 +119,10 @@ impl OutputFolder {
             _ => Path::new("."),
         };
         fs::create_dir_all(parent).map_err(io_error("create the folder", parent))?;
-        let name = target.file_name().unwrap_or(OsStr::new("out")).to_string_lossy();
+        let name = target
+            .file_name()
+            .unwrap_or(OsStr::new("out"))
+            .to_string_lossy();
         let mut staging = Staging {
             folder: temporary_folder(&name, parent)
                 .map_err(io_error("create a folder inside", parent))?,
@@ -133,18 +138,28 @@ impl OutputFolder {
             return Ok(());
         }
         let ours = ours(&target)?;
-        if let Some(file) =
-            staging.files.iter().find(|f| !ours.contains(*f) && target.join(f).exists())
+        if let Some(file) = staging
+            .files
+            .iter()
+            .find(|f| !ours.contains(*f) && target.join(f).exists())
         {
-            return Err(FolderError::WouldReplace { path: target, file: file.clone() });
+            return Err(FolderError::WouldReplace {
+                path: target,
+                file: file.clone(),
+            });
         }
-        let permissions = fs::metadata(&target).map_err(io_error("read", &target))?.permissions();
+        let permissions = fs::metadata(&target)
+            .map_err(io_error("read", &target))?
+            .permissions();
         fs::set_permissions(new, permissions).map_err(io_error("set the permissions of", new))?;
         keep_foreign(&target, new, &ours).map_err(io_error("copy other files of", &target))?;
         exchange(new, &target).map_err(io_error("replace the folder", &target))?;
         // `new` is now the path of the old folder. Foreign files that appeared there meanwhile:
         keep_foreign(new, &target, &ours).map_err(io_error("copy other files of", new))?;
-        staging.folder.close().map_err(io_error("remove the old output of", &target))
+        staging
+            .folder
+            .close()
+            .map_err(io_error("remove the old output of", &target))
     }
 
     /// The folder to replace, symbolic links resolved, after the checks of [`OutputFolder::new`].
@@ -170,9 +185,14 @@ impl OutputFolder {
         let mut entries = fs::read_dir(&target).map_err(io_error("read the folder", path))?;
         match entries.next() {
             Some(entry) if !target.join(MARKER).is_file() => {
-                let entry = entry.map_err(io_error("read the folder", path))?.file_name();
+                let entry = entry
+                    .map_err(io_error("read the folder", path))?
+                    .file_name();
                 let entry = entry.to_string_lossy().into_owned();
-                Err(FolderError::NotOurs { path: path.clone(), entry })
+                Err(FolderError::NotOurs {
+                    path: path.clone(),
+                    entry,
+                })
             }
             _ => Ok(target),
         }
@@ -202,14 +222,20 @@ impl Staging {
         let lines: Vec<String> = self.files.iter().map(|file| format!("{file}\n")).collect();
         self.file(MARKER, |out| {
             writeln!(out, "{MARKER_TITLE}")?;
-            lines.iter().try_for_each(|line| out.write_all(line.as_bytes()))
+            lines
+                .iter()
+                .try_for_each(|line| out.write_all(line.as_bytes()))
         })
     }
 }
 
 fn io_error(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FolderError {
     let path = path.to_owned();
-    move |source| FolderError::Io { action, path, source }
+    move |source| FolderError::Io {
+        action,
+        path,
+        source,
+    }
 }
 
 /// The files of a folder that dalembert wrote; none in an empty folder.
@@ -243,7 +269,10 @@ fn keep_foreign(from: &Path, to: &Path, ours: &BTreeSet<String>) -> io::Result<(
     for entry in fs::read_dir(from)? {
         let entry = entry?;
         let (source, copy) = (entry.path(), to.join(entry.file_name()));
-        let is_ours = entry.file_name().to_str().is_some_and(|name| ours.contains(name));
+        let is_ours = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| ours.contains(name));
         if is_ours {
             continue;
         }
@@ -320,8 +349,15 @@ mod tests {
         assert_eq!(names(&out), [MARKER, "a.csv", "notes", "own.txt"]);
         assert_eq!(fs::read_to_string(out.join("a.csv")).unwrap(), "2");
         assert_eq!(fs::read_to_string(out.join("own.txt")).unwrap(), "mine");
-        assert_eq!(fs::read_to_string(out.join("notes/deep/own.txt")).unwrap(), "mine");
-        assert_eq!(names(out.parent().unwrap()), ["out"], "nothing is left beside the folder");
+        assert_eq!(
+            fs::read_to_string(out.join("notes/deep/own.txt")).unwrap(),
+            "mine"
+        );
+        assert_eq!(
+            names(out.parent().unwrap()),
+            ["out"],
+            "nothing is left beside the folder"
+        );
     }
 
     #[test]
@@ -365,8 +401,14 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         folder(home.path(), &[("a.csv", "1")]).unwrap();
         let file = home.path().join("a.csv");
-        assert!(matches!(OutputFolder::new(&file), Err(FolderError::NotAFolder { .. })));
-        assert!(matches!(OutputFolder::new(Path::new(".")), Err(FolderError::HoldsCurrent { .. })));
+        assert!(matches!(
+            OutputFolder::new(&file),
+            Err(FolderError::NotAFolder { .. })
+        ));
+        assert!(matches!(
+            OutputFolder::new(Path::new(".")),
+            Err(FolderError::HoldsCurrent { .. })
+        ));
     }
 
     #[test]
@@ -378,7 +420,10 @@ mod tests {
             fs::write(path.join(path.file_name().unwrap()), "").unwrap();
         }
         exchange_in_steps(&a, &b).unwrap();
-        assert_eq!((names(&a), names(&b)), (vec!["b".to_owned()], vec!["a".to_owned()]));
+        assert_eq!(
+            (names(&a), names(&b)),
+            (vec!["b".to_owned()], vec!["a".to_owned()])
+        );
     }
 
     #[cfg(unix)]
@@ -393,6 +438,9 @@ mod tests {
         folder(&link, &[("a.csv", "2")]).unwrap();
         assert_eq!(fs::read_to_string(real.join("a.csv")).unwrap(), "2");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o750);
+        assert_eq!(
+            fs::metadata(&real).unwrap().permissions().mode() & 0o777,
+            0o750
+        );
     }
 }

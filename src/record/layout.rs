@@ -58,7 +58,11 @@ impl Quantity {
         unit: impl Into<String>,
         meaning: impl Into<String>,
     ) -> Self {
-        Quantity { name: name.into(), unit: unit.into(), meaning: meaning.into() }
+        Quantity {
+            name: name.into(),
+            unit: unit.into(),
+            meaning: meaning.into(),
+        }
     }
 }
 
@@ -149,7 +153,11 @@ fn ledger() -> Vec<Quantity> {
         Quantity::new("energy.stored", "J", "kinetic and potential energy"),
         Quantity::new("energy.input_work", "J", "work of the inputs so far"),
         Quantity::new("energy.dissipated", "J", "energy dissipated so far"),
-        Quantity::new("energy.lost_at_impacts", "J", "energy lost at impacts so far"),
+        Quantity::new(
+            "energy.lost_at_impacts",
+            "J",
+            "energy lost at impacts so far",
+        ),
     ]
 }
 
@@ -158,11 +166,16 @@ fn signals(model: &Model) -> Vec<Quantity> {
         let mut signals = vec![Quantity::new(input.name, input.unit, input.meaning)];
         if input.kind == InputKind::Acceleration {
             let length = input.unit.strip_suffix("/s^2").unwrap_or(input.unit);
-            for (what, unit) in
-                [("velocity", rate_unit(length)), ("displacement", length.to_owned())]
-            {
+            for (what, unit) in [
+                ("velocity", rate_unit(length)),
+                ("displacement", length.to_owned()),
+            ] {
                 let meaning = format!("{what} that belongs to {}", input.name);
-                signals.push(Quantity::new(format!("{}.{what}", input.name), unit, meaning));
+                signals.push(Quantity::new(
+                    format!("{}.{what}", input.name),
+                    unit,
+                    meaning,
+                ));
             }
         }
         signals

@@ -31,7 +31,9 @@ fn push_general(out: &mut String, x: f64, digits: usize) {
     }
     let start = out.len();
     write!(out, "{:.*e}", digits - 1, x.abs()).expect("writing to a string succeeds");
-    let (mantissa, exponent) = out[start..].split_once('e').expect("{:e} writes an exponent");
+    let (mantissa, exponent) = out[start..]
+        .split_once('e')
+        .expect("{:e} writes an exponent");
     let exponent: i32 = exponent.parse().expect("{:e} writes a whole exponent");
     // The figures without the point, on the stack: this runs for every number of a table.
     let mut figures = [0; EXACT];

@@ -21,14 +21,21 @@ pub fn peaks(run: &Run) -> Vec<(usize, Peak)> {
     let has_peak = |group| matches!(group, Group::Coordinate | Group::Velocity | Group::Reaction);
     let columns = run.trajectory.columns.iter().enumerate();
     let columns = columns.filter(|(_, column)| has_peak(column.group));
-    columns.filter_map(|(i, _)| Some((i, peak(run.curve(i))?))).collect()
+    columns
+        .filter_map(|(i, _)| Some((i, peak(run.curve(i))?)))
+        .collect()
 }
 
 /// The peak of a curve in order of time.
 fn peak(curve: impl Iterator<Item = (f64, f64)>) -> Option<Peak> {
     let mut peak: Option<Peak> = None;
     for (t, x) in curve.filter(|(_, x)| !x.is_nan()) {
-        let peak = peak.get_or_insert(Peak { max: x, t_max: t, min: x, t_min: t });
+        let peak = peak.get_or_insert(Peak {
+            max: x,
+            t_max: t,
+            min: x,
+            t_min: t,
+        });
         if x > peak.max {
             (peak.max, peak.t_max) = (x, t);
         }
@@ -47,13 +54,22 @@ impl Run {
     /// If there is no such column.
     pub fn curve(&self, column: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let of_state = self.trajectory.columns[column].group.is_of_the_state();
-        let sides = self.events.iter().filter(move |_| of_state).flat_map(move |event| {
-            let value = |values: &mut dyn Iterator<Item = f64>| {
-                values.nth(column).expect("a snapshot holds every column of the state")
-            };
-            let before = value(&mut event.before.values());
-            [(event.t, before), (event.t, value(&mut event.after.values()))]
-        });
+        let sides = self
+            .events
+            .iter()
+            .filter(move |_| of_state)
+            .flat_map(move |event| {
+                let value = |values: &mut dyn Iterator<Item = f64>| {
+                    values
+                        .nth(column)
+                        .expect("a snapshot holds every column of the state")
+                };
+                let before = value(&mut event.before.values());
+                [
+                    (event.t, before),
+                    (event.t, value(&mut event.after.values())),
+                ]
+            });
         let samples = self
             .trajectory
             .t

@@ -52,7 +52,8 @@ impl Progress for ProgressLine {
             return ControlFlow::Continue(());
         }
         self.bar.set_position((t / self.end * STEPS as f64) as u64);
-        self.bar.set_message(format!("t = {t:.4} of {} s, {events} events", self.end));
+        self.bar
+            .set_message(format!("t = {t:.4} of {} s, {events} events", self.end));
         ControlFlow::Continue(())
     }
 }

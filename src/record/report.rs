@@ -18,15 +18,20 @@ pub struct Report {
 impl Report {
     /// The report of a run.
     pub fn new(run: &Run) -> Report {
-        Report { summary: Summary::new(run) }
+        Report {
+            summary: Summary::new(run),
+        }
     }
 }
 
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let summary = &self.summary;
-        let choices =
-            summary.choices.0.iter().map(|(choice, option)| format!(", {choice}: {option}"));
+        let choices = summary
+            .choices
+            .0
+            .iter()
+            .map(|(choice, option)| format!(", {choice}: {option}"));
         writeln!(f, "{}{}", summary.model, choices.collect::<String>())?;
         let end = &summary.end;
         match &summary.failure {
@@ -72,8 +77,12 @@ fn number(x: f64) -> String {
 }
 
 fn discrete(summary: &Summary) -> String {
-    let states =
-        summary.end.discrete.0.iter().map(|(name, x)| format!(", {name} = {}", number(*x)));
+    let states = summary
+        .end
+        .discrete
+        .0
+        .iter()
+        .map(|(name, x)| format!(", {name} = {}", number(*x)));
     states.collect()
 }
 
@@ -99,11 +108,20 @@ fn states(summary: &Summary) -> Vec<[String; 7]> {
 
 /// Writes rows with aligned columns, the first two to the left.
 fn table<const N: usize>(f: &mut Formatter, rows: &[[String; N]]) -> fmt::Result {
-    let width = |i: usize| rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0);
+    let width = |i: usize| {
+        rows.iter()
+            .map(|row| row[i].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     for row in rows {
         let cell = |(i, text): (usize, &String)| {
             let width = width(i);
-            if i < 2 { format!("{text:<width$}") } else { format!("{text:>width$}") }
+            if i < 2 {
+                format!("{text:<width$}")
+            } else {
+                format!("{text:>width$}")
+            }
         };
         let line: Vec<String> = row.iter().enumerate().map(cell).collect();
         writeln!(f, "{}", line.join("  ").trim_end())?;

@@ -201,7 +201,12 @@ impl Group {
 impl Snapshot {
     /// The values in the order of a row of the trajectory, which starts with them.
     pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
-        let Snapshot { q, v, reactions, discrete } = self;
+        let Snapshot {
+            q,
+            v,
+            reactions,
+            discrete,
+        } = self;
         q.iter().chain(v).chain(reactions).chain(discrete).copied()
     }
 }

@@ -173,10 +173,15 @@ impl Summary {
             choices: Named(run.subject.choices.clone()),
             parameters: Named(run.subject.parameters.clone()),
             end: point(run, &run.end),
-            failure: (run.failure.as_ref())
-                .map(|f| Stopped { reason: f.reason.clone(), at: point(run, &f.at) }),
+            failure: (run.failure.as_ref()).map(|f| Stopped {
+                reason: f.reason.clone(),
+                at: point(run, &f.at),
+            }),
             peaks: Named(extremes.collect()),
-            events: Events { total: run.events.len(), by_transition },
+            events: Events {
+                total: run.events.len(),
+                by_transition,
+            },
             impacts: impacts(run),
             energy: Energy {
                 initial: run.energy.initial,
@@ -196,14 +201,22 @@ impl Summary {
     pub fn write(&self, out: impl Write) -> io::Result<()> {
         let mut out = out;
         let formatter = ExactFormatter(PrettyFormatter::new());
-        self.serialize(&mut serde_json::Serializer::with_formatter(&mut out, formatter))?;
+        self.serialize(&mut serde_json::Serializer::with_formatter(
+            &mut out, formatter,
+        ))?;
         writeln!(out)
     }
 }
 
 fn point(run: &Run, place: &Place) -> Point {
     let named = |quantities: &[Quantity], values: &[f64]| {
-        Named(quantities.iter().map(|q| q.name.clone()).zip(values.iter().copied()).collect())
+        Named(
+            quantities
+                .iter()
+                .map(|q| q.name.clone())
+                .zip(values.iter().copied())
+                .collect(),
+        )
     };
     Point {
         t: place.t,
@@ -232,7 +245,12 @@ fn impacts(run: &Run) -> Named<Impacts> {
         impacts.largest_loss = impacts.largest_loss.max(jump.lost);
         impacts.ground_work += jump.ground_work;
     }
-    Named(by_transition.into_iter().map(|(name, impacts)| (name.to_owned(), impacts)).collect())
+    Named(
+        by_transition
+            .into_iter()
+            .map(|(name, impacts)| (name.to_owned(), impacts))
+            .collect(),
+    )
 }
 
 /// Pretty JSON with exact numbers. (What is not finite is `null`: JSON has no other way.)

@@ -72,8 +72,16 @@ pub fn write_metadata(run: &Run, out: impl Write) -> io::Result<()> {
     let tables = Tables {
         context: "http://www.w3.org/ns/csvw",
         tables: [
-            Table { url: TRAJECTORY, schema: Schema { columns } },
-            Table { url: EVENTS, schema: Schema { columns: event_columns(run) } },
+            Table {
+                url: TRAJECTORY,
+                schema: Schema { columns },
+            },
+            Table {
+                url: EVENTS,
+                schema: Schema {
+                    columns: event_columns(run),
+                },
+            },
         ],
     };
     let mut out = out;
@@ -96,7 +104,11 @@ fn event_columns(run: &Run) -> Vec<Described> {
         Described::text("to", "mode entered"),
     ];
     for side in ["before", "after"] {
-        let state = run.layout.columns().into_iter().filter(|c| c.group.is_of_the_state());
+        let state = run
+            .layout
+            .columns()
+            .into_iter()
+            .filter(|c| c.group.is_of_the_state());
         columns.extend(state.map(|c| {
             let name = format!("{}.{side}", c.name);
             let meaning = format!("{}, {side} the transition", c.meaning);
@@ -104,8 +116,14 @@ fn event_columns(run: &Run) -> Vec<Described> {
         }));
     }
     for (name, meaning) in [
-        ("lost", "energy lost at the impact, in the frame of the ground"),
-        ("ground_work", "work of the ground's impulse under the ground's motion, inertial frame"),
+        (
+            "lost",
+            "energy lost at the impact, in the frame of the ground",
+        ),
+        (
+            "ground_work",
+            "work of the ground's impulse under the ground's motion, inertial frame",
+        ),
     ] {
         columns.push(Described::quantity(&Column {
             name: name.into(),
@@ -157,7 +175,12 @@ impl Described {
         }
     }
     fn text(name: &str, meaning: &str) -> Described {
-        Described { name: name.into(), meaning: meaning.into(), datatype: "string", unit: None }
+        Described {
+            name: name.into(),
+            meaning: meaning.into(),
+            datatype: "string",
+            unit: None,
+        }
     }
     fn quantity(column: &Column) -> Described {
         Described {
@@ -177,7 +200,10 @@ struct Rows<W: Write> {
 
 impl<W: Write> Rows<W> {
     fn new(out: W) -> Self {
-        Rows { csv: csv::Writer::from_writer(out), buffer: String::new() }
+        Rows {
+            csv: csv::Writer::from_writer(out),
+            buffer: String::new(),
+        }
     }
     fn text(&mut self, text: &str) -> io::Result<()> {
         Ok(self.csv.write_field(text)?)

@@ -94,19 +94,24 @@ pub(crate) fn check(node: &Node, shape: &Shape, errors: &mut Errors) -> Option<C
         (Shape::Count, Value::Number(text)) => {
             errors.note(number::count(node, text)).map(Datum::Number)
         }
-        (Shape::Values(values), Value::Number(text)) => {
-            errors.note(number::one_of(node, values, text)).map(Datum::Number)
-        }
-        (Shape::Quantity(quantity), Value::Number(_) | Value::Text(_)) => {
-            errors.note(number::quantity(node, quantity)).map(Datum::Number)
-        }
+        (Shape::Values(values), Value::Number(text)) => errors
+            .note(number::one_of(node, values, text))
+            .map(Datum::Number),
+        (Shape::Quantity(quantity), Value::Number(_) | Value::Text(_)) => errors
+            .note(number::quantity(node, quantity))
+            .map(Datum::Number),
         (Shape::List(shape), Value::List(items)) => {
-            let checked: Vec<_> = items.iter().map(|item| check(item, shape, errors)).collect();
+            let checked: Vec<_> = items
+                .iter()
+                .map(|item| check(item, shape, errors))
+                .collect();
             checked.into_iter().collect::<Option<_>>().map(Datum::List)
         }
         (Shape::Tuple(_, shapes), Value::List(items)) if items.len() == shapes.len() => {
             let pairs = items.iter().zip(shapes);
-            let checked: Vec<_> = pairs.map(|(item, shape)| check(item, shape, errors)).collect();
+            let checked: Vec<_> = pairs
+                .map(|(item, shape)| check(item, shape, errors))
+                .collect();
             checked.into_iter().collect::<Option<_>>().map(Datum::List)
         }
         (Shape::Object(shape), Value::Object(entries)) => object(node, shape, entries, errors),
@@ -116,7 +121,10 @@ pub(crate) fn check(node: &Node, shape: &Shape, errors: &mut Errors) -> Option<C
         }
         _ => wrong_type(node, shape, errors),
     };
-    datum.map(|datum| Checked { place: node.place(), datum })
+    datum.map(|datum| Checked {
+        place: node.place(),
+        datum,
+    })
 }
 
 /// Whether a shape is the one that a value of this JSON type is meant for.
@@ -140,7 +148,10 @@ fn wrong_type(node: &Node, shape: &Shape, errors: &mut Errors) -> Option<Datum> 
         }
         _ => node.type_name().to_owned(),
     };
-    let kind = SceneErrorKind::WrongType { expected: shape.describe(), found };
+    let kind = SceneErrorKind::WrongType {
+        expected: shape.describe(),
+        found,
+    };
     let error = SceneError::new(kind, &node.place());
     errors.push(match shape {
         Shape::Choice(_, names) => error.help(one_of_these(names.iter().copied())),
@@ -162,7 +173,10 @@ pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str], at: &Span) ->
         known: known.iter().map(|k| (*k).to_owned()).collect(),
     };
     let help = match nearest(name, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`? {}", one_of_these(known.iter().copied())),
+        Some(near) => format!(
+            "did you mean `{near}`? {}",
+            one_of_these(known.iter().copied())
+        ),
         None => one_of_these(known.iter().copied()),
     };
     SceneError::new(kind, at).help(help)
@@ -192,7 +206,10 @@ fn alternative<'a>(
     entries: &[Entry],
 ) -> Result<&'a Object, SceneError> {
     let mut found = entries.iter().filter_map(|entry| {
-        shapes.iter().find(|shape| tag(shape) == entry.key).map(|shape| (entry, shape))
+        shapes
+            .iter()
+            .find(|shape| tag(shape) == entry.key)
+            .map(|shape| (entry, shape))
     });
     let tags: Vec<&str> = shapes.iter().map(tag).collect();
     match (found.next(), found.next()) {
@@ -242,15 +259,27 @@ fn missing_and_conflicting(node: &Node, shape: &Object, entries: &[Entry]) -> Ve
     let missing = |keys: Vec<String>, help: String| {
         SceneError::new(SceneErrorKind::MissingKey { keys }, &node.place()).help(help)
     };
-    for key in shape.keys.iter().filter(|key| key.required && position(&key.name).is_none()) {
-        let help = format!("add `{}`: {} ({})", key.name, key.meaning, key.shape.describe());
+    for key in shape
+        .keys
+        .iter()
+        .filter(|key| key.required && position(&key.name).is_none())
+    {
+        let help = format!(
+            "add `{}`: {} ({})",
+            key.name,
+            key.meaning,
+            key.shape.describe()
+        );
         errors.push(missing(vec![key.name.clone()], help));
     }
     for (names, one_needed) in &shape.alternatives {
         match names.map(position) {
             [None, None] if *one_needed => {
                 let keys = names.iter().map(|n| (*n).to_owned()).collect();
-                errors.push(missing(keys, format!("add {}", listing(names.iter().copied()))));
+                errors.push(missing(
+                    keys,
+                    format!("add {}", listing(names.iter().copied())),
+                ));
             }
             [Some(one), Some(other)] => {
                 let (first, second) = (&entries[one.min(other)], &entries[one.max(other)]);

@@ -157,13 +157,24 @@ pub enum SceneErrorKind {
 
 impl SceneError {
     pub(crate) fn new(kind: SceneErrorKind, at: &Span) -> Self {
-        SceneError(Box::new(Detail { kind, span: Some(at.clone()), help: None }))
+        SceneError(Box::new(Detail {
+            kind,
+            span: Some(at.clone()),
+            help: None,
+        }))
     }
 
     /// A file could not be read and no other file names it.
     pub(crate) fn unreadable(path: PathBuf, reason: &std::io::Error) -> Self {
-        let kind = SceneErrorKind::Unreadable { path, reason: reason.to_string() };
-        SceneError(Box::new(Detail { kind, span: None, help: None }))
+        let kind = SceneErrorKind::Unreadable {
+            path,
+            reason: reason.to_string(),
+        };
+        SceneError(Box::new(Detail {
+            kind,
+            span: None,
+            help: None,
+        }))
     }
 
     /// Adds what would be right.
@@ -201,7 +212,11 @@ impl SceneError {
         if let Some(help) = help {
             group = group.element(Level::HELP.message(help));
         }
-        let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
+        let renderer = if styled {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
         renderer.render(&[group])
     }
 }
@@ -237,7 +252,11 @@ impl SceneErrors {
 
     /// All errors as the terminal shows them, in colours if `styled`.
     pub fn render(&self, styled: bool) -> String {
-        self.0.iter().map(|e| e.render(styled)).collect::<Vec<_>>().join("\n\n")
+        self.0
+            .iter()
+            .map(|e| e.render(styled))
+            .collect::<Vec<_>>()
+            .join("\n\n")
     }
 }
 
@@ -279,6 +298,10 @@ impl Errors {
 
     /// `Ok` if there is none so far.
     pub fn check(&mut self) -> Result<(), SceneErrors> {
-        if self.0.is_empty() { Ok(()) } else { Err(SceneErrors(std::mem::take(&mut self.0))) }
+        if self.0.is_empty() {
+            Ok(())
+        } else {
+            Err(SceneErrors(std::mem::take(&mut self.0)))
+        }
     }
 }

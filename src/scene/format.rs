@@ -16,17 +16,29 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
         None => Shape::Text,
     };
     let mut keys = vec![
-        Key::new("$schema", "JSON Schema of this file, for editors", Shape::Text),
+        Key::new(
+            "$schema",
+            "JSON Schema of this file, for editors",
+            Shape::Text,
+        ),
         Key::new("model", "name of the model", name).required(),
         Key::new("title", "what the scene shows", Shape::Text),
-        Key::new("parameters", "parameters that differ from their defaults", parameters(model)),
+        Key::new(
+            "parameters",
+            "parameters that differ from their defaults",
+            parameters(model),
+        ),
     ];
     for choice in model.map_or(&[][..], |m| m.choices) {
         let options = Shape::Choice("choice", choice.options.to_vec());
         keys.push(Key::new(choice.name, choice.meaning, options));
     }
     keys.extend([
-        Key::new("inputs", "prescribed functions of time; zero if absent", inputs(model)),
+        Key::new(
+            "inputs",
+            "prescribed functions of time; zero if absent",
+            inputs(model),
+        ),
         Key::new("initial", "state at t = 0", initial(model)),
         Key::new("freeze", "coordinates held still throughout", freeze(model)),
         Key::new("end", "when the run ends", end(model)).required(),
@@ -34,7 +46,11 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
         Key::new("record", "what is written", record()),
     ]);
     let object = Object::new("key", keys);
-    if model.is_some() { object } else { object.others(Shape::Text) }
+    if model.is_some() {
+        object
+    } else {
+        object.others(Shape::Text)
+    }
 }
 
 fn parameters(model: Option<&Model>) -> Object {
@@ -46,7 +62,11 @@ fn parameters(model: Option<&Model>) -> Object {
     let mut keys = Vec::new();
     if !model.parameter_sets.is_empty() {
         let sets = model.parameter_sets.iter().map(|set| set.name).collect();
-        keys.push(Key::new("set", meaning, Shape::Choice("parameter set", sets)));
+        keys.push(Key::new(
+            "set",
+            meaning,
+            Shape::Choice("parameter set", sets),
+        ));
     }
     keys.extend(model.parameters.iter().map(|p| {
         let quantity = Quantity {
@@ -92,12 +112,28 @@ fn functions(unit: &str) -> Vec<Object> {
         vec![
             amplitude,
             Key::new("frequency", "cycles per second", Quantity::positive("Hz")),
-            Key::new("angular_frequency", "2π times the frequency", Quantity::positive("rad/s")),
+            Key::new(
+                "angular_frequency",
+                "2π times the frequency",
+                Quantity::positive("rad/s"),
+            ),
             Key::new("phase", "angle at the start", Quantity::any("rad")).default(0.0),
-            Key::new("start", "time before which it is zero", Quantity::at_least(0.0, "s"))
-                .default(0.0),
-            Key::new("end", "time from which on it is zero", Quantity::positive("s")),
-            Key::new("cycles", "cycles after which it is zero", Quantity::positive("1")),
+            Key::new(
+                "start",
+                "time before which it is zero",
+                Quantity::at_least(0.0, "s"),
+            )
+            .default(0.0),
+            Key::new(
+                "end",
+                "time from which on it is zero",
+                Quantity::positive("s"),
+            ),
+            Key::new(
+                "cycles",
+                "cycles after which it is zero",
+                Quantity::positive("1"),
+            ),
         ],
     )
     .exactly_one(["frequency", "angular_frequency"])
@@ -114,8 +150,10 @@ fn functions(unit: &str) -> Vec<Object> {
     ];
     table.extend(between_rows());
 
-    let row =
-        Shape::Tuple("[time, value]", vec![Quantity::any("s").into(), Quantity::any(unit).into()]);
+    let row = Shape::Tuple(
+        "[time, value]",
+        vec![Quantity::any("s").into(), Quantity::any(unit).into()],
+    );
     let mut knots =
         vec![Key::new("knots", "rows [time, value]", Shape::List(Box::new(row))).required()];
     knots.extend(between_rows());
@@ -125,15 +163,23 @@ fn functions(unit: &str) -> Vec<Object> {
         Object::new(
             "key beside a sine",
             vec![
-                Key::new("sine", "amplitude sin(2π frequency (t − start) + phase)", sine)
-                    .required(),
+                Key::new(
+                    "sine",
+                    "amplitude sin(2π frequency (t − start) + phase)",
+                    sine,
+                )
+                .required(),
             ],
         ),
         Object::new(
             "key beside a table",
             vec![
-                Key::new("table", "rows from a file", Object::new("key of a table", table))
-                    .required(),
+                Key::new(
+                    "table",
+                    "rows from a file",
+                    Object::new("key of a table", table),
+                )
+                .required(),
             ],
         ),
         Object::new("key beside knots", knots),
@@ -154,8 +200,12 @@ fn between_rows() -> [Key; 2] {
             interpolation,
         )
         .default("linear"),
-        Key::new("outside", "zero, or the first and the last value, outside the rows", outside)
-            .default("zero"),
+        Key::new(
+            "outside",
+            "zero, or the first and the last value, outside the rows",
+            outside,
+        )
+        .default("zero"),
     ]
 }
 
@@ -175,8 +225,11 @@ fn initial(model: Option<&Model>) -> Object {
         let keys = vec![Key::new("mode", meaning, Shape::Text)];
         return Object::new("coordinate", keys).others(Quantity::any(""));
     };
-    let mut keys =
-        vec![Key::new("mode", meaning, Shape::Choice("mode", mode_names(model.variants)))];
+    let mut keys = vec![Key::new(
+        "mode",
+        meaning,
+        Shape::Choice("mode", mode_names(model.variants)),
+    )];
     for c in model.coordinates {
         let position = Quantity::at_least(c.minimum.unwrap_or(f64::NEG_INFINITY), c.unit);
         keys.push(Key::new(c.name, c.meaning, position));
@@ -193,9 +246,10 @@ fn initial(model: Option<&Model>) -> Object {
 
 fn freeze(model: Option<&Model>) -> Shape {
     let name = match model {
-        Some(model) => {
-            Shape::Choice("coordinate", model.coordinates.iter().map(|c| c.name).collect())
-        }
+        Some(model) => Shape::Choice(
+            "coordinate",
+            model.coordinates.iter().map(|c| c.name).collect(),
+        ),
         None => Shape::Text,
     };
     Shape::List(Box::new(name))
@@ -208,7 +262,10 @@ fn end(model: Option<&Model>) -> Shape {
             let key = |name| Key::new(name, "how many of these transitions", Shape::Count);
             Object::new(
                 "transition",
-                transition_names(model.variants).into_iter().map(key).collect(),
+                transition_names(model.variants)
+                    .into_iter()
+                    .map(key)
+                    .collect(),
             )
         }
         None => Object::new("transition", Vec::new()).others(Shape::Count),
@@ -217,7 +274,11 @@ fn end(model: Option<&Model>) -> Shape {
         "key of the end",
         vec![
             Key::new("time", "latest end", time.clone()).required(),
-            Key::new("after", "the transition that ends the run and its number", transitions),
+            Key::new(
+                "after",
+                "the transition that ends the run and its number",
+                transitions,
+            ),
         ],
     );
     Shape::Either(vec![time.into(), object.into()])
@@ -252,7 +313,11 @@ fn accuracy(model: Option<&Model>) -> Object {
         vec![
             Key::new("relative", "relative tolerance of a step", relative)
                 .default(DEFAULT_RELATIVE),
-            Key::new("absolute", meaning, Shape::Either(vec![all.into(), each.into()])),
+            Key::new(
+                "absolute",
+                meaning,
+                Shape::Either(vec![all.into(), each.into()]),
+            ),
         ],
     )
 }

@@ -35,7 +35,10 @@ pub(crate) fn signals(
             None => Some(Function::zero()),
         })
         .collect();
-    Some(Signals::new(model.inputs, functions.into_iter().collect::<Option<_>>()?))
+    Some(Signals::new(
+        model.inputs,
+        functions.into_iter().collect::<Option<_>>()?,
+    ))
 }
 
 fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Function> {
@@ -43,8 +46,15 @@ fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Fun
         return Some(Function::zero());
     }
     if let Some(terms) = input.get("sum") {
-        let terms: Vec<_> = terms.list().iter().map(|t| function(t, reader, errors)).collect();
-        return terms.into_iter().collect::<Option<Vec<_>>>().map(Function::sum);
+        let terms: Vec<_> = terms
+            .list()
+            .iter()
+            .map(|t| function(t, reader, errors))
+            .collect();
+        return terms
+            .into_iter()
+            .collect::<Option<Vec<_>>>()
+            .map(Function::sum);
     }
     if let Some(constant) = input.get("constant") {
         return Some(Function::constant(constant.number()));
@@ -53,10 +63,16 @@ fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Fun
         return errors.note(sine(described)).map(Function::from);
     }
     if let Some(described) = input.get("table") {
-        return errors.note(table_from_file(described, reader)).map(Function::from);
+        return errors
+            .note(table_from_file(described, reader))
+            .map(Function::from);
     }
-    let Some(rows) = input.get("knots") else { unreachable!("checked to be an input: {input:?}") };
-    errors.note(table_from_knots(rows, input)).map(Function::from)
+    let Some(rows) = input.get("knots") else {
+        unreachable!("checked to be an input: {input:?}")
+    };
+    errors
+        .note(table_from_knots(rows, input))
+        .map(Function::from)
 }
 
 fn sine(sine: &Checked) -> Result<Sine, SceneError> {
@@ -68,11 +84,18 @@ fn sine(sine: &Checked) -> Result<Sine, SceneError> {
     let Some(given) = frequency.or(sine.get("angular_frequency")) else {
         unreachable!("checked to have a frequency: {sine:?}")
     };
-    let omega = if frequency.is_some() { TAU * given.number() } else { given.number() };
+    let omega = if frequency.is_some() {
+        TAU * given.number()
+    } else {
+        given.number()
+    };
     // The rate and the displacement of the ground have these amplitudes.
     if !(amplitude * omega).is_finite() || !(amplitude / (omega * omega)).is_finite() {
         let range = "such that its derivative and its antiderivatives are finite".to_owned();
-        let kind = SceneErrorKind::OutOfRange { value: given.number(), range };
+        let kind = SceneErrorKind::OutOfRange {
+            value: given.number(),
+            range,
+        };
         return Err(SceneError::new(kind, &given.place));
     }
     let end = match (sine.get("end"), sine.get("cycles")) {
@@ -100,7 +123,10 @@ fn table_from_file(described: &Checked, reader: &Reader) -> Result<Table, SceneE
     };
     let path = reader.folder.join(file.text());
     let bytes = reader.files.read(&path).map_err(|error| {
-        let kind = SceneErrorKind::Unreadable { path: path.clone(), reason: error.to_string() };
+        let kind = SceneErrorKind::Unreadable {
+            path: path.clone(),
+            reason: error.to_string(),
+        };
         SceneError::new(kind, &file.place).help("the path is relative to the folder of the scene")
     })?;
     let rows = table::read(&super::decode(&bytes, &path)?)?;
@@ -112,8 +138,12 @@ fn table_from_file(described: &Checked, reader: &Reader) -> Result<Table, SceneE
 }
 
 fn table_from_knots(rows: &Checked, input: &Checked) -> Result<Table, SceneError> {
-    let column =
-        |i: usize| rows.list().iter().map(|row| row.list()[i].number()).collect::<Vec<_>>();
+    let column = |i: usize| {
+        rows.list()
+            .iter()
+            .map(|row| row.list()[i].number())
+            .collect::<Vec<_>>()
+    };
     let (interpolation, outside) = between_rows(input);
     let place = |row: usize, column: usize| match rows.list().get(row) {
         Some(row) => row.list()[column].place.clone(),
@@ -130,7 +160,11 @@ fn between_rows(described: &Checked) -> (Interpolation, Outside) {
         Some("previous") => Interpolation::Previous,
         _ => Interpolation::Linear,
     };
-    let outside = if name("outside") == Some("hold") { Outside::Hold } else { Outside::Zero };
+    let outside = if name("outside") == Some("hold") {
+        Outside::Hold
+    } else {
+        Outside::Zero
+    };
     (interpolation, outside)
 }
 
@@ -147,9 +181,10 @@ fn table_error(error: TableError, place: impl Fn(usize, usize) -> Span) -> Scene
         }
         // Rows are finite when they are read, but a scaled value may not be.
         TableError::NotFinite { row } => (place(row, VALUE), "use a smaller `scale`"),
-        TableError::TooSteep { row } => {
-            (place(row, TIME), "the times here are too close to each other")
-        }
+        TableError::TooSteep { row } => (
+            place(row, TIME),
+            "the times here are too close to each other",
+        ),
         TableError::LastValueUnused { row, .. } => (
             place(row, VALUE),
             "end the table with a value of 0, or keep the last value with \"outside\": \"hold\"",

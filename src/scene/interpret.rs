@@ -20,14 +20,25 @@ pub(crate) fn scene(
 ) -> Result<Scene, SceneErrors> {
     let mut errors = Errors::default();
     let model = model(&root, models)?;
-    let checked = check(&root, &Shape::Object(format::scene(Some(model))), &mut errors);
+    let checked = check(
+        &root,
+        &Shape::Object(format::scene(Some(model))),
+        &mut errors,
+    );
     errors.check()?;
     // Without an error there is a value.
-    let Some(checked) = checked else { unreachable!("{root:?} failed its check without an error") };
+    let Some(checked) = checked else {
+        unreachable!("{root:?} failed its check without an error")
+    };
 
     let variant = variant(model, &checked)?;
     let parameters = errors.note(parameters(model, &checked));
-    let signals = inputs::signals(model, &checked, &inputs::Reader { files, folder }, &mut errors);
+    let signals = inputs::signals(
+        model,
+        &checked,
+        &inputs::Reader { files, folder },
+        &mut errors,
+    );
     let freeze = state::freeze(model, variant, &checked, &mut errors);
     let initial = state::initial(model, variant, &checked, &freeze, &mut errors);
     let end = errors.note(end(variant, &checked));
@@ -62,7 +73,9 @@ fn model(root: &Node, models: &[&'static Model]) -> Result<&'static Model, Scene
         return Err(wrong_type(root, "an object").help("a scene begins with { \"model\": …"));
     }
     let Some(node) = root.get("model") else {
-        let kind = SceneErrorKind::MissingKey { keys: vec!["model".into()] };
+        let kind = SceneErrorKind::MissingKey {
+            keys: vec!["model".into()],
+        };
         let help = format!("known models: {}", listing(known));
         return Err(SceneError::new(kind, &root.place()).help(help));
     };
@@ -88,7 +101,10 @@ fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, S
     model.variants.iter().find(fits).ok_or_else(|| {
         let pairs = |options: &[&str]| {
             let pairs = model.choices.iter().zip(options);
-            pairs.map(|(c, option)| format!("{} = {option}", c.name)).collect::<Vec<_>>().join(", ")
+            pairs
+                .map(|(c, option)| format!("{} = {option}", c.name))
+                .collect::<Vec<_>>()
+                .join(", ")
         };
         let chosen: Vec<String> = model
             .choices
@@ -96,9 +112,15 @@ fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, S
             .zip(&named)
             .filter_map(|(c, name)| name.map(|name| format!("{} = {}", c.name, name.text())))
             .collect();
-        let place = named.iter().flatten().last().map_or(&scene.place, |name| &name.place);
+        let place = named
+            .iter()
+            .flatten()
+            .last()
+            .map_or(&scene.place, |name| &name.place);
         let offered: Vec<String> = model.variants.iter().map(|v| pairs(v.options)).collect();
-        let kind = SceneErrorKind::NoVariant { chosen: chosen.join(", ") };
+        let kind = SceneErrorKind::NoVariant {
+            chosen: chosen.join(", "),
+        };
         SceneError::new(kind, place).help(format!("it offers {}", offered.join("; ")))
     })
 }
@@ -106,8 +128,14 @@ fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, S
 /// The variant as text, for errors: ` under rules = paper, landing = velocities`.
 pub(crate) fn under(model: &Model, variant: &Variant) -> String {
     let pairs = model.choices.iter().zip(variant.options);
-    let pairs: Vec<String> = pairs.map(|(c, option)| format!("{} = {option}", c.name)).collect();
-    if pairs.is_empty() { String::new() } else { format!(" under {}", pairs.join(", ")) }
+    let pairs: Vec<String> = pairs
+        .map(|(c, option)| format!("{} = {option}", c.name))
+        .collect();
+    if pairs.is_empty() {
+        String::new()
+    } else {
+        format!(" under {}", pairs.join(", "))
+    }
 }
 
 /// Defaults, then the parameter set, then what the scene says.
@@ -115,8 +143,12 @@ fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
     let mut values: Vec<f64> = model.parameters.iter().map(|p| p.default).collect();
     let object = scene.get("parameters");
     let entry = |name: &str| object.and_then(|o| o.get(name));
-    let set = entry("set")
-        .and_then(|name| model.parameter_sets.iter().find(|set| set.name == name.text()));
+    let set = entry("set").and_then(|name| {
+        model
+            .parameter_sets
+            .iter()
+            .find(|set| set.name == name.text())
+    });
     for (name, value) in set.map_or(&[][..], |set| set.values) {
         if let Some(i) = model.parameter(name) {
             values[i] = *value;
@@ -136,9 +168,16 @@ fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
         };
         if values[i] > values[j] {
             let place = [parameter.name, limit, "set"].into_iter().find_map(entry);
-            let place = place.or(object).map_or(&scene.place, |checked| &checked.place);
+            let place = place
+                .or(object)
+                .map_or(&scene.place, |checked| &checked.place);
             let (name, value, limit_value) = (parameter.name, values[i], values[j]);
-            let kind = SceneErrorKind::Exceeds { name, value, limit, limit_value };
+            let kind = SceneErrorKind::Exceeds {
+                name,
+                value,
+                limit,
+                limit_value,
+            };
             let help = format!("lower `{name}` or raise `{limit}`");
             return Err(SceneError::new(kind, place).help(help));
         }
@@ -147,9 +186,14 @@ fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
 }
 
 fn end(variant: &'static Variant, scene: &Checked) -> Result<End, SceneError> {
-    let Some(end) = scene.get("end") else { unreachable!("`end` is a required key") };
+    let Some(end) = scene.get("end") else {
+        unreachable!("`end` is a required key")
+    };
     let Some(time) = end.get("time") else {
-        return Ok(End { time: end.number(), after: None });
+        return Ok(End {
+            time: end.number(),
+            after: None,
+        });
     };
     let time = time.number();
     let Some(after) = end.get("after") else {
@@ -159,26 +203,35 @@ fn end(variant: &'static Variant, scene: &Checked) -> Result<End, SceneError> {
         [(name, count)] => (name, count),
         [] => {
             let keys = vec!["the name of a transition".into()];
-            return Err(SceneError::new(SceneErrorKind::MissingKey { keys }, &after.place));
+            return Err(SceneError::new(
+                SceneErrorKind::MissingKey { keys },
+                &after.place,
+            ));
         }
         [(first, _), (second, at), ..] => {
             let (first, second) = (first.clone(), second.clone());
-            return Err(SceneError::new(SceneErrorKind::Conflict { first, second }, &at.place)
-                .help("a run ends after one kind of transition"));
+            return Err(
+                SceneError::new(SceneErrorKind::Conflict { first, second }, &at.place)
+                    .help("a run ends after one kind of transition"),
+            );
         }
     };
     let known = format::transition_names(std::slice::from_ref(variant));
     match known.iter().find(|k| *k == name) {
         // Checked to be a whole number that a double holds exactly.
-        Some(name) => Ok(End { time, after: Some((name, count.number() as u64)) }),
+        Some(name) => Ok(End {
+            time,
+            after: Some((name, count.number() as u64)),
+        }),
         None => Err(unknown_name("transition", name, &known, &count.place)),
     }
 }
 
 fn accuracy(model: &Model, scene: &Checked) -> Accuracy {
     let accuracy = scene.get("accuracy");
-    let relative =
-        accuracy.and_then(|a| a.get("relative")).map_or(format::DEFAULT_RELATIVE, Checked::number);
+    let relative = accuracy
+        .and_then(|a| a.get("relative"))
+        .map_or(format::DEFAULT_RELATIVE, Checked::number);
     let absolute = accuracy.and_then(|a| a.get("absolute"));
     let tolerance = |key: &str, scale: f64| match absolute {
         Some(map) if map.is_object() => map.get(key).map_or(relative * scale, Checked::number),
@@ -188,7 +241,10 @@ fn accuracy(model: &Model, scene: &Checked) -> Accuracy {
     let coordinates = model.coordinates;
     Accuracy {
         relative,
-        q_absolute: coordinates.iter().map(|c| tolerance(c.name, c.scale)).collect(),
+        q_absolute: coordinates
+            .iter()
+            .map(|c| tolerance(c.name, c.scale))
+            .collect(),
         v_absolute: coordinates
             .iter()
             .map(|c| tolerance(&format::rate_key(c), c.rate_scale))

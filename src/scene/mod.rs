@@ -115,7 +115,9 @@ impl Scene {
         overrides: &[String],
         models: &[&'static Model],
     ) -> Result<Scene, SceneErrors> {
-        let bytes = Disk.read(path).map_err(|e| SceneError::unreadable(path.to_owned(), &e))?;
+        let bytes = Disk
+            .read(path)
+            .map_err(|e| SceneError::unreadable(path.to_owned(), &e))?;
         Scene::parse(&bytes, path, overrides, models, &Disk)
     }
 
@@ -148,7 +150,9 @@ fn decode(bytes: &[u8], path: &Path) -> Result<Arc<Source>, SceneError> {
         Err(error) => {
             // Up to there both texts are the same; then the lossy one has a replacement character.
             let place = Span::new(&source, error.valid_up_to()..source.text.len()).start();
-            let kind = SceneErrorKind::Syntax { message: "the text is not UTF-8".into() };
+            let kind = SceneErrorKind::Syntax {
+                message: "the text is not UTF-8".into(),
+            };
             Err(SceneError::new(kind, &place).help("save the file as UTF-8"))
         }
     }
@@ -170,7 +174,10 @@ impl SceneSource {
         message: impl Into<String>,
         help: Option<&str>,
     ) -> SceneError {
-        let path = Arc::new(Source { name: String::new(), text: path.to_owned() });
+        let path = Arc::new(Source {
+            name: String::new(),
+            text: path.to_owned(),
+        });
         let mut node = &self.root;
         let mut place = node.place();
         for segment in set::segments(&Span::new(&path, 0..path.text.len())) {
@@ -186,7 +193,12 @@ impl SceneSource {
                 _ => node.place(),
             };
         }
-        let error = SceneError::new(SceneErrorKind::State { message: message.into() }, &place);
+        let error = SceneError::new(
+            SceneErrorKind::State {
+                message: message.into(),
+            },
+            &place,
+        );
         match help {
             Some(help) => error.help(help),
             None => error,
@@ -214,7 +226,10 @@ impl Scene {
                 mode: self.initial.mode,
             },
             freeze: self.freeze.clone(),
-            end: h::End { time: self.end.time, after: self.end.after },
+            end: h::End {
+                time: self.end.time,
+                after: self.end.after,
+            },
             accuracy: h::Accuracy {
                 relative: self.accuracy.relative,
                 q_absolute: self.accuracy.q_absolute.clone(),

@@ -7,12 +7,20 @@ use super::unit::{self, QuantityError};
 
 /// The double that a JSON number stands for.
 fn parse_finite(node: &Node, text: &str) -> Result<f64, SceneError> {
-    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| not_finite(node, text))
+    text.parse()
+        .ok()
+        .filter(|x: &f64| x.is_finite())
+        .ok_or_else(|| not_finite(node, text))
 }
 
 fn not_finite(node: &Node, text: &str) -> SceneError {
-    SceneError::new(SceneErrorKind::NotFinite { text: text.to_owned() }, &node.place())
-        .help(format!("the largest number is {:e}", f64::MAX))
+    SceneError::new(
+        SceneErrorKind::NotFinite {
+            text: text.to_owned(),
+        },
+        &node.place(),
+    )
+    .help(format!("the largest number is {:e}", f64::MAX))
 }
 
 /// A whole number from 1 on.
@@ -23,7 +31,10 @@ pub(crate) fn count(node: &Node, text: &str) -> Result<f64, SceneError> {
         return Ok(value);
     }
     let range = "a whole number from 1 on".to_owned();
-    Err(SceneError::new(SceneErrorKind::OutOfRange { value, range }, &node.place()))
+    Err(SceneError::new(
+        SceneErrorKind::OutOfRange { value, range },
+        &node.place(),
+    ))
 }
 
 /// One of some numbers.
@@ -33,7 +44,10 @@ pub(crate) fn one_of(node: &Node, values: &'static [f64], text: &str) -> Result<
         return Ok(value);
     }
     let range = Shape::Values(values).describe();
-    Err(SceneError::new(SceneErrorKind::OutOfRange { value, range }, &node.place()))
+    Err(SceneError::new(
+        SceneErrorKind::OutOfRange { value, range },
+        &node.place(),
+    ))
 }
 
 /// A number in its unit and its range.
@@ -46,7 +60,10 @@ pub(crate) fn quantity(node: &Node, quantity: &Quantity) -> Result<f64, SceneErr
     if quantity.admits(value) {
         return Ok(value);
     }
-    let kind = SceneErrorKind::OutOfRange { value, range: quantity.range() };
+    let kind = SceneErrorKind::OutOfRange {
+        value,
+        range: quantity.range(),
+    };
     Err(SceneError::new(kind, &node.place()))
 }
 
@@ -55,8 +72,15 @@ fn from_text(node: &Node, text: &str, quantity: &Quantity) -> Result<f64, SceneE
     unit::convert(text, unit).map_err(|error| match error {
         QuantityError::NotFinite => not_finite(node, text),
         QuantityError::Unreadable(reason) => {
-            let kind = SceneErrorKind::NotAQuantity { text: text.to_owned(), reason };
-            let example = if unit == "1" { "0.5".into() } else { format!("0.5 or \"0.5 {unit}\"") };
+            let kind = SceneErrorKind::NotAQuantity {
+                text: text.to_owned(),
+                reason,
+            };
+            let example = if unit == "1" {
+                "0.5".into()
+            } else {
+                format!("0.5 or \"0.5 {unit}\"")
+            };
             let help = match text.contains(',') {
                 true => "the decimal sign is a point".to_owned(),
                 false => format!("write it as {example}"),
@@ -71,7 +95,10 @@ fn from_text(node: &Node, text: &str, quantity: &Quantity) -> Result<f64, SceneE
                 }
                 _ => format!("a plain number is in {unit}"),
             };
-            let kind = SceneErrorKind::WrongUnit { given, expected: unit.clone() };
+            let kind = SceneErrorKind::WrongUnit {
+                given,
+                expected: unit.clone(),
+            };
             SceneError::new(kind, &node.place()).help(help)
         }
     })

@@ -12,7 +12,10 @@ use crate::model::Model;
 /// when a scene is read: dimensions of units, one parameter limiting another, the order of times.
 pub fn schema(model: Option<&Model>) -> Value {
     let mut schema = object(&format::scene(model));
-    schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
+    schema.insert(
+        "$schema".into(),
+        json!("https://json-schema.org/draft/2020-12/schema"),
+    );
     let title = match model {
         Some(model) => format!("dalembert scene of the model {}", model.name),
         None => "dalembert scene".into(),
@@ -48,7 +51,11 @@ fn shape(shape: &Shape) -> Value {
 fn quantity(q: &Quantity) -> Value {
     let mut number = Map::from_iter([("type".to_owned(), json!("number"))]);
     if q.minimum.is_finite() {
-        let key = if q.minimum_exclusive { "exclusiveMinimum" } else { "minimum" };
+        let key = if q.minimum_exclusive {
+            "exclusiveMinimum"
+        } else {
+            "minimum"
+        };
         number.insert(key.into(), json!(q.minimum));
     }
     if q.maximum.is_finite() {
@@ -67,16 +74,26 @@ fn object(object: &Object) -> Map<String, Value> {
                 Shape::Quantity(q) if !q.unit.is_empty() => format!(" [{}]", q.unit),
                 _ => String::new(),
             };
-            map.insert("description".into(), json!(format!("{}{unit}", key.meaning)));
+            map.insert(
+                "description".into(),
+                json!(format!("{}{unit}", key.meaning)),
+            );
             if let Some(default) = &key.default {
                 map.insert("default".into(), default.clone());
             }
         }
         properties.insert(key.name.clone(), value);
     }
-    let required: Vec<&str> =
-        object.keys.iter().filter(|k| k.required).map(|k| k.name.as_str()).collect();
-    let others = object.others.as_ref().map_or(Value::Bool(false), |o| shape(o));
+    let required: Vec<&str> = object
+        .keys
+        .iter()
+        .filter(|k| k.required)
+        .map(|k| k.name.as_str())
+        .collect();
+    let others = object
+        .others
+        .as_ref()
+        .map_or(Value::Bool(false), |o| shape(o));
     let mut schema = Map::from_iter([
         ("type".to_owned(), json!("object")),
         ("properties".to_owned(), Value::Object(properties)),
@@ -89,7 +106,11 @@ fn object(object: &Object) -> Map<String, Value> {
         .map(|(keys, one_needed)| {
             let one = keys.map(|key| json!({ "required": [key] }));
             let both = json!({ "not": { "required": keys } });
-            if *one_needed { json!({ "oneOf": one }) } else { both }
+            if *one_needed {
+                json!({ "oneOf": one })
+            } else {
+                both
+            }
         })
         .collect();
     if !alternatives.is_empty() {

@@ -9,7 +9,10 @@ use super::tree::{self, Entry, Node, Value};
 /// Applies `parameters.mu_s=0.3` to a scene. The value is JSON; what is not JSON is a text. Objects
 /// on the way that do not exist are made; a number selects from a list (`sum.0`).
 pub(crate) fn apply(root: &mut Node, argument: &str) -> Result<(), SceneError> {
-    let source = Arc::new(Source { name: "--set".into(), text: argument.into() });
+    let source = Arc::new(Source {
+        name: "--set".into(),
+        text: argument.into(),
+    });
     let whole = Span::new(&source, 0..argument.len());
     let usage = "write --set path=value, such as --set parameters.m=2.5 or --set rules=paper";
     let Some(equals) = argument.find('=') else {
@@ -20,8 +23,10 @@ pub(crate) fn apply(root: &mut Node, argument: &str) -> Result<(), SceneError> {
         return Err(wrong("a name is missing in the path".into(), empty).help(usage));
     }
     let span = whole.part(equals + 1..argument.len());
-    let value = tree::parse_part(&span)
-        .unwrap_or_else(|| Node { value: Value::Text(span.text().to_owned()), span });
+    let value = tree::parse_part(&span).unwrap_or_else(|| Node {
+        value: Value::Text(span.text().to_owned()),
+        span,
+    });
     *descend(root, &path)? = value;
     Ok(())
 }
@@ -54,8 +59,10 @@ fn descend<'t>(mut node: &'t mut Node, path: &[Span]) -> Result<&'t mut Node, Sc
                 let length = items.len();
                 let index = segment.text().parse().ok().filter(|&i: &usize| i < length);
                 let index = index.ok_or_else(|| {
-                    let message =
-                        format!("`{}` selects nothing from a list of {length}", segment.text());
+                    let message = format!(
+                        "`{}` selects nothing from a list of {length}",
+                        segment.text()
+                    );
                     wrong(message, segment).help("entries of a list count from 0")
                 })?;
                 &mut items[index]
@@ -73,17 +80,26 @@ fn descend<'t>(mut node: &'t mut Node, path: &[Span]) -> Result<&'t mut Node, Sc
 
 fn member<'t>(entries: &'t mut Vec<Entry>, segment: &Span) -> &'t mut Node {
     let key = segment.text();
-    let index = entries.iter().position(|entry| entry.key == key).unwrap_or_else(|| {
-        let entry =
-            Entry { key: key.to_owned(), key_span: segment.clone(), node: new_object(segment) };
-        entries.push(entry);
-        entries.len() - 1
-    });
+    let index = entries
+        .iter()
+        .position(|entry| entry.key == key)
+        .unwrap_or_else(|| {
+            let entry = Entry {
+                key: key.to_owned(),
+                key_span: segment.clone(),
+                node: new_object(segment),
+            };
+            entries.push(entry);
+            entries.len() - 1
+        });
     &mut entries[index].node
 }
 
 fn new_object(at: &Span) -> Node {
-    Node { span: at.clone(), value: Value::Object(Vec::new()) }
+    Node {
+        span: at.clone(),
+        value: Value::Object(Vec::new()),
+    }
 }
 
 fn wrong(message: String, at: &Span) -> SceneError {

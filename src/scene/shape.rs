@@ -71,23 +71,38 @@ impl Quantity {
     /// Any number.
     pub fn any(unit: impl Into<String>) -> Self {
         let (minimum, maximum) = (f64::NEG_INFINITY, f64::INFINITY);
-        Quantity { unit: unit.into(), minimum, minimum_exclusive: false, maximum }
+        Quantity {
+            unit: unit.into(),
+            minimum,
+            minimum_exclusive: false,
+            maximum,
+        }
     }
 
     /// A number > 0.
     pub fn positive(unit: impl Into<String>) -> Self {
-        Quantity { minimum: 0.0, minimum_exclusive: true, ..Quantity::any(unit) }
+        Quantity {
+            minimum: 0.0,
+            minimum_exclusive: true,
+            ..Quantity::any(unit)
+        }
     }
 
     /// A number from `minimum` on.
     pub fn at_least(minimum: f64, unit: impl Into<String>) -> Self {
-        Quantity { minimum, ..Quantity::any(unit) }
+        Quantity {
+            minimum,
+            ..Quantity::any(unit)
+        }
     }
 
     /// Whether a number is in the range.
     pub fn admits(&self, value: f64) -> bool {
-        let above =
-            if self.minimum_exclusive { value > self.minimum } else { value >= self.minimum };
+        let above = if self.minimum_exclusive {
+            value > self.minimum
+        } else {
+            value >= self.minimum
+        };
         above && value <= self.maximum
     }
 
@@ -125,7 +140,11 @@ impl From<Object> for Shape {
 impl Object {
     /// An object with these keys and no others.
     pub fn new(names: &'static str, keys: Vec<Key>) -> Self {
-        Object { names, keys, ..Object::default() }
+        Object {
+            names,
+            keys,
+            ..Object::default()
+        }
     }
 
     /// Allows other keys too, of one shape.
@@ -199,9 +218,11 @@ impl Shape {
             Shape::List(_) => "a list".into(),
             Shape::Tuple(what, _) => format!("a list {what}"),
             Shape::Object(_) | Shape::Tagged(_) => "an object".into(),
-            Shape::Either(shapes) => {
-                shapes.iter().map(Shape::describe).collect::<Vec<_>>().join(" or ")
-            }
+            Shape::Either(shapes) => shapes
+                .iter()
+                .map(Shape::describe)
+                .collect::<Vec<_>>()
+                .join(" or "),
         }
     }
 }

@@ -42,11 +42,17 @@ impl Span {
                 true => at,
                 false => source.text.trim_end_matches(['\r', '\n']).len(),
             };
-            (0..=at).rev().find(|&i| source.text.is_char_boundary(i)).unwrap_or(0)
+            (0..=at)
+                .rev()
+                .find(|&i| source.text.is_char_boundary(i))
+                .unwrap_or(0)
         };
         let start = boundary(range.start);
         let end = boundary(range.end).max(start);
-        Span { source: Arc::clone(source), range: start..end }
+        Span {
+            source: Arc::clone(source),
+            range: start..end,
+        }
     }
 
     /// The text itself.
@@ -56,7 +62,10 @@ impl Span {
 
     /// A part of the span, by offsets from its start.
     pub fn part(&self, range: Range<usize>) -> Self {
-        Span::new(&self.source, self.range.start + range.start..self.range.start + range.end)
+        Span::new(
+            &self.source,
+            self.range.start + range.start..self.range.start + range.end,
+        )
     }
 
     /// Its first character; what errors about a long stretch point at.

@@ -23,7 +23,9 @@ pub(crate) fn freeze(
         };
         let coordinate = model.coordinates[i].name;
         if frozen.contains(&i) {
-            let kind = SceneErrorKind::DuplicateKey { key: coordinate.to_owned() };
+            let kind = SceneErrorKind::DuplicateKey {
+                key: coordinate.to_owned(),
+            };
             errors.push(SceneError::new(kind, &name.place));
         } else if variant.modes.iter().all(|mode| mode.free.contains(&i)) {
             let kind = SceneErrorKind::NeverFrozen { coordinate };
@@ -66,7 +68,10 @@ pub(crate) fn initial(
             let (name, coordinate) = (mode.name, model.coordinates[i].name);
             let message =
                 format!("mode `{name}` leaves `{coordinate}` free, but the scene freezes it");
-            errors.push(SceneError::new(SceneErrorKind::State { message }, &at.place));
+            errors.push(SceneError::new(
+                SceneErrorKind::State { message },
+                &at.place,
+            ));
             return None;
         }
     }
@@ -80,7 +85,10 @@ pub(crate) fn initial(
     let states: Vec<Given> = model
         .coordinates
         .iter()
-        .map(|c| Given { position: entry(c.name), rate: entry(&format::rate_key(c)) })
+        .map(|c| Given {
+            position: entry(c.name),
+            rate: entry(&format::rate_key(c)),
+        })
         .collect();
     let fits =
         |mode: &&&Mode| (0..states.len()).all(|i| states[i].objection(model, i, mode).is_none());
@@ -90,29 +98,40 @@ pub(crate) fn initial(
         return None;
     }
 
-    let q = model.coordinates.iter().enumerate().map(|(i, c)| match states[i].position {
-        Some(position) => position.number(),
-        None => held_by_all(&modes, i).unwrap_or(0.0_f64.max(c.minimum.unwrap_or(0.0))),
-    });
+    let q = model
+        .coordinates
+        .iter()
+        .enumerate()
+        .map(|(i, c)| match states[i].position {
+            Some(position) => position.number(),
+            None => held_by_all(&modes, i).unwrap_or(0.0_f64.max(c.minimum.unwrap_or(0.0))),
+        });
     let discrete = model.discretes.iter().map(|d| match entry(d.name) {
         Some(value) => value.number(),
         None => d.values.first().copied().unwrap_or(0.0),
     });
     Some(Initial {
         q: q.collect(),
-        v: states.iter().map(|s| s.rate.map_or(0.0, Checked::number)).collect(),
+        v: states
+            .iter()
+            .map(|s| s.rate.map_or(0.0, Checked::number))
+            .collect(),
         discrete: discrete.collect(),
         mode,
     })
 }
 
 fn named_mode(model: &Model, variant: &Variant, name: &Checked) -> Result<usize, SceneError> {
-    variant.modes.iter().position(|m| m.name == name.text()).ok_or_else(|| {
-        // The name is a mode of the model, but of another variant.
-        let known = format::mode_names(std::slice::from_ref(variant));
-        let what = format!("mode{}:", under(model, variant));
-        unknown_name(&what, name.text(), &known, &name.place)
-    })
+    variant
+        .modes
+        .iter()
+        .position(|m| m.name == name.text())
+        .ok_or_else(|| {
+            // The name is a mode of the model, but of another variant.
+            let known = format::mode_names(std::slice::from_ref(variant));
+            let what = format!("mode{}:", under(model, variant));
+            unknown_name(&what, name.text(), &known, &name.place)
+        })
 }
 
 /// The value at which the modes that hold a coordinate hold it, if there is one and they agree.
@@ -144,7 +163,9 @@ impl<'s> Given<'s> {
             }
         }
         // The rate at which a mode lets a coordinate drift is a function of the model.
-        let moving = self.rate.filter(|rate| rate.number() != 0.0 && !mode.drifts[i])?;
+        let moving = self
+            .rate
+            .filter(|rate| rate.number() != 0.0 && !mode.drifts[i])?;
         Some((format!("mode `{}` holds `{name}` still", mode.name), moving))
     }
 }
@@ -158,7 +179,10 @@ fn misfit(
     place: &super::source::Span,
 ) -> SceneError {
     let objections = |i: usize| -> Option<Vec<_>> {
-        modes.iter().map(|mode| states[i].objection(model, i, mode)).collect()
+        modes
+            .iter()
+            .map(|mode| states[i].objection(model, i, mode))
+            .collect()
     };
     let error = |message, at| SceneError::new(SceneErrorKind::State { message }, at);
     let names = |modes: &[&Mode]| listing(modes.iter().map(|m| m.name));

@@ -35,7 +35,9 @@ pub(crate) fn read(source: &Arc<Source>) -> Result<Rows, SceneError> {
     loop {
         let start = reader.position().byte() as usize;
         let more = reader.read_record(&mut record).map_err(|error| {
-            let kind = SceneErrorKind::Row { message: format!("not CSV: {error}") };
+            let kind = SceneErrorKind::Row {
+                message: format!("not CSV: {error}"),
+            };
             SceneError::new(kind, &rows.field(start, 0))
         })?;
         if !more {
@@ -48,15 +50,21 @@ pub(crate) fn read(source: &Arc<Source>) -> Result<Rows, SceneError> {
         }
         if record.len() != 2 {
             let message = format!("expected two columns, found {}", record.len());
-            return Err(SceneError::new(SceneErrorKind::Row { message }, &rows.field(start, 0))
-                .help("each row is `time,value`, separated by a comma"));
+            return Err(
+                SceneError::new(SceneErrorKind::Row { message }, &rows.field(start, 0))
+                    .help("each row is `time,value`, separated by a comma"),
+            );
         }
         let number = |column: usize| {
             let text = &record[column];
             let kind = match text.parse::<f64>() {
                 Ok(number) if number.is_finite() => return Ok(number),
-                Ok(_) => SceneErrorKind::NotFinite { text: text.to_owned() },
-                Err(_) => SceneErrorKind::Row { message: format!("`{text}` is not a number") },
+                Ok(_) => SceneErrorKind::NotFinite {
+                    text: text.to_owned(),
+                },
+                Err(_) => SceneErrorKind::Row {
+                    message: format!("`{text}` is not a number"),
+                },
             };
             Err(SceneError::new(kind, &rows.field(start, column))
                 .help("each row is `time,value`, two finite numbers"))
@@ -72,7 +80,13 @@ impl Rows {
     /// Where a row has its time (column 0) or its value (column 1); behind the last row, the end
     /// of the text.
     pub fn place(&self, row: usize, column: usize) -> Span {
-        self.field(self.starts.get(row).copied().unwrap_or(self.source.text.len()), column)
+        self.field(
+            self.starts
+                .get(row)
+                .copied()
+                .unwrap_or(self.source.text.len()),
+            column,
+        )
     }
 
     /// A field of the record that starts at a byte, or after the lines there that are skipped.
@@ -80,14 +94,25 @@ impl Rows {
         let text = &self.source.text;
         let mut start = start.min(text.len());
         let skipped = |line: &str| line.trim().is_empty() || line.starts_with('#');
-        for line in text[start..].split_inclusive('\n').take_while(|line| skipped(line)) {
+        for line in text[start..]
+            .split_inclusive('\n')
+            .take_while(|line| skipped(line))
+        {
             start += line.len();
         }
         let line = text[start..].lines().next().unwrap_or("");
         // A quoted field may hold anything; then the whole line is shown.
-        let field = if line.contains('"') { None } else { line.split(',').nth(column) };
+        let field = if line.contains('"') {
+            None
+        } else {
+            line.split(',').nth(column)
+        };
         let before: usize = match field {
-            Some(_) => line.split(',').take(column).map(|field| field.len() + 1).sum(),
+            Some(_) => line
+                .split(',')
+                .take(column)
+                .map(|field| field.len() + 1)
+                .sum(),
             None => 0,
         };
         let field = field.unwrap_or(line);

@@ -119,7 +119,12 @@ fn parse_value<'a>(span: &'a Span) -> Result<ast::Value<'a>, SceneError> {
 }
 
 fn syntax(message: String, at: &Span) -> SceneError {
-    SceneError::new(SceneErrorKind::Syntax { message: format!("not JSON: {message}") }, at)
+    SceneError::new(
+        SceneErrorKind::Syntax {
+            message: format!("not JSON: {message}"),
+        },
+        at,
+    )
 }
 
 fn syntax_help(kind: &ParseErrorKind) -> Option<&'static str> {
@@ -146,7 +151,9 @@ fn syntax_help(kind: &ParseErrorKind) -> Option<&'static str> {
 
 fn lower_first(text: &str) -> String {
     let mut chars = text.chars();
-    chars.next().map_or(String::new(), |first| first.to_lowercase().chain(chars).collect())
+    chars.next().map_or(String::new(), |first| {
+        first.to_lowercase().chain(chars).collect()
+    })
 }
 
 fn error_without_place(error: &serde_json::Error) -> String {
@@ -157,7 +164,9 @@ fn error_without_place(error: &serde_json::Error) -> String {
 /// Where the second parser stopped; it counts columns in bytes.
 fn place_of(error: &serde_json::Error, whole: &Span) -> Span {
     let text = whole.text();
-    let lines = text.split_inclusive('\n').take(error.line().saturating_sub(1));
+    let lines = text
+        .split_inclusive('\n')
+        .take(error.line().saturating_sub(1));
     let line_start: usize = lines.map(str::len).sum();
     let at = line_start + error.column().saturating_sub(1);
     whole.part(at..text.len()).start()
@@ -165,7 +174,10 @@ fn place_of(error: &serde_json::Error, whole: &Span) -> Span {
 
 fn convert(value: &ast::Value<'_>, whole: &Span) -> Result<Node, SceneError> {
     let span = |ranged: &dyn Ranged| whole.part(ranged.start()..ranged.end());
-    let node = |ranged: &dyn Ranged, value| Node { span: span(ranged), value };
+    let node = |ranged: &dyn Ranged, value| Node {
+        span: span(ranged),
+        value,
+    };
     Ok(match value {
         ast::Value::NullKeyword(null) => node(null, Value::Null),
         ast::Value::BooleanLit(flag) => node(flag, Value::Flag(flag.value)),
@@ -184,12 +196,18 @@ fn convert(value: &ast::Value<'_>, whole: &Span) -> Result<Node, SceneError> {
                 };
                 if let Some(first) = entries.iter().find(|e| e.key == key) {
                     let line = first.key_span.position().line;
-                    let kind = SceneErrorKind::DuplicateKey { key: key.to_owned() };
+                    let kind = SceneErrorKind::DuplicateKey {
+                        key: key.to_owned(),
+                    };
                     return Err(SceneError::new(kind, &key_span)
                         .help(format!("the first one is in line {line}; keep one of them")));
                 }
                 let node = convert(&property.value, whole)?;
-                entries.push(Entry { key: key.to_owned(), key_span, node });
+                entries.push(Entry {
+                    key: key.to_owned(),
+                    key_span,
+                    node,
+                });
             }
             node(object, Value::Object(entries))
         }

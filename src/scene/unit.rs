@@ -29,14 +29,28 @@ const NAMED: [Named; 21] = [
     ("J", "joule", [2, 1, -2, 0], 0, 1.0, true),
     ("W", "watt", [2, 1, -3, 0], 0, 1.0, true),
     ("Pa", "pascal", [-1, 1, -2, 0], 0, 1.0, true),
-    ("Hz", "hertz, cycles per second", [0, 0, -1, 1], 0, TAU, true),
+    (
+        "Hz",
+        "hertz, cycles per second",
+        [0, 0, -1, 1],
+        0,
+        TAU,
+        true,
+    ),
     ("min", "minute", [0, 0, 1, 0], 0, 60.0, false),
     ("h", "hour", [0, 0, 1, 0], 0, 3600.0, false),
     ("t", "tonne", [0, 1, 0, 0], 3, 1.0, false),
     ("deg", "degree", [0, 0, 0, 1], 0, TAU / 360.0, false),
     ("°", "degree", [0, 0, 0, 1], 0, TAU / 360.0, false),
     ("rev", "revolution", [0, 0, 0, 1], 0, TAU, false),
-    ("rpm", "revolutions per minute", [0, 0, -1, 1], 0, TAU / 60.0, false),
+    (
+        "rpm",
+        "revolutions per minute",
+        [0, 0, -1, 1],
+        0,
+        TAU / 60.0,
+        false,
+    ),
     // The standard acceleration of gravity, by definition (3rd CGPM, 1901).
     ("g_n", "standard gravity", [1, 0, -2, 0], 0, 9.806_65, false),
     ("gal", "gal, cm/s²", [1, 0, -2, 0], -2, 1.0, false),
@@ -59,7 +73,11 @@ const PREFIXES: [(&str, i32); 10] = [
 ];
 
 impl Unit {
-    const ONE: Unit = Unit { dimensions: [0; 4], exponent: 0, factor: 1.0 };
+    const ONE: Unit = Unit {
+        dimensions: [0; 4],
+        exponent: 0,
+        factor: 1.0,
+    };
 
     /// Reads a unit such as `kg m^2`, `N m/rad`, `m/s²` or `1`. Factors are separated by a space,
     /// `*` or `·`; what comes after a `/` divides, as in the units of models: `N/m s` is `N/(m s)`.
@@ -69,7 +87,11 @@ impl Unit {
             return Ok(Unit::ONE);
         }
         let unit = rest.product(true)?;
-        if rest.0.is_empty() { Ok(unit) } else { Err(format!("`{}` is left over", rest.0)) }
+        if rest.0.is_empty() {
+            Ok(unit)
+        } else {
+            Err(format!("`{}` is left over", rest.0))
+        }
     }
 
     fn times(self, other: Unit, power: i32) -> Option<Unit> {
@@ -77,9 +99,16 @@ impl Unit {
         for (sum, d) in dimensions.iter_mut().zip(other.dimensions) {
             *sum = sum.checked_add(d.checked_mul(power)?)?;
         }
-        let exponent = self.exponent.checked_add(other.exponent.checked_mul(power)?)?;
+        let exponent = self
+            .exponent
+            .checked_add(other.exponent.checked_mul(power)?)?;
         let factor = self.factor * other.factor.powi(power);
-        Some(Unit { dimensions, exponent, factor }).filter(|u| u.factor.is_normal())
+        Some(Unit {
+            dimensions,
+            exponent,
+            factor,
+        })
+        .filter(|u| u.factor.is_normal())
     }
 
     fn named(symbol: &str) -> Option<Unit> {
@@ -94,7 +123,10 @@ impl Unit {
                 let base = symbol.strip_prefix(prefix)?;
                 let named = NAMED.iter().find(|named| named.5 && named.0 == base)?;
                 let unit = unit(named);
-                Some(Unit { exponent: unit.exponent + power, ..unit })
+                Some(Unit {
+                    exponent: unit.exponent + power,
+                    ..unit
+                })
             })
         })
     }
@@ -130,7 +162,9 @@ impl Rest<'_> {
             }
             self.0 = self.0.trim_start();
             let factor = self.factor(parentheses)?;
-            unit = unit.times(factor, power).ok_or("its powers are too large")?;
+            unit = unit
+                .times(factor, power)
+                .ok_or("its powers are too large")?;
         }
     }
 
@@ -144,8 +178,10 @@ impl Rest<'_> {
             inner
         } else {
             let ends = |c: char| c.is_whitespace() || "*·/^()⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c);
-            let letters =
-                self.0.find(|c: char| ends(c) || c.is_ascii_digit()).unwrap_or(self.0.len());
+            let letters = self
+                .0
+                .find(|c: char| ends(c) || c.is_ascii_digit())
+                .unwrap_or(self.0.len());
             let length = if self.0.starts_with('1') { 1 } else { letters };
             let (symbol, rest) = self.0.split_at(length);
             if symbol.is_empty() {
@@ -160,13 +196,19 @@ impl Rest<'_> {
             unit
         };
         let power = self.power()?;
-        Unit::ONE.times(base, power).ok_or_else(|| "its powers are too large".into())
+        Unit::ONE
+            .times(base, power)
+            .ok_or_else(|| "its powers are too large".into())
     }
 
     fn power(&mut self) -> Result<i32, String> {
         let plain = self.take("^") || self.take("**");
         let is_power = |c: char| {
-            if plain { c.is_ascii_digit() || c == '-' } else { superscript(c).is_some() }
+            if plain {
+                c.is_ascii_digit() || c == '-'
+            } else {
+                superscript(c).is_some()
+            }
         };
         let end = self.0.find(|c| !is_power(c)).unwrap_or(self.0.len());
         let (power, rest) = self.0.split_at(end);
@@ -175,7 +217,9 @@ impl Rest<'_> {
         }
         let digits: String = power.chars().map(|c| superscript(c).unwrap_or(c)).collect();
         self.0 = rest;
-        digits.parse().map_err(|_| format!("`{digits}` is not a whole power"))
+        digits
+            .parse()
+            .map_err(|_| format!("`{digits}` is not a whole power"))
     }
 }
 
@@ -185,7 +229,10 @@ fn superscript(c: char) -> Option<char> {
 }
 
 fn unknown(symbol: &str) -> String {
-    let known = NAMED.iter().map(|named| named.0).chain(["mm", "kg", "kN", "ms"]);
+    let known = NAMED
+        .iter()
+        .map(|named| named.0)
+        .chain(["mm", "kg", "kN", "ms"]);
     match super::wording::nearest(symbol, known) {
         Some(near) => format!("unknown unit `{symbol}`; did you mean `{near}`?"),
         None => format!("unknown unit `{symbol}`"),
@@ -223,7 +270,11 @@ pub(crate) fn convert(text: &str, target: &str) -> Result<f64, QuantityError> {
     let literal = format!("{mantissa}e{}", exponent.saturating_add(shift));
     let number: f64 = literal.parse().map_err(|_| QuantityError::NotFinite)?;
     let value = number * (given.factor / wanted.factor);
-    if value.is_finite() { Ok(value) } else { Err(QuantityError::NotFinite) }
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(QuantityError::NotFinite)
+    }
 }
 
 /// Splits `-1.5e3 mm` into mantissa, power of ten and unit.
@@ -246,7 +297,11 @@ fn split_number(text: &str) -> Option<(&str, i64, &str)> {
         if length > 0 {
             let stop = end + 1 + sign + length;
             // Only the digits can fail to parse, by being too many.
-            let huge = if text[end + 1..].starts_with('-') { i64::MIN } else { i64::MAX };
+            let huge = if text[end + 1..].starts_with('-') {
+                i64::MIN
+            } else {
+                i64::MAX
+            };
             exponent = text[end + 1..stop].parse().unwrap_or(huge);
             end = stop;
         }

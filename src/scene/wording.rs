@@ -7,7 +7,12 @@ pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
     let lower = name.to_lowercase();
     known
         .into_iter()
-        .map(|k| (strsim::normalized_damerau_levenshtein(&lower, &k.to_lowercase()), k))
+        .map(|k| {
+            (
+                strsim::normalized_damerau_levenshtein(&lower, &k.to_lowercase()),
+                k,
+            )
+        })
         .filter(|(likeness, _)| *likeness >= NEAR)
         // The first of equally near ones, so that the answer does not depend on chance.
         .reduce(|best, next| if next.0 > best.0 { next } else { best })

@@ -8,7 +8,10 @@ use serde_json::Value;
 
 /// A problem of a model by name, with the given parameters.
 pub fn problem(model: &str, parameters: &[(&str, f64)]) -> Problem {
-    let model = MODELS.iter().find(|m| m.name == model).expect("the model exists");
+    let model = MODELS
+        .iter()
+        .find(|m| m.name == model)
+        .expect("the model exists");
     let mut problem = Problem::new(model);
     for (name, value) in parameters {
         problem.set_parameter(name, *value).unwrap();
@@ -41,7 +44,11 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 
 /// Times of the events with the given transition.
 pub fn times(run: &Run, transition: &str) -> Vec<f64> {
-    run.events.iter().filter(|e| e.transition == transition).map(|e| e.t).collect()
+    run.events
+        .iter()
+        .filter(|e| e.transition == transition)
+        .map(|e| e.t)
+        .collect()
 }
 
 /// Value of a coordinate, rate or discrete state at the end of a run.

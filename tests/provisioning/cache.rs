@@ -80,14 +80,18 @@ fn a_home_that_cannot_be_written_is_done_without() {
 #[test]
 fn the_cache_can_be_put_elsewhere() {
     let fixture = Fixture::new();
-    for (variable, folder) in
-        [("DALEMBERT_CACHE", "cache/generated"), ("XDG_CACHE_HOME", "caches/dalembert/generated")]
-    {
+    for (variable, folder) in [
+        ("DALEMBERT_CACHE", "cache/generated"),
+        ("XDG_CACHE_HOME", "caches/dalembert/generated"),
+    ] {
         let value = fixture.path(folder.split('/').next().unwrap());
         succeeds(fixture.script().env(variable, value));
         only_folder(&fixture.path(folder), "alpha-");
     }
     let file = fixture.write("file", "");
     let message = fails(fixture.script().env("DALEMBERT_CACHE", file.join("cache")));
-    has(&message, &["DALEMBERT_CACHE=", "cannot write there", "to do: "]);
+    has(
+        &message,
+        &["DALEMBERT_CACHE=", "cannot write there", "to do: "],
+    );
 }

@@ -33,13 +33,18 @@ impl Fixture {
     /// A project, if the interpreter has pip to install something for it. (One that was named by
     /// DALEMBERT_PYTHON needs no pip to build the crate, and then there is nothing to test.)
     pub fn if_pip() -> Option<Self> {
-        let pip = Command::new(PYTHON).args(["-m", "pip", "--version"]).output();
-        pip.is_ok_and(|output| output.status.success()).then(Self::new)
+        let pip = Command::new(PYTHON)
+            .args(["-m", "pip", "--version"])
+            .output();
+        pip.is_ok_and(|output| output.status.success())
+            .then(Self::new)
     }
 
     /// A project with the models `alpha` and `beta`, and nothing built.
     pub fn new() -> Self {
-        let fixture = Self { folder: TempDir::new().unwrap() };
+        let fixture = Self {
+            folder: TempDir::new().unwrap(),
+        };
         fixture.write("project/build.rs", "");
         fixture.write("project/codegen/__main__.py", include_str!("generator.py"));
         fixture.model("alpha", "1.0");
@@ -106,7 +111,10 @@ impl Fixture {
         let packages = self.path(&packages);
         self.program(
             &format!("python-with-casadi-{version}"),
-            &format!("PYTHONPATH='{}' exec '{PYTHON}' -S \"$@\"", packages.display()),
+            &format!(
+                "PYTHONPATH='{}' exec '{PYTHON}' -S \"$@\"",
+                packages.display()
+            ),
         )
     }
 
@@ -131,7 +139,10 @@ impl Fixture {
             .env("OPT_LEVEL", "0")
             .env("DEBUG", "false")
             .env("NUM_JOBS", "2")
-            .env("PATH", format!("{}:{search_path}", self.path("bin").display()))
+            .env(
+                "PATH",
+                format!("{}:{search_path}", self.path("bin").display()),
+            )
             .env("HOME", self.path("home"))
             .env("PIP_NO_INDEX", "1")
             .env("PIP_FIND_LINKS", self.path("wheels"))
@@ -165,7 +176,11 @@ impl Fixture {
 
 /// Starts the build script.
 pub fn start(command: &mut Command) -> Child {
-    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
 }
 
 /// Waits for the build script.
@@ -175,7 +190,10 @@ pub fn finish(child: Child) -> Outcome {
     // On any other end cargo would show the whole output instead of the message.
     assert!(output.status.success(), "{}: {stderr}", output.status);
     assert_eq!(stderr, "");
-    let mut outcome = Outcome { directives: Vec::new(), errors: String::new() };
+    let mut outcome = Outcome {
+        directives: Vec::new(),
+        errors: String::new(),
+    };
     for line in String::from_utf8(output.stdout).unwrap().lines() {
         match line.strip_prefix("cargo::error=") {
             Some(error) => outcome.errors += &format!("{error}\n"),
@@ -205,7 +223,13 @@ pub fn only_folder(folder: &Path, prefix: &str) -> PathBuf {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.is_dir())
-        .filter(|path| path.file_name().unwrap().to_str().unwrap().starts_with(prefix))
+        .filter(|path| {
+            path.file_name()
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .starts_with(prefix)
+        })
         .collect();
     assert_eq!(found.len(), 1, "{found:?}");
     found[0].clone()

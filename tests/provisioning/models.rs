@@ -12,14 +12,20 @@ fn the_first_build_does_everything_and_the_second_nothing() {
     };
     let first = succeeds(&mut fixture.installing());
     assert_eq!(fixture.log(), ALL);
-    has(&fixture.models(), &["pub mod alpha {", "&alpha::ALPHA,\n    &beta::BETA,"]);
+    has(
+        &fixture.models(),
+        &["pub mod alpha {", "&alpha::ALPHA,\n    &beta::BETA,"],
+    );
     let libraries = fixture.path("target/debug/build/project/out/libraries");
     let library = only_folder(&libraries, "alpha-").join("libdalembert_alpha.a");
     let compiled = fs::metadata(&library).unwrap().modified().unwrap();
 
     let second = succeeds(&mut fixture.installing());
     assert!(fixture.log().is_empty());
-    assert_eq!(fs::metadata(&library).unwrap().modified().unwrap(), compiled);
+    assert_eq!(
+        fs::metadata(&library).unwrap().modified().unwrap(),
+        compiled
+    );
     // Libraries are linked, and the same things watched, whether or not they were just made.
     let essential = |lines: &[String]| -> Vec<String> {
         let kept = |line: &&String| line.starts_with("cargo::");
@@ -48,7 +54,10 @@ fn a_touched_model_is_regenerated_alone() {
     succeeds(&mut fixture.script());
     assert_eq!(fixture.log(), ["generate beta"]);
     // The library of the old model is gone.
-    only_folder(&fixture.path("target/debug/build/project/out/libraries"), "beta-");
+    only_folder(
+        &fixture.path("target/debug/build/project/out/libraries"),
+        "beta-",
+    );
     // A second file of a model counts, its prose does not.
     fixture.write("project/models/alpha/README.md", "prose");
     succeeds(&mut fixture.script());
@@ -107,7 +116,13 @@ fn every_model_with_a_fault_is_named_and_the_others_are_kept() {
     // The generator's own words, with nothing around them.
     let first = "models/beta/model.py:1: the model has a fault\nmodels/gamma: ";
     assert!(message.starts_with(first), "{message}");
-    has(&message, &["did not name the fault", "    RuntimeError: the generator has a fault"]);
+    has(
+        &message,
+        &[
+            "did not name the fault",
+            "    RuntimeError: the generator has a fault",
+        ],
+    );
     assert_eq!(fixture.log().len(), 3);
     fixture.model("beta", "2.0");
     fixture.model("gamma", "3.0");
@@ -121,14 +136,20 @@ fn folder_names_that_cannot_be_modules_are_refused() {
     for name in ["Alpha", "1st", "two-part", "two__part", "part_"] {
         fixture.model(name, "1.0");
         let message = fails(&mut fixture.script());
-        has(&message, &[&format!("models/{name}: "), "to do: rename the folder"]);
+        has(
+            &message,
+            &[&format!("models/{name}: "), "to do: rename the folder"],
+        );
         fs::remove_dir_all(fixture.path(&format!("project/models/{name}"))).unwrap();
     }
     fixture.write("project/tests/models/alpha/model.py", "1.0");
     let mut script = fixture.script();
     script.env("CARGO_FEATURE_TEST_MODELS", "1");
     let message = fails(&mut script);
-    has(&message, &["models/alpha and tests/models/alpha have the same name"]);
+    has(
+        &message,
+        &["models/alpha and tests/models/alpha have the same name"],
+    );
 }
 
 #[test]
@@ -136,7 +157,13 @@ fn a_missing_compiler_and_c_that_does_not_compile_are_told_apart() {
     let fixture = Fixture::new();
     let mut script = fixture.script();
     let message = fails(script.env("CC", "/no/such/cc"));
-    has(&message, &["cannot compile the models: /no/such/cc: ", "to do: install a C compiler"]);
+    has(
+        &message,
+        &[
+            "cannot compile the models: /no/such/cc: ",
+            "to do: install a C compiler",
+        ],
+    );
     fixture.model("beta", "no number");
     let message = fails(&mut fixture.script());
     has(&message, &["cannot compile the C code of models/beta: "]);

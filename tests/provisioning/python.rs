@@ -12,8 +12,17 @@ fn without_python_the_message_says_what_to_install() {
     let empty = fixture.path("empty");
     fs::create_dir(&empty).unwrap();
     let message = fails(fixture.installing().env("PATH", empty));
-    assert!(message.starts_with("no Python found: none of python3, python,"), "{message}");
-    has(&message, &["to do: install Python 3.9 or newer with pip", "DALEMBERT_PYTHON"]);
+    assert!(
+        message.starts_with("no Python found: none of python3, python,"),
+        "{message}"
+    );
+    has(
+        &message,
+        &[
+            "to do: install Python 3.9 or newer with pip",
+            "DALEMBERT_PYTHON",
+        ],
+    );
 }
 
 #[test]
@@ -24,7 +33,10 @@ fn an_interpreter_that_will_not_do_is_named_with_the_reason_and_the_next_is_trie
     let bare = fixture.path("bare");
     fixture.program("bare/python3", &format!("exec '{PYTHON}' -S \"$@\""));
     fixture.program("bare/python", "echo 2.7; exit 1");
-    fixture.program("bare/python3.12", "echo 'python3.12: command not found' >&2; exit 127");
+    fixture.program(
+        "bare/python3.12",
+        "echo 'python3.12: command not found' >&2; exit 127",
+    );
     let message = fails(fixture.installing().env("PATH", &bare));
     has(
         &message,
@@ -52,7 +64,13 @@ fn a_named_interpreter_is_checked_and_nothing_is_installed_for_it() {
     let name = "DALEMBERT_PYTHON";
 
     let message = fails(fixture.script().env(name, "/no/such/python"));
-    has(&message, &["DALEMBERT_PYTHON=/no/such/python: no such program", "to do: "]);
+    has(
+        &message,
+        &[
+            "DALEMBERT_PYTHON=/no/such/python: no such program",
+            "to do: ",
+        ],
+    );
 
     let without = fixture.program("without", &format!("exec '{PYTHON}' -S \"$@\""));
     let message = fails(fixture.script().env(name, without));
@@ -66,15 +84,29 @@ fn a_named_interpreter_is_checked_and_nothing_is_installed_for_it() {
 
     let wrong = fixture.python_with_casadi("1.0.0");
     let message = fails(fixture.script().env(name, wrong));
-    has(&message, &["has CasADi 1.0.0; needed is 1.2.3", "to do: install casadi==1.2.3"]);
+    has(
+        &message,
+        &[
+            "has CasADi 1.0.0; needed is 1.2.3",
+            "to do: install casadi==1.2.3",
+        ],
+    );
 
     let right = fixture.python_with_casadi(VERSION);
     let outcome = succeeds(fixture.script().env(name, right));
     assert_eq!(fixture.log(), ["generate alpha", "generate beta"]);
     let warned = |line: &String| line.starts_with("cargo::warning=") && line.contains("no SymPy");
-    assert!(outcome.directives.iter().any(warned), "{:?}", outcome.directives);
+    assert!(
+        outcome.directives.iter().any(warned),
+        "{:?}",
+        outcome.directives
+    );
     let line = "cargo::rustc-env=DALEMBERT_PYTHON_PATH=".to_owned();
-    assert!(outcome.directives.contains(&line), "{:?}", outcome.directives);
+    assert!(
+        outcome.directives.contains(&line),
+        "{:?}",
+        outcome.directives
+    );
 }
 
 #[test]
@@ -83,7 +115,10 @@ fn without_a_network_our_message_comes_before_that_of_pip() {
         return;
     };
     let message = fails(fixture.installing().env_remove("PIP_FIND_LINKS"));
-    assert!(message.starts_with("cannot fetch CasADi 1.2.3: "), "{message}");
+    assert!(
+        message.starts_with("cannot fetch CasADi 1.2.3: "),
+        "{message}"
+    );
     has(
         &message,
         &[
@@ -108,12 +143,18 @@ fn a_package_with_another_hash_or_none_is_refused() {
     fixture.lock(&"0".repeat(64));
     let message = fails(&mut fixture.installing());
     assert!(message.starts_with("refused CasADi 1.2.3: "), "{message}");
-    has(&message, &["codegen/requirements.lock", "pip says:\n", "Got "]);
+    has(
+        &message,
+        &["codegen/requirements.lock", "pip says:\n", "Got "],
+    );
     // And so is one without a hash.
     let lock = format!("casadi=={VERSION}\n");
     fixture.write("project/codegen/requirements.lock", &lock);
     let message = fails(&mut fixture.installing());
-    assert!(message.starts_with("cannot install CasADi 1.2.3: "), "{message}");
+    assert!(
+        message.starts_with("cannot install CasADi 1.2.3: "),
+        "{message}"
+    );
     has(&message, &["to do: ", "Hashes are required"]);
     assert!(fixture.log().is_empty());
 }
@@ -156,7 +197,10 @@ fn the_lock_file_pins_by_hash_and_names_no_registry() {
     assert!(!lock.contains("://"));
     let packages: Vec<_> = lock.lines().filter(|line| !line.starts_with(' ')).collect();
     for package in ["casadi==3.8.2 ", "numpy==", "sympy==", "mpmath=="] {
-        assert!(packages.iter().any(|line| line.starts_with(package)), "{package}");
+        assert!(
+            packages.iter().any(|line| line.starts_with(package)),
+            "{package}"
+        );
     }
     let hashed = lock.matches("\\\n    --hash=sha256:").count();
     assert!(hashed >= packages.len() && packages.iter().all(|line| line.ends_with('\\')));
@@ -170,8 +214,10 @@ fn the_crate_can_run_its_python() {
     if !packages.is_empty() {
         python.env("PYTHONPATH", packages);
     }
-    let output =
-        python.args(["-B", "-c", "import casadi; print(casadi.__version__)"]).output().unwrap();
+    let output = python
+        .args(["-B", "-c", "import casadi; print(casadi.__version__)"])
+        .output()
+        .unwrap();
     let version = String::from_utf8(output.stdout).unwrap();
     assert_eq!(version.trim(), env!("DALEMBERT_CASADI_VERSION"));
 }

@@ -25,7 +25,9 @@ fn write_forever() {
     for generation in 0u64.. {
         let written = folder.replace(|staging| {
             FILES.iter().try_for_each(|name| {
-                staging.file(name, |out| (0..LINES).try_for_each(|_| writeln!(out, "{generation}")))
+                staging.file(name, |out| {
+                    (0..LINES).try_for_each(|_| writeln!(out, "{generation}"))
+                })
             })
         });
         written.unwrap();
@@ -47,7 +49,10 @@ fn generation(folder: &Path) -> String {
     let first = texts[0].lines().next().unwrap().to_owned();
     for text in texts {
         assert_eq!(text.lines().count(), LINES);
-        assert!(text.lines().all(|line| line == first), "files of two generations");
+        assert!(
+            text.lines().all(|line| line == first),
+            "files of two generations"
+        );
     }
     first
 }
@@ -61,7 +66,10 @@ fn a_killed_program_leaves_the_old_files_or_the_new_ones() {
         let mut child = writer(&folder);
         let started = Instant::now();
         while !folder.exists() {
-            assert!(started.elapsed() < Duration::from_secs(60), "the writer writes nothing");
+            assert!(
+                started.elapsed() < Duration::from_secs(60),
+                "the writer writes nothing"
+            );
             std::thread::sleep(Duration::from_millis(1));
         }
         // At another phase of its work each time.
@@ -71,5 +79,8 @@ fn a_killed_program_leaves_the_old_files_or_the_new_ones() {
         generations.push(generation(&folder));
         assert!(folder.join(".dalembert-output").is_file());
     }
-    assert!(generations.iter().any(|g| g != "0"), "the folder was never replaced");
+    assert!(
+        generations.iter().any(|g| g != "0"),
+        "the folder was never replaced"
+    );
 }

@@ -28,11 +28,26 @@ fn header(table: &str) -> Vec<&str> {
 #[test]
 fn a_small_run_gives_these_files() {
     let run = bouncing_ball(1.0, 2, 5);
-    assert_eq!(text(|out| write_trajectory(&run, out)), include_str!("golden/trajectory.csv"));
-    assert_eq!(text(|out| write_events(&run, out)), include_str!("golden/events.csv"));
-    assert_eq!(text(|out| write_metadata(&run, out)), include_str!("golden/csv-metadata.json"));
-    assert_eq!(text(|out| Summary::new(&run).write(out)), include_str!("golden/summary.json"));
-    assert_eq!(Report::new(&run).to_string(), include_str!("golden/report.txt"));
+    assert_eq!(
+        text(|out| write_trajectory(&run, out)),
+        include_str!("golden/trajectory.csv")
+    );
+    assert_eq!(
+        text(|out| write_events(&run, out)),
+        include_str!("golden/events.csv")
+    );
+    assert_eq!(
+        text(|out| write_metadata(&run, out)),
+        include_str!("golden/csv-metadata.json")
+    );
+    assert_eq!(
+        text(|out| Summary::new(&run).write(out)),
+        include_str!("golden/summary.json")
+    );
+    assert_eq!(
+        Report::new(&run).to_string(),
+        include_str!("golden/report.txt")
+    );
 }
 
 #[test]
@@ -40,13 +55,26 @@ fn the_metadata_describe_every_column() {
     let run = tank_like(10, 3);
     let metadata: serde_json::Value =
         serde_json::from_str(&text(|out| write_metadata(&run, out))).unwrap();
-    let tables = [text(|out| write_trajectory(&run, out)), text(|out| write_events(&run, out))];
+    let tables = [
+        text(|out| write_trajectory(&run, out)),
+        text(|out| write_events(&run, out)),
+    ];
     for (i, table) in tables.iter().enumerate() {
-        let columns = metadata["tables"][i]["tableSchema"]["columns"].as_array().unwrap();
-        let names: Vec<_> = columns.iter().map(|c| c["name"].as_str().unwrap()).collect();
+        let columns = metadata["tables"][i]["tableSchema"]["columns"]
+            .as_array()
+            .unwrap();
+        let names: Vec<_> = columns
+            .iter()
+            .map(|c| c["name"].as_str().unwrap())
+            .collect();
         assert_eq!(names, header(table));
         let is_number = |c: &&serde_json::Value| c["datatype"] == "double";
-        assert!(columns.iter().filter(is_number).all(|c| c["schema:unitText"].is_string()));
+        assert!(
+            columns
+                .iter()
+                .filter(is_number)
+                .all(|c| c["schema:unitText"].is_string())
+        );
     }
 }
 
@@ -56,7 +84,10 @@ fn names_with_separators_are_quoted() {
     run.layout.modes[0] = "flies, \"freely\"".into();
     let table = text(|out| write_trajectory(&run, out));
     let mut reader = csv::Reader::from_reader(table.as_bytes());
-    assert_eq!(&reader.records().next().unwrap().unwrap()[6], "flies, \"freely\"");
+    assert_eq!(
+        &reader.records().next().unwrap().unwrap()[6],
+        "flies, \"freely\""
+    );
 }
 
 proptest! {
@@ -89,7 +120,10 @@ fn rows_go_in_without_allocation() {
     (0..2001).for_each(|i| recorder.push_row(f64::from(i) * 0.001, 0, |row| row[0] = 1.0));
     let trajectory = recorder.finish();
     assert_eq!(trajectory.t.capacity(), rows);
-    assert_eq!(trajectory.values.capacity(), rows * trajectory.columns.len());
+    assert_eq!(
+        trajectory.values.capacity(),
+        rows * trajectory.columns.len()
+    );
     assert_eq!(trajectory.row(2000)[..2], [1.0, 0.0]);
 }
 
@@ -98,8 +132,10 @@ fn peaks_are_found_between_samples() {
     // The fastest moment is the first impact, which no sample hits.
     let run = bouncing_ball(1.0, 3, 7);
     let peaks = peaks(&run);
-    let (_, speed) =
-        peaks.iter().find(|(i, _)| run.trajectory.columns[*i].name == "y.rate").unwrap();
+    let (_, speed) = peaks
+        .iter()
+        .find(|(i, _)| run.trajectory.columns[*i].name == "y.rate")
+        .unwrap();
     let fall = (2.0f64 / 9.81).sqrt();
     assert!((speed.min + 9.81 * fall).abs() < 1e-14);
     assert!((speed.t_min - fall).abs() < 1e-15);
@@ -112,11 +148,17 @@ fn a_peak_is_reported_at_its_first_time_and_nan_has_none() {
     run.events.clear();
     let mut recorder = Recorder::new(&run.layout, 3);
     for (t, y) in [(0.0, f64::NAN), (1.0, 2.0), (2.0, 2.0)] {
-        recorder.push_row(t, 0, |row| row.copy_from_slice(&[y, f64::NAN, 0.0, 1.0, 0.0]));
+        recorder.push_row(t, 0, |row| {
+            row.copy_from_slice(&[y, f64::NAN, 0.0, 1.0, 0.0])
+        });
     }
     run.trajectory = recorder.finish();
     let peaks = peaks(&run);
-    assert_eq!(peaks.iter().map(|p| p.0).collect::<Vec<_>>(), [0, 2], "y.rate has no peak");
+    assert_eq!(
+        peaks.iter().map(|p| p.0).collect::<Vec<_>>(),
+        [0, 2],
+        "y.rate has no peak"
+    );
     assert_eq!((peaks[0].1.t_max, peaks[0].1.t_min), (1.0, 1.0));
 }
 
@@ -127,15 +169,27 @@ fn a_curve_has_both_sides_of_every_transition_in_order() {
     assert_eq!(times.len(), 50 + 2 * run.events.len());
     assert!(times.is_sorted());
     let energy = run.layout.range(Group::Energy).start;
-    assert_eq!(run.curve(energy).count(), 50, "the state does not hold the energy");
+    assert_eq!(
+        run.curve(energy).count(),
+        50,
+        "the state does not hold the energy"
+    );
 }
 
 /// The run as it would have been left by a failure half-way.
 fn stopped(mut run: Run) -> Run {
-    let place = Place { t: 1.25, j: 2, mode: 0, state: run.events[1].after.clone() };
+    let place = Place {
+        t: 1.25,
+        j: 2,
+        mode: 0,
+        state: run.events[1].after.clone(),
+    };
     run.events.truncate(2);
     run.end = place.clone();
-    run.failure = Some(Failure { reason: "the normal force would be negative".into(), at: place });
+    run.failure = Some(Failure {
+        reason: "the normal force would be negative".into(),
+        at: place,
+    });
     run
 }
 
@@ -157,7 +211,8 @@ fn a_run_that_stopped_early_says_where_and_why() {
     );
     assert!(overview(&run).contains("stopped early at t = 1.25 s: the normal force"));
     let home = tempfile::tempdir().unwrap();
-    run.write(&OutputFolder::new(&home.path().join("out")).unwrap()).unwrap();
+    run.write(&OutputFolder::new(&home.path().join("out")).unwrap())
+        .unwrap();
     assert!(home.path().join("out/summary.json").is_file());
 }
 
@@ -180,10 +235,16 @@ fn a_run_is_written_into_a_folder_with_the_same_bytes_each_time() {
     let write = |name| {
         let path = home.path().join(name);
         run.write(&OutputFolder::new(&path).unwrap()).unwrap();
-        let mut files: Vec<_> = fs::read_dir(&path).unwrap().map(|e| e.unwrap().path()).collect();
+        let mut files: Vec<_> = fs::read_dir(&path)
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .collect();
         files.sort();
         let read = |file: std::path::PathBuf| {
-            (file.file_name().unwrap().to_str().unwrap().to_owned(), fs::read(&file).unwrap())
+            (
+                file.file_name().unwrap().to_str().unwrap().to_owned(),
+                fs::read(&file).unwrap(),
+            )
         };
         files.into_iter().map(read).collect::<Vec<_>>()
     };
@@ -210,14 +271,22 @@ fn pictures_of_long_runs_stay_small() {
     let (overview, phase) = (overview(&run), phase_portraits(&run).unwrap());
     assert!(overview.len() < 400_000, "{} bytes", overview.len());
     assert!(phase.len() < 1_000_000, "{} bytes", phase.len());
-    assert!(overview.contains(">\n6666\n<"), "the number of transitions is shown");
+    assert!(
+        overview.contains(">\n6666\n<"),
+        "the number of transitions is shown"
+    );
 }
 
 #[test]
 fn an_empty_run_has_a_picture() {
     let mut run = bouncing_ball(1.0, 1, 0);
     run.events.clear();
-    run.end = Place { mode: 0, t: 0.0, j: 0, ..run.end };
+    run.end = Place {
+        mode: 0,
+        t: 0.0,
+        j: 0,
+        ..run.end
+    };
     assert!(overview(&run).ends_with("</svg>\n"));
     assert_eq!(phase_portraits(&run), None);
 }
@@ -225,9 +294,19 @@ fn an_empty_run_has_a_picture() {
 #[test]
 fn a_mode_that_is_left_at_once_is_in_the_strip() {
     let mut run = bouncing_ball(1.0, 1, 2);
-    let state = Snapshot { q: vec![1.0], v: vec![0.0], discrete: vec![1.0], reactions: vec![0.0] };
-    let leave =
-        Event { t: 0.0, from: 1, before: state.clone(), after: state, ..run.events[0].clone() };
+    let state = Snapshot {
+        q: vec![1.0],
+        v: vec![0.0],
+        discrete: vec![1.0],
+        reactions: vec![0.0],
+    };
+    let leave = Event {
+        t: 0.0,
+        from: 1,
+        before: state.clone(),
+        after: state,
+        ..run.events[0].clone()
+    };
     run.events.insert(0, leave);
     assert!(overview(&run).contains(">\nrests\n<"));
 }
@@ -245,13 +324,23 @@ fn a_chart_shows_what_its_scales_can() {
         marks: true,
     };
     let svg = chart.svg((400.0, 300.0));
-    assert_eq!(svg.matches("<circle").count(), 2, "an error of zero has no place");
-    let empty = Chart { curves: vec![], ..chart };
+    assert_eq!(
+        svg.matches("<circle").count(),
+        2,
+        "an error of zero has no place"
+    );
+    let empty = Chart {
+        curves: vec![],
+        ..chart
+    };
     assert!(
         empty.svg((400.0, 300.0)).contains("10⁰") || empty.svg((400.0, 300.0)).contains(">\n1\n<")
     );
     let quantity = Quantity::new("x_I", "m", "bulging");
-    let runs = vec![Curve { label: "μ = 0.2".into(), points: vec![(0.0, 0.0), (1.0, 2e-6)] }];
+    let runs = vec![Curve {
+        label: "μ = 0.2".into(),
+        points: vec![(0.0, 0.0), (1.0, 2e-6)],
+    }];
     let compared = dalembert::record::plot::comparison(&quantity, runs).svg((400.0, 300.0));
     assert!(compared.contains("μ = 0.2") && compared.contains("(µm)"));
 }

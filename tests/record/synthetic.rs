@@ -15,11 +15,23 @@ const G: f64 = 9.81;
 pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
     let restitution = 0.8;
     let layout = Layout {
-        coordinates: vec![Quantity::new("y", "m", "height of the ball above the ground")],
+        coordinates: vec![Quantity::new(
+            "y",
+            "m",
+            "height of the ball above the ground",
+        )],
         velocities: vec![Quantity::new("y.rate", "m/s", "rate of y")],
-        reactions: vec![Quantity::new("reaction.y", "N", "force of the ground on the ball")],
+        reactions: vec![Quantity::new(
+            "reaction.y",
+            "N",
+            "force of the ground on the ball",
+        )],
         discretes: vec![Quantity::new("side", "1", "which side of the ball is up")],
-        energies: vec![Quantity::new("energy.stored", "J", "kinetic and potential energy")],
+        energies: vec![Quantity::new(
+            "energy.stored",
+            "J",
+            "kinetic and potential energy",
+        )],
         inputs: vec![],
         modes: vec!["flies".into(), "rests".into()],
     };
@@ -63,15 +75,24 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         from: 0,
         to: 1,
         before: snapshot(0.0, -speed, side),
-        after: Snapshot { reactions: vec![G], ..snapshot(0.0, 0.0, side) },
-        energy: Some(EnergyJump { lost: speed * speed / 2.0, ground_work: 0.0 }),
+        after: Snapshot {
+            reactions: vec![G],
+            ..snapshot(0.0, 0.0, side)
+        },
+        energy: Some(EnergyJump {
+            lost: speed * speed / 2.0,
+            ground_work: 0.0,
+        }),
     });
     let mut recorder = Recorder::new(&layout, samples);
     for i in 0..samples {
         let t = end * i as f64 / samples as f64;
         let flight = flights.partition_point(|f| f.0 <= t) - 1;
         let (start, _, speed) = flights[flight];
-        let (y, v) = (speed * (t - start) - G / 2.0 * (t - start).powi(2), speed - G * (t - start));
+        let (y, v) = (
+            speed * (t - start) - G / 2.0 * (t - start).powi(2),
+            speed - G * (t - start),
+        );
         recorder.push_row(t, 0, |row| {
             row.copy_from_slice(&[y, v, 0.0, if flight % 2 == 0 { 1.0 } else { -1.0 }, 0.0]);
             row[layout.range(Group::Energy)][0] = G * y + v * v / 2.0;
@@ -93,7 +114,10 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         },
         events,
         layout,
-        solver: Solver { method: "by formula".into(), ..Solver::default() },
+        solver: Solver {
+            method: "by formula".into(),
+            ..Solver::default()
+        },
         energy: Ledger {
             initial: G * height,
             lost_at_impacts: G * height,
@@ -110,19 +134,30 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
 pub fn tank_like(samples: usize, changes: usize) -> Run {
     let coordinates = [
         ("theta", "rad", "uplift about the pivot edge, ≥ 0", "N m"),
-        ("x_I", "m", "bulging displacement along the base line, to the right", "N"),
+        (
+            "x_I",
+            "m",
+            "bulging displacement along the base line, to the right",
+            "N",
+        ),
         ("x", "m", "slip of the base, to the right", "N"),
         ("y", "m", "height of the pivot edge", "N"),
     ];
     let rate = |(name, unit): (&str, &str)| {
-        Quantity::new(format!("{name}.rate"), format!("{unit}/s"), format!("rate of {name}"))
+        Quantity::new(
+            format!("{name}.rate"),
+            format!("{unit}/s"),
+            format!("rate of {name}"),
+        )
     };
     let reaction = |name: &str, unit: &str| {
         let meaning = format!("generalized force that holds {name} still");
         Quantity::new(format!("reaction.{name}"), unit, meaning)
     };
     let layout = Layout {
-        coordinates: coordinates.map(|(n, u, m, _)| Quantity::new(n, u, m)).into(),
+        coordinates: coordinates
+            .map(|(n, u, m, _)| Quantity::new(n, u, m))
+            .into(),
         velocities: coordinates.map(|(n, u, ..)| rate((n, u))).into(),
         reactions: coordinates
             .map(|(n, .., u)| reaction(n, u))
@@ -133,7 +168,11 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
                 "force of the ground on the system along z_h",
             )])
             .collect(),
-        discretes: vec![Quantity::new("side", "1", "pivot: +1 left edge, −1 right edge")],
+        discretes: vec![Quantity::new(
+            "side",
+            "1",
+            "pivot: +1 left edge, −1 right edge",
+        )],
         energies: [
             ("stored", "kinetic and potential energy"),
             ("input_work", "work of the inputs so far"),
@@ -142,17 +181,30 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         ]
         .map(|(n, m)| Quantity::new(format!("energy.{n}"), "J", m))
         .into(),
-        inputs: vec![Quantity::new("ground_acceleration", "m/s^2", "of the ground, to the right")],
-        modes: ["stands_sticks", "stands_slides", "rocks_sticks", "rocks_slides"]
-            .map(String::from)
-            .into(),
+        inputs: vec![Quantity::new(
+            "ground_acceleration",
+            "m/s^2",
+            "of the ground, to the right",
+        )],
+        modes: [
+            "stands_sticks",
+            "stands_slides",
+            "rocks_sticks",
+            "rocks_slides",
+        ]
+        .map(String::from)
+        .into(),
     };
     let end = 2.0;
     let state = |t: f64, mode: usize| {
         let (slides, rocks) = (mode % 2 == 1, mode > 1);
         let s = 2.0 * PI * 7.0 * t;
         let ring = (2.0 * PI * 26.0 * t).sin();
-        let theta = if rocks { 3e-6 * (1.0 - (s * 2.0).cos()) } else { 0.0 };
+        let theta = if rocks {
+            3e-6 * (1.0 - (s * 2.0).cos())
+        } else {
+            0.0
+        };
         let slip = 2.3e-3 * (s - 0.6).sin() - 1.1e-3 * t;
         let q = vec![theta, 34e-6 * (s.sin() + 0.3 * ring), slip, 0.0];
         let v = vec![
@@ -163,9 +215,19 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         ];
         let shear = 110.0 * s.cos();
         let moment = if rocks { 0.0 } else { 60.0 + 40.0 * s.sin() };
-        let reactions =
-            vec![moment, 0.0, if slides { 0.0 } else { shear }, 612.0 + 3.0 * ring, shear];
-        Snapshot { q, v, discrete: vec![if s.sin() > 0.0 { 1.0 } else { -1.0 }], reactions }
+        let reactions = vec![
+            moment,
+            0.0,
+            if slides { 0.0 } else { shear },
+            612.0 + 3.0 * ring,
+            shear,
+        ];
+        Snapshot {
+            q,
+            v,
+            discrete: vec![if s.sin() > 0.0 { 1.0 } else { -1.0 }],
+            reactions,
+        }
     };
     let names = ["slip", "stick", "lift_off", "landing", "reversal"];
     let mut events: Vec<Event> = Vec::new();
@@ -173,9 +235,17 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
     for i in 0..changes {
         // Irregular intervals, and a pause in the middle.
         let share = (i as f64 + 0.4 * ((i * i) as f64).sin()) / changes as f64;
-        let t = end * if share < 0.5 { share * 0.9 } else { 1.0 - (1.0 - share) * 0.9 };
+        let t = end
+            * if share < 0.5 {
+                share * 0.9
+            } else {
+                1.0 - (1.0 - share) * 0.9
+            };
         let next = (mode + 1 + i % 3) % 4;
-        let energy = (i % 5 == 3).then_some(EnergyJump { lost: 1e-5, ground_work: 2e-6 });
+        let energy = (i % 5 == 3).then_some(EnergyJump {
+            lost: 1e-5,
+            ground_work: 2e-6,
+        });
         events.push(Event {
             t: t.max(events.last().map_or(0.0, |e| e.t)),
             j: i as u64 + 1,
@@ -221,7 +291,12 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         },
         layout,
         trajectory: recorder.finish(),
-        end: Place { t: end, j: changes as u64, mode, state: state(end, mode) },
+        end: Place {
+            t: end,
+            j: changes as u64,
+            mode,
+            state: state(end, mode),
+        },
         events,
         solver: Solver {
             method: "by formula".into(),

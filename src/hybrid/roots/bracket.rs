@@ -36,7 +36,11 @@ pub(super) fn close(f: &mut impl FnMut(f64) -> f64, left: Point, right: Point) -
             } else {
                 r.0 + (r.0 - l.0) * (wr / (wl - wr))
             };
-            if secant.is_nan() { middle(l.0, r.0) } else { secant.clamp(above(l.0), below(r.0)) }
+            if secant.is_nan() {
+                middle(l.0, r.0)
+            } else {
+                secant.clamp(above(l.0), below(r.0))
+            }
         };
         let value = f(x);
         let negative = value < 0.0;
@@ -96,7 +100,11 @@ pub(super) fn lowest(f: &mut impl FnMut(f64) -> f64, near: Point, low: f64, high
             let value = f(x);
             (value < best.1).then_some((x, value))
         });
-        stride = if lower.is_some() { stride.saturating_mul(2) } else { stride / 2 };
+        stride = if lower.is_some() {
+            stride.saturating_mul(2)
+        } else {
+            stride / 2
+        };
         best = lower.unwrap_or(best);
     }
     best
@@ -123,7 +131,10 @@ mod tests {
         let (x, _, n) = counted(|x| 0.5 - x * x, 0.0, 1.0);
         assert!((x - 0.5f64.sqrt()).abs() < 2e-16 && n <= 14, "{n}");
         let (x, _, n) = counted(|x| x.cos(), 0.0, 3.0);
-        assert!((x - std::f64::consts::FRAC_PI_2).abs() < 4e-16 && n <= 14, "{n}");
+        assert!(
+            (x - std::f64::consts::FRAC_PI_2).abs() < 4e-16 && n <= 14,
+            "{n}"
+        );
     }
 
     #[test]

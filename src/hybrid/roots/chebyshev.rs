@@ -24,7 +24,11 @@ const HALF: [f64; 9] = [
 /// Place of a node of the highest degree in a window of length 1, exact relative to its distance
 /// from the left end.
 pub(super) const fn place(node: usize) -> f64 {
-    if node <= 8 { HALF[node] } else { 1.0 - HALF[DEGREE - node] }
+    if node <= 8 {
+        HALF[node]
+    } else {
+        1.0 - HALF[DEGREE - node]
+    }
 }
 
 /// cos(jπ/16).
@@ -78,18 +82,31 @@ impl Interpolant {
             let weight = if k == 0 || k == degree { 1.0 } else { 2.0 };
             *coefficient = sign * weight * sum / degree as f64;
         }
-        let magnitude = values.iter().step_by(stride).fold(0.0, |m: f64, v| m.max(v.abs()));
+        let magnitude = values
+            .iter()
+            .step_by(stride)
+            .fold(0.0, |m: f64, v| m.max(v.abs()));
         // Two sums, over the nodes and over the coefficients, of degree + 1 terms each: γ ≈ 2nu.
         let rounding = degree as f64 * f64::EPSILON * magnitude;
-        let tail = coefficients[degree / 2 + 1..=degree].iter().map(|c| c.abs()).sum();
+        let tail = coefficients[degree / 2 + 1..=degree]
+            .iter()
+            .map(|c| c.abs())
+            .sum();
         // Trailing coefficients that no bit of the sum depends on only cost time.
         let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         let mut used = degree;
         while used > 0 && coefficients[used].abs() <= f64::EPSILON * largest {
             used -= 1;
         }
-        let expansion = Chebyshev { coefficients, degree: used };
-        Self { expansion, tail, rounding }
+        let expansion = Chebyshev {
+            coefficients,
+            degree: used,
+        };
+        Self {
+            expansion,
+            tail,
+            rounding,
+        }
     }
 
     /// Divides a zero of order `order` at the left end out of `values`, in place: at the other
@@ -112,7 +129,12 @@ impl Interpolant {
             }
             quotients[node] = quotient;
             let sign = if j % 2 == 0 { -1.0 } else { 1.0 };
-            start += sign * if j == degree { quotient } else { 2.0 * quotient };
+            start += sign
+                * if j == degree {
+                    quotient
+                } else {
+                    2.0 * quotient
+                };
         }
         quotients[0] = start;
         let mut interpolant = Self::through(&quotients, degree);
@@ -136,7 +158,10 @@ impl Interpolant {
 
 impl Chebyshev {
     fn sum_beyond_constant(&self) -> f64 {
-        self.coefficients[1..=self.degree].iter().map(|c| c.abs()).sum()
+        self.coefficients[1..=self.degree]
+            .iter()
+            .map(|c| c.abs())
+            .sum()
     }
 
     /// Bounds of the value on the window, from the coefficients alone.
@@ -158,8 +183,10 @@ impl Expansion for Chebyshev {
     }
 
     fn derivative(&self) -> Self {
-        let mut derivative =
-            Self { coefficients: [0.0; NODES], degree: self.degree.saturating_sub(1) };
+        let mut derivative = Self {
+            coefficients: [0.0; NODES],
+            degree: self.degree.saturating_sub(1),
+        };
         // d_(k−1) = d_(k+1) + 2k cₖ, and half of that for d₀.
         for k in (1..=self.degree).rev() {
             let above = derivative.coefficients.get(k + 1).copied().unwrap_or(0.0);

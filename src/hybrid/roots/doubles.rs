@@ -70,7 +70,12 @@ mod tests {
 
     #[test]
     fn middle_lies_between_and_halves_the_count() {
-        for (l, r) in [(-f64::MAX, f64::MAX), (0.0, 1.0), (-1.0, 0.5), (3.0, 3.0f64.next_up())] {
+        for (l, r) in [
+            (-f64::MAX, f64::MAX),
+            (0.0, 1.0),
+            (-1.0, 0.5),
+            (3.0, 3.0f64.next_up()),
+        ] {
             let m = middle(l, r);
             assert!(l <= m && m < r);
             assert!(steps(l, m).abs_diff(steps(m, r)) <= 1);

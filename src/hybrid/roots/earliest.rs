@@ -33,7 +33,11 @@ pub fn earliest(
     found: &mut [Search],
     mut search: impl FnMut(usize, f64, f64, Watch) -> Search,
 ) -> Earliest {
-    assert_eq!(watches.len(), found.len(), "as many remembered signs as guards");
+    assert_eq!(
+        watches.len(),
+        found.len(),
+        "as many remembered signs as guards"
+    );
     for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
         *found = search(index, from, to, watch);
     }
@@ -45,7 +49,9 @@ pub fn earliest(
         }
         end = time;
         for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
-            let event_beyond = found.crossing.is_some_and(|crossing| crossing.outside > end);
+            let event_beyond = found
+                .crossing
+                .is_some_and(|crossing| crossing.outside > end);
             // Without an event an unchanged sign has not changed on the way either.
             let sign_unknown = found.crossing.is_none() && found.watch != watch;
             if event_beyond || sign_unknown {
@@ -54,13 +60,21 @@ pub fn earliest(
         }
     }
     let resolved = found.iter().all(|found| found.resolved);
-    let time = found.iter().any(|found| found.crossing.is_some()).then_some(end);
+    let time = found
+        .iter()
+        .any(|found| found.crossing.is_some())
+        .then_some(end);
     Earliest { time, resolved }
 }
 
 /// The last `outside` of the events whose brackets share a double with the earliest.
 fn time_of_first_set(found: &[Search]) -> Option<f64> {
     let crossings = || found.iter().filter_map(|found| found.crossing);
-    let first = crossings().map(|crossing| crossing.outside).reduce(f64::min)?;
-    crossings().filter(|c| c.inside <= first).map(|c| c.outside).reduce(f64::max)
+    let first = crossings()
+        .map(|crossing| crossing.outside)
+        .reduce(f64::min)?;
+    crossings()
+        .filter(|c| c.inside <= first)
+        .map(|c| c.outside)
+        .reduce(f64::max)
 }

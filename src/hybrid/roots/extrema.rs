@@ -33,7 +33,10 @@ pub(super) struct Places<const N: usize> {
 
 impl<const N: usize> Places<N> {
     pub(super) fn new() -> Self {
-        Self { values: [0.0; N], len: 0 }
+        Self {
+            values: [0.0; N],
+            len: 0,
+        }
     }
 
     pub(super) fn push(&mut self, place: f64) {

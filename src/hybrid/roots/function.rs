@@ -33,7 +33,12 @@ pub fn search(
     if from >= to {
         return Search::quiet(watch);
     }
-    Guard { function: guard, noise, evaluations: 0 }.window(from, to, watch)
+    Guard {
+        function: guard,
+        noise,
+        evaluations: 0,
+    }
+    .window(from, to, watch)
 }
 
 struct Guard<F> {
@@ -54,7 +59,12 @@ impl Samples {
     fn new(from: f64, to: f64) -> Self {
         let mut nodes = std::array::from_fn(|j| from + place(j) * (to - from));
         nodes[DEGREE] = to;
-        Self { from, to, nodes, values: [f64::NAN; NODES] }
+        Self {
+            from,
+            to,
+            nodes,
+            values: [f64::NAN; NODES],
+        }
     }
 
     /// Distance from the start as a fraction of the window.
@@ -89,19 +99,28 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
             }
         }
         if watch == Watch::Dormant && self.is_rough(&samples) {
-            return Search { resolved: false, ..Search::quiet(watch) };
+            return Search {
+                resolved: false,
+                ..Search::quiet(watch)
+            };
         }
         let centre = from + (to - from) / 2.0;
         let neighbours = !(from < centre && centre < to);
         if neighbours || self.evaluations >= EVALUATIONS {
-            return Search { resolved: neighbours, ..self.by_values(&samples, watch) };
+            return Search {
+                resolved: neighbours,
+                ..self.by_values(&samples, watch)
+            };
         }
         let first = self.window(from, centre, watch);
         if first.crossing.is_some() {
             return first;
         }
         let second = self.window(centre, to, first.watch);
-        Search { resolved: first.resolved && second.resolved, ..second }
+        Search {
+            resolved: first.resolved && second.resolved,
+            ..second
+        }
     }
 
     /// The answer from the interpolant of this degree, if it is good enough to give one.
@@ -121,14 +140,23 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         let unknown = watch == Watch::Dormant && self.noise == 0.0;
         let noise = if unknown { error } else { self.noise };
         let ends = (at_start, samples.values[DEGREE]);
-        walk(&mut Cut::new(self, samples, degree, interpolant, ends, 0, noise), watch, noise)
+        walk(
+            &mut Cut::new(self, samples, degree, interpolant, ends, 0, noise),
+            watch,
+            noise,
+        )
     }
 
     /// A guard that is exactly zero at the start: its zero is divided out, of the lowest order that
     /// leaves a quotient with a sign there, and all lower orders must be resolved as zero.
     fn leave_zero(&mut self, samples: &Samples, degree: usize) -> Option<Search> {
         let from = samples.from;
-        if samples.values.iter().step_by(DEGREE / degree).all(|&value| value == 0.0) {
+        if samples
+            .values
+            .iter()
+            .step_by(DEGREE / degree)
+            .all(|&value| value == 0.0)
+        {
             return Some(Search::quiet(Watch::Dormant));
         }
         let fractions = samples.nodes.map(|node| samples.fraction(node));
@@ -140,7 +168,11 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
                 && let Some(right) = self.negative_near(from, samples.nodes[DEGREE / degree])
             {
                 let (l, r, flew) = departure(&mut |t| self.value(t), from, right);
-                let kind = if flew { Kind::Fall } else { Kind::LeavesNegative };
+                let kind = if flew {
+                    Kind::Fall
+                } else {
+                    Kind::LeavesNegative
+                };
                 return Some(Search::found(l.0, r.0, kind, Watch::Violated));
             } else if start.abs() > interpolant.error() {
                 let ends = (start, quotients[DEGREE]);
@@ -187,12 +219,22 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
             return Search::quiet(watch);
         }
         let noise = self.noise;
-        let search = walk(&mut Values { guard: self, samples }, watch, noise)
-            .expect("every node has a value");
+        let search = walk(
+            &mut Values {
+                guard: self,
+                samples,
+            },
+            watch,
+            noise,
+        )
+        .expect("every node has a value");
         match search.crossing {
             Some(crossing) if crossing.kind == Kind::Fall => {
                 let kind = self.classify(crossing, samples);
-                Search { crossing: Some(Crossing { kind, ..crossing }), ..search }
+                Search {
+                    crossing: Some(Crossing { kind, ..crossing }),
+                    ..search
+                }
             }
             _ => search,
         }
@@ -246,7 +288,16 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
     ) -> Self {
         let resolved = interpolant.is_resolved(guard.noise, degree);
         let extrema = extrema(&interpolant.expansion);
-        Self { guard, samples, interpolant, extrema, ends, order, noise, resolved }
+        Self {
+            guard,
+            samples,
+            interpolant,
+            extrema,
+            ends,
+            order,
+            noise,
+            resolved,
+        }
     }
 }
 

@@ -134,11 +134,23 @@ pub struct Search {
 impl Search {
     /// No event; `watch` at the end of the window.
     pub(crate) fn quiet(watch: Watch) -> Self {
-        Self { crossing: None, watch, resolved: true }
+        Self {
+            crossing: None,
+            watch,
+            resolved: true,
+        }
     }
 
     /// An event, and the remembered sign right after it.
     pub(crate) fn found(inside: f64, outside: f64, kind: Kind, watch: Watch) -> Self {
-        Self { crossing: Some(Crossing { inside, outside, kind }), watch, resolved: true }
+        Self {
+            crossing: Some(Crossing {
+                inside,
+                outside,
+                kind,
+            }),
+            watch,
+            resolved: true,
+        }
     }
 }

@@ -102,7 +102,11 @@ impl<const N: usize> Polynomial<N> {
                 }
                 let right = (right, self.value(right));
                 let (l, r, flew) = departure(&mut |s| self.value(s), from, right);
-                let kind = if flew { Kind::Fall } else { Kind::LeavesNegative };
+                let kind = if flew {
+                    Kind::Fall
+                } else {
+                    Kind::LeavesNegative
+                };
                 Search::found(l.0, r.0, kind, Watch::Violated)
             }
             Watch::Armed => quotient.search(from, to, Watch::Armed, 0.0),
@@ -201,7 +205,12 @@ impl<'p, const N: usize> Monotone<'p, N> {
                 inside.push(s);
             }
         }
-        Self { polynomial, extrema: inside, from, to }
+        Self {
+            polynomial,
+            extrema: inside,
+            from,
+            to,
+        }
     }
 }
 
@@ -214,7 +223,11 @@ impl<const N: usize> Pieces for Monotone<'_, N> {
         if index == 0 {
             self.from
         } else {
-            self.extrema.as_slice().get(index - 1).copied().unwrap_or(self.to)
+            self.extrema
+                .as_slice()
+                .get(index - 1)
+                .copied()
+                .unwrap_or(self.to)
         }
     }
 

@@ -25,7 +25,12 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
     if watch == Watch::Dormant && left.1.abs() > noise {
         watch = Watch::of(left.1);
         if watch == Watch::Violated {
-            return Some(Search::found(start, above(start), Kind::LeavesNegative, watch));
+            return Some(Search::found(
+                start,
+                above(start),
+                Kind::LeavesNegative,
+                watch,
+            ));
         }
     }
     for index in 1..pieces.len() {
@@ -40,9 +45,17 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
             Watch::Dormant if right.1 > noise => watch = Watch::Armed,
             Watch::Dormant if right.1 < -noise => {
                 let mut beyond = |x| pieces.own(x) + noise;
-                let (l, r) =
-                    close(&mut beyond, (left.0, left.1 + noise), (right.0, right.1 + noise));
-                return Some(Search::found(l.0, r.0, Kind::LeavesNegative, Watch::Violated));
+                let (l, r) = close(
+                    &mut beyond,
+                    (left.0, left.1 + noise),
+                    (right.0, right.1 + noise),
+                );
+                return Some(Search::found(
+                    l.0,
+                    r.0,
+                    Kind::LeavesNegative,
+                    Watch::Violated,
+                ));
             }
             Watch::Violated if right.1 > 0.0 => watch = Watch::Armed,
             Watch::Armed => {

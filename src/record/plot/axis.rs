@@ -47,7 +47,11 @@ impl Axis {
             Scale::Linear => Self::linear(unit, low, high, margin),
             Scale::Log => {
                 let (low, high) = (low.log10(), high.log10());
-                let room = if high > low { (high - low) * margin } else { 0.5 };
+                let room = if high > low {
+                    (high - low) * margin
+                } else {
+                    0.5
+                };
                 let display = display(unit, 0.0);
                 Axis {
                     scale,
@@ -72,7 +76,10 @@ impl Axis {
         };
         let largest = (low - offset).abs().max((high - offset).abs());
         let display = display(unit, largest);
-        let (low, high) = ((low - offset) * display.factor, (high - offset) * display.factor);
+        let (low, high) = (
+            (low - offset) * display.factor,
+            (high - offset) * display.factor,
+        );
         let room = match high - low {
             range if range > 0.0 => range * margin,
             _ if low != 0.0 => low.abs() / 2.0,
@@ -103,7 +110,11 @@ impl Axis {
         let mut title = what.to_owned();
         if self.offset != 0.0 {
             let sign = if self.offset > 0.0 { '−' } else { '+' };
-            title = format!("{title} {sign} {} {}", rounded(self.offset.abs(), 15), self.unit);
+            title = format!(
+                "{title} {sign} {} {}",
+                rounded(self.offset.abs(), 15),
+                self.unit
+            );
         }
         if !self.display.unit.is_empty() {
             title = format!("{title} ({})", self.display.unit);
@@ -151,7 +162,9 @@ impl Axis {
         let start = ((self.high - self.low) / (most + 1) as f64).log10().floor() as i32;
         let steps = (start..).flat_map(|e| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(e)));
         let mut fitting = steps.filter(|&step| inside(step) <= most as f64);
-        fitting.next().expect("a distance longer than the axis leaves three multiples at most")
+        fitting
+            .next()
+            .expect("a distance longer than the axis leaves three multiples at most")
     }
 }
 

@@ -51,7 +51,9 @@ pub(super) struct Canvas<'a> {
 pub(super) fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> String {
     let (w, h) = (units(width) as u32, units(height) as u32);
     let mut svg = String::new();
-    let mut canvas = Canvas { backend: SVGBackend::with_string(&mut svg, (w, h)) };
+    let mut canvas = Canvas {
+        backend: SVGBackend::with_string(&mut svg, (w, h)),
+    };
     canvas.rectangle((0.0, 0.0), (width, height), RGBColor(255, 255, 255));
     draw(&mut canvas);
     canvas.backend.present().expect(INTO_A_STRING);
@@ -86,8 +88,11 @@ impl Canvas<'_> {
         colour: RGBColor,
     ) {
         let path = simplified(points.into_iter().map(point));
-        let style =
-            ShapeStyle { color: colour.into(), filled: false, stroke_width: units(width) as u32 };
+        let style = ShapeStyle {
+            color: colour.into(),
+            filled: false,
+            stroke_width: units(width) as u32,
+        };
         if path.len() > 1 {
             self.backend.draw_path(path, &style).expect(INTO_A_STRING);
         }
@@ -104,18 +109,26 @@ impl Canvas<'_> {
     /// A filled polygon.
     pub fn polygon(&mut self, points: impl IntoIterator<Item = (f64, f64)>, colour: RGBColor) {
         let path = simplified(points.into_iter().map(point));
-        self.backend.fill_polygon(path, &colour).expect(INTO_A_STRING);
+        self.backend
+            .fill_polygon(path, &colour)
+            .expect(INTO_A_STRING);
     }
 
     /// A filled circle.
     pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: RGBColor) {
         let radius = units(radius) as u32;
-        self.backend.draw_circle(point(centre), radius, &colour, true).expect(INTO_A_STRING);
+        self.backend
+            .draw_circle(point(centre), radius, &colour, true)
+            .expect(INTO_A_STRING);
     }
 
     /// A text.
     pub fn text(&mut self, text: &str, at: (f64, f64), anchor: Anchor, font: Font) {
-        let style = if font.bold { FontStyle::Bold } else { FontStyle::Normal };
+        let style = if font.bold {
+            FontStyle::Bold
+        } else {
+            FontStyle::Normal
+        };
         let size = font.size * UNITS * FONT_FACTOR;
         let (horizontal, transform) = match anchor {
             Anchor::Left => (HPos::Left, FontTransform::None),
@@ -127,7 +140,9 @@ impl Canvas<'_> {
             .color(&font.colour)
             .pos(Pos::new(horizontal, VPos::Center))
             .transform(transform);
-        self.backend.draw_text(text, &style, point(at)).expect(INTO_A_STRING);
+        self.backend
+            .draw_text(text, &style, point(at))
+            .expect(INTO_A_STRING);
     }
 }
 
@@ -166,14 +181,26 @@ mod tests {
     #[test]
     fn straight_runs_collapse_and_reversals_stay() {
         let path = [(0, 0), (1, 1), (1, 1), (2, 2), (5, 5), (4, 4), (4, 9)];
-        assert_eq!(simplified(path.into_iter()), [(0, 0), (5, 5), (4, 4), (4, 9)]);
+        assert_eq!(
+            simplified(path.into_iter()),
+            [(0, 0), (5, 5), (4, 4), (4, 9)]
+        );
     }
 
     #[test]
     fn the_picture_is_shown_in_its_size_and_texts_are_escaped() {
-        let font = Font { size: 10.0, colour: RGBColor(0, 0, 0), bold: false };
+        let font = Font {
+            size: 10.0,
+            colour: RGBColor(0, 0, 0),
+            bold: false,
+        };
         let svg = picture(30.0, 20.0, |canvas| {
-            canvas.text(&format!("a<b{SUB}I{END_SUB}"), (1.0, 2.0), Anchor::Left, font);
+            canvas.text(
+                &format!("a<b{SUB}I{END_SUB}"),
+                (1.0, 2.0),
+                Anchor::Left,
+                font,
+            );
         });
         assert!(
             svg.starts_with("<svg width=\"30\" height=\"20\" viewBox=\"0 0 300 200\""),

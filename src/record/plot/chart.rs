@@ -35,7 +35,11 @@ pub struct Chart {
     pub marks: bool,
 }
 
-const TITLE: Font = Font { size: 13.0, colour: INK, bold: true };
+const TITLE: Font = Font {
+    size: 13.0,
+    colour: INK,
+    bold: true,
+};
 /// Room for the labels of the vertical axis and its title; for half a label on the right; for the
 /// horizontal axis.
 const LEFT: f64 = 78.0;
@@ -45,18 +49,34 @@ const BELOW: f64 = 40.0;
 impl Dimension {
     /// A dimension with evenly spread values.
     pub fn linear(title: &str, unit: &str) -> Dimension {
-        Dimension { title: title.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
+        Dimension {
+            title: title.to_owned(),
+            unit: unit.to_owned(),
+            scale: Scale::Linear,
+        }
     }
     /// A dimension with values spread by their logarithm.
     pub fn log(title: &str, unit: &str) -> Dimension {
-        Dimension { scale: Scale::Log, ..Dimension::linear(title, unit) }
+        Dimension {
+            scale: Scale::Log,
+            ..Dimension::linear(title, unit)
+        }
     }
 
     /// The axis that shows all the values; from 0 to 1 (or 1 to 10) when there are none.
     fn axis(&self, values: impl Iterator<Item = f64>, margin: f64) -> Axis {
         let shown = |x: f64| self.scale == Scale::Linear || x > 0.0;
-        let none = if self.scale == Scale::Log { (1.0, 10.0) } else { (0.0, 1.0) };
-        Axis::new(self.scale, &self.unit, range(values, shown).unwrap_or(none), margin)
+        let none = if self.scale == Scale::Log {
+            (1.0, 10.0)
+        } else {
+            (0.0, 1.0)
+        };
+        Axis::new(
+            self.scale,
+            &self.unit,
+            range(values, shown).unwrap_or(none),
+            margin,
+        )
     }
 }
 
@@ -75,7 +95,15 @@ impl Chart {
     /// The chart as SVG, `width` × `height` pixels.
     pub fn svg(&self, (width, height): (f64, f64)) -> String {
         picture(width, height, |canvas| {
-            self.draw(canvas, Area { left: 0.0, top: 0.0, width, height })
+            self.draw(
+                canvas,
+                Area {
+                    left: 0.0,
+                    top: 0.0,
+                    width,
+                    height,
+                },
+            )
         })
     }
 
@@ -91,12 +119,22 @@ impl Chart {
         let entries = entries(&self.curves);
         legend(canvas, &entries, (left, top), width);
         top += legend_height(&entries, width) + 4.0;
-        let inner = Area { left, top, width, height: area.bottom() - BELOW - top };
+        let inner = Area {
+            left,
+            top,
+            width,
+            height: area.bottom() - BELOW - top,
+        };
         let points = || self.curves.iter().flat_map(|c| &c.points);
         // Time fills the width; marks and clouds of points need room at the sides.
-        let in_order = self.curves.iter().all(|c| c.points.is_sorted_by(|a, b| a.0 <= b.0));
-        let x =
-            self.x.axis(points().map(|p| p.0), if in_order && !self.marks { 0.0 } else { 0.06 });
+        let in_order = self
+            .curves
+            .iter()
+            .all(|c| c.points.is_sorted_by(|a, b| a.0 <= b.0));
+        let x = self.x.axis(
+            points().map(|p| p.0),
+            if in_order && !self.marks { 0.0 } else { 0.06 },
+        );
         let y = self.y.axis(points().map(|p| p.1), 0.06);
         grid(canvas, inner, &x, &y, &self.y.title);
         horizontal_axis(canvas, inner, &x, &self.x.title);

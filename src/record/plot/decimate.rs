@@ -6,7 +6,9 @@
 /// must not decrease; points that are not finite are left out.
 pub(super) fn decimate(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept = Vec::new();
-    let mut points = points.filter(|(x, y)| x.is_finite() && y.is_finite()).peekable();
+    let mut points = points
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .peekable();
     while let Some(first) = points.next() {
         let column = first.0.floor();
         let (mut low, mut high, mut last) = ((0, first), (0, first), (0, first));

@@ -31,7 +31,11 @@ const READABLE: f64 = 0.1;
 /// A quantity that varies by less than this part of its size varies by rounding alone.
 const VARIES: f64 = 1e-12;
 
-const TITLE: Font = Font { size: 15.0, colour: INK, bold: true };
+const TITLE: Font = Font {
+    size: 15.0,
+    colour: INK,
+    bold: true,
+};
 
 /// The curves of one panel.
 struct Panel {
@@ -62,12 +66,22 @@ pub fn overview(run: &Run) -> String {
     picture(WIDTH, height, |canvas| {
         head(canvas, run);
         let mut top = HEAD;
-        let mut last = Area { left: LEFT, top, width: INNER, height: 0.0 };
+        let mut last = Area {
+            left: LEFT,
+            top,
+            width: INNER,
+            height: 0.0,
+        };
         for (c, panel) in &panels {
             let legend_entries = entries(c);
             legend(canvas, &legend_entries, (LEFT, top), INNER);
             top += legend_height(&legend_entries, INNER);
-            last = Area { left: LEFT, top, width: INNER, height: PANEL };
+            last = Area {
+                left: LEFT,
+                top,
+                width: INNER,
+                height: PANEL,
+            };
             let y = Axis::new(Scale::Linear, &panel.unit, panel.range, 0.06);
             grid(canvas, last, &time, &y, &axis_title(run, panel));
             curves(canvas, last, &time, &y, c, false);
@@ -86,10 +100,19 @@ pub fn overview(run: &Run) -> String {
 
 fn head(canvas: &mut Canvas, run: &Run) {
     let subject = &run.subject;
-    let title = if subject.title.is_empty() { &subject.model } else { &subject.title };
+    let title = if subject.title.is_empty() {
+        &subject.model
+    } else {
+        &subject.title
+    };
     canvas.text(title, (LEFT, 16.0), Anchor::Left, TITLE);
-    let choices = subject.choices.iter().map(|(choice, option)| format!("{choice}: {option}"));
-    let mut line: Vec<String> = std::iter::once(subject.model.clone()).chain(choices).collect();
+    let choices = subject
+        .choices
+        .iter()
+        .map(|(choice, option)| format!("{choice}: {option}"));
+    let mut line: Vec<String> = std::iter::once(subject.model.clone())
+        .chain(choices)
+        .collect();
     let mut font = SMALL;
     if let Some(failure) = &run.failure {
         let place = format!("stopped early at t = {} s", rounded(failure.at.t, 6));
@@ -104,15 +127,25 @@ fn head(canvas: &mut Canvas, run: &Run) {
 
 /// The axis from the first instant of a run to its end.
 pub(super) fn time_axis(run: &Run) -> Axis {
-    let times = run.trajectory.t.iter().copied().chain(run.events.iter().map(|e| e.t));
+    let times = run
+        .trajectory
+        .t
+        .iter()
+        .copied()
+        .chain(run.events.iter().map(|e| e.t));
     let (from, to) = range(times.chain([run.end.t]), |_| true).unwrap_or((0.0, 0.0));
     Axis::new(Scale::Linear, "s", (from, to), 0.0)
 }
 
 /// Divides the columns among panels; also a sentence about those that never change.
 fn panels(run: &Run) -> (Vec<Panel>, String) {
-    const ORDER: [Group; 5] =
-        [Group::Input, Group::Coordinate, Group::Velocity, Group::Reaction, Group::Energy];
+    const ORDER: [Group; 5] = [
+        Group::Input,
+        Group::Coordinate,
+        Group::Velocity,
+        Group::Reaction,
+        Group::Energy,
+    ];
     let mut panels: Vec<Panel> = Vec::new();
     let mut constants = Vec::new();
     for group in ORDER {
@@ -179,7 +212,10 @@ fn panel_curves(run: &Run, panel: &Panel) -> Vec<Curve> {
             (Group::Velocity, _) => symbol(&column.name),
             _ => format!("{}: {}", symbol(&column.name), column.meaning),
         };
-        Curve { label, points: run.curve(i).collect() }
+        Curve {
+            label,
+            points: run.curve(i).collect(),
+        }
     };
     panel.columns.iter().map(curve).collect()
 }

@@ -8,9 +8,17 @@ use super::decimate::decimate;
 use super::palette::{FAINT, GRID, INK, ZERO, line};
 
 /// Font of legends and titles of axes.
-pub(super) const TEXT: Font = Font { size: 11.0, colour: INK, bold: false };
+pub(super) const TEXT: Font = Font {
+    size: 11.0,
+    colour: INK,
+    bold: false,
+};
 /// Font of tick labels and of what is said on the side.
-pub(super) const SMALL: Font = Font { size: 10.0, colour: FAINT, bold: false };
+pub(super) const SMALL: Font = Font {
+    size: 10.0,
+    colour: FAINT,
+    bold: false,
+};
 /// Height of a row of a legend.
 pub(super) const ROW: f64 = 16.0;
 /// Widths of a curve and of everything else that is drawn as a line.
@@ -68,9 +76,15 @@ pub(super) struct Entry {
 
 /// The entries of curves drawn by [`curves`], without those that have no label.
 pub(super) fn entries(curves: &[Curve]) -> Vec<Entry> {
-    let entry =
-        |(i, c): (usize, &Curve)| Entry { label: c.label.clone(), colour: line(i), filled: false };
-    let labelled = curves.iter().enumerate().filter(|(_, c)| !c.label.is_empty());
+    let entry = |(i, c): (usize, &Curve)| Entry {
+        label: c.label.clone(),
+        colour: line(i),
+        filled: false,
+    };
+    let labelled = curves
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| !c.label.is_empty());
     labelled.map(entry).collect()
 }
 
@@ -91,7 +105,9 @@ fn places(entries: &[Entry], width: f64) -> Vec<(f64, usize)> {
 
 /// Height of a legend.
 pub(super) fn legend_height(entries: &[Entry], width: f64) -> f64 {
-    places(entries, width).last().map_or(0.0, |&(_, row)| (row + 1) as f64 * ROW)
+    places(entries, width)
+        .last()
+        .map_or(0.0, |&(_, row)| (row + 1) as f64 * ROW)
 }
 
 /// Draws a legend with its upper left corner at `(left, top)`.
@@ -119,7 +135,12 @@ pub(super) fn grid(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, title: &
         canvas.text(&tick.label, (left - SPACE, at), Anchor::Right, SMALL);
     }
     let middle = area.top + area.height / 2.0;
-    canvas.text(&y.title(title), (area.left - 58.0, middle), Anchor::Upwards, TEXT);
+    canvas.text(
+        &y.title(title),
+        (area.left - 58.0, middle),
+        Anchor::Upwards,
+        TEXT,
+    );
     frame(canvas, area);
 }
 
@@ -136,7 +157,12 @@ pub(super) fn horizontal_axis(canvas: &mut Canvas, area: Area, x: &Axis, title: 
         canvas.text(&tick.label, (at, bottom + 10.0), Anchor::Centre, SMALL);
     }
     let middle = area.left + area.width / 2.0;
-    canvas.text(&x.title(title), (middle, area.bottom() + 25.0), Anchor::Centre, TEXT);
+    canvas.text(
+        &x.title(title),
+        (middle, area.bottom() + 25.0),
+        Anchor::Centre,
+        TEXT,
+    );
 }
 
 /// Labels 55 px apart do not touch.
@@ -155,8 +181,15 @@ pub(super) fn curves(
 ) {
     for (i, curve) in curves.iter().enumerate() {
         let in_order = curve.points.is_sorted_by(|a, b| a.0 <= b.0);
-        let pixels = curve.points.iter().map(|&(a, b)| area.at(x.position(a), y.position(b)));
-        let pixels: Vec<_> = if in_order { decimate(pixels) } else { pixels.collect() };
+        let pixels = curve
+            .points
+            .iter()
+            .map(|&(a, b)| area.at(x.position(a), y.position(b)));
+        let pixels: Vec<_> = if in_order {
+            decimate(pixels)
+        } else {
+            pixels.collect()
+        };
         for piece in pixels.split(|p| !p.0.is_finite() || !p.1.is_finite()) {
             canvas.line(piece.iter().copied(), CURVE, line(i));
             if marks {

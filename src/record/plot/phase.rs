@@ -22,24 +22,41 @@ const PIECES: usize = 16_000;
 pub fn phase_portraits(run: &Run) -> Option<String> {
     let coordinates = run.layout.range(Group::Coordinate);
     let velocities = run.layout.range(Group::Velocity);
-    let charts: Vec<Chart> =
-        coordinates.zip(velocities).filter_map(|(q, v)| portrait(run, q, v)).collect();
+    let charts: Vec<Chart> = coordinates
+        .zip(velocities)
+        .filter_map(|(q, v)| portrait(run, q, v))
+        .collect();
     if charts.is_empty() {
         return None;
     }
     let across = charts.len().min(ACROSS);
     let (width, height) = SIZE;
-    let picture_size = (width * across as f64, height * charts.len().div_ceil(ACROSS) as f64);
+    let picture_size = (
+        width * across as f64,
+        height * charts.len().div_ceil(ACROSS) as f64,
+    );
     Some(picture(picture_size.0, picture_size.1, |canvas| {
         for (i, chart) in charts.iter().enumerate() {
             let (left, top) = ((i % across) as f64 * width, (i / across) as f64 * height);
-            chart.draw(canvas, Area { left, top, width, height });
+            chart.draw(
+                canvas,
+                Area {
+                    left,
+                    top,
+                    width,
+                    height,
+                },
+            );
         }
     }))
 }
 
 fn portrait(run: &Run, q: usize, v: usize) -> Option<Chart> {
-    let points: Vec<_> = run.curve(q).map(|p| p.1).zip(run.curve(v).map(|p| p.1)).collect();
+    let points: Vec<_> = run
+        .curve(q)
+        .map(|p| p.1)
+        .zip(run.curve(v).map(|p| p.1))
+        .collect();
     let (low, high) = range(points.iter().map(|p| p.0), |_| true)?;
     let (slow, fast) = range(points.iter().map(|p| p.1), |_| true)?;
     if low == high || slow == fast {
@@ -59,7 +76,10 @@ fn portrait(run: &Run, q: usize, v: usize) -> Option<Chart> {
         title,
         x: Dimension::linear(&symbol(&q.name), &q.unit),
         y: Dimension::linear(&symbol(&v.name), &v.unit),
-        curves: vec![Curve { label: String::new(), points: pieces }],
+        curves: vec![Curve {
+            label: String::new(),
+            points: pieces,
+        }],
         marks: false,
     })
 }

@@ -27,7 +27,9 @@ impl Strip {
     /// The strip of a run.
     pub fn new(run: &Run) -> Strip {
         let start = run.trajectory.t.first().copied();
-        let mut since = start.or(run.events.first().map(|e| e.t)).unwrap_or(run.end.t);
+        let mut since = start
+            .or(run.events.first().map(|e| e.t))
+            .unwrap_or(run.end.t);
         let mut intervals = Vec::new();
         let mut lanes: Vec<(&'static str, Vec<f64>)> = Vec::new();
         for event in &run.events {
@@ -48,7 +50,12 @@ impl Strip {
             filled: true,
         };
         let entries = modes.iter().map(entry).collect();
-        Strip { intervals, modes, entries, lanes }
+        Strip {
+            intervals,
+            modes,
+            entries,
+            lanes,
+        }
     }
 
     /// Height of the strip, its legend and the lanes.
@@ -58,7 +65,12 @@ impl Strip {
 
     /// Draws it with its upper left corner at `(left, top)`.
     pub fn draw(&self, canvas: &mut Canvas, time: &Axis, (left, top): (f64, f64), width: f64) {
-        let strip = Area { left, top, width, height: STRIP };
+        let strip = Area {
+            left,
+            top,
+            width,
+            height: STRIP,
+        };
         canvas.text("mode", (left - GAP, top + STRIP / 2.0), Anchor::Right, TEXT);
         self.draw_modes(canvas, time, strip);
         frame(canvas, strip);
@@ -66,7 +78,12 @@ impl Strip {
         legend(canvas, &self.entries, (left, below), width);
         let mut top = below + legend_height(&self.entries, width);
         for (name, times) in &self.lanes {
-            let lane = Area { left, top, width, height: LANE };
+            let lane = Area {
+                left,
+                top,
+                width,
+                height: LANE,
+            };
             let middle = top + LANE / 2.0;
             canvas.text(name, (left - GAP, middle), Anchor::Right, SMALL);
             canvas.text(
@@ -84,8 +101,11 @@ impl Strip {
     /// strip with thousands of changes shows how much of each there was.
     fn draw_modes(&self, canvas: &mut Canvas, time: &Axis, strip: Area) {
         let columns = strip.width as usize;
-        let place =
-            |mode| self.modes.binary_search(&mode).expect("every mode that occurs is listed");
+        let place = |mode| {
+            self.modes
+                .binary_search(&mode)
+                .expect("every mode that occurs is listed")
+        };
         let mut shares = vec![vec![0.0; self.modes.len()]; columns];
         for &(from, to, mode) in &self.intervals {
             let at = |t| (time.position(t) * strip.width).clamp(0.0, strip.width);
@@ -105,7 +125,10 @@ impl Strip {
                 let lower = run.clone().flat_map(|i| step(i, bounds(i).0));
                 let upper = run.clone().flat_map(|i| step(i, bounds(i).1)).rev();
                 let corner = |(i, y): (usize, f64)| {
-                    (strip.left + i as f64, strip.bottom() - y.min(1.0) * strip.height)
+                    (
+                        strip.left + i as f64,
+                        strip.bottom() - y.min(1.0) * strip.height,
+                    )
                 };
                 let polygon: Vec<_> = lower.chain(upper).map(corner).collect();
                 canvas.polygon(polygon, area(mode));

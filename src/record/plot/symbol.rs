@@ -47,7 +47,9 @@ pub(super) fn symbol(name: &str) -> String {
 
 /// `x_I` with a subscript, `theta1` as θ with the subscript 1, `ground_acceleration` in words.
 fn quantity(name: &str) -> String {
-    let split = name.find(|c: char| c == '_' || c.is_ascii_digit()).unwrap_or(name.len());
+    let split = name
+        .find(|c: char| c == '_' || c.is_ascii_digit())
+        .unwrap_or(name.len());
     let (base, index) = name.split_at(split);
     let index = index.trim_start_matches('_');
     let base = greek(base);
@@ -97,7 +99,10 @@ pub(super) struct Display {
 /// The display of `unit` in which values up to `largest` have one to three digits before the
 /// point. Values of at least 0.1 are left as they are.
 pub(super) fn display(unit: &str, largest: f64) -> Display {
-    let plain = Display { unit: printed(unit), factor: 1.0 };
+    let plain = Display {
+        unit: printed(unit),
+        factor: 1.0,
+    };
     if largest == 0.0 || !largest.is_finite() || (0.1..1000.0).contains(&largest) {
         return plain;
     }
@@ -108,9 +113,14 @@ pub(super) fn display(unit: &str, largest: f64) -> Display {
     let prefix = PREFIXES.iter().find(|(e, _)| *e == exponent);
     let unit = match prefix {
         Some((_, prefix)) if takes_prefix => format!("{prefix}{}", printed(unit)),
-        _ => format!("10{} {}", superscript(exponent), printed(unit)).trim_end().to_owned(),
+        _ => format!("10{} {}", superscript(exponent), printed(unit))
+            .trim_end()
+            .to_owned(),
     };
-    Display { unit, factor: 10f64.powi(-exponent) }
+    Display {
+        unit,
+        factor: 10f64.powi(-exponent),
+    }
 }
 
 /// `m/s^2` with a raised 2, `N m` with a dot, nothing for `1`.
@@ -121,7 +131,9 @@ pub(super) fn printed(unit: &str) -> String {
     let mut parts = unit.split('^');
     let mut out = parts.next().unwrap_or_default().replace(' ', "·");
     for part in parts {
-        let end = part.find(|c: char| c != '-' && !c.is_ascii_digit()).unwrap_or(part.len());
+        let end = part
+            .find(|c: char| c != '-' && !c.is_ascii_digit())
+            .unwrap_or(part.len());
         out.push_str(&raised(&part[..end]));
         out.push_str(&part[end..].replace(' ', "·"));
     }
@@ -160,7 +172,10 @@ mod tests {
             ("reaction.z_h", "R[z_h]"),
             ("energy.input_work", "input work"),
             ("ground_acceleration", "ground acceleration"),
-            ("ground_acceleration.velocity", "velocity of ground acceleration"),
+            (
+                "ground_acceleration.velocity",
+                "velocity of ground acceleration",
+            ),
         ] {
             assert_eq!(shown(name), symbol);
         }
@@ -183,7 +198,10 @@ mod tests {
         ] {
             let display = display(unit, largest);
             assert_eq!(display.unit, shown);
-            assert!((display.factor / factor - 1.0).abs() < 1e-12, "{unit} {largest}");
+            assert!(
+                (display.factor / factor - 1.0).abs() < 1e-12,
+                "{unit} {largest}"
+            );
         }
     }
 }

@@ -25,9 +25,16 @@ pub(super) fn tank(old: &str, new: &str) -> SceneError {
 pub(super) fn expect(error: &SceneError, message: &str, at: &str, help: &str) {
     let position = error.position().unwrap();
     let place = format!("{}:{}", position.line, position.column);
-    assert_eq!((error.kind().to_string().as_str(), place.as_str()), (message, at), "{error}");
+    assert_eq!(
+        (error.kind().to_string().as_str(), place.as_str()),
+        (message, at),
+        "{error}"
+    );
     let given = error.suggestion().unwrap_or("");
-    assert!(given.contains(help) && given.is_empty() == help.is_empty(), "{error}");
+    assert!(
+        given.contains(help) && given.is_empty() == help.is_empty(),
+        "{error}"
+    );
 }
 
 #[test]
@@ -60,11 +67,36 @@ fn malformed_json() {
         "7:3",
         "title",
     );
-    expect(&tank("20", "0x14"), "not JSON: hexadecimal numbers are not allowed", "4:63", "");
-    expect(&tank("20", "NaN"), "not JSON: unexpected token", "4:63", "double quotes");
-    expect(&tank("2,\n", "2,\u{a0}\n"), "not JSON: key must be a string", "7:12", "");
-    expect(&only_error(parse("")), "not JSON: there is nothing here", "1:1", "model");
-    expect(&only_error(parse("[1]")), "expected an object, found a list", "1:1", "model");
+    expect(
+        &tank("20", "0x14"),
+        "not JSON: hexadecimal numbers are not allowed",
+        "4:63",
+        "",
+    );
+    expect(
+        &tank("20", "NaN"),
+        "not JSON: unexpected token",
+        "4:63",
+        "double quotes",
+    );
+    expect(
+        &tank("2,\n", "2,\u{a0}\n"),
+        "not JSON: key must be a string",
+        "7:12",
+        "",
+    );
+    expect(
+        &only_error(parse("")),
+        "not JSON: there is nothing here",
+        "1:1",
+        "model",
+    );
+    expect(
+        &only_error(parse("[1]")),
+        "expected an object, found a list",
+        "1:1",
+        "model",
+    );
     expect(
         &only_error(parse_with(b"{\n \"a\xff\"", &[], &[])),
         "the text is not UTF-8",
@@ -75,7 +107,12 @@ fn malformed_json() {
 
 #[test]
 fn keys() {
-    expect(&tank("\"end\": 2,", ""), "end missing", "1:1", "when the run ends");
+    expect(
+        &tank("\"end\": 2,", ""),
+        "end missing",
+        "1:1",
+        "when the run ends",
+    );
     expect(
         &tank("\"model\": \"walking_tank\",", ""),
         "model missing",
@@ -94,7 +131,12 @@ fn keys() {
         "6:3",
         "belongs inside `parameters`",
     );
-    expect(&tank("\"end\"", "\"end\": 2, \"end\""), "`end` is already there", "7:13", "line 7");
+    expect(
+        &tank("\"end\"", "\"end\": 2, \"end\""),
+        "`end` is already there",
+        "7:13",
+        "line 7",
+    );
     expect(
         &tank("\"every\"", "\"evry\""),
         "unknown key of the record `evry`",
@@ -113,7 +155,12 @@ fn keys() {
         "5:16",
         "known: `mode`, `theta`, `theta.rate`",
     );
-    expect(&tank("[\"x\"]", "[\"z\"]"), "unknown coordinate `z`", "6:14", "`theta`");
+    expect(
+        &tank("[\"x\"]", "[\"z\"]"),
+        "unknown coordinate `z`",
+        "6:14",
+        "`theta`",
+    );
     expect(
         &tank("\"side\": 1", "\"mode\": \"rocks\""),
         "unknown mode `rocks`",
@@ -127,7 +174,10 @@ fn keys() {
         "did you mean `paper`?",
     );
     expect(
-        &tank("\"end\": 2", "\"end\": { \"time\": 2, \"after\": { \"landng\": 3 } }"),
+        &tank(
+            "\"end\": 2",
+            "\"end\": { \"time\": 2, \"after\": { \"landng\": 3 } }",
+        ),
         "unknown transition `landng`",
         "7:34",
         "`landing`",
@@ -142,9 +192,24 @@ fn keys() {
 
 #[test]
 fn types() {
-    expect(&tank("0.3", "true"), "expected a number, found true or false", "3:27", "");
-    expect(&tank("20", "[20]"), "expected a number in m/s^2, found a list", "4:63", "");
-    expect(&tank("[\"x\"]", "\"x\""), "expected a list, found a text", "6:13", "");
+    expect(
+        &tank("0.3", "true"),
+        "expected a number, found true or false",
+        "3:27",
+        "",
+    );
+    expect(
+        &tank("20", "[20]"),
+        "expected a number in m/s^2, found a list",
+        "4:63",
+        "",
+    );
+    expect(
+        &tank("[\"x\"]", "\"x\""),
+        "expected a list, found a text",
+        "6:13",
+        "",
+    );
     expect(
         &tank("\"end\": 2", "\"end\": null"),
         "expected a number in s or an object, found null",
@@ -167,23 +232,48 @@ fn types() {
 
 #[test]
 fn numbers() {
-    expect(&tank("7.5", "1e999"), "`1e999` is not a finite number", "3:39", "largest");
-    expect(&tank("7.5", "-7.5"), "-7.5 is not admissible here: it must be > 0 kg", "3:39", "");
+    expect(
+        &tank("7.5", "1e999"),
+        "`1e999` is not a finite number",
+        "3:39",
+        "largest",
+    );
+    expect(
+        &tank("7.5", "-7.5"),
+        "-7.5 is not admissible here: it must be > 0 kg",
+        "3:39",
+        "",
+    );
     expect(
         &tank("7.5", "\"-75 g\""),
         "-0.075 is not admissible here: it must be > 0 kg",
         "3:39",
         "",
     );
-    expect(&tank("0.3", "-0.3"), "-0.3 is not admissible here: it must be >= 0", "3:27", "");
+    expect(
+        &tank("0.3", "-0.3"),
+        "-0.3 is not admissible here: it must be >= 0",
+        "3:27",
+        "",
+    );
     expect(
         &tank("\"end\": 2", "\"end\": -2"),
         "-2 is not admissible here: it must be > 0 s",
         "7:10",
         "",
     );
-    expect(&tank("0.001", "0"), "0 is not admissible here: it must be > 0 s", "9:24", "");
-    expect(&tank("0.02", "-0.02"), "-0.02 is not admissible here: it must be >= 0 rad", "5:25", "");
+    expect(
+        &tank("0.001", "0"),
+        "0 is not admissible here: it must be > 0 s",
+        "9:24",
+        "",
+    );
+    expect(
+        &tank("0.02", "-0.02"),
+        "-0.02 is not admissible here: it must be >= 0 rad",
+        "5:25",
+        "",
+    );
     expect(
         &tank("\"side\": 1", "\"side\": 2"),
         "2 is not admissible here: it must be 1 or -1",
@@ -197,7 +287,10 @@ fn numbers() {
         "",
     );
     expect(
-        &tank("\"end\": 2", "\"end\": { \"time\": 2, \"after\": { \"landing\": 1.5 } }"),
+        &tank(
+            "\"end\": 2",
+            "\"end\": { \"time\": 2, \"after\": { \"landing\": 1.5 } }",
+        ),
         "1.5 is not admissible here: it must be a whole number from 1 on",
         "7:45",
         "",
@@ -212,9 +305,24 @@ fn units() {
         "4:63",
         "plain number is in m/s^2",
     );
-    expect(&tank("20", "\"2 g\""), "unit `g` does not fit, expected `m/s^2`", "4:63", "`g_n`");
-    expect(&tank("20", "\"20\""), "unit `1` does not fit, expected `m/s^2`", "4:63", "quotes");
-    expect(&tank("7.5", "\"7.5 m^3\""), "unit `m^3` does not fit, expected `kg`", "3:39", "kg");
+    expect(
+        &tank("20", "\"2 g\""),
+        "unit `g` does not fit, expected `m/s^2`",
+        "4:63",
+        "`g_n`",
+    );
+    expect(
+        &tank("20", "\"20\""),
+        "unit `1` does not fit, expected `m/s^2`",
+        "4:63",
+        "quotes",
+    );
+    expect(
+        &tank("7.5", "\"7.5 m^3\""),
+        "unit `m^3` does not fit, expected `kg`",
+        "3:39",
+        "kg",
+    );
     expect(
         &tank("20", "\"fast\""),
         "`fast` is not a number with a unit: it does not begin with a number",
@@ -245,13 +353,26 @@ fn unreadable_scene_has_no_place() {
     let errors = Scene::load(Path::new("no/such/scene.json"), &[], MODELS).unwrap_err();
     let error = errors.iter().next().unwrap();
     assert_eq!(error.position(), None);
-    assert!(error.to_string().starts_with("error: cannot read `no/such/scene.json`: "), "{error}");
+    assert!(
+        error
+            .to_string()
+            .starts_with("error: cannot read `no/such/scene.json`: "),
+        "{error}"
+    );
 }
 
 #[test]
 fn columns_count_characters() {
     let text = "{ \"model\": \"walking_tank\",\r\n\t\"title\": \"m/s² é\", \"end\": -1 }";
     let error = only_error(parse(text));
-    expect(&error, "-1 is not admissible here: it must be > 0 s", "2:28", "");
-    assert!(error.to_string().contains("scenes/test.json:2:28"), "{error}");
+    expect(
+        &error,
+        "-1 is not admissible here: it must be > 0 s",
+        "2:28",
+        "",
+    );
+    assert!(
+        error.to_string().contains("scenes/test.json:2:28"),
+        "{error}"
+    );
 }

@@ -26,12 +26,42 @@ fn tables() {
     assert_eq!(file(&unsorted), "scenes/f.csv");
 
     let few = "a table needs at least 2 rows, this one has";
-    expect(&with_table("", Some(b"")), &format!("{few} 0"), "1:1", "each row");
-    expect(&with_table("", Some(b"t,F\n")), &format!("{few} 0"), "1:4", "each row");
-    expect(&with_table("", Some(b"0,1\n")), &format!("{few} 1"), "1:4", "each row");
-    expect(&with_table("", Some(b"0,1\n1,2,3\n")), "expected two columns, found 3", "2:1", "comma");
-    expect(&with_table("", Some(b"0;1\n1;2\n")), "expected two columns, found 1", "2:1", "comma");
-    expect(&with_table("", Some(b"0,1\n1,x\n")), "`x` is not a number", "2:3", "two finite");
+    expect(
+        &with_table("", Some(b"")),
+        &format!("{few} 0"),
+        "1:1",
+        "each row",
+    );
+    expect(
+        &with_table("", Some(b"t,F\n")),
+        &format!("{few} 0"),
+        "1:4",
+        "each row",
+    );
+    expect(
+        &with_table("", Some(b"0,1\n")),
+        &format!("{few} 1"),
+        "1:4",
+        "each row",
+    );
+    expect(
+        &with_table("", Some(b"0,1\n1,2,3\n")),
+        "expected two columns, found 3",
+        "2:1",
+        "comma",
+    );
+    expect(
+        &with_table("", Some(b"0;1\n1;2\n")),
+        "expected two columns, found 1",
+        "2:1",
+        "comma",
+    );
+    expect(
+        &with_table("", Some(b"0,1\n1,x\n")),
+        "`x` is not a number",
+        "2:3",
+        "two finite",
+    );
     expect(
         &with_table("", Some(b"0,1\n# note\n1,inf\n")),
         "`inf` is not a finite number",
@@ -44,20 +74,40 @@ fn tables() {
         "2:1",
         "two finite",
     );
-    expect(&with_table("", Some(b"0,1\n1,\xff\n")), "the text is not UTF-8", "2:3", "UTF-8");
+    expect(
+        &with_table("", Some(b"0,1\n1,\xff\n")),
+        "the text is not UTF-8",
+        "2:3",
+        "UTF-8",
+    );
     let scaled = with_table(r#", "scale": 1e10"#, Some(b"0,1\n1,1e300\n"));
     expect(&scaled, "times and values must be finite", "2:3", "scale");
     let last = with_table(r#", "interpolation": "previous""#, Some(b"0,1\n1,2\n"));
-    expect(&last, "the last value, 2, would hold for no time", "2:3", "hold");
+    expect(
+        &last,
+        "the last value, 2, would hold for no time",
+        "2:3",
+        "hold",
+    );
     let steep = with_table("", Some(b"0,1\n1,2\n1.0000000000000002,1e300\n"));
-    expect(&steep, "the table is too steep here for double precision", "2:1", "close");
+    expect(
+        &steep,
+        "the table is too steep here for double precision",
+        "2:1",
+        "close",
+    );
 }
 
 #[test]
 fn knots() {
     let sine = r#""sine": { "amplitude": 20, "frequency": 7 }"#;
     let message = "time 0.5 does not come after 1, the time of the row before";
-    expect(&tank(sine, r#""knots": [[0, 0], [1, 0], ["500 ms", 0]]"#), message, "4:67", "sort");
+    expect(
+        &tank(sine, r#""knots": [[0, 0], [1, 0], ["500 ms", 0]]"#),
+        message,
+        "4:67",
+        "sort",
+    );
     expect(
         &tank(sine, r#""knots": []"#),
         "a table needs at least 2 rows, this one has 0",

@@ -21,11 +21,21 @@ fn parse_with(
     tables: &[(&str, &[u8])],
 ) -> Result<Scene, SceneErrors> {
     let files = |path: &Path| -> io::Result<Vec<u8>> {
-        let table = tables.iter().find(|(name, _)| path == Path::new("scenes").join(name));
-        table.map(|(_, bytes)| bytes.to_vec()).ok_or(io::ErrorKind::NotFound.into())
+        let table = tables
+            .iter()
+            .find(|(name, _)| path == Path::new("scenes").join(name));
+        table
+            .map(|(_, bytes)| bytes.to_vec())
+            .ok_or(io::ErrorKind::NotFound.into())
     };
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
-    Scene::parse(text, Path::new("scenes/test.json"), &overrides, MODELS, &files)
+    Scene::parse(
+        text,
+        Path::new("scenes/test.json"),
+        &overrides,
+        MODELS,
+        &files,
+    )
 }
 
 fn parse(text: &str) -> Result<Scene, SceneErrors> {

@@ -81,17 +81,25 @@ fn check(result: Result<Scene, SceneErrors>, scene: &[u8], table: &[u8]) {
     let Err(errors) = result else { return };
     assert!(errors.iter().count() > 0);
     for error in &errors {
-        let position = error.position().expect("only an unreadable scene has no place");
+        let position = error
+            .position()
+            .expect("only an unreadable scene has no place");
         let text = match position.file.as_str() {
             "scenes/test.json" => String::from_utf8_lossy(scene),
             "scenes/record.csv" => String::from_utf8_lossy(table),
             other => panic!("unknown file {other}"),
         };
         assert!(position.bytes.end <= text.len());
-        let line = text.split('\n').nth(position.line - 1).expect("a line of the file");
+        let line = text
+            .split('\n')
+            .nth(position.line - 1)
+            .expect("a line of the file");
         assert!(position.column <= line.chars().count() + 1);
         let shown = error.to_string();
-        assert!(shown.contains('^') && shown.contains(&position.file), "{shown}");
+        assert!(
+            shown.contains('^') && shown.contains(&position.file),
+            "{shown}"
+        );
         let place = format!("{}:{}:{}", position.file, position.line, position.column);
         assert!(shown.contains(&place), "{place} is not in\n{shown}");
     }

@@ -43,12 +43,32 @@ fn names_what_is_wrong() {
         ("7 rad/s", "1/s", WrongUnit("rad/s".into())),
         ("1e999 m", "m", NotFinite),
         ("1e99999999999999999999 m", "m", NotFinite),
-        ("much", "m", Unreadable("it does not begin with a number".into())),
-        ("nan m", "m", Unreadable("it does not begin with a number".into())),
+        (
+            "much",
+            "m",
+            Unreadable("it does not begin with a number".into()),
+        ),
+        (
+            "nan m",
+            "m",
+            Unreadable("it does not begin with a number".into()),
+        ),
         ("3 parsec", "m", Unreadable("unknown unit `parsec`".into())),
-        ("3 kgs", "kg", Unreadable("unknown unit `kgs`; did you mean `kg`?".into())),
-        ("3 m/", "m", Unreadable("a unit is missing at the end".into())),
-        ("3 (m", "m", Unreadable("a closing parenthesis is missing".into())),
+        (
+            "3 kgs",
+            "kg",
+            Unreadable("unknown unit `kgs`; did you mean `kg`?".into()),
+        ),
+        (
+            "3 m/",
+            "m",
+            Unreadable("a unit is missing at the end".into()),
+        ),
+        (
+            "3 (m",
+            "m",
+            Unreadable("a closing parenthesis is missing".into()),
+        ),
         ("3 m^x", "m", Unreadable("`` is not a whole power".into())),
         ("3 m)", "m", Unreadable("`)` is left over".into())),
     ] {
@@ -64,7 +84,10 @@ fn underflow_is_zero_and_not_an_error() {
 #[test]
 fn gram_and_gravity_are_told_apart() {
     assert_eq!(convert("2 g", "kg"), Ok(0.002));
-    assert_eq!(convert("2 g", "m/s^2"), Err(QuantityError::WrongUnit("g".into())));
+    assert_eq!(
+        convert("2 g", "m/s^2"),
+        Err(QuantityError::WrongUnit("g".into()))
+    );
 }
 
 proptest! {

@@ -23,14 +23,38 @@ fn smallest_scene_takes_every_default() {
     assert_eq!(scene.parameters, defaults);
     assert_eq!(
         scene.initial,
-        Initial { q: vec![0.0; 4], v: vec![0.0; 4], discrete: vec![1.0, 1.0], mode: None }
+        Initial {
+            q: vec![0.0; 4],
+            v: vec![0.0; 4],
+            discrete: vec![1.0, 1.0],
+            mode: None
+        }
     );
-    assert_eq!(scene.end, End { time: 1.0, after: None });
+    assert_eq!(
+        scene.end,
+        End {
+            time: 1.0,
+            after: None
+        }
+    );
     assert_eq!(scene.accuracy.relative, 1e-8);
-    for (tolerance, c) in scene.accuracy.q_absolute.iter().zip(scene.model.coordinates) {
+    for (tolerance, c) in scene
+        .accuracy
+        .q_absolute
+        .iter()
+        .zip(scene.model.coordinates)
+    {
         assert_eq!(*tolerance, 1e-8 * c.scale);
     }
-    assert_eq!(scene.record, Record { every: None, reactions: true, energies: true, inputs: true });
+    assert_eq!(
+        scene.record,
+        Record {
+            every: None,
+            reactions: true,
+            energies: true,
+            inputs: true
+        }
+    );
     let mut u = [f64::NAN; 3];
     scene.signals.evaluate(0.3, &mut u);
     assert_eq!(u, [0.0; 3]);
@@ -49,18 +73,35 @@ fn every_key_is_read() {
     let mode = scene.initial.mode.map(|m| scene.variant.modes[m].name);
     assert_eq!(mode, Some("rocks_sticks"));
     let theta = coordinate(&scene, "theta");
-    assert_eq!((scene.initial.q[theta], scene.initial.v[theta]), (0.02, -0.1));
+    assert_eq!(
+        (scene.initial.q[theta], scene.initial.v[theta]),
+        (0.02, -0.1)
+    );
     assert_eq!(scene.initial.discrete, [-1.0, 1.0]);
     assert_eq!(scene.freeze, [coordinate(&scene, "x")]);
-    assert_eq!(scene.end, End { time: 2.0, after: Some(("landing", 30)) });
+    assert_eq!(
+        scene.end,
+        End {
+            time: 2.0,
+            after: Some(("landing", 30))
+        }
+    );
     assert_eq!(scene.accuracy.relative, 1e-9);
     assert_eq!(scene.accuracy.q_absolute[theta], 1e-12);
     assert_eq!(scene.accuracy.v_absolute[coordinate(&scene, "x_I")], 1e-3);
     let x = coordinate(&scene, "x");
-    assert_eq!(scene.accuracy.q_absolute[x], 1e-9 * scene.model.coordinates[x].scale);
+    assert_eq!(
+        scene.accuracy.q_absolute[x],
+        1e-9 * scene.model.coordinates[x].scale
+    );
     assert_eq!(
         scene.record,
-        Record { every: Some(0.001), reactions: true, energies: false, inputs: true }
+        Record {
+            every: Some(0.001),
+            reactions: true,
+            energies: false,
+            inputs: true
+        }
     );
 }
 
@@ -70,9 +111,15 @@ fn inputs_add_up() {
     let mut u = [0.0; 3];
     // Before the sine: parabola 6 t (1 − t) with its top 1.5 at 0.5, record 2 × 1, constant.
     scene.signals.evaluate(0.1, &mut u);
-    assert!((u[0] - (6.0 * 0.1 * 0.9 + 2.0 + 0.25)).abs() < 1e-14, "{u:?}");
+    assert!(
+        (u[0] - (6.0 * 0.1 * 0.9 + 2.0 + 0.25)).abs() < 1e-14,
+        "{u:?}"
+    );
     // v = 3 t² − 2 t³ + 2 t + t / 4
-    assert!((u[1] - (3.0 * 0.01 - 2.0 * 0.001 + 0.2 + 0.025)).abs() < 1e-15, "{u:?}");
+    assert!(
+        (u[1] - (3.0 * 0.01 - 2.0 * 0.001 + 0.2 + 0.025)).abs() < 1e-15,
+        "{u:?}"
+    );
     // The sine starts with its phase of 90°, at 2 g; the record has ended.
     scene.signals.evaluate(0.5, &mut u);
     assert!((u[0] - (1.5 + 0.25 + 2.0 * 9.80665)).abs() < 1e-13, "{u:?}");
@@ -97,8 +144,14 @@ fn defaults_of_choices_follow_the_choices_that_are_named() {
         parse(&text).unwrap().variant.options
     };
     assert_eq!(options(r#", "rules": "paper""#), ["paper", "velocities"]);
-    assert_eq!(options(r#", "landing": "velocities""#), ["reactions", "velocities"]);
-    assert_eq!(options(r#", "rules": "paper", "landing": "momenta""#), ["paper", "momenta"]);
+    assert_eq!(
+        options(r#", "landing": "velocities""#),
+        ["reactions", "velocities"]
+    );
+    assert_eq!(
+        options(r#", "rules": "paper", "landing": "momenta""#),
+        ["paper", "momenta"]
+    );
 }
 
 #[test]
@@ -142,18 +195,39 @@ fn tables_may_have_comments_quotes_and_a_byte_order_mark() {
 fn schema_lists_what_a_model_has() {
     for model in MODELS {
         let schema = crate::scene::schema(Some(model));
-        let parameters = schema["properties"]["parameters"]["properties"].as_object().unwrap();
-        assert!(model.parameters.iter().all(|p| parameters.contains_key(p.name)));
+        let parameters = schema["properties"]["parameters"]["properties"]
+            .as_object()
+            .unwrap();
+        assert!(
+            model
+                .parameters
+                .iter()
+                .all(|p| parameters.contains_key(p.name))
+        );
         let initial = &schema["properties"]["initial"]["properties"];
-        assert!(model.coordinates.iter().all(|c| initial[format!("{}.rate", c.name)].is_object()));
+        assert!(
+            model
+                .coordinates
+                .iter()
+                .all(|c| initial[format!("{}.rate", c.name)].is_object())
+        );
         assert_eq!(schema["additionalProperties"], false);
         assert_eq!(schema["required"], serde_json::json!(["model", "end"]));
     }
     let tank = crate::scene::schema(MODELS.iter().find(|m| m.name == "walking_tank").copied());
-    assert_eq!(tank["properties"]["rules"]["enum"], serde_json::json!(["reactions", "paper"]));
+    assert_eq!(
+        tank["properties"]["rules"]["enum"],
+        serde_json::json!(["reactions", "paper"])
+    );
     let mu_k = &tank["properties"]["parameters"]["properties"]["mu_k"];
-    assert_eq!(mu_k["description"], "kinetic friction coefficient; at most mu_s [1]");
-    assert_eq!(mu_k["anyOf"][0], serde_json::json!({ "type": "number", "minimum": 0.0 }));
+    assert_eq!(
+        mu_k["description"],
+        "kinetic friction coefficient; at most mu_s [1]"
+    );
+    assert_eq!(
+        mu_k["anyOf"][0],
+        serde_json::json!({ "type": "number", "minimum": 0.0 })
+    );
     assert_eq!(
         crate::scene::schema(None)["additionalProperties"],
         serde_json::json!({ "type": "string" })
@@ -177,6 +251,9 @@ fn documentation_names_every_key() {
     keys(&crate::scene::schema(None), &mut found);
     assert!(found.len() > 30);
     for key in found {
-        assert!(documentation.contains(&format!("`{key}`")), "docs/scene.md does not name `{key}`");
+        assert!(
+            documentation.contains(&format!("`{key}`")),
+            "docs/scene.md does not name `{key}`"
+        );
     }
 }
