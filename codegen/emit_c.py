@@ -19,7 +19,7 @@ HEADER = """\
 struct dalembert_context { const double %s; };
 """ % ", ".join(f"*{name}" for name in CONTEXT_FIELDS)
 
-_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
+_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
 _CALLS = {
     getattr(ca, "OP_" + name.upper()): name
     for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "sinh",

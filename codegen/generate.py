@@ -125,6 +125,7 @@ def _variant(model):
     held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates])
     modes = [derive.ModeEquations(model, mode, residual, held) for mode in model.modes]
     variant = Variant(model, modes)
+    parameters = [p.symbol for p in model.parameters]
     names = [m.name for m in model.modes]
     index = {m.name: i for i, m in enumerate(model.modes)}
     tag = "_".join(str(c[1].index(c[3])) for c in model.choices)
@@ -135,7 +136,7 @@ def _variant(model):
         equations.guards = guards
         for g, (expression, transitions) in enumerate(guards):
             placed = equations.place(expression)
-            _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location)
+            _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
             _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
             rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
             _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
@@ -145,7 +146,7 @@ def _variant(model):
                 _add(variant, prefix + f"guard{g}_reset{t}", reset, equations, (i, "reset", g, t))
                 if transition.condition is not None:
                     condition = target.place(transition.condition)
-                    _check_smooth(condition, f"condition of `{transition.name}`", transition.location)
+                    _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
                     _add(variant, prefix + f"guard{g}_condition{t}", condition, target, (i, "condition", g, t))
     return variant
 
@@ -161,7 +162,7 @@ def _mode_functions(variant, equations, slot, prefix):
     signals, rates = _signals(model), _signal_rates(model)
     if equations.free:
         name = equations.mode.name
-        _check_smooth(equations.r, f"equations of mode `{name}`", model.file)
+        _check_smooth(equations.r, f"equations of mode `{name}`", model.file, [p.symbol for p in model.parameters])
     mass, load = equations.system()
     jacobians = equations.jacobians()
     reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
@@ -185,9 +186,9 @@ def _mode_functions(variant, equations, slot, prefix):
         _add(variant, prefix + what, output, equations, slot + (what,))
 
 
-def _check_smooth(expression, what, location):
+def _check_smooth(expression, what, location, parameters):
     for row in ca.vertsplit(ca.densify(ca.vec(expression))):
-        operation = graph.non_smooth_operation(row)
+        operation = graph.non_smooth_operation(row, parameters)
         if operation:
             raise ModelError(
                 f"{what}: `{operation}` is not smooth; write one mode or one guard for each smooth"
@@ -294,7 +295,7 @@ def _check_energies(model):
         forces += [(c, f, f"force on `{c.name()}` in mode `{mode.name}`") for c, f, _ in mode.forces]
     forces += [
         (next(c.symbol for c in model.coordinates if c.name == name), f, f"equation of `{name}`")
-        for name, f in model.hand_written.items()
+        for name, f in model.hand_written.items() if name not in model.unchecked
     ]
     for coordinate, force, what in forces:
         want = units.combine(energy, table[coordinate.name()], -1)

@@ -13,13 +13,26 @@ _NON_SMOOTH = {
 }
 
 
-def non_smooth_operation(expression):
-    """Name of a non-smooth operation in `expression`, or None."""
-    function = ca.Function("smooth", ca.symvar(expression), [expression])
+def non_smooth_operation(expression, parameters=()):
+    """Name of a non-smooth operation in `expression`, or None. What depends on `parameters` alone
+    is a constant of a run and may be anything."""
+    constant = {p.element_hash() for p in parameters}
+    symbols = ca.symvar(expression)
+    function = ca.Function("smooth", symbols, [expression])
+    varies = {}
     for k in range(function.n_instructions()):
-        name = _NON_SMOOTH.get(function.instruction_id(k))
-        if name:
-            return name
+        op, source = function.instruction_id(k), function.instruction_input(k)
+        if op == ca.OP_OUTPUT:
+            continue
+        if op == ca.OP_CONST:
+            answer = False
+        elif op == ca.OP_INPUT:
+            answer = symbols[source[0]].element_hash() not in constant
+        else:
+            answer = any(varies[i] for i in source)
+            if answer and op in _NON_SMOOTH:
+                return _NON_SMOOTH[op]
+        varies[function.instruction_output(k)[0]] = answer
     return None
 
 

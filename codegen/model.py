@@ -140,7 +140,7 @@ class Model:
         self.coordinates, self.motions, self.inputs = [], [], []
         self.discretes, self.choices = [], []
         self.bodies, self.kinetic_terms, self.potentials, self.dissipations = [], [], [], []
-        self.external, self.hand_written = [], {}
+        self.external, self.hand_written, self.unchecked = [], {}, set()
         self.modes, self.transitions = [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -212,8 +212,8 @@ class Model:
     def choice(self, name, options, meaning, *, default=None):
         """A modelling choice of the scene; returns the option under construction.
 
-        The model file is run once for every combination of options. `default` may depend on the
-        choices made before.
+        The model file is run once for every combination of options. `options` and `default` may
+        depend on the choices made before; the first run must see all options.
         """
         option = _CONTEXT[-1].choose(name, list(options))
         self.choices.append((name, list(options), meaning, option, default or options[0]))
@@ -249,12 +249,15 @@ class Model:
         """A generalized force on a coordinate; its power counts as input work."""
         self.external.append((coordinate, ca.SX(expression)))
 
-    def by_hand(self, coordinate, residual):
+    def by_hand(self, coordinate, residual, *, check_units=True):
         """Replaces the derived equation of a coordinate by a hand-written one, `residual` = 0.
 
-        For a frozen coordinate the residual is its reaction.
+        For a frozen coordinate the residual is its reaction. Without `check_units` its terms may
+        have any dimension: for printed equations that are to be run with their misprints.
         """
         self.hand_written[coordinate.name()] = ca.SX(residual)
+        if not check_units:
+            self.unchecked.add(coordinate.name())
 
     # ---- hybrid structure ---------------------------------------------------------------------
 

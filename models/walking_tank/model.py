@@ -7,16 +7,22 @@ printed equations in paper.py.
 from types import SimpleNamespace
 
 from codegen.model import *
-from models.walking_tank import paper
+from codegen.verify.corrections import apply, without
+from models.walking_tank.corrections import corrections
+from models.walking_tank.paper import paper
 
-model = Model("Walking of an unanchored liquid storage tank", source=paper.paper.source)
+model = Model("Walking of an unanchored liquid storage tank", source=paper.source)
 
+equations = model.choice(
+    "equations", ("derived", "printed", "corrected"),
+    "equations of motion and reactions: derived from the energies, (1)-(3) and (9) as the paper prints them,"
+    " or the printed ones with all corrections of corrections.py")
 rules = model.choice(
-    "rules", ("reactions", "paper"),
-    "what starts rocking and slipping, and the normal force of the kinetic friction: the reactions of the"
-    " energy-consistent model, or conditions (5)-(9) and force (4) as the paper prints them")
+    "rules", ("reactions", "paper") if equations == "derived" else ("paper",),
+    "what starts rocking and slipping, and the normal force of the kinetic friction: the reactions, or"
+    " the paper's conditions (5)-(9) and force (4)")
 landing = model.choice(
-    "landing", ("momenta", "velocities"),
+    "landing", ("momenta", "velocities") if equations == "derived" else ("velocities",),
     "what a landing keeps of the other motions: their momenta, or their velocities",
     default="momenta" if rules == "reactions" else "velocities")
 
@@ -40,6 +46,9 @@ mu_s = model.parameter("mu_s", "1", 0.2, "static friction coefficient", minimum=
 mu_k = model.parameter("mu_k", "1", 0.19, "kinetic friction coefficient", minimum=0, at_most=mu_s)
 e = model.parameter("e", "1", 0.6, "restitution of the uplift rate at a landing", minimum=0, maximum=1)
 g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
+printed_slip = model.parameter(
+    "printed_slip", "1", 0, "with equations = corrected: number of the correction that is left out, in the order of"
+    " corrections.py (0: none)", minimum=0, maximum=len(corrections))
 
 model.parameter_set("full_plate", "rigid full bottom plate: the paper's first tank; M_S, R_S, alpha_S, I_S from its dimensions")
 model.parameter_set(
@@ -82,24 +91,58 @@ stands_slides = model.mode("stands_slides", "on the whole base, slipping", freez
 rocks_slides = model.mode("rocks_slides", "about one edge, slipping", freeze=[(y, 0)])
 
 
-def printed(equation):
-    """An equation of the paper as a sum, in the symbols of this model."""
-    symbols = SimpleNamespace(
+def printed(number, moduli=(), slipped_unit=1):
+    """The value of an equation of the paper in the symbols of this model, as printed or, with
+    equations = corrected, as corrected but for the correction that `printed_slip` leaves out.
+
+    The modulus of the first argument is replaced by the argument times the first of the signs `moduli`, and so on.
+    `slipped_unit` gives the slipped terms the dimension of the corrected ones, where only the sign matters.
+    """
+    values = dict(
         theta=theta, dtheta=theta.rate, ddtheta=theta.acceleration, x_I=x_I, dx_I=x_I.rate,
         ddx_I=x_I.acceleration, x=x, dx=x.rate, ddx=x.acceleration, ddz_h=z_h.acceleration, lam=side,
         g=g, M_I=M_I, M_E=M_E, M_rb=M_rb, M_S=M_S, M_T=M_0 + M_S, I_E=I_E, I_S=I_S, R_0=R_0, R_I=R_I, R_S=R_S,
         alpha_0=alpha_0, alpha_I=alpha_I, alpha_S=alpha_S, k=M_I * omega**2, c=2 * damping * M_I * omega,
-        mu=mu_s, nu=mu_k, e=e)
-    functions = SimpleNamespace(sin=sin, cos=cos, sign=lambda _: slip)
-    return sum(equation(symbols, functions), 0)
+        mu=mu_s, nu=mu_k, e=e, F=0)
+
+    def terms(source):
+        signs = {}
+        functions = SimpleNamespace(
+            sin=sin, cos=cos, sign=lambda _: slip,
+            Abs=lambda term: signs.setdefault(str(term), moduli[min(len(signs), len(moduli) - 1)]) * term)
+        return source.equations[number].terms(source.namespace(values, functions), functions)
+
+    if equations != "corrected":
+        return sum(terms(paper), 0)
+    corrected = terms(apply(paper, corrections))
+    total = sum(corrected, 0)
+    for place, correction in enumerate(corrections, 1):
+        if correction.equation == number:
+            slipped = terms(apply(paper, corrections, without(corrections, correction.key)))
+            slipped = [slipped_unit * term for term in slipped]
+            total += (printed_slip == place) * difference(slipped, corrected)
+    return total
+
+
+def difference(some, others):
+    """Sum of some terms less that of others, without the terms that both have."""
+    shared = {str(term) for term in some} & {str(term) for term in others}
+    rest = lambda terms: sum((term for term in terms if str(term) not in shared), 0)
+    return rest(some) - rest(others)
+
+
+if equations != "derived":
+    # The paper's (9) is the reaction of y. Printed terms of the wrong dimension are what is wanted.
+    for coordinate, number in ((theta, "1"), (x_I, "2"), (x, "3"), (y, "9")):
+        model.by_hand(coordinate, printed(number), check_units=False)
 
 
 def base_shear(mode):
-    return mode.reaction(x) if rules == "reactions" else printed(paper.equation_8)
+    return mode.reaction(x) if rules == "reactions" else printed("8")
 
 
 def normal_force(mode):
-    return mode.reaction(y) if rules == "reactions" else printed(paper.equation_9)
+    return mode.reaction(y) if rules == "reactions" else printed("9")
 
 
 # Slip and stick. Both directions have a guard of their own, since |R_x| is not smooth.
@@ -107,7 +150,7 @@ for sticks, slides in ((stands_sticks, stands_slides), (rocks_sticks, rocks_slid
     if rules == "reactions":
         slides.friction(x, normal=slides.reaction(y), coefficient=mu_k, direction=slip)
     else:
-        slides.force(x, -printed(paper.equation_4))
+        slides.force(x, -printed("4"))
     for direction in (+1, -1):
         model.transition(
             "slip", sticks, slides, reset=[(slip, direction)],
@@ -127,23 +170,20 @@ for stands, rocks, conserved in (
         for edge in (+1, -1):
             model.transition("lift_off", stands, rocks, reset=[(side, edge)], when=falls(stands.reaction(theta, side=edge)))
     else:
-        # Condition (5), one smooth guard for each sign of the two moduli; (6) decides the pivot. The
+        # Condition (5), one smooth guard for each sign of its moduli; (6) decides the pivot. The
         # condition overstates the overturning moment, so uplift also needs (1) to lift the edge.
-        height = R_I * cos(alpha_I)
-        for s in (+1, -1):
-            for t in (+1, -1):
-                onset = falls(M_E * g * R_0 * sin(alpha_0) - M_I * s * x_I.acceleration * height
-                              - (M_0 + M_S) * t * (x.acceleration + z_h.acceleration) * R_0 * cos(alpha_0))
-                for edge in (+1, -1):
-                    model.transition(
-                        "lift_off", stands, rocks, when=onset, reset=[(side, edge)],
-                        provided=[theta.acceleration,
-                                  edge * (x.acceleration + x_I.acceleration + z_h.acceleration)])
+        onsets = {str(onset): onset for onset in (-printed("5", signs) for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)))}
+        for onset in onsets.values():
+            for edge, rule in ((+1, printed("6a", (), M_E * R_0)), (-1, -printed("6b", (), M_E * R_0))):
+                model.transition(
+                    "lift_off", stands, rocks, when=falls(onset), reset=[(side, edge)],
+                    provided=[theta.acceleration, rule])
+    rate_after = -e * theta.rate if equations == "derived" else printed("10")
     if landing == "momenta":
         others = model.impact_velocities(
-            before=[], after=[(side, -side)], prescribed=[(theta, -e * theta.rate)], conserve=conserved)
+            before=[], after=[(side, -side)], prescribed=[(theta, rate_after)], conserve=conserved)
     else:
-        others = [(theta.rate, -e * theta.rate)]
+        others = [(theta.rate, rate_after)]
     model.transition("landing", rocks, rocks, when=falls(theta), impact=True, reset=[(theta, 0), (side, -side)] + others)
     model.rest(rocks, stands)
 
