@@ -30,7 +30,7 @@ pub struct Problem {
 }
 
 /// Initial state at t = 0.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Initial {
     /// All coordinates.
     pub q: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Initial {
 }
 
 /// End of a run: whichever comes first.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct End {
     /// Time, s.
     pub time: f64,
@@ -52,7 +52,7 @@ pub struct End {
 }
 
 /// Tolerances of the local error of a step: absolute + relative × magnitude.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Accuracy {
     /// Relative tolerance.
     pub relative: f64,
@@ -63,7 +63,7 @@ pub struct Accuracy {
 }
 
 /// What is recorded.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Record {
     /// Interval of the samples, s; `None`: the steps and both sides of every event.
     pub every: Option<f64>,

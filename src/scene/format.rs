@@ -220,7 +220,8 @@ pub(crate) fn rate_unit(coordinate: &Coordinate) -> String {
 }
 
 fn initial(model: Option<&Model>) -> Object {
-    let meaning = "mode at t = 0; by default the one that fits the state";
+    let meaning =
+        "mode at t = 0; by default the one with the fewest free coordinates that holds the state";
     let Some(model) = model else {
         let keys = vec![Key::new("mode", meaning, Shape::Text)];
         return Object::new("coordinate", keys).others(Quantity::any(""));
@@ -329,7 +330,7 @@ fn record() -> Object {
         vec![
             Key::new(
                 "every",
-                "time between rows of the trajectory; by default every step is a row",
+                "time between rows of the trajectory; by default the steps and both sides of every event",
                 Quantity::positive("s"),
             ),
             flag("reactions", "whether reactions are computed and written"),

@@ -8,8 +8,10 @@ use super::files::Files;
 use super::shape::Shape;
 use super::tree::{Node, Value};
 use super::wording::listing;
-use super::{Accuracy, End, Record, Scene, SceneSource, format, inputs, state};
+use super::{Scene, SceneSource, format, inputs, state};
+use crate::hybrid::{Accuracy, End, Problem, Record};
 use crate::model::{Model, Variant};
+use crate::record::Recorded;
 
 /// Checks a tree and makes a scene of it. `folder` is what tables are relative to.
 pub(crate) fn scene(
@@ -48,7 +50,7 @@ pub(crate) fn scene(
     else {
         unreachable!("a part of the scene is absent without an error")
     };
-    Ok(Scene {
+    let problem = Problem {
         model,
         variant,
         title: checked.get("title").map(|title| title.text().to_owned()),
@@ -59,8 +61,9 @@ pub(crate) fn scene(
         end,
         accuracy: accuracy(model, &checked),
         record: record(&checked),
-        source: SceneSource { root },
-    })
+    };
+    let source = SceneSource { root };
+    Ok(Scene { problem, source })
 }
 
 fn model(root: &Node, models: &[&'static Model]) -> Result<&'static Model, SceneError> {
@@ -258,8 +261,10 @@ fn record(scene: &Checked) -> Record {
     let flag = |key: &str| entry(key).is_none_or(Checked::flag);
     Record {
         every: entry("every").map(Checked::number),
-        reactions: flag("reactions"),
-        energies: flag("energies"),
-        inputs: flag("inputs"),
+        columns: Recorded {
+            reactions: flag("reactions"),
+            energies: flag("energies"),
+            inputs: flag("inputs"),
+        },
     }
 }

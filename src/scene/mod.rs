@@ -29,82 +29,18 @@ pub use files::{Disk, Files};
 pub use schema::schema;
 pub use source::Position;
 
-use crate::input::Signals;
-use crate::model::{Model, Variant};
+use crate::hybrid::Problem;
+use crate::model::Model;
 use source::{Source, Span};
 use tree::{Node, Value};
 
-/// What to simulate: a scene whose every part has been checked, in the units of its model.
+/// A scene whose every part that does not need the model's functions has been checked.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// The model.
-    pub model: &'static Model,
-    /// The hybrid automaton that the scene's choices select.
-    pub variant: &'static Variant,
-    /// What the scene shows.
-    pub title: Option<String>,
-    /// Values in the order of [`Model::parameters`].
-    pub parameters: Vec<f64>,
-    /// The inputs, as functions of time.
-    pub signals: Signals,
-    /// The state at t = 0.
-    pub initial: Initial,
-    /// Indices of coordinates that are held still throughout, increasing.
-    pub freeze: Vec<usize>,
-    /// When the run ends.
-    pub end: End,
-    /// Error tolerances.
-    pub accuracy: Accuracy,
-    /// What is recorded.
-    pub record: Record,
-    /// The text behind the scene, for errors that only the model's functions can find.
+    /// What to simulate, in the units of the model.
+    pub problem: Problem,
+    /// The text behind it, for errors that only the model's functions can find.
     pub source: SceneSource,
-}
-
-/// The state at t = 0.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Initial {
-    /// Coordinates, in the order of [`Model::coordinates`].
-    pub q: Vec<f64>,
-    /// Velocities, in the same order.
-    pub v: Vec<f64>,
-    /// Discrete states, in the order of [`Model::discretes`].
-    pub discrete: Vec<f64>,
-    /// Index of the mode among [`Variant::modes`], if the scene names it.
-    pub mode: Option<usize>,
-}
-
-/// When a run ends: at the time, or after the given number of a transition, whichever is first.
-#[derive(Debug, Clone, PartialEq)]
-pub struct End {
-    /// Time, in s.
-    pub time: f64,
-    /// Name of a transition and how many of it, one at least.
-    pub after: Option<(&'static str, u64)>,
-}
-
-/// Error tolerances of a step.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Accuracy {
-    /// Relative tolerance.
-    pub relative: f64,
-    /// Absolute tolerance of each coordinate, in its unit.
-    pub q_absolute: Vec<f64>,
-    /// Absolute tolerance of each velocity, in its unit.
-    pub v_absolute: Vec<f64>,
-}
-
-/// What is recorded of a run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Record {
-    /// Time between rows of the trajectory, in s; `None`: a row for each step.
-    pub every: Option<f64>,
-    /// Whether reactions are computed and written.
-    pub reactions: bool,
-    /// Whether the energy ledger is kept.
-    pub energies: bool,
-    /// Whether the inputs are written.
-    pub inputs: bool,
 }
 
 impl Scene {

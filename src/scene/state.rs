@@ -3,9 +3,10 @@
 
 use super::check::{Checked, unknown_name};
 use super::error::{Errors, SceneError, SceneErrorKind};
+use super::format;
 use super::interpret::under;
 use super::wording::{listing, shown};
-use super::{Initial, format};
+use crate::hybrid::Initial;
 use crate::model::{Mode, Model, Variant};
 
 /// The coordinates to freeze, increasing. Each must be held still by some mode, or no equations

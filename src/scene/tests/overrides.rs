@@ -1,13 +1,16 @@
 //! `--set path=value`.
 
 use super::*;
+use crate::hybrid::Problem;
 use crate::scene::SceneErrorKind;
 
 const SMALL: &str = r#"{ "model": "walking_tank", "end": 1, "inputs": { "ground_acceleration": null },
     "freeze": ["x", "y"] }"#;
 
-fn set(overrides: &[&str]) -> Scene {
-    parse_with(SMALL.as_bytes(), overrides, &[]).unwrap()
+fn set(overrides: &[&str]) -> Problem {
+    parse_with(SMALL.as_bytes(), overrides, &[])
+        .unwrap()
+        .problem
 }
 
 #[test]

@@ -1,23 +1,27 @@
 //! What right scenes mean.
 
 use super::*;
-use crate::scene::{End, Initial, Record};
+use crate::hybrid::{End, Initial, Problem, Record};
+use crate::record::Recorded;
 
-fn full() -> Scene {
-    parse_with(FULL.as_bytes(), &[], &[("record.csv", RECORD.as_bytes())]).unwrap()
+fn full() -> Problem {
+    let tables: &[(&str, &[u8])] = &[("record.csv", RECORD.as_bytes())];
+    parse_with(FULL.as_bytes(), &[], tables).unwrap().problem
 }
 
-fn coordinate(scene: &Scene, name: &str) -> usize {
+fn coordinate(scene: &Problem, name: &str) -> usize {
     scene.model.coordinate(name).unwrap()
 }
 
-fn parameter(scene: &Scene, name: &str) -> f64 {
+fn parameter(scene: &Problem, name: &str) -> f64 {
     scene.parameters[scene.model.parameter(name).unwrap()]
 }
 
 #[test]
 fn smallest_scene_takes_every_default() {
-    let scene = parse(r#"{ "model": "walking_tank", "end": 1 }"#).unwrap();
+    let scene = parse(r#"{ "model": "walking_tank", "end": 1 }"#)
+        .unwrap()
+        .problem;
     assert_eq!(scene.variant.options, ["reactions", "momenta"]);
     let defaults: Vec<f64> = scene.model.parameters.iter().map(|p| p.default).collect();
     assert_eq!(scene.parameters, defaults);
@@ -50,9 +54,11 @@ fn smallest_scene_takes_every_default() {
         scene.record,
         Record {
             every: None,
-            reactions: true,
-            energies: true,
-            inputs: true
+            columns: Recorded {
+                reactions: true,
+                energies: true,
+                inputs: true
+            }
         }
     );
     let mut u = [f64::NAN; 3];
@@ -98,9 +104,11 @@ fn every_key_is_read() {
         scene.record,
         Record {
             every: Some(0.001),
-            reactions: true,
-            energies: false,
-            inputs: true
+            columns: Recorded {
+                reactions: true,
+                energies: false,
+                inputs: true
+            }
         }
     );
 }
@@ -141,7 +149,7 @@ fn inputs_add_up() {
 fn defaults_of_choices_follow_the_choices_that_are_named() {
     let options = |choices: &str| {
         let text = format!(r#"{{ "model": "walking_tank", "end": 1 {choices} }}"#);
-        parse(&text).unwrap().variant.options
+        parse(&text).unwrap().problem.variant.options
     };
     assert_eq!(options(r#", "rules": "paper""#), ["paper", "velocities"]);
     assert_eq!(
@@ -160,7 +168,7 @@ fn inputs_may_be_null_and_angular() {
         let text = format!(
             r#"{{ "model": "belt_oscillator", "end": 1, "inputs": {{ "force": {text} }} }}"#
         );
-        let scene = parse(&text).unwrap();
+        let scene = parse(&text).unwrap().problem;
         let mut u = [f64::NAN];
         scene.signals.evaluate(0.5, &mut u);
         u[0]
@@ -186,7 +194,7 @@ fn tables_may_have_comments_quotes_and_a_byte_order_mark() {
     ] {
         let scene = parse_with(scene.as_bytes(), &[], &[("f.csv", table.as_bytes())]).unwrap();
         let mut u = [0.0];
-        scene.signals.evaluate(0.5, &mut u);
+        scene.problem.signals.evaluate(0.5, &mut u);
         assert_eq!(u, [2.0], "{table}");
     }
 }
