@@ -59,10 +59,13 @@ pub(super) struct Chebyshev {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interpolant {
     pub(super) expansion: Chebyshev,
-    /// Sum of the upper half of the coefficients: what is taken for the truncation error.
-    pub(super) tail: f64,
+    pub(super) degree: usize,
+    /// Sum of the coefficients' magnitudes from 1 to half the degree, and from there on.
+    halves: [f64; 2],
     /// Bound of the rounding errors of interpolation and evaluation.
-    pub(super) rounding: f64,
+    rounding: f64,
+    /// Largest magnitude of the function at the nodes.
+    pub(super) magnitude: f64,
 }
 
 impl Interpolant {
@@ -88,10 +91,12 @@ impl Interpolant {
             .fold(0.0, |m: f64, v| m.max(v.abs()));
         // Two sums, over the nodes and over the coefficients, of degree + 1 terms each: γ ≈ 2nu.
         let rounding = degree as f64 * f64::EPSILON * magnitude;
-        let tail = coefficients[degree / 2 + 1..=degree]
-            .iter()
-            .map(|c| c.abs())
-            .sum();
+        let sum = |range: &[f64]| range.iter().map(|c| c.abs()).sum();
+        let half = degree / 2;
+        let halves = [
+            sum(&coefficients[1..=half]),
+            sum(&coefficients[half + 1..=degree]),
+        ];
         // Trailing coefficients that no bit of the sum depends on only cost time.
         let largest = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
         let mut used = degree;
@@ -104,55 +109,79 @@ impl Interpolant {
         };
         Self {
             expansion,
-            tail,
+            degree,
+            halves,
             rounding,
+            magnitude,
         }
     }
 
-    /// Divides a zero of order `order` at the left end out of `values`, in place: at the other
-    /// nodes by the power of the distance, at the end itself by the interpolant through the others,
-    /// which is the condition that the last coefficient is zero. `distances` are the nodes' own.
+    /// Divides a zero of order `order` at the left end out of `values`: at the other nodes by the
+    /// power of their distance, at the end itself by the interpolant through the others, which is
+    /// the condition that the last coefficient is zero. Returns the quotients as well.
     pub(super) fn deflated(
         values: &[f64; NODES],
         distances: &[f64; NODES],
         order: usize,
         degree: usize,
     ) -> (Self, [f64; NODES]) {
-        let stride = DEGREE / degree;
-        let mut quotients = [0.0; NODES];
-        let mut start = 0.0;
-        for j in 1..=degree {
-            let node = j * stride;
-            let mut quotient = values[node];
+        let mut quotients = *values;
+        for (quotient, distance) in quotients.iter_mut().zip(distances).skip(1) {
             for _ in 0..order {
-                quotient /= distances[node];
+                *quotient /= distance;
             }
-            quotients[node] = quotient;
+        }
+        quotients[0] = 0.0;
+        for (j, &quotient) in quotients
+            .clone()
+            .iter()
+            .step_by(DEGREE / degree)
+            .enumerate()
+            .skip(1)
+        {
             let sign = if j % 2 == 0 { -1.0 } else { 1.0 };
-            start += sign
+            quotients[0] += sign
                 * if j == degree {
                     quotient
                 } else {
                     2.0 * quotient
                 };
         }
-        quotients[0] = start;
         let mut interpolant = Self::through(&quotients, degree);
         // The value at the end carries the errors of all the others, up to twice each.
         interpolant.rounding *= 2.0;
         (interpolant, quotients)
     }
 
-    /// Whether the function is represented as well as doubles, and a rounding error of `noise` in
-    /// each value, allow: such an error enters each of the n/2 coefficients of the tail by twice
-    /// its size at most.
-    pub(super) fn is_resolved(&self, noise: f64, degree: usize) -> bool {
-        self.tail <= degree as f64 * noise + self.rounding
+    /// The node of the next higher degree that shows the error best: the error is close to a
+    /// multiple of sin θ sin nθ, which is largest next to the middle of the window. `None` at the
+    /// highest degree.
+    pub(super) fn test_node(degree: usize) -> Option<usize> {
+        (degree < DEGREE).then_some(DEGREE / 2 - DEGREE / (2 * degree))
     }
 
-    /// What the interpolant may differ from the function.
+    /// Whether the function is represented as well as doubles, and a rounding error of `noise` in
+    /// each value, allow: such an error enters each of the n/2 coefficients of the upper half by
+    /// twice its size at most.
+    pub(super) fn is_resolved(&self, noise: f64) -> bool {
+        self.halves[1] <= self.degree as f64 * noise + self.rounding
+    }
+
+    /// Whether the coefficients decay fast enough to judge the function by.
+    ///
+    /// If the sums of the halves shrink by a ratio r from each to the next, what follows sums to
+    /// r/(1 − r) of the upper half; it acts twice, as truncated and as aliased. That is no more
+    /// than the upper half for r ≤ 1/3.
+    pub(super) fn decays(&self) -> bool {
+        let [lower, upper] = self.halves;
+        3.0 * upper <= lower || upper <= self.rounding
+    }
+
+    /// What the interpolant may differ from the function: the upper half of the coefficients if
+    /// they decay; otherwise only the size of the variation is known.
     pub(super) fn error(&self) -> f64 {
-        self.tail + self.rounding
+        let [lower, upper] = self.halves;
+        self.rounding + if self.decays() { upper } else { lower + upper }
     }
 }
 
@@ -225,7 +254,7 @@ mod tests {
             // d/ds is twice d/dx, and the derivative is a multiple: here one half.
             assert!((2.0 * slope.value(s) - exact).abs() <= 1e-11, "{s}");
         }
-        assert!(interpolant.tail < 1e-5 && interpolant.tail > interpolant.rounding);
+        assert!(interpolant.error() < 1e-5 && !interpolant.is_resolved(0.0));
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 /// Place of `x` in the ordered list of all doubles; both zeros have place 0.
 fn place(x: f64) -> i64 {
-    let bits = x.to_bits().cast_signed();
+    let bits = x.to_bits() as i64;
     // Sign and magnitude to two's complement: i64::MIN is the sign bit alone.
     if bits < 0 { i64::MIN - bits } else { bits }
 }
@@ -13,16 +13,16 @@ fn place(x: f64) -> i64 {
 /// Inverse of [`place`].
 fn at_place(place: i64) -> f64 {
     if place < 0 {
-        f64::from_bits((i64::MIN - place).cast_unsigned())
+        f64::from_bits((i64::MIN - place) as u64)
     } else {
-        f64::from_bits(place.cast_unsigned())
+        f64::from_bits(place as u64)
     }
 }
 
 /// Number of steps from `left` to `right` along the doubles, for `left ≤ right`.
 pub(super) fn steps(left: f64, right: f64) -> u64 {
     // The difference fits u64 though not i64; two's complement wraps to it.
-    place(right).wrapping_sub(place(left)).cast_unsigned()
+    place(right).wrapping_sub(place(left)) as u64
 }
 
 /// The double `count` steps above `x` (below, if negative), not beyond `low` or `high`.

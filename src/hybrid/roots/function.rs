@@ -5,7 +5,7 @@ use super::chebyshev::{DEGREE, Interpolant, NODES, place};
 use super::doubles::{middle, moved};
 use super::extrema::{Expansion, Places, extrema};
 use super::walk::{Pieces, walk};
-use super::{Crossing, Kind, Search, Watch};
+use super::{Kind, Search, Watch};
 
 /// Evaluations after which a search stops halving windows. One singular place (a jump, a kink at
 /// zero) is halved down to neighbouring doubles in 53 halvings, with two windows each.
@@ -21,7 +21,7 @@ const HALF_DIGITS: u32 = f64::MANTISSA_DIGITS / 2;
 /// `guard`, in its unit, used while it is dormant and to see when it is resolved (0: unknown). A
 /// dormant guard is exactly 0 at `from`, or has not left zero since it was.
 ///
-/// A guard far from zero takes 5 evaluations, one that falls about 15; see the
+/// A guard far from zero takes 6 evaluations, one that falls about 15; see the
 /// [module's page](super) for what is guaranteed.
 pub fn search(
     guard: impl FnMut(f64) -> f64,
@@ -47,7 +47,7 @@ struct Guard<F> {
     evaluations: usize,
 }
 
-/// A window and the guard's values at its nodes.
+/// A window and the guard's values at its nodes; not a number where it was not evaluated yet.
 struct Samples {
     from: f64,
     to: f64,
@@ -72,6 +72,13 @@ impl Samples {
         (t - self.from) / (self.to - self.from)
     }
 
+    fn magnitude(&self, degree: usize) -> f64 {
+        self.values
+            .iter()
+            .step_by(DEGREE / degree)
+            .fold(0.0, |m: f64, v| m.max(v.abs()))
+    }
+
     fn time(&self, fraction: f64) -> f64 {
         (self.from + fraction * (self.to - self.from)).clamp(self.from, self.to)
     }
@@ -83,26 +90,49 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         (self.function)(t)
     }
 
+    /// Fills in the values at the nodes of a degree and at its test node.
+    fn sample(&mut self, samples: &mut Samples, degree: usize) {
+        for node in (0..NODES)
+            .step_by(DEGREE / degree)
+            .chain(Interpolant::test_node(degree))
+        {
+            if samples.values[node].is_nan() {
+                samples.values[node] = self.value(samples.nodes[node]);
+            }
+        }
+    }
+
     /// The earliest event of a window, or the remembered sign at its end.
     fn window(&mut self, from: f64, to: f64, watch: Watch) -> Search {
         let mut samples = Samples::new(from, to);
+        let mut noise = self.noise;
         for degree in [4, 8, DEGREE] {
-            let stride = DEGREE / degree;
-            for index in 0..=degree {
-                // Every second node is one of the lower degree.
-                if degree == 4 || index % 2 == 1 {
-                    samples.values[index * stride] = self.value(samples.nodes[index * stride]);
+            self.sample(&mut samples, degree);
+            if watch == Watch::Dormant && self.noise == 0.0 && degree == 4 {
+                if samples.magnitude(degree) == 0.0 {
+                    return Search::quiet(watch);
+                }
+                let (is_noise, size) = self.is_noise(&mut samples);
+                if is_noise {
+                    return Search {
+                        resolved: false,
+                        ..Search::quiet(watch)
+                    };
+                }
+                if samples.values[0] != 0.0 {
+                    noise = size;
                 }
             }
-            if let Some(search) = self.decide(&samples, degree, watch) {
+            if let Some(search) = self.decide(&samples, degree, watch, noise) {
                 return search;
             }
         }
-        if watch == Watch::Dormant && self.is_rough(&samples) {
-            return Search {
-                resolved: false,
-                ..Search::quiet(watch)
-            };
+        if watch != Watch::Dormant {
+            // Halving the window does not help where rounding errors are what is not resolved.
+            let noise = noise.max(self.roughness(&samples, DEGREE));
+            if let Some(search) = self.decide(&samples, DEGREE, watch, noise) {
+                return search;
+            }
         }
         let centre = from + (to - from) / 2.0;
         let neighbours = !(from < centre && centre < to);
@@ -124,61 +154,56 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
     }
 
     /// The answer from the interpolant of this degree, if it is good enough to give one.
-    fn decide(&mut self, samples: &Samples, degree: usize, watch: Watch) -> Option<Search> {
-        let at_start = samples.values[0];
-        if watch == Watch::Dormant && self.noise == 0.0 && at_start == 0.0 {
+    fn decide(
+        &mut self,
+        samples: &Samples,
+        degree: usize,
+        watch: Watch,
+        noise: f64,
+    ) -> Option<Search> {
+        if watch == Watch::Dormant && noise == 0.0 {
             return self.leave_zero(samples, degree);
         }
         let interpolant = Interpolant::through(&samples.values, degree);
-        let error = interpolant.error();
-        let (below, above) = interpolant.expansion.bounds();
-        if watch == Watch::Armed && below > error || watch == Watch::Violated && above < -error {
-            return Some(Search::quiet(watch));
+        if !stands_test(&interpolant, &samples.values, degree) {
+            return None;
         }
-        // A guard that slept through the window before, and whose noise is unknown, is awake where
-        // it differs from zero by more than its interpolant can be wrong.
-        let unknown = watch == Watch::Dormant && self.noise == 0.0;
-        let noise = if unknown { error } else { self.noise };
-        let ends = (at_start, samples.values[DEGREE]);
-        walk(
-            &mut Cut::new(self, samples, degree, interpolant, ends, 0, noise),
-            watch,
-            noise,
-        )
+        let ends = (samples.values[0], samples.values[DEGREE]);
+        Cut::new(self, samples, interpolant, ends, 0, noise).search(watch)
     }
 
     /// A guard that is exactly zero at the start: its zero is divided out, of the lowest order that
     /// leaves a quotient with a sign there, and all lower orders must be resolved as zero.
     fn leave_zero(&mut self, samples: &Samples, degree: usize) -> Option<Search> {
         let from = samples.from;
-        if samples
-            .values
-            .iter()
-            .step_by(DEGREE / degree)
-            .all(|&value| value == 0.0)
-        {
-            return Some(Search::quiet(Watch::Dormant));
-        }
         let fractions = samples.nodes.map(|node| samples.fraction(node));
         for order in 1..degree {
             let (interpolant, quotients) =
                 Interpolant::deflated(&samples.values, &fractions, order, degree);
+            if !stands_test(&interpolant, &quotients, degree) || !interpolant.decays() {
+                return None;
+            }
             let start = quotients[0];
-            if start < -interpolant.error()
-                && let Some(right) = self.negative_near(from, samples.nodes[DEGREE / degree])
-            {
-                let (l, r, flew) = departure(&mut |t| self.value(t), from, right);
-                let kind = if flew {
-                    Kind::Fall
+            if start.abs() > interpolant.error() {
+                let near = samples.nodes[DEGREE / degree];
+                let right = if start < 0.0 {
+                    self.negative_near(from, near)
                 } else {
-                    Kind::LeavesNegative
+                    None
                 };
-                return Some(Search::found(l.0, r.0, kind, Watch::Violated));
-            } else if start.abs() > interpolant.error() {
+                if let Some(right) = right {
+                    let (l, r, flew) = departure(&mut |t| self.value(t), from, right);
+                    let kind = if flew {
+                        Kind::Fall
+                    } else {
+                        Kind::LeavesNegative
+                    };
+                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
+                }
                 let ends = (start, quotients[DEGREE]);
-                let cut = &mut Cut::new(self, samples, degree, interpolant, ends, order, 0.0);
-                return walk(cut, Watch::Armed, 0.0);
-            } else if !interpolant.is_resolved(0.0, degree) {
+                return Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed);
+            }
+            if !interpolant.is_resolved(0.0) {
                 return None;
             }
         }
@@ -198,19 +223,32 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         None
     }
 
-    /// Whether the guard changes over a tiny fraction of the window by as much as its values: it is
-    /// then rounding noise about zero, or rougher than doubles resolve.
-    fn is_rough(&mut self, samples: &Samples) -> bool {
-        let largest = samples.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let shift = (samples.to - samples.from) / f64::from(1_u32 << HALF_DIGITS);
-        let mut change = 0.0_f64;
-        for index in 0..DEGREE {
-            let shifted = self.value(samples.nodes[index] + shift);
-            change = change.max((shifted - samples.values[index]).abs());
+    /// Whether the values in the window are no more than rounding errors, and the size of these.
+    fn is_noise(&mut self, samples: &mut Samples) -> (bool, f64) {
+        let mut size = 0.0;
+        for degree in [4, DEGREE] {
+            self.sample(samples, degree);
+            size = self.roughness(samples, degree);
+            // A few errors may all be the same; then more of them are looked at.
+            if size > 0.0 {
+                return (samples.magnitude(degree) <= degree as f64 * size, size);
+            }
         }
-        // A smooth function changes by 2n²/2²⁶, 1e-5, of its values at most (Markov's inequality),
-        // independent values by as much as they are large; one half separates the two.
-        change >= 0.5 * largest
+        (false, size)
+    }
+
+    /// Size of the guard's rounding errors: its largest second difference at the inner nodes, over
+    /// 2⁻²⁶ of the window. There a smooth guard contributes 2⁻⁵² g″ only, which is of the size of
+    /// a rounding, and rounding errors are independent: an error of ν contributes up to 4ν.
+    fn roughness(&mut self, samples: &Samples, degree: usize) -> f64 {
+        let shift = (samples.to - samples.from) / f64::from(1_u32 << HALF_DIGITS);
+        let mut largest = 0.0_f64;
+        for node in (0..DEGREE).step_by(DEGREE / degree).skip(1) {
+            let (t, value) = (samples.nodes[node], samples.values[node]);
+            let difference = value - 2.0 * self.value(t + shift) + self.value(t + 2.0 * shift);
+            largest = largest.max(difference.abs());
+        }
+        largest
     }
 
     /// By the values at the nodes alone.
@@ -218,47 +256,40 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         if watch == Watch::Dormant && self.noise == 0.0 {
             return Search::quiet(watch);
         }
-        let noise = self.noise;
-        let search = walk(
+        walk(
             &mut Values {
                 guard: self,
                 samples,
             },
             watch,
-            noise,
         )
-        .expect("every node has a value");
-        match search.crossing {
-            Some(crossing) if crossing.kind == Kind::Fall => {
-                let kind = self.classify(crossing, samples);
-                Search {
-                    crossing: Some(Crossing { kind, ..crossing }),
-                    ..search
-                }
-            }
-            _ => search,
-        }
+        .expect("every node has a value")
     }
 
     /// Tells a jump and a pole from a fall by comparing the bracket with places 2²⁶ doubles away:
     /// what is continuous has changed by much more there, a jump by no more, and next to a pole
     /// the value, even that of a logarithm, is at least twice the value there.
-    fn classify(&mut self, crossing: Crossing, samples: &Samples) -> Kind {
+    fn classify(&mut self, inside: Point, outside: Point, samples: &Samples) -> Kind {
         let away = 1_i64 << HALF_DIGITS;
-        let inside = self.value(crossing.inside);
-        let outside = self.value(crossing.outside);
-        let before = self.value(moved(crossing.inside, -away, samples.from, samples.to));
-        let after = self.value(moved(crossing.outside, away, samples.from, samples.to));
+        let before = self.value(moved(inside.0, -away, samples.from, samples.to));
+        let after = self.value(moved(outside.0, away, samples.from, samples.to));
         // A value at the pole itself may be infinite or not a number.
         let grows = |near: f64, far: f64| near.is_nan() || near.abs() >= 2.0 * far.abs();
-        if grows(inside, before) && grows(outside, after) {
+        if grows(inside.1, before) && grows(outside.1, after) {
             Kind::Pole
-        } else if inside - outside > 0.5 * (before - after) {
+        } else if inside.1 - outside.1 > 0.5 * (before - after) {
             Kind::Jump
         } else {
             Kind::Fall
         }
     }
+}
+
+/// Whether the value at the test node agrees with the interpolant.
+fn stands_test(interpolant: &Interpolant, values: &[f64; NODES], degree: usize) -> bool {
+    Interpolant::test_node(degree).is_none_or(|node| {
+        (interpolant.expansion.value(place(node)) - values[node]).abs() <= interpolant.error()
+    })
 }
 
 /// The guard cut at the extrema of its interpolant, divided by the `order`-th power of the fraction
@@ -280,24 +311,38 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
     fn new(
         guard: &'g mut Guard<F>,
         samples: &'g Samples,
-        degree: usize,
         interpolant: Interpolant,
         ends: (f64, f64),
         order: usize,
         noise: f64,
     ) -> Self {
-        let resolved = interpolant.is_resolved(guard.noise, degree);
-        let extrema = extrema(&interpolant.expansion);
+        let resolved = interpolant.is_resolved(noise);
         Self {
             guard,
             samples,
             interpolant,
-            extrema,
+            extrema: Places::new(),
             ends,
             order,
             noise,
             resolved,
         }
+    }
+
+    /// The answer, if the interpolant is good enough to give one.
+    fn search(mut self, watch: Watch) -> Option<Search> {
+        let error = self.interpolant.error();
+        let (below, above) = self.interpolant.expansion.bounds();
+        if watch == Watch::Armed && below > error || watch == Watch::Violated && above < -error {
+            return Some(Search::quiet(watch));
+        }
+        // Five values may decay by chance; those of degree 8 then do not.
+        let decays = self.interpolant.degree > 4 && self.interpolant.decays();
+        if !decays && !self.resolved {
+            return None;
+        }
+        self.extrema = extrema(&self.interpolant.expansion);
+        walk(&mut self, watch)
     }
 }
 
@@ -315,14 +360,18 @@ impl<F: FnMut(f64) -> f64> Pieces for Cut<'_, F> {
     }
 
     fn value(&mut self, index: usize) -> Option<(f64, bool)> {
-        if index == 0 {
-            return Some((self.ends.0, false));
+        let certain = self.noise + self.interpolant.error();
+        let last = self.len() - 1;
+        if index == 0 || index == last {
+            let value = if index == 0 { self.ends.0 } else { self.ends.1 };
+            // Next to an end that is nearly zero the guard may turn without the interpolant.
+            return (value.abs() > certain || self.resolved).then_some((value, false));
         }
-        let Some(&fraction) = self.extrema.as_slice().get(index - 1) else {
-            return Some((self.ends.1, false));
-        };
-        let value = self.interpolant.expansion.value(fraction);
-        if value.abs() > self.noise + self.interpolant.error() {
+        let value = self
+            .interpolant
+            .expansion
+            .value(self.extrema.as_slice()[index - 1]);
+        if value.abs() > certain {
             Some((value, false))
         } else if self.resolved {
             let node = self.node(index);
@@ -332,10 +381,26 @@ impl<F: FnMut(f64) -> f64> Pieces for Cut<'_, F> {
         }
     }
 
+    fn rounding(&self, _index: usize) -> f64 {
+        self.noise
+    }
+
     fn own(&mut self, t: f64) -> f64 {
         let fraction = self.samples.fraction(t);
         let value = self.guard.value(t);
         (0..self.order).fold(value, |quotient, _| quotient / fraction)
+    }
+
+    fn kind(&mut self, inside: Point, outside: Point) -> Kind {
+        // A continuous guard changes from a double to the next by a few roundings.
+        let continuous = self.interpolant.magnitude / f64::from(1_u32 << HALF_DIGITS);
+        if inside.1 - outside.1 <= continuous {
+            Kind::Fall
+        } else {
+            let own = |guard: &mut Guard<F>, point: Point| (point.0, guard.value(point.0));
+            let (inside, outside) = (own(self.guard, inside), own(self.guard, outside));
+            self.guard.classify(inside, outside, self.samples)
+        }
     }
 }
 
@@ -358,7 +423,15 @@ impl<F: FnMut(f64) -> f64> Pieces for Values<'_, F> {
         Some((self.samples.values[index], false))
     }
 
+    fn rounding(&self, _index: usize) -> f64 {
+        self.guard.noise
+    }
+
     fn own(&mut self, t: f64) -> f64 {
         self.guard.value(t)
+    }
+
+    fn kind(&mut self, inside: Point, outside: Point) -> Kind {
+        self.guard.classify(inside, outside, self.samples)
     }
 }

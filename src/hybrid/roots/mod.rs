@@ -27,29 +27,31 @@
 //! # What is guaranteed, and what is not
 //!
 //! *Polynomials*: every event is found whose excursion below zero is deeper than the rounding error
-//! of evaluating the polynomial, 2n·u·Σ|cₖ|sᵏ (u = 2⁻⁵³), and of two excursions the earlier.
-//! A shallower one is found if the value at its minimum, as a double, is ≤ 0. At s = 0 leading zero
-//! coefficients are divided out exactly, so a flight of 1e-300 of the window is a flight.
+//! of evaluating the polynomial, 2n·u·Σ|cₖ|sᵏ (u = 2⁻⁵³). A shallower one, a touch among them, is
+//! found if a value at its minimum, as a double, is ≤ 0, and an excursion above zero that is as
+//! small does not arm. At s = 0 leading zero coefficients are divided out exactly, so a flight of
+//! 1e-300 of the window is a flight. About a root of multiplicity 3 or more the doubles may cross
+//! zero more than once; each crossing that is returned is one.
 //!
 //! *Functions* are represented by Chebyshev interpolants of degree 4, 8, 16, then by halving the
 //! window; a decision is taken from an interpolant only where its value exceeds its error, and by
-//! the function's own values elsewhere. The error is the sum of the upper half of its coefficients:
-//! this **assumes** that what follows them sums to no more, which holds once a function is resolved
-//! and cannot be checked from finitely many values. So a feature that hides between the five first
-//! nodes of a window is not seen. Windows of the size of an integrator's step, whose own error
-//! control resolves the motion, meet this.
+//! the function's own values elsewhere. The error is the sum of the upper half of its coefficients
+//! if that is at most a third of the lower half, and one more value has agreed with it: this
+//! **assumes** that the coefficients go on to decay, which finitely many values cannot prove. So a
+//! feature narrower than the spacing of the six first evaluations may not be seen. Windows of the
+//! size of an integrator's step, whose own error control resolves the motion, meet this.
 //!
 //! *Dormant functions* need their values near the start to full relative accuracy, which a guard
-//! written in time since its start has. The zero is divided out; a flight is then seen down to
-//! the last double, after a simple zero; after a zero of higher multiplicity a departure that is
-//! shorter than rounding, relative to the window, and turns back to positive is not.
+//! written in time since its start has. The zero is divided out; a fall after a short flight is
+//! then seen down to the last double. Behind a zero of multiplicity 2 or more a *negative*
+//! departure that is shorter than rounding, relative to the window, and turns positive is not.
 //!
 //! *Noise*: a guard that is identically zero but for rounding (x² + y² − 1 on a circle) cannot be
 //! told from its values alone. A caller that knows a bound of the rounding error, n·u·Σ|terms| for
 //! a sum of n terms, gives it as `noise`: a dormant guard is then asleep until |g| > noise. Without
-//! one (0) every value is taken at its word where the guard can be resolved; a dormant guard
-//! whose values are as rough over 2⁻²⁶ of the window as over all of it sleeps on, and the
-//! answer says `resolved: false`.
+//! one (0) the noise of a dormant function is measured, from its second differences over 2⁻²⁶ of
+//! the window; while its values are no more than that it sleeps on, and the answer says
+//! `resolved: false`, because that is a statistical judgement.
 //!
 //! *Jumps and poles* are closed in on to neighbouring doubles and told apart from falls by
 //! [`Kind::Jump`] and [`Kind::Pole`].

@@ -1,7 +1,6 @@
 //! A guard that is a polynomial, such as a coordinate on the dense output of a step.
 
 use super::bracket::departure;
-use super::doubles::middle;
 use super::extrema::{Count, Expansion, Places, extrema};
 use super::walk::{Pieces, walk};
 use super::{Kind, Search, Watch};
@@ -44,9 +43,10 @@ impl<const N: usize> Polynomial<N> {
     /// The earliest event in `from` < s ≤ `to`, where 0 ≤ `from` ≤ `to` ≤ 1.
     ///
     /// `watch` is the sign remembered from before `from`; `noise` is a bound of what a dormant
-    /// guard may differ from zero while it is zero, in the guard's unit (0: nothing). A dormant
-    /// polynomial is zero at `from` by the caller's word. At `from` = 0 its zero is divided out
-    /// exactly, elsewhere as far as rounding allows: expand about the start of a segment.
+    /// guard may differ from zero while it is zero, in the guard's unit (0: nothing). With
+    /// `noise` = 0 the leading zero coefficients of a polynomial that is dormant at `from` = 0 are
+    /// divided out exactly; one that is dormant elsewhere is asleep until it exceeds the rounding
+    /// error of its value, so expand a segment's polynomials about its start.
     #[inline]
     pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
         // c₀ + Σ min(cₖ, 0) bounds the polynomial on [0, 1] from below.
@@ -65,8 +65,8 @@ impl<const N: usize> Polynomial<N> {
     fn search_beyond_bound(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
         if from >= to {
             Search::quiet(watch)
-        } else if watch == Watch::Dormant && noise == 0.0 {
-            self.search_dormant(from, to)
+        } else if watch == Watch::Dormant && noise == 0.0 && from == 0.0 {
+            self.leave_zero(to)
         } else {
             self.search_pieces(from, to, watch, noise)
         }
@@ -80,49 +80,33 @@ impl<const N: usize> Polynomial<N> {
         {
             return Search::quiet(watch);
         }
-        let mut pieces = Monotone::new(self, from, to);
-        walk(&mut pieces, watch, noise).expect("a polynomial has a value everywhere")
+        let mut pieces = Monotone::new(self, from, to, noise);
+        walk(&mut pieces, watch).expect("a polynomial has a value everywhere")
     }
 
-    /// The zero at `from` is divided out; then the sign beside it is that of the quotient there.
-    fn search_dormant(&self, from: f64, to: f64) -> Search {
-        let mut quotient = self.without_root(from);
-        for _ in 1..N {
-            // At 0 the bound is below the value, so only an exact zero is divided out.
-            if quotient.value(from).abs() > quotient.error(from) {
-                break;
-            }
-            quotient = quotient.without_root(from);
-        }
-        match Watch::of(quotient.value(from)) {
-            Watch::Violated => {
-                let mut right = to;
-                while quotient.value(right) >= 0.0 {
-                    right = middle(from, right);
-                }
-                let right = (right, self.value(right));
-                let (l, r, flew) = departure(&mut |s| self.value(s), from, right);
-                let kind = if flew {
-                    Kind::Fall
-                } else {
-                    Kind::LeavesNegative
-                };
-                Search::found(l.0, r.0, kind, Watch::Violated)
-            }
-            Watch::Armed => quotient.search(from, to, Watch::Armed, 0.0),
-            Watch::Dormant => Search::quiet(Watch::Dormant),
-        }
-    }
-
-    /// The quotient by s − `root`; the remainder is dropped.
-    fn without_root(&self, root: f64) -> Self {
+    /// Divides the zero at s = 0 out; the sign beside it is that of the first coefficient left.
+    fn leave_zero(&self, to: f64) -> Search {
+        let Some(order) = self.coefficients.iter().position(|&c| c != 0.0) else {
+            return Search::quiet(Watch::Dormant);
+        };
         let mut coefficients = [0.0; N];
-        let mut carry = 0.0;
-        for k in (1..N).rev() {
-            carry = carry * root + self.coefficients[k];
-            coefficients[k - 1] = carry;
+        coefficients[..N - order].copy_from_slice(&self.coefficients[order..]);
+        let quotient = Self { coefficients };
+        if coefficients[0] > 0.0 {
+            return quotient.search(0.0, to, Watch::Armed, 0.0);
         }
-        Self { coefficients }
+        let mut right = to;
+        while quotient.value(right) >= 0.0 {
+            right /= 2.0;
+        }
+        let right = (right, self.value(right));
+        let (l, r, flew) = departure(&mut |s| self.value(s), 0.0, right);
+        let kind = if flew {
+            Kind::Fall
+        } else {
+            Kind::LeavesNegative
+        };
+        Search::found(l.0, r.0, kind, Watch::Violated)
     }
 
     /// Bound of the rounding error of [`Self::value`]: 2n·u·Σ|cₖ|sᵏ (Higham, Accuracy and Stability
@@ -194,11 +178,12 @@ struct Monotone<'p, const N: usize> {
     extrema: Places<N>,
     from: f64,
     to: f64,
+    noise: f64,
 }
 
 impl<'p, const N: usize> Monotone<'p, N> {
     /// The extrema are those on [0, 1], so they do not depend on how the window is split.
-    fn new(polynomial: &'p Polynomial<N>, from: f64, to: f64) -> Self {
+    fn new(polynomial: &'p Polynomial<N>, from: f64, to: f64, noise: f64) -> Self {
         let mut inside = Places::new();
         for &s in extrema::<N>(polynomial).as_slice() {
             if from < s && s < to {
@@ -210,6 +195,7 @@ impl<'p, const N: usize> Monotone<'p, N> {
             extrema: inside,
             from,
             to,
+            noise,
         }
     }
 }
@@ -234,7 +220,11 @@ impl<const N: usize> Pieces for Monotone<'_, N> {
     fn value(&mut self, index: usize) -> Option<(f64, bool)> {
         let s = self.node(index);
         let value = self.polynomial.value(s);
-        Some((value, value.abs() <= self.polynomial.error(s)))
+        Some((value, value.abs() <= self.rounding(index)))
+    }
+
+    fn rounding(&self, index: usize) -> f64 {
+        self.polynomial.error(self.node(index)).max(self.noise)
     }
 
     fn own(&mut self, s: f64) -> f64 {

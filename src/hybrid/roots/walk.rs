@@ -1,6 +1,6 @@
 //! The walk from left to right over the monotone pieces of a guard, with the remembered sign.
 
-use super::bracket::{close, lowest};
+use super::bracket::{Point, close, lowest};
 use super::doubles::above;
 use super::{Kind, Search, Watch};
 
@@ -13,16 +13,22 @@ pub(super) trait Pieces {
     /// Value at a node, and whether its sign is within the error of the representation; `None`
     /// where the representation is not good enough to tell.
     fn value(&mut self, index: usize) -> Option<(f64, bool)>;
+    /// Bound of the rounding error of the guard's own value at a node, as far as it is known.
+    fn rounding(&self, index: usize) -> f64;
     /// The guard's own value anywhere in the window.
     fn own(&mut self, x: f64) -> f64;
+    /// What a change of sign between two neighbouring doubles is.
+    fn kind(&mut self, _inside: Point, _outside: Point) -> Kind {
+        Kind::Fall
+    }
 }
 
 /// The earliest event, or `None` if the representation does not decide. A dormant guard leaves zero
-/// where |g| > `noise`.
-pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Option<Search> {
+/// where it exceeds its rounding error.
+pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search> {
     let start = pieces.node(0);
     let mut left = (start, pieces.value(0)?.0);
-    if watch == Watch::Dormant && left.1.abs() > noise {
+    if watch == Watch::Dormant && left.1.abs() > pieces.rounding(0) {
         watch = Watch::of(left.1);
         if watch == Watch::Violated {
             return Some(Search::found(
@@ -41,6 +47,8 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
         if right.0 <= left.0 {
             continue;
         }
+        let inner = index + 1 < pieces.len();
+        let noise = pieces.rounding(index);
         match watch {
             Watch::Dormant if right.1 > noise => watch = Watch::Armed,
             Watch::Dormant if right.1 < -noise => {
@@ -57,20 +65,24 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch, noise: f64) -> Op
                     Watch::Violated,
                 ));
             }
-            Watch::Violated if right.1 > 0.0 => watch = Watch::Armed,
+            // A rise that rounding may have made arms only if it lasts.
+            Watch::Violated if right.1 > if inner { noise } else { 0.0 } => {
+                watch = Watch::Armed;
+            }
             Watch::Armed => {
                 if left.1 == 0.0 && right.1 > 0.0 {
                     let outside = above(left.0);
                     let value = pieces.own(outside);
                     return Some(touch(left.0, outside, value));
                 }
-                if doubtful && right.1 >= 0.0 && index + 1 < pieces.len() {
+                if doubtful && right.1 >= 0.0 && inner {
                     let high = pieces.node(index + 1);
                     right = lowest(&mut |x| pieces.own(x), right, left.0, high);
                 }
                 if right.1 < 0.0 {
                     let (l, r) = close(&mut |x| pieces.own(x), left, right);
-                    return Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated));
+                    let kind = pieces.kind(l, r);
+                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
                 }
             }
             _ => {}
