@@ -3,6 +3,20 @@
 //! The event engine fills a [`Run`]: the [`Trajectory`] through a [`Recorder`], one [`Event`] a
 //! transition, the energy [`Ledger`], the [`Solver`]'s counters, and a [`Failure`] where the run
 //! stopped early. Every name and unit comes from one [`Layout`], made once from the model.
+//!
+//! [`Run::write`] makes of it, in an [`OutputFolder`]:
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `trajectory.csv` | `t`, coordinates, velocities (`theta.rate`), reactions (`reaction.theta`, `reaction.z_h`), discrete states, energies, inputs, `mode` |
+//! | `events.csv` | `t,j,transition,from,to`, every column of the state with `.before` and `.after`, `lost`, `ground_work` |
+//! | `csv-metadata.json` | unit and meaning of every column of both tables |
+//! | `summary.json` | a [`Summary`] |
+//! | `overview.svg` | everything over time, with the modes and the transitions |
+//! | `phase.svg` | phase portraits, where a coordinate moves |
+//!
+//! Numbers have 17 significant digits, so they are read back bit for bit. The same run gives the
+//! same bytes, but for `wall_seconds` in the summary.
 
 mod files;
 pub mod folder;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use dalembert::record::OutputFolder;
@@ -34,13 +34,26 @@ fn write_forever() {
     }
 }
 
-fn writer(folder: &Path) -> Child {
-    Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "killed::write_forever", "--test-threads", "1"])
-        .env(FOLDER, folder)
-        .stdout(std::process::Stdio::null())
-        .spawn()
-        .unwrap()
+/// A writing process; it is killed when the value goes, also where a test fails.
+struct Writer(Child);
+
+impl Writer {
+    fn start(folder: &Path) -> Writer {
+        let child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "killed::write_forever", "--test-threads", "1"])
+            .env(FOLDER, folder)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn();
+        Writer(child.unwrap())
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        self.0.kill().unwrap();
+        self.0.wait().unwrap();
+    }
 }
 
 /// The generation of the folder's files, which must be whole and the same in all.
@@ -61,9 +74,10 @@ fn generation(folder: &Path) -> String {
 fn a_killed_program_leaves_the_old_files_or_the_new_ones() {
     let home = tempfile::tempdir().unwrap();
     let folder: PathBuf = home.path().join("out");
+    let foreign = folder.join("own.txt");
     let mut generations = Vec::new();
     for i in 0..20u64 {
-        let mut child = writer(&folder);
+        let writer = Writer::start(&folder);
         let started = Instant::now();
         while !folder.exists() {
             assert!(
@@ -72,10 +86,18 @@ fn a_killed_program_leaves_the_old_files_or_the_new_ones() {
             );
             std::thread::sleep(Duration::from_millis(1));
         }
-        // At another phase of its work each time.
-        std::thread::sleep(Duration::from_micros(20_000 + i * 317));
-        child.kill().unwrap();
-        child.wait().unwrap();
+        if i == 0 {
+            fs::write(&foreign, "mine").unwrap();
+        }
+        // Killed at another phase of its work each time.
+        let started = Instant::now();
+        while started.elapsed() < Duration::from_micros(20_000 + i * 317) {
+            assert!(
+                foreign.exists(),
+                "somebody else's file was away for a moment"
+            );
+        }
+        drop(writer);
         generations.push(generation(&folder));
         assert!(folder.join(".dalembert-output").is_file());
     }

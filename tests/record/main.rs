@@ -308,6 +308,7 @@ fn a_mode_that_is_left_at_once_is_in_the_strip() {
         ..run.events[0].clone()
     };
     run.events.insert(0, leave);
+    run.end.mode = 0;
     assert!(overview(&run).contains(">\nrests\n<"));
 }
 
