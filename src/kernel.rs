@@ -427,26 +427,35 @@ impl<const F: usize> ModeKernel<F> {
         }
     }
 
-    /// The smallest condition of a transition into this mode, which is taken only if it is ≥ 0;
-    /// None if the transition is unconditional.
-    pub fn condition(
+    /// The conditions of a transition into this mode, which is taken only if none is negative; none
+    /// if the transition is unconditional.
+    pub fn conditions<'o>(
         &self,
         x: &Context,
         transition: &TransitionKernel,
         at: Free<F>,
-    ) -> Option<f64> {
-        let (function, free, count) = transition.condition?;
+        out: &'o mut [f64; MOST_CONDITIONS],
+    ) -> &'o [f64] {
+        let Some((function, free, count)) = transition.condition else {
+            return &[];
+        };
         assert_eq!(free, F, "a condition is evaluated in the target mode");
-        let mut out = [0.0; MOST_CONDITIONS];
         assert!(count <= MOST_CONDITIONS);
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
         unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
-        Some(out[..count].iter().copied().fold(f64::INFINITY, f64::min))
+        &out[..count]
+    }
+}
+
+impl TransitionKernel {
+    /// Number of conditions.
+    pub fn conditions(&self) -> usize {
+        self.condition.map_or(0, |(_, _, count)| count)
     }
 }
 
 /// Most conditions that one transition may have (codegen rejects more).
-const MOST_CONDITIONS: usize = 8;
+pub const MOST_CONDITIONS: usize = 8;
 
 /// A generated guard.
 #[derive(Debug)]

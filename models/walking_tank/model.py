@@ -151,15 +151,24 @@ for sticks, slides in ((stands_sticks, stands_slides), (rocks_sticks, rocks_slid
         slides.friction(x, normal=slides.reaction(y), coefficient=mu_k, direction=slip)
     else:
         slides.force(x, -printed("4"))
-    for direction in (+1, -1):
-        model.transition(
-            "slip", sticks, slides, reset=[(slip, direction)],
-            when=falls(mu_s * normal_force(sticks) + direction * base_shear(sticks)))
+    held = [mu_s * normal_force(sticks) + base_shear(sticks), mu_s * normal_force(sticks) - base_shear(sticks)]
     stops = falls(slip * x.rate)
-    model.transition(
-        "stick", slides, sticks, when=stops,
-        provided=[mu_s * normal_force(sticks) + base_shear(sticks), mu_s * normal_force(sticks) - base_shear(sticks)])
-    model.transition("reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)])
+    model.transition("stick", slides, sticks, when=stops, provided=held)
+    if rules == "reactions":
+        for direction, margin in ((+1, held[0]), (-1, held[1])):
+            model.transition("slip", sticks, slides, when=falls(margin), reset=[(slip, direction)])
+        model.transition("reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)])
+    else:
+        # Conditions (7) and force (4) come from other sums than the equations of motion: where (7)
+        # holds but (4) would stop any slip at once, the tank sticks.
+        for direction, margin in ((+1, held[0]), (-1, held[1])):
+            model.transition(
+                "slip", sticks, slides, when=falls(margin), reset=[(slip, direction)],
+                provided=direction * x.acceleration)
+        model.transition(
+            "reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)],
+            provided=slip * x.acceleration)
+        model.transition("stick", slides, sticks, when=stops)
 
 # Lift-off about either edge, landing, and rest at the limit of an accumulation of landings.
 for stands, rocks, conserved in (

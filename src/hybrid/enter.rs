@@ -1,8 +1,8 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
 use super::failure::Reason;
-use super::guards::{Conditions, value};
-use super::roots::{Search, Watch};
+use super::guards::{Conditions, value, watched_value};
+use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
 use crate::integrate::solve;
 use crate::kernel::{Context, Free, ModeKernel};
@@ -50,10 +50,10 @@ impl Simulation<'_> {
         });
         let jerk = -inverse * kernel.jerk_load(&self.context, at);
 
-        self.watches.clear();
+        self.signs.clear();
         let mut violation = None;
-        for &g in &self.plan.watched[self.here.mode] {
-            let guard = &mode.guards[g];
+        for &watched in &self.plan.watched[self.here.mode] {
+            let guard = &mode.guards[watched.guard];
             let mut conditions = Conditions {
                 variant: self.problem.variant,
                 plan: &self.plan,
@@ -65,8 +65,14 @@ impl Simulation<'_> {
                 v: &v,
                 a: &a,
             };
-            let value = value(kernel, &mut self.context, &mut conditions, guard, at);
-            let mut watch = Watch::of(value);
+            let own = watched_value(kernel, &mut self.context, &mut conditions, guard, watched, at);
+            let mut watch = Watch::of(own);
+            let violated = match watched.condition {
+                None if conditional => value(kernel, &mut self.context, &mut conditions, guard, at) < 0.0,
+                None => watch == Watch::Violated,
+                // The guard's own entry has decided about its conditions, too.
+                Some(_) => false,
+            };
             let mut at_once = false;
             if watch == Watch::Dormant && !conditional {
                 let departure = departure(
@@ -83,14 +89,12 @@ impl Simulation<'_> {
             if at_once {
                 watch = Watch::Violated;
             }
-            if watch == Watch::Violated && violation.is_none() {
-                violation = Some(Violation { guard: g, at_once });
+            if (violated || at_once) && violation.is_none() {
+                violation = Some(Violation { guard: watched.guard, at_once });
             }
-            self.watches.push(watch);
+            self.signs.watches.push(watch);
         }
-        self.found.clear();
-        self.found
-            .resize(self.watches.len(), Search::quiet(Watch::Dormant));
+        self.signs.start();
         self.here.a.fill(0.0);
         self.here.set_free(mode.free, [&q, &v, &a]);
         Ok(violation)

@@ -61,7 +61,7 @@ impl Simulation<'_> {
         let transitions = mode.guards[guard].transitions;
         (0..transitions.len())
             .filter(|&t| self.plan.allowed[transitions[t].target])
-            .find(|&t| conditions.of(kernel, &mut self.context, &transitions[t], at) >= 0.0)
+            .find(|&t| conditions.least(kernel, &mut self.context, &transitions[t], at) >= 0.0)
     }
 
     /// Makes `next` the present state, in mode `target`, and records the event.

@@ -1,10 +1,10 @@
 //! Values of guards, and their search on a step's dense output.
 
 use super::equations::Equations;
-use super::plan::Plan;
+use super::plan::{Plan, Watched};
 use super::roots::{self, Polynomial, Search, Watch};
 use crate::integrate::{Dense, System, solve};
-use crate::kernel::{Context, Free, ModeKernel};
+use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
 use crate::model::{Guard, GuardShape, Transition, Variant};
 use crate::with_kernel;
 use nalgebra::SVector;
@@ -35,40 +35,58 @@ impl Conditions<'_> {
             .filter(|t| self.plan.allowed[t.target])
     }
 
-    /// The condition of a transition out of the present mode, evaluated in its target after the
-    /// reset; +∞ if it has none. `next` holds the reset afterwards.
-    pub fn of<const F: usize>(
+    /// The conditions of a transition out of the present mode, evaluated in its target after the
+    /// reset, reduced by `reduce`. `next` holds the reset afterwards.
+    fn reduced<const F: usize>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        context: &mut Context,
+        transition: &Transition,
+        at: Free<F>,
+        reduce: impl Fn(&[f64]) -> f64,
+    ) -> f64 {
+        kernel.reset(context, &transition.kernel, at, self.next);
+        if !transition.conditional {
+            return reduce(&[]);
+        }
+        let n = context.held.len();
+        let target = &self.variant.modes[transition.target];
+        context.held.swap_with_slice(&mut self.next[..n]);
+        context
+            .discrete
+            .swap_with_slice(&mut self.next[2 * n..]);
+        let condition = with_kernel!(&target.kernels, k => {
+            conditions_in(k, context, transition, target.free, &self.next[n..2 * n], reduce)
+        });
+        context.held.swap_with_slice(&mut self.next[..n]);
+        context
+            .discrete
+            .swap_with_slice(&mut self.next[2 * n..]);
+        condition
+    }
+
+    /// The smallest condition of a transition; +∞ if it has none.
+    pub fn least<const F: usize>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &mut Context,
         transition: &Transition,
         at: Free<F>,
     ) -> f64 {
-        kernel.reset(context, &transition.kernel, at, self.next);
-        if !transition.conditional {
-            return f64::INFINITY;
-        }
-        let n = context.held.len();
-        let target = &self.variant.modes[transition.target];
-        context.held.swap_with_slice(&mut self.next[..n]);
-        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
-        let condition = with_kernel!(&target.kernels, k => {
-            condition_in(k, context, transition, target.free, &self.next[n..2 * n])
-        });
-        context.held.swap_with_slice(&mut self.next[..n]);
-        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
-        condition
+        let least = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);
+        self.reduced(kernel, context, transition, at, least)
     }
 }
 
-/// The condition in its target mode, whose coordinates and discrete states the context holds. NaN
+/// The conditions in their target mode, whose coordinates and discrete states the context holds. NaN
 /// where the accelerations are not determined.
-fn condition_in<const F: usize>(
+fn conditions_in<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &Context,
     transition: &Transition,
     free: &[usize],
     rates: &[f64],
+    reduce: impl Fn(&[f64]) -> f64,
 ) -> f64 {
     let q = SVector::<f64, F>::from_fn(|i, _| context.held[free[i]]);
     let v = SVector::<f64, F>::from_fn(|i, _| rates[free[i]]);
@@ -76,14 +94,28 @@ fn condition_in<const F: usize>(
     let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
         return f64::NAN;
     };
-    let at = Free {
-        q: &q,
-        v: &v,
-        a: &a,
-    };
-    kernel
-        .condition(context, &transition.kernel, at)
-        .unwrap_or(f64::INFINITY)
+    let at = Free { q: &q, v: &v, a: &a };
+    let mut room = [0.0; MOST_CONDITIONS];
+    reduce(kernel.conditions(context, &transition.kernel, at, &mut room))
+}
+
+/// Value of what is watched, in the present mode.
+#[inline]
+pub(super) fn watched_value<const F: usize>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    conditions: &mut Conditions,
+    guard: &Guard,
+    watched: Watched,
+    at: Free<F>,
+) -> f64 {
+    match watched.condition {
+        None => kernel.guard(context, &guard.kernel, at),
+        Some((t, component)) => {
+            let transition = &guard.transitions[t];
+            -conditions.reduced(kernel, context, transition, at, |all| all[component])
+        }
+    }
 }
 
 /// Value of a guard of the present mode; a conditional one is respected as well where none of its
@@ -106,7 +138,7 @@ pub(super) fn value<const F: usize>(
         .iter()
         .filter(|t| conditions.plan.allowed[t.target])
     {
-        best = best.max(conditions.of(kernel, context, transition, at));
+        best = best.max(conditions.least(kernel, context, transition, at));
     }
     value.max(-best)
 }
@@ -131,7 +163,7 @@ pub(super) fn search<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &Dense<3, F>,
-    guard: &Guard,
+    (guard, watched): (&Guard, Watched),
     window: (f64, f64),
     watch: Watch,
 ) -> Search {
@@ -141,7 +173,7 @@ pub(super) fn search<const F: usize>(
             rate,
             factor,
             discrete,
-        } if !conditions.are_part_of(guard) => {
+        } if watched.condition.is_none() => {
             let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
             search_linear(dense, index, rate, factor, window, watch)
         }
@@ -160,7 +192,7 @@ pub(super) fn search<const F: usize>(
                     v: &v,
                     a: &a,
                 };
-                value(equations.kernel, equations.context, conditions, guard, at)
+                watched_value(equations.kernel, equations.context, conditions, guard, watched, at)
             };
             roots::search(evaluate, window.0, window.1, watch, 0.0)
         }

@@ -5,6 +5,7 @@
 //! the transition; `accumulation` recognises where infinitely many of them end.
 
 mod accumulation;
+mod crossing;
 mod enter;
 mod equations;
 mod failure;

@@ -9,8 +9,21 @@ use crate::model::{Guard, Mode};
 pub(super) struct Plan {
     /// Per mode: whether the scene may visit it.
     pub allowed: Vec<bool>,
-    /// Per mode: indices of the guards that are watched.
-    pub watched: Vec<Vec<usize>>,
+    /// Per mode: what is watched.
+    pub watched: Vec<Vec<Watched>>,
+}
+
+/// A smooth scalar that is watched for falling through zero.
+///
+/// A guard all of whose transitions are conditional acts only while a condition holds. Guard and
+/// conditions are then watched one by one, since together they are not smooth; what counts is
+/// whether the guard is violated and a condition holds where one of them changes its sign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Watched {
+    /// Index of the guard in its mode.
+    pub guard: usize,
+    /// A condition, `(transition, component)`, whose negative is watched instead of the guard.
+    pub condition: Option<(usize, usize)>,
 }
 
 impl Plan {
@@ -28,14 +41,8 @@ impl Plan {
             let frozen = names.collect::<Vec<_>>().join(", ");
             return Err(Reason::NoModeLeft { frozen });
         }
-        let can_fire = |g: &Guard| g.transitions.iter().any(|t| allowed[t.target]);
-        let watched = modes
-            .iter()
-            .map(|m| {
-                (0..m.guards.len())
-                    .filter(|&g| can_fire(&m.guards[g]))
-                    .collect()
-            })
+        let watched = (modes.iter())
+            .map(|m| (0..m.guards.len()).flat_map(|g| watched(g, &m.guards[g], &allowed)).collect())
             .collect();
         Ok(Plan { allowed, watched })
     }
@@ -44,6 +51,22 @@ impl Plan {
     pub fn rest(&self, mode: &Mode) -> Option<usize> {
         mode.rest.filter(|&r| self.allowed[r])
     }
+}
+
+/// What to watch of a guard, in view of the modes that may be visited; nothing if it cannot fire.
+fn watched(guard: usize, model: &Guard, allowed: &[bool]) -> Vec<Watched> {
+    let transitions = || (model.transitions.iter().enumerate()).filter(|(_, t)| allowed[t.target]);
+    if transitions().next().is_none() {
+        return Vec::new();
+    }
+    let mut all = vec![Watched { guard, condition: None }];
+    if transitions().all(|(_, t)| t.conditional) {
+        all.extend(transitions().flat_map(|(t, transition)| {
+            let components = 0..transition.kernel.conditions();
+            components.map(move |c| Watched { guard, condition: Some((t, c)) })
+        }));
+    }
+    all
 }
 
 /// Whether a guard's zero is an impact, whose accumulation has the mode's rest as its limit.

@@ -1,11 +1,10 @@
 //! From one event to the next: steps, crossings on their dense output, samples and ledger.
 
+use super::crossing::{Cut, cut};
 use super::equations::{Clock, Equations};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
-use super::locate::{Landing, land};
-use super::roots::{Kind, Search, Watch, earliest};
 use super::samples::{Row, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use crate::integrate::{Counters, Radau, Tolerances};
@@ -66,64 +65,14 @@ impl Simulation<'_> {
             let resolution = problem.signals.resolution(start.plus(from).seconds());
             radau.step(&mut equations, until, resolution)?;
 
-            // The step is cut at the first crossing; the shorter step is searched again, since it
-            // is a better solution than the dense output of the longer one.
-            let mut event = None;
-            loop {
-                let dense = *radau.dense().expect("a step was made");
-                let to = radau.state().t;
-                let hit = earliest(
-                    from,
-                    to,
-                    &self.watches,
-                    &mut self.found,
-                    |i, from, to, watch| {
-                        let guard = &mode.guards[watched[i]];
-                        guards::search(
-                            &mut equations,
-                            &mut conditions,
-                            &dense,
-                            guard,
-                            (from, to),
-                            watch,
-                        )
-                    },
-                );
-                if hit.time.is_none() {
-                    break;
+            let cut = cut(radau, &mut equations, &mut conditions, mode, watched, &mut self.signs)?;
+            let event = match cut {
+                Cut::Nothing => None,
+                Cut::Event { guard, state, beyond } => Some((guard, state, beyond)),
+                Cut::Violated { guard } => {
+                    return Ok(Stop::Violated(Violation { guard, at_once: true }));
                 }
-                let first = (0..watched.len())
-                    .find(|&i| self.found[i].crossing.is_some())
-                    .expect("an event has a guard");
-                let crossing = self.found[first].crossing.expect("just found");
-                match crossing.kind {
-                    Kind::Pole => {
-                        // The sign changes, but not through zero.
-                        self.watches[first] = self.found[first].watch;
-                        continue;
-                    }
-                    Kind::LeavesNegative if from == 0.0 => {
-                        return Ok(Stop::Violated(Violation {
-                            guard: watched[first],
-                            at_once: true,
-                        }));
-                    }
-                    _ => {}
-                }
-                let guard = &mode.guards[watched[first]];
-                match land(radau, &mut equations, &mut conditions, guard, crossing)? {
-                    Landing::On { state, beyond } => {
-                        event = Some((watched[first], state, beyond));
-                        break;
-                    }
-                    Landing::Short if radau.state().t == to => {
-                        // The end point itself, more accurate than the dense output, is not across.
-                        self.found[first] = Search::quiet(Watch::Armed);
-                        break;
-                    }
-                    Landing::Short => {}
-                }
-            }
+            };
 
             let dense = *radau.dense().expect("a step was made");
             let end = *radau.state();
@@ -247,9 +196,7 @@ impl Simulation<'_> {
             if let Some((guard, ..)) = event {
                 return Ok(Stop::Event(guard));
             }
-            for (watch, found) in self.watches.iter_mut().zip(&self.found) {
-                *watch = found.watch;
-            }
+            self.signs.go_on();
             if end.t >= until {
                 self.here.now = Instant::new(last);
                 return Ok(if last >= problem.end.time {

@@ -1,12 +1,12 @@
 //! The run: settle, advance to the next event, apply it, and so on to the end.
 
 use super::accumulation::{Accumulation, Limit};
+use super::crossing::Signs;
 use super::failure::Reason;
 use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
 use super::problem::Problem;
-use super::roots::{Search, Watch};
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::record::{
@@ -71,9 +71,8 @@ pub(super) struct Simulation<'p> {
     pub here: Here,
     /// Rates of the frozen coordinates in the present mode.
     pub drift: Box<[f64]>,
-    /// Remembered signs of the watched guards of the present mode, and what was found of each.
-    pub watches: Vec<Watch>,
-    pub found: Vec<Search>,
+    /// Remembered signs of what is watched in the present mode.
+    pub signs: Signs,
     /// Room for a reset: q, v, discrete states.
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
@@ -116,8 +115,7 @@ impl<'p> Simulation<'p> {
                 a: vec![0.0; n].into(),
             },
             drift: vec![0.0; n].into(),
-            watches: Vec::new(),
-            found: Vec::new(),
+            signs: Signs::default(),
             next: vec![0.0; 2 * n + model.discretes.len()].into(),
             accumulation: Accumulation::new(2 * n),
             visited: Vec::new(),

@@ -1,0 +1,140 @@
+//! The first event within a step.
+
+use super::equations::Equations;
+use super::failure::Reason;
+use super::guards::{self, Conditions};
+use super::locate::{Landing, land};
+use super::plan::Watched;
+use super::roots::{Crossing, Kind, Search, Watch, earliest};
+use crate::integrate::{Radau, State};
+use crate::kernel::Free;
+use crate::model::Mode;
+
+/// Remembered signs of what is watched in a mode.
+#[derive(Debug, Default)]
+pub(super) struct Signs {
+    /// Signs at the start of the step.
+    pub watches: Vec<Watch>,
+    /// What was found of each in the step.
+    pub found: Vec<Search>,
+    /// Local time from which each is searched, where that is after the start of the step.
+    from: Vec<f64>,
+}
+
+/// Result of [`cut`].
+pub(super) enum Cut<const F: usize> {
+    /// No event: the step, perhaps shortened, is the motion.
+    Nothing,
+    /// A guard, by its index in the mode, is crossed `beyond` after the end of the shortened step.
+    Event {
+        guard: usize,
+        state: State<F>,
+        beyond: f64,
+    },
+    /// A guard that was zero at the start of the segment leaves it downwards.
+    Violated { guard: usize },
+}
+
+impl Signs {
+    /// No signs yet.
+    pub fn clear(&mut self) {
+        self.watches.clear();
+    }
+
+    /// Makes room for the search of as many as there are signs.
+    pub fn start(&mut self) {
+        self.found.clear();
+        self.found
+            .resize(self.watches.len(), Search::quiet(Watch::Dormant));
+        self.from.clear();
+        self.from.resize(self.watches.len(), 0.0);
+    }
+
+    /// The signs at the end of the step are those at the start of the next.
+    pub fn go_on(&mut self) {
+        for (watch, found) in self.watches.iter_mut().zip(&self.found) {
+            *watch = found.watch;
+        }
+    }
+}
+
+/// Cuts the last step of `radau` at its first event. The shortened step is searched again, since it
+/// is a better solution than the dense output of the longer one.
+pub(super) fn cut<const F: usize>(
+    radau: &mut Radau<3, F>,
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    mode: &'static Mode,
+    watched: &[Watched],
+    signs: &mut Signs,
+) -> Result<Cut<F>, Reason> {
+    let start = radau.start().t;
+    signs.from.fill(start);
+    loop {
+        let dense = *radau.dense().expect("a step was made");
+        let to = radau.state().t;
+        let Signs {
+            watches,
+            found,
+            from,
+        } = signs;
+        let hit = earliest(start, to, watches, found, |i, _, to, watch| {
+            let guard = &mode.guards[watched[i].guard];
+            let window = (from[i].min(to), to);
+            guards::search(equations, conditions, &dense, (guard, watched[i]), window, watch)
+        });
+        let Some(first) = hit
+            .time
+            .and_then(|_| found.iter().position(|f| f.crossing.is_some()))
+        else {
+            return Ok(Cut::Nothing);
+        };
+        let crossing = found[first].crossing.expect("it was found by it");
+        let index = watched[first].guard;
+        let guard = &mode.guards[index];
+        if crossing.kind == Kind::LeavesNegative && start == 0.0 && !conditions.are_part_of(guard) {
+            return Ok(Cut::Violated { guard: index });
+        }
+        let is_event = crossing.kind != Kind::Pole
+            && (!conditions.are_part_of(guard)
+                || both_violated(equations, conditions, &dense, guard, crossing));
+        if !is_event {
+            // The sign changes, but not through zero, or guard and condition are not both violated.
+            watches[first] = Watch::Violated;
+            from[first] = crossing.outside;
+            continue;
+        }
+        match land(radau, equations, conditions, guard, crossing)? {
+            Landing::On { state, beyond } => {
+                return Ok(Cut::Event {
+                    guard: index,
+                    state,
+                    beyond,
+                });
+            }
+            Landing::Short if radau.state().t == to => {
+                // The end point itself, more accurate than the dense output, is not across.
+                found[first] = Search::quiet(Watch::Armed);
+                return Ok(Cut::Nothing);
+            }
+            Landing::Short => {}
+        }
+    }
+}
+
+/// Whether a conditional guard and one of its conditions are violated at a crossing.
+fn both_violated<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &crate::integrate::Dense<3, F>,
+    guard: &crate::model::Guard,
+    crossing: Crossing,
+) -> bool {
+    let [q, v, a] = guards::motion(equations, dense, crossing.outside, true);
+    let at = Free {
+        q: &q,
+        v: &v,
+        a: &a,
+    };
+    guards::value(equations.kernel, equations.context, conditions, guard, at) <= 0.0
+}
