@@ -166,11 +166,12 @@ fn signals(model: &Model) -> Vec<Quantity> {
         let mut signals = vec![Quantity::new(input.name, input.unit, input.meaning)];
         if input.kind == InputKind::Acceleration {
             let length = input.unit.strip_suffix("/s^2").unwrap_or(input.unit);
-            for (what, unit) in [
-                ("velocity", rate_unit(length)),
-                ("displacement", length.to_owned()),
-            ] {
-                let meaning = format!("{what} that belongs to {}", input.name);
+            let integrals = [
+                ("velocity", rate_unit(length), "integral"),
+                ("displacement", length.to_owned(), "second integral"),
+            ];
+            for (what, unit, integral) in integrals {
+                let meaning = format!("{integral} of {} over time, 0 at t = 0", input.name);
                 signals.push(Quantity::new(
                     format!("{}.{what}", input.name),
                     unit,

@@ -31,6 +31,9 @@ const READABLE: f64 = 0.1;
 /// A quantity that varies by less than this part of its size varies by rounding alone.
 const VARIES: f64 = 1e-12;
 
+/// A space at which no line is broken.
+const NO_BREAK: &str = "\u{a0}";
+
 const TITLE: Font = Font {
     size: 15.0,
     colour: INK,
@@ -157,7 +160,8 @@ fn panels(run: &Run) -> (Vec<Panel>, String) {
             };
             if !varies(range) {
                 let value = rounded(range.0, 6).replace('-', "−");
-                constants.push(format!("{} = {value} {}", column.name, column.unit));
+                let constant = format!("{} = {value} {}", column.name, column.unit);
+                constants.push(constant.replace(' ', NO_BREAK));
                 continue;
             }
             let fits = |panel: &&mut Panel| panel.takes(column, range);
@@ -235,10 +239,10 @@ fn axis_title(run: &Run, panel: &Panel) -> String {
     }
 }
 
-/// A text in lines of the given width.
+/// A text in lines of the given width, broken at spaces.
 fn wrapped(text: &str, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
         match lines.last_mut() {
             Some(line) if text_width(&format!("{line} {word}"), TEXT.size) <= width => {
                 line.push(' ');
