@@ -7,11 +7,11 @@ use super::run::{Group, Run};
 pub struct Peak {
     /// Largest value.
     pub max: f64,
-    /// First time of the largest value [s].
+    /// First time of the largest value (s).
     pub t_max: f64,
     /// Smallest value.
     pub min: f64,
-    /// First time of the smallest value [s].
+    /// First time of the smallest value (s).
     pub t_min: f64,
 }
 

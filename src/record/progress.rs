@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 /// Hears now and then how far a simulation is.
 pub trait Progress {
-    /// The simulation has reached time `t` [s] after `events` transitions. It is called after every
+    /// The simulation has reached time `t` (s) after `events` transitions. It is called after every
     /// step, so it must be cheap; `Break` stops the run, which keeps what it has.
     fn advance(&mut self, t: f64, events: u64) -> ControlFlow<()>;
 }
@@ -37,7 +37,7 @@ const STEPS: u64 = 1000;
 const STRIDE: u32 = 4096;
 
 impl ProgressLine {
-    /// The progress of a simulation up to time `end` [s].
+    /// The progress of a simulation up to time `end` (s).
     pub fn new(end: f64) -> ProgressLine {
         let style = ProgressStyle::with_template("{bar:30} {msg}  {elapsed}, {eta} to go");
         let bar = ProgressBar::new(STEPS).with_style(style.expect("the template is well-formed"));

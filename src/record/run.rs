@@ -48,7 +48,7 @@ pub struct Subject {
 pub struct Trajectory {
     /// The columns, in the order of a row.
     pub columns: Vec<Column>,
-    /// Time of each row [s].
+    /// Time of each row (s).
     pub t: Vec<f64>,
     /// Mode of each row, an index into [`Layout::modes`].
     pub mode: Vec<u16>,
@@ -89,7 +89,7 @@ pub enum Group {
 /// One transition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
-    /// Time [s].
+    /// Time (s).
     pub t: f64,
     /// Number of transitions up to and including this one: the first has 1.
     pub j: u64,
@@ -125,16 +125,16 @@ pub struct Snapshot {
 /// `ground_work − lost`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyJump {
-    /// Energy lost, in the frame of the ground [J]; negative where the impact law creates energy.
+    /// Energy lost, in the frame of the ground (J); negative where the impact law creates energy.
     pub lost: f64,
-    /// Work of the ground's impulse under the ground's own motion, in the inertial frame [J].
+    /// Work of the ground's impulse under the ground's own motion, in the inertial frame (J).
     pub ground_work: f64,
 }
 
 /// A point of a run in hybrid time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Place {
-    /// Time [s].
+    /// Time (s).
     pub t: f64,
     /// Number of transitions so far.
     pub j: u64,
@@ -174,15 +174,15 @@ pub struct Solver {
 /// stated frame.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Ledger {
-    /// Kinetic and potential energy at the start [J].
+    /// Kinetic and potential energy at the start (J).
     pub initial: f64,
-    /// Kinetic and potential energy at the end [J].
+    /// Kinetic and potential energy at the end (J).
     pub final_: f64,
-    /// Energy taken by dissipation and friction [J].
+    /// Energy taken by dissipation and friction (J).
     pub dissipated: f64,
-    /// Work of the prescribed motions and forces, impulses of a moving ground included [J].
+    /// Work of the prescribed motions and forces, impulses of a moving ground included (J).
     pub input_work: f64,
-    /// Energy lost at impacts, in the frame of the ground [J].
+    /// Energy lost at impacts, in the frame of the ground (J).
     pub lost_at_impacts: f64,
     /// A sentence that says in which frame the ledger is kept.
     pub frame: String,
@@ -235,7 +235,7 @@ impl Trajectory {
 }
 
 impl Ledger {
-    /// What the balance is off by [J]: `initial + input_work − dissipated − lost_at_impacts − final`.
+    /// What the balance is off by (J): `initial + input_work − dissipated − lost_at_impacts − final`.
     pub fn imbalance(&self) -> f64 {
         self.initial + self.input_work - self.dissipated - self.lost_at_impacts - self.final_
     }

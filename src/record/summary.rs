@@ -41,14 +41,14 @@ pub struct Summary {
     pub energy: Energy,
     /// Work done by the integrator.
     pub solver: super::Solver,
-    /// Time the simulation took on the wall clock [s].
+    /// Time the simulation took on the wall clock (s).
     pub wall_seconds: f64,
 }
 
 /// A point in hybrid time.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Point {
-    /// Time [s].
+    /// Time (s).
     pub t: f64,
     /// Number of transitions so far.
     pub j: u64,
@@ -79,11 +79,11 @@ pub struct Stopped {
 pub struct Extremes {
     /// Largest value.
     pub max: f64,
-    /// First time of the largest value [s].
+    /// First time of the largest value (s).
     pub t_max: f64,
     /// Smallest value.
     pub min: f64,
-    /// First time of the smallest value [s].
+    /// First time of the smallest value (s).
     pub t_min: f64,
     /// Unit of the values.
     pub unit: String,
@@ -103,33 +103,33 @@ pub struct Events {
 pub struct Impacts {
     /// Number of impacts.
     pub count: usize,
-    /// Energy lost in all, in the frame of the ground [J].
+    /// Energy lost in all, in the frame of the ground (J).
     pub lost: f64,
     /// Number of impacts that gained energy.
     pub gaining: usize,
-    /// Smallest loss of one impact [J]; negative where an impact gained energy.
+    /// Smallest loss of one impact (J); negative where an impact gained energy.
     pub smallest_loss: f64,
-    /// Largest loss of one impact [J].
+    /// Largest loss of one impact (J).
     pub largest_loss: f64,
-    /// Work of the ground's impulses, in the inertial frame [J].
+    /// Work of the ground's impulses, in the inertial frame (J).
     pub ground_work: f64,
 }
 
 /// The balance `initial + input_work − dissipated − lost_at_impacts − final = imbalance`.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Energy {
-    /// Kinetic and potential energy at the start [J].
+    /// Kinetic and potential energy at the start (J).
     pub initial: f64,
-    /// Kinetic and potential energy at the end [J].
+    /// Kinetic and potential energy at the end (J).
     #[serde(rename = "final")]
     pub final_: f64,
-    /// Energy dissipated [J].
+    /// Energy dissipated (J).
     pub dissipated: f64,
-    /// Work of the inputs [J].
+    /// Work of the inputs (J).
     pub input_work: f64,
-    /// Energy lost at impacts [J].
+    /// Energy lost at impacts (J).
     pub lost_at_impacts: f64,
-    /// What the balance is off by [J].
+    /// What the balance is off by (J).
     pub imbalance: f64,
     /// In which frame the balance is kept.
     pub frame: String,

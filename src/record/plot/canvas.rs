@@ -34,7 +34,7 @@ pub(super) enum Anchor {
 /// How a text looks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Font {
-    /// Height [px].
+    /// Height (px).
     pub size: f64,
     /// Colour.
     pub colour: RGBColor,

@@ -27,7 +27,7 @@ const HAIR: f64 = 0.7;
 /// Width of the piece of line or area in front of a text in a legend, and the space around it.
 const SWATCH: f64 = 16.0;
 const SPACE: f64 = 5.0;
-/// Vertical labels this far apart [px] have nearly as much white as text between them; with more
+/// Vertical labels this far apart (px) have nearly as much white as text between them; with more
 /// labels than this, the grid draws the eye away from the curves.
 const LABEL_DISTANCE: f64 = 18.0;
 const MOST_LABELS: usize = 8;
@@ -43,7 +43,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
-/// Where a pair of axes is in the picture [px].
+/// Where a pair of axes is in the picture (px).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Area {
     pub left: f64,
