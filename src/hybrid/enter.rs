@@ -3,6 +3,7 @@
 use super::failure::Reason;
 use super::guards::{Conditions, value, watched_value};
 use super::roots::Watch;
+use super::segment::determinant_sign;
 use super::simulation::{Simulation, Violation};
 use crate::integrate::solve;
 use crate::kernel::{Context, Free, ModeKernel};
@@ -32,6 +33,9 @@ impl Simulation<'_> {
         let [q, v, _] = self.here.free::<F>(mode.free);
         self.check_inertia(&kernel.inertia(&self.context, &q, &v))?;
         let system = kernel.system(&self.context, &q, &v);
+        if determinant_sign(&system.mass) < 0 {
+            return Err(Reason::DeterminantChangesSign { mode: mode.name });
+        }
         let scale = self.scale::<F>();
         let mut a = solve(&system.mass, &-system.load, &scale)
             .map_err(|s| Reason::singular(mode, self.problem.model, s))?;

@@ -32,9 +32,9 @@ pub enum Reason {
         /// Its pivot.
         pivot: f64,
     },
-    /// The determinant of the effective mass matrix changes its sign.
+    /// The determinant of the effective mass matrix is negative: without friction it is positive.
     #[error(
-        "mode `{mode}`: the determinant of the effective mass matrix changes its sign; beyond it friction accelerates the slip it opposes (Painlevé's paradox) and the motion is not determined"
+        "mode `{mode}`: friction makes the determinant of the effective mass matrix negative; it would accelerate the slip that it opposes (Painlevé's paradox), and the motion is not determined"
     )]
     DeterminantChangesSign {
         /// Mode.

@@ -253,7 +253,7 @@ fn gauss(from: f64, to: f64) -> [(f64, f64); 3] {
 }
 
 /// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
-fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
+pub(super) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
     let mut m = *matrix;
     let mut sign = 1;
     for k in 0..F {
