@@ -40,14 +40,14 @@ pub(super) fn expect(error: &SceneError, message: &str, at: &str, help: &str) {
 #[test]
 fn an_error_shows_the_line_with_a_caret_and_what_would_be_right() {
     assert_eq!(
-        tank(r#""M_S": 7.5"#, r#""M_s": 7.5"#).to_string(),
-        "error: unknown parameter `M_s`
- --> scenes/test.json:3:32
+        tank(r#""end": 2,"#, r#""end": 2, "rules": "papers","#).to_string(),
+        "error: unknown choice `papers`
+ --> scenes/test.json:7:22
   |
-3 |   \"parameters\": { \"mu_s\": 0.3, \"M_s\": 7.5 },
-  |                                ^^^^^
+7 |   \"end\": 2, \"rules\": \"papers\",
+  |                      ^^^^^^^^
   |
-  = help: did you mean `M_S`? known: `set`, `M_0`, `M_I`, `M_E`, `M_rb`, `M_S`, `I_E`, `I_S`, `R_0`, `R_I`, `R_S`, `alpha_0`, `alpha_I`, `alpha_S`, `frequency`, `damping`, `mu_s`, `mu_k`, `e` or `g`"
+  = help: did you mean `paper`? known: `reactions` or `paper`"
     );
 }
 
@@ -168,10 +168,10 @@ fn keys() {
         "`rocks_sticks`",
     );
     expect(
-        &tank("\"end\"", "\"rules\": \"papers\", \"end\""),
-        "unknown choice `papers`",
-        "7:12",
-        "did you mean `paper`?",
+        &tank("\"M_S\"", "\"M_s\""),
+        "unknown parameter `M_s`",
+        "3:32",
+        "did you mean `M_S`? known: `set`, ",
     );
     expect(
         &tank(

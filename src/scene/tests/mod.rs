@@ -42,6 +42,13 @@ fn parse(text: &str) -> Result<Scene, SceneErrors> {
     parse_with(text.as_bytes(), &[], &[])
 }
 
+/// The option that a scene gets for a choice of its model.
+fn option(scene: &Scene, choice: &str) -> &'static str {
+    let choices = scene.problem.model.choices;
+    let index = choices.iter().position(|c| c.name == choice);
+    scene.problem.variant.options[index.expect("a choice of the model")]
+}
+
 /// The only error of a scene.
 fn only_error(result: Result<Scene, SceneErrors>) -> SceneError {
     let errors = result.expect_err("this scene is wrong");

@@ -29,7 +29,8 @@ fn values_replace_and_add() {
         "accuracy.absolute.theta.rate=1e-9",
     ]);
     assert_eq!(scene.end.time, 2.5);
-    assert_eq!(scene.variant.options[0], "paper");
+    let rules = scene.model.choices.iter().position(|c| c.name == "rules");
+    assert_eq!(scene.variant.options[rules.unwrap()], "paper");
     assert_eq!(
         scene.parameters[scene.model.parameter("R_0").unwrap()],
         0.27
