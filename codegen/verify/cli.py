@@ -1,6 +1,6 @@
 """`python -m codegen verify`: judge the hand-written equations of a model.
 
-    verify MODEL [--models DIR] [--json] [--html FILE] [--quick]
+    verify MODEL [--models DIR] [--json] [--html FILE] [--program FILE] [--quick]
     verify --seeded [--json]
 
 MODEL is the name of a folder under DIR (default: models) or the path of one. Exit status: 0 the
@@ -21,7 +21,8 @@ def parser():
     result.add_argument("--models", default="models", help="folder that holds the model folders")
     result.add_argument("--json", action="store_true", help="print the report as JSON")
     result.add_argument("--html", metavar="FILE", help="also write a self-contained HTML page")
-    result.add_argument("--quick", action="store_true", help="skip the proof over the whole box of coordinates")
+    result.add_argument("--quick", action="store_true", help="skip the proof over the whole box of coordinates, and simulations")
+    result.add_argument("--program", metavar="FILE", help="the program dalembert: simulate what each slip does to the scenes")
     result.add_argument("--seeded", action="store_true", help="print the detection table of seeded errors instead")
     return result
 
@@ -55,7 +56,7 @@ def main(argv=None):
 
 def _judge(arguments):
     """Judge one model and write the report."""
-    from . import html, report
+    from . import effects, html, report
     from .load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
@@ -64,7 +65,12 @@ def _judge(arguments):
         print(f"verify: there is no model '{arguments.model}' in {arguments.models}; "
               f"with hand-written equations: {', '.join(offered) or 'none'}", file=sys.stderr)
         return 2
-    result = report.verify(load(folder), thorough=not arguments.quick)
+    case = load(folder)
+    result = report.verify(case, thorough=not arguments.quick)
+    if arguments.program and case.effects and not arguments.quick:
+        simulated = effects.simulate(case.effects, case.corrections, arguments.program)
+        effects.attach(result.findings, case.corrections, simulated)
+        result.variants = simulated.variants
     print(report.as_json(result) if arguments.json else report.as_text(result), end="")
     if arguments.html:
         path = Path(arguments.html)

@@ -130,30 +130,6 @@ def _likeness(form, other):
     return sum(min(left.count(x), right.count(x)) for x in set(left))
 
 
-def simulate(findings, case, scenes, simulator):
-    """Fill in the effects: `simulator(paper, scene)` runs a scene with the equations of `paper` and
-    returns {quantity: number}, or raises `Refused`; it is called for the corrected equations and for
-    those with one slip put back."""
-    def run(paper, scene):
-        try:
-            return simulator(paper, scene)
-        except Refused as refusal:
-            return {"refused": str(refusal)}
-
-    corrected = apply(case.paper, case.corrections)
-    for scene in scenes:
-        reference = run(corrected, scene)
-        for finding in findings:
-            if finding.key not in {c.key for c in case.corrections}:
-                continue  # a remark on a number or on the text changes no equation
-            keys = without(case.corrections, finding.key)
-            finding.effects[scene] = {"without": reference, "with": run(apply(case.paper, case.corrections, keys), scene)}
-
-
-class Refused(Exception):
-    """A run that cannot be done or was stopped: why, and in which state."""
-
-
 def scores(case):
     """For every candidate of the energies: its name and, over equations of motion, forces and
     reactions, how many printed terms agree, of how many, and how many derived terms are absent."""

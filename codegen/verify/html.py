@@ -38,7 +38,7 @@ def as_html(report):
     out.append(f"<h2>{len(report.findings)} findings</h2>")
     for finding in report.findings:
         out += _finding(finding, paper)
-    out += _definiteness(report) + _numbers(report)
+    out += _variants(report) + _definiteness(report) + _numbers(report)
     out.append("</body></html>")
     return "\n".join(out) + "\n"
 
@@ -110,6 +110,21 @@ def _finding(finding, paper):
     out.append("<p>" + "".join(f'<span class="tag">{escape(TITLES[name])}</span>' for name in finding.judgements) + "</p>")
     out += [f"<p>{escape(line)}</p>" for line in extent_lines(finding) + effect_lines(finding)]
     return out + ["</div>"]
+
+
+def _variants(report):
+    """The scenes with the equations as a whole."""
+    if not report.variants:
+        return []
+    names = list(next(iter(next(iter(report.variants.values())).values())))
+    head = "".join(f"<th>{escape(name)}</th>" for name in ["scene", "equations", *names, "stopped early"])
+    out = [f"<h2>The scenes with the equations as a whole</h2><table><tr>{head}</tr>"]
+    for scene, results in report.variants.items():
+        for name, result in results.items():
+            values = [f"{result[n]:.6g}" for n in names] + [result.get("stopped", "")]
+            cells = "".join(f"<td>{escape(value)}</td>" for value in [scene, name, *values])
+            out.append(f"<tr>{cells}</tr>")
+    return out + ["</table>"]
 
 
 def _definiteness(report):

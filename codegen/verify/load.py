@@ -14,8 +14,8 @@ from .printed import PaperError
 @dataclass
 class Case:
     """All that a model folder offers to verification: `paper.py` (`paper`), `paper_energies.py`
-    (`energies`, a list, the best first; also `candidates` for that place), `corrections.py` (`corrections`) and
-    `paper_numbers.py` (`numbers`)."""
+    (`energies`, a list, the best first; also `candidates` for that place), `corrections.py` (`corrections`),
+    `paper_numbers.py` (`numbers`) and `paper_effects.py` (`effects`)."""
 
     name: str
     folder: Path
@@ -24,6 +24,7 @@ class Case:
     corrections: List = field(default_factory=list)
     numbers: List = field(default_factory=list)
     candidates: List = field(default_factory=list)
+    effects: object = None
 
 
 def load(folder, name: Optional[str] = None) -> Case:
@@ -57,4 +58,5 @@ def load(folder, name: Optional[str] = None) -> Case:
     energies = offered("paper_energies", "energies", [])
     candidates = getattr(sys.modules.get(f"{package}.paper_energies"), "candidates", [])
     return Case(name, folder, offered("paper", "paper", None), list(energies),
-                list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates))
+                list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates),
+                offered("paper_effects", "effects", None))

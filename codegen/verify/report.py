@@ -46,6 +46,7 @@ class Report:
     numbers: List = field(default_factory=list)
     scores: List = field(default_factory=list)
     transcribed: List[str] = field(default_factory=list)
+    variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
 
 
 def transcription(subject):
@@ -217,6 +218,11 @@ def as_text(report):
             lines += [f"    {KINDS[f.kind]}", f"    {f.reason}"]
         lines.append("    found by: " + ", ".join(f.judgements))
         lines += [f"    {line}" for line in extent_lines(f) + effect_lines(f)]
+    if report.variants:
+        lines += ["", "The scenes with the equations as a whole"]
+    for scene, results in report.variants.items():
+        lines.append(f"  {scene}")
+        lines += [f"    {name}: {outcome_text(result)}" for name, result in results.items()]
     if report.definiteness:
         lines += ["", "Positive definite kinetic energy"]
     for d in report.definiteness:
@@ -255,12 +261,14 @@ def effect_lines(finding):
         return ["effect on the scenes: not simulated"]
     lines = []
     for scene, effect in finding.effects.items():
-        parts = []
-        for which in ("without", "with"):
-            values = ", ".join(f"{n} = {v:.6g}" if isinstance(v, float) else f"{n}: {v}" for n, v in effect[which].items())
-            parts.append(f"{which} the slip {values}")
+        parts = [f"{which} the slip {outcome_text(effect[which])}" for which in ("without", "with")]
         lines.append(f"effect on {scene}: " + "; ".join(parts))
     return lines
+
+
+def outcome_text(result):
+    """What a simulation gave: its quantities, and why it stopped early if it did."""
+    return ", ".join(f"{n} = {v:.6g}" if isinstance(v, (int, float)) else f"{n} {v}" for n, v in result.items())
 
 
 def verdict_text(verdict):
@@ -315,6 +323,7 @@ def as_dictionary(report):
             "printed": [show(x) for x in f.printed], "consistent": [show(x) for x in f.consistent],
             "judgements": f.judgements, "order": f.order, "vanishes": f.vanishes, "effects": f.effects or None,
         } for f in report.findings],
+        "variants": report.variants or None,
         "definiteness": [{
             "name": d.name, "determinant_at_rest": str(closed(d.at_rest)),
             "neglected": None if d.neglected is None else str(closed(d.neglected)) if d.neglected else "0",

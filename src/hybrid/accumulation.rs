@@ -11,6 +11,11 @@ use super::instant::Instant;
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 const LONGEST_PATTERN: usize = 8;
 
+/// Largest ratio of successive patterns that is told from one: the sum of the series divides by
+/// 1 − ratio, which keeps half of a double's digits here (1 − √ε). Events whose ratio is closer to
+/// one than this are regular, and rounding decides on which side of one it falls.
+const LARGEST_RATIO: f64 = 1.0 - 1.5e-8;
+
 /// What is remembered of an event.
 #[derive(Debug, Clone, Default)]
 struct Hop {
@@ -107,7 +112,7 @@ impl Accumulation {
         let [last, middle, first] =
             [0, 1, 2].map(|k| self.hop(k * p).at.since(self.hop((k + 1) * p).at));
         let (ratio, ratio_before) = (last / middle, middle / first);
-        if !(ratio > 0.0 && ratio < 1.0 && ratio_before < 1.0) {
+        if !(ratio > 0.0 && ratio < LARGEST_RATIO && ratio_before < LARGEST_RATIO) {
             return None;
         }
         let series = ratio / (1.0 - ratio);
@@ -137,9 +142,11 @@ impl Accumulation {
                 + (before.state[i] - self.hop(2 * p).state[i]) * ratio_before
                     / (1.0 - ratio_before);
             *value += change;
-            // A component whose limit is not told from zero by two successive predictions dies
-            // with the pattern.
-            if value.abs() <= (*value - limit_before).abs() {
+            // A component whose limit is not told from zero, by two successive predictions and the
+            // rounding of the extrapolation, dies with the pattern.
+            let size = now.state[i].abs() + before.state[i].abs();
+            let rounding = f64::EPSILON * size * (1.0 + series);
+            if value.abs() <= (*value - limit_before).abs() + rounding {
                 *value = 0.0;
             }
         }

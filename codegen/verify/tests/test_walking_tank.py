@@ -12,7 +12,8 @@ from types import SimpleNamespace
 
 from codegen.verify import cli, html, report
 from codegen.verify.corrections import apply, closure, without
-from codegen.verify.findings import JUDGEMENTS, Refused, simulate
+from codegen.verify.effects import Simulated, attach
+from codegen.verify.findings import JUDGEMENTS
 from codegen.verify.judgements import Subject
 from codegen.verify.load import load
 from codegen.verify.printed import PaperError
@@ -136,19 +137,18 @@ class Verdict(unittest.TestCase):
                 exact = subject.total(number).evaluate(values, math.sin, math.cos)
                 self.assertAlmostEqual(paper.equations[number].value(s, m), exact, places=12)
 
-    def test_effects_come_from_a_simulator(self):
-        corrected = apply(self.case.paper, self.case.corrections)
-
-        def simulator(paper, scene):
-            if paper.equations["10"].function.__name__ == corrected.equations["10"].function.__name__:
-                return {"peak uplift": 1.0}
-            raise Refused("the uplift becomes negative at t = 0.1")
-
+    def test_effects_come_from_simulations(self):
+        corrections = self.case.corrections
+        runs = [{"peak uplift": 0.01 * k} for k in range(len(corrections) + 1)]
+        place = 1 + [c.key for c in corrections].index("10-sign")
+        runs[place]["stopped"] = "the uplift becomes negative"
         findings = [f for f in self.report.findings if f.key in ("1-dot", "10-sign")]
         self.assertEqual(report.effect_lines(findings[0]), ["effect on the scenes: not simulated"])
-        simulate(findings, self.case, ["free release"], simulator)
-        self.assertEqual(findings[0].effects["free release"]["with"], {"peak uplift": 1.0})
-        self.assertIn("negative", findings[1].effects["free release"]["with"]["refused"])
+        attach(findings, corrections, Simulated(slips={"free release": runs}))
+        dot, sign = (f.effects["free release"] for f in findings)
+        self.assertEqual(dot["without"], runs[0])
+        self.assertEqual(dot["with"], runs[1 + [c.key for c in corrections].index("1-dot")])
+        self.assertIn("negative", sign["with"]["stopped"])
         for finding in findings:
             finding.effects.clear()
 
