@@ -90,8 +90,8 @@ impl<const F: usize> Estimate<F> {
             v: self.v - raw.v,
         };
         let stiffness = difference.norm(weights) / norm;
-        if factor * norm * power(stiffness, S - 1) < norm {
-            return norm; // resolved, or there is no error at all
+        if norm == 0.0 || factor * power(stiffness, S - 1) < 1.0 {
+            return norm; // no error, or that of the method is smaller
         }
         difference = *self;
         for _ in 1..S {

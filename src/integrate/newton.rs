@@ -75,8 +75,13 @@ impl<const S: usize, const F: usize> Newton<S, F>
 where
     RadauIia<S>: Coefficients<S>,
 {
-    /// Iterations allowed (RADAU: 7, and more for more stages, whose steps are longer).
+    /// Iterations allowed where a shorter step is the alternative (RADAU: 7, and more for more
+    /// stages, whose steps are longer).
     pub const LIMIT: u32 = if S > 3 { 7 + 5 * (S as u32 - 3) / 2 } else { 7 };
+
+    /// Iterations allowed where no other length will do: halving the error each time gains every
+    /// bit of a number.
+    pub const PATIENCE: u32 = f64::MANTISSA_DIGITS;
 
     pub fn new() -> Self {
         let zero = SMatrix::zeros();
@@ -155,8 +160,9 @@ where
 
     /// Solves the stage equations of a step of length `h` from `start`, for which the matrices must be
     /// factorized; `stages` holds starting values. Stops when the error is below `tolerance`, in
-    /// the norm of `weights`.
+    /// the norm of `weights`, or after `limit` iterations.
     #[inline]
+    #[allow(clippy::too_many_arguments)] // a step, and how well to solve it
     pub fn solve<Y: System<F>>(
         &mut self,
         system: &mut Y,
@@ -165,6 +171,7 @@ where
         stages: &mut Stages<S, F>,
         weights: &Weights<F>,
         tolerance: f64,
+        limit: u32,
         counters: &mut Counters,
     ) -> Outcome {
         // A change of an acceleration changes v by at most h times it, and q by ½h² times it.
@@ -181,7 +188,7 @@ where
         self.remaining = (self.remaining * self.remaining.sqrt()).sqrt();
 
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
-        for iteration in 1..=Self::LIMIT {
+        for iteration in 1..=limit {
             let residual = stages.residual(system, start.t, h);
             counters.residual_evaluations += S as u64;
             counters.newton_iterations += 1;
@@ -200,7 +207,7 @@ where
                 last_quotient = quotient;
                 let rate = self.rate;
                 // Below DIVERGENCE, but so slow that the iterations left will not do?
-                let left = Self::LIMIT - iteration;
+                let left = limit - iteration;
                 let hopeless = || {
                     let reached = (0..left).fold(norm, |reached, _| reached * rate);
                     reached * rate / (1.0 - rate) > tolerance

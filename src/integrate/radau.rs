@@ -337,7 +337,7 @@ where
         weights: &Weights<F>,
     ) -> Result<Trial, StepError> {
         let t = origin.t;
-        let iterations = self.attempt(system, origin, h, weights)?;
+        let iterations = self.attempt(system, origin, h, weights, Newton::<S, F>::LIMIT)?;
         let raw = Estimate::raw(h, origin, &self.stages);
         let filtered = raw.filtered(h, &self.newton);
         let error = filtered.method_error(&raw, h, &self.newton, weights, self.control.loosening);
@@ -396,10 +396,10 @@ where
         assert!(h > 0.0, "h = {h} is not positive");
         let origin = self.start;
         let weights = self.control.weights(&origin.q, &origin.v);
-        let mut solved = self.attempt(system, &origin, h, &weights);
+        let mut solved = self.attempt(system, &origin, h, &weights, Newton::<S, F>::PATIENCE);
         if solved.is_err() && !system.is_linear() {
             self.linearize(system, &origin);
-            solved = self.attempt(system, &origin, h, &weights);
+            solved = self.attempt(system, &origin, h, &weights, Newton::<S, F>::PATIENCE);
         }
         let iterations = solved?;
         self.accept(&origin, self.lost_at_start, h, None);
@@ -414,7 +414,8 @@ where
         self.linearization = Some(Linearized::Now);
     }
 
-    /// Solves the stage equations of a step of length `h`; gives the number of iterations.
+    /// Solves the stage equations of a step of length `h` in at most `limit` iterations; gives their
+    /// number.
     #[inline]
     fn attempt<Y: System<F>>(
         &mut self,
@@ -422,6 +423,7 @@ where
         origin: &State<F>,
         h: f64,
         weights: &Weights<F>,
+        limit: u32,
     ) -> Result<u32, StepError> {
         let t = origin.t;
         let tableau = RadauIia::<S>::TABLEAU;
@@ -465,7 +467,10 @@ where
             counters,
             ..
         } = self;
-        match newton.solve(system, origin, h, stages, weights, control.newton, counters) {
+        let tolerance = control.newton;
+        match newton.solve(
+            system, origin, h, stages, weights, tolerance, limit, counters,
+        ) {
             Outcome::Converged { iterations } => Ok(iterations),
             Outcome::Slow { rate } => Err(StepError::Newton { t, h, rate }),
             Outcome::NonFinite => Err(StepError::NonFinite {

@@ -169,10 +169,11 @@ pub(super) fn nth_root(x: f64, n: usize) -> f64 {
     let mut root = x.max(1.0);
     loop {
         let next = root - (root - x / power(root, n - 1)) / n as f64;
-        if next >= root {
+        if next < root {
+            root = next;
+        } else {
             return root;
         }
-        root = next;
     }
 }
 

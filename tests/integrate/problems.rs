@@ -77,9 +77,11 @@ impl System<2> for DoublePendulum {
     }
 }
 
-/// A bar of mass 1 hung on a spring of stiffness k and rest length 1, g = 1: x, y.
+/// A mass of 1 hung on a spring. Coordinates: x, y from the pivot, y upward.
 pub struct SpringPendulum {
     pub k: f64,
+    pub length: f64,
+    pub g: f64,
 }
 
 impl System<2> for SpringPendulum {
@@ -91,8 +93,8 @@ impl System<2> for SpringPendulum {
         a: &SVector<f64, 2>,
         r: &mut SVector<f64, 2>,
     ) {
-        let length = q[0].hypot(q[1]);
-        *r = a + q * (self.k * (length - 1.0) / length) + vector![0.0, 1.0];
+        let length = (q[0] * q[0] + q[1] * q[1]).sqrt();
+        *r = a + q * (self.k * (length - self.length) / length) + vector![0.0, self.g];
     }
     fn jacobian(
         &mut self,
@@ -104,11 +106,12 @@ impl System<2> for SpringPendulum {
         c: &mut SMatrix<f64, 2, 2>,
         k: &mut SMatrix<f64, 2, 2>,
     ) {
-        let length = q[0].hypot(q[1]);
+        let length = (q[0] * q[0] + q[1] * q[1]).sqrt();
+        let stretch = self.length / length;
         *m = SMatrix::identity();
         *c = SMatrix::zeros();
         let along = q * q.transpose() / (length * length);
-        *k = (SMatrix::identity() * (1.0 - 1.0 / length) + along / length) * self.k;
+        *k = (SMatrix::identity() * (1.0 - stretch) + along * stretch) * self.k;
     }
 }
 
