@@ -30,9 +30,9 @@ pub fn run(arguments: &RunArguments) -> ExitCode {
         Ok(folder) => folder,
         Err(error) => return wrong_input(&format!("error: {error}")),
     };
-    let problem = scene.problem();
+    let problem = &scene.problem;
     let mut progress = ProgressLine::new(problem.end.time);
-    let run = match simulate(&problem, &mut progress) {
+    let run = match simulate(problem, &mut progress) {
         Ok(run) => run,
         Err(reason) => {
             let help = "change the initial state, or name another mode in `initial.mode`";
