@@ -15,6 +15,7 @@ mod ledger;
 mod locate;
 mod plan;
 mod problem;
+mod resume;
 pub mod roots;
 mod samples;
 mod segment;
@@ -22,4 +23,5 @@ mod simulation;
 
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Problem, Record, Unknown};
+pub use resume::resume;
 pub use simulation::simulate;
