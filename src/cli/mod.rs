@@ -1,19 +1,34 @@
-//! The command line.
+//! The command line: one module a command, and what they share.
+//!
+//! | status | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | the system failed: a file could not be written, Python did not run |
+//! | 2 | the input is wrong; nothing was written |
+//! | 3 | a simulation stopped early; what was computed is written, with the reason |
+//!
+//! Results go to the standard output, errors and progress to the standard error.
 
+mod compare;
+mod describe;
+mod interrupt;
+mod models;
+mod outcome;
+mod print;
 mod run;
+mod schema;
+mod table;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
-/// The input is wrong; nothing was written.
-const WRONG_INPUT: u8 = 2;
-/// The simulation stopped early; what was computed is written.
-const STOPPED_EARLY: u8 = 3;
-
 #[derive(Debug, Parser)]
 #[command(
     version,
-    about = "Simulates mechanical systems that stick, slip, rock and impact"
+    about = "Simulates mechanical systems that stick, slip, rock and impact",
+    after_help = "Exit status: 0 done; 1 the system failed; 2 the input is wrong and nothing was \
+                  written; 3 a simulation stopped early and what was computed is written."
 )]
 struct Arguments {
     #[command(subcommand)]
@@ -22,13 +37,29 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Simulates a scene and writes tables and plots
+    /// Simulate a scene; write tables and plots
     Run(run::RunArguments),
+    /// Simulate a scene under every variant of its model; show them side by side
+    Compare(compare::CompareArguments),
+    /// List the models
+    Models(models::ModelsArguments),
+    /// Show what a model offers: parameters, modes, guards, transitions, reactions, cost
+    Describe(describe::DescribeArguments),
+    /// Print the format of scenes as a JSON Schema
+    Schema(schema::SchemaArguments),
+    /// Judge the hand-written equations of a model against its energies
+    Verify(verify::VerifyArguments),
 }
 
 /// Runs the command of the process's arguments.
 pub fn main() -> ExitCode {
-    match Arguments::parse().command {
+    let result = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
-    }
+        Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Models(arguments) => models::models(&arguments),
+        Command::Describe(arguments) => describe::describe(&arguments),
+        Command::Schema(arguments) => schema::schema(&arguments),
+        Command::Verify(arguments) => verify::verify(&arguments),
+    };
+    outcome::exit_code(result)
 }

@@ -1,68 +1,89 @@
 //! `dalembert run`.
 
-use super::{STOPPED_EARLY, WRONG_INPUT};
-use crate::hybrid::simulate;
-use crate::kernel::MODELS;
-use crate::record::{OutputFolder, ProgressLine, Report};
-use crate::scene::Scene;
 use std::path::PathBuf;
-use std::process::ExitCode;
+
+use super::interrupt::{self, Interruptible};
+use super::outcome::{Failure, Outcome, Result};
+use super::print;
+use crate::hybrid::{Reason, resume, simulate};
+use crate::kernel::MODELS;
+use crate::record::{OutputFolder, ProgressLine, Report, Run};
+use crate::scene::Scene;
 
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Ctrl-C ends the simulation at its next step; what was computed is written, with status 3.
+
+--resume continues the run in DIR, whether it was interrupted or reached its end, to the end of \
+the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, columns \
+and the grid of the samples must be those of the run; inputs, accuracy and frozen coordinates are \
+taken from the scene as it is now and are expected to be the same. The integrator starts anew at \
+the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.")]
 pub struct RunArguments {
     /// Scene file (JSON); docs/scene.md describes it
     scene: PathBuf,
     /// Folder for tables and plots; without it only the report is shown
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replaces a value of the scene, such as `parameters.mu_s=0.3`
+    /// Replace a value of the scene, such as `parameters.mu_s=0.3`; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    /// Continue the run in this folder, and write the longer run to --out, or back
+    #[arg(long, value_name = "DIR")]
+    resume: Option<PathBuf>,
 }
 
-pub fn run(arguments: &RunArguments) -> ExitCode {
-    let scene = match Scene::load(&arguments.scene, &arguments.overrides, MODELS) {
-        Ok(scene) => scene,
-        Err(errors) => return wrong_input(&errors),
+pub fn run(arguments: &RunArguments) -> Result {
+    let scene = Scene::load(&arguments.scene, &arguments.overrides, MODELS)?;
+    let problem = &scene.problem;
+    let earlier = match &arguments.resume {
+        Some(folder) => Some(
+            Run::read(
+                folder,
+                problem.model,
+                problem.variant,
+                problem.record.columns,
+            )
+            .map_err(Failure::wrong_input)?,
+        ),
+        None => None,
     };
     // Before the simulation, so that a folder that cannot be written costs no time.
-    let folder = match arguments.out.as_deref().map(OutputFolder::new).transpose() {
-        Ok(folder) => folder,
-        Err(error) => return wrong_input(&format!("error: {error}")),
-    };
-    let problem = &scene.problem;
-    let mut progress = ProgressLine::new(problem.end.time);
-    let run = match simulate(problem, &mut progress) {
-        Ok(run) => run,
-        Err(reason) => {
-            let help = "change the initial state, or name another mode in `initial.mode`";
-            return wrong_input(
-                &scene
-                    .source
-                    .error_at("initial", reason.to_string(), Some(help)),
-            );
-        }
+    let out = arguments.out.as_ref().or(arguments.resume.as_ref());
+    let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
+
+    interrupt::listen()?;
+    let mut progress = Interruptible(ProgressLine::new(problem.end.time));
+    let run = match earlier {
+        None => simulate(problem, &mut progress),
+        Some(earlier) => resume(problem, earlier, &mut progress),
     };
     drop(progress);
-    if let Some(folder) = &folder
-        && let Err(error) = run.write(folder)
-    {
-        return wrong_input(&format!("error: {error}"));
+    let run = run.map_err(|reason| refusal(&scene, &reason))?;
+    if let Some(folder) = &folder {
+        run.write(folder)?;
     }
-    println!("{}", Report::new(&run));
+    print::output(Report::new(&run))?;
     match &run.failure {
-        None => ExitCode::SUCCESS,
+        None => Ok(Outcome::Done),
         Some(failure) => {
-            eprintln!(
-                "stopped early at t = {} s: {}",
-                failure.at.t, failure.reason
-            );
-            ExitCode::from(STOPPED_EARLY)
+            let (t, reason) = (failure.at.t, &failure.reason);
+            print::error(format!("stopped early at t = {t} s: {reason}"));
+            Ok(Outcome::StoppedEarly)
         }
     }
 }
 
-fn wrong_input(error: &dyn std::fmt::Display) -> ExitCode {
-    eprintln!("{error}");
-    ExitCode::from(WRONG_INPUT)
+/// Why a scene cannot even be started, pointing at the part of it that is to blame.
+pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
+    let (path, help) = match reason {
+        Reason::NoModeLeft { .. } => ("freeze", "freeze fewer coordinates"),
+        Reason::OtherRun { .. } => ("", "continue it with the scene that it was made with"),
+        _ => (
+            "initial",
+            "change the initial state, or name another mode in `initial.mode`",
+        ),
+    };
+    let source = &scene.source;
+    source.error_at(path, reason.to_string(), Some(help)).into()
 }

@@ -86,6 +86,12 @@ pub enum Reason {
         /// Which coordinate or rate, and what it should be.
         why: String,
     },
+    /// A run that is to be continued is not one of this problem.
+    #[error("this is another run: {why}")]
+    OtherRun {
+        /// What is different.
+        why: String,
+    },
     /// The run was interrupted from outside.
     #[error("interrupted")]
     Interrupted,

@@ -47,6 +47,17 @@ impl RunningLedger {
         }
     }
 
+    /// The ledger of a run that goes on.
+    pub fn continuing(ledger: &Ledger) -> Self {
+        let sum = |total| Sum { total, lost: 0.0 };
+        RunningLedger {
+            initial: ledger.initial,
+            input_work: sum(ledger.input_work),
+            dissipated: sum(ledger.dissipated),
+            lost_at_impacts: sum(ledger.lost_at_impacts),
+        }
+    }
+
     /// Adds powers [dissipated, input], W, over a time `weight`, s.
     #[inline]
     pub fn add_powers(&mut self, [dissipated, input]: [f64; 2], weight: f64) {

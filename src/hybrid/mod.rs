@@ -16,6 +16,7 @@ mod ledger;
 mod locate;
 mod plan;
 mod problem;
+mod resume;
 pub mod roots;
 mod samples;
 mod segment;
@@ -23,4 +24,5 @@ mod simulation;
 
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Problem, Record, Unknown};
+pub use resume::resume;
 pub use simulation::simulate;

@@ -24,6 +24,7 @@ use std::time::Instant as WallClock;
 pub fn simulate(problem: &Problem, progress: &mut dyn Progress) -> Result<Run, Reason> {
     let clock = WallClock::now();
     let mut simulation = Simulation::new(problem, progress)?;
+    simulation.begin()?;
     let outcome = simulation.run();
     Ok(simulation.finish(outcome.err(), clock))
 }
@@ -91,7 +92,8 @@ pub(super) struct Simulation<'p> {
 }
 
 impl<'p> Simulation<'p> {
-    fn new(problem: &'p Problem, progress: &'p mut dyn Progress) -> Result<Self, Reason> {
+    /// A simulation before its first instant.
+    pub fn new(problem: &'p Problem, progress: &'p mut dyn Progress) -> Result<Self, Reason> {
         let model = problem.model;
         let plan = Plan::new(problem)?;
         let mut context = Context::new(model, &problem.parameters);
@@ -102,7 +104,7 @@ impl<'p> Simulation<'p> {
             .record
             .every
             .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
-        let mut simulation = Simulation {
+        Ok(Simulation {
             problem,
             plan,
             context,
@@ -130,11 +132,15 @@ impl<'p> Simulation<'p> {
             next_sample: 0,
             counted: 0,
             progress,
-        };
-        simulation.choose_initial_mode()?;
-        simulation.set_context();
-        simulation.ledger = RunningLedger::starting_with(simulation.stored_energy());
-        Ok(simulation)
+        })
+    }
+
+    /// Finds the mode of the initial state, and opens the ledger.
+    fn begin(&mut self) -> Result<(), Reason> {
+        self.choose_initial_mode()?;
+        self.set_context();
+        self.ledger = RunningLedger::starting_with(self.stored_energy());
+        Ok(())
     }
 
     pub fn mode(&self) -> &'static Mode {
@@ -222,7 +228,8 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    fn run(&mut self) -> Result<(), Reason> {
+    /// Simulates from here to the end.
+    pub fn run(&mut self) -> Result<(), Reason> {
         loop {
             self.settle()?;
             self.flush_samples();
@@ -375,7 +382,8 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
+    /// Everything that was recorded, as far as it came.
+    pub fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
         self.set_context();
         let last = self.recorder.last_time();
         if last.is_none_or(|t| t < self.here.now.seconds()) {

@@ -25,6 +25,7 @@ mod number;
 mod peaks;
 pub mod plot;
 mod progress;
+mod read;
 mod recorder;
 mod report;
 mod run;
@@ -34,8 +35,10 @@ pub mod table;
 pub use files::{OVERVIEW, PHASE};
 pub use folder::{FolderError, OutputFolder};
 pub use layout::{Layout, Quantity, Recorded};
+pub(crate) use number::{exact, rounded};
 pub use peaks::{Peak, peaks};
 pub use progress::{Progress, ProgressLine, Silent};
+pub use read::ReadError;
 pub use recorder::Recorder;
 pub use report::Report;
 pub use run::{

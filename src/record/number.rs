@@ -16,8 +16,15 @@ pub(super) fn push_exact(out: &mut String, x: f64) {
     }
 }
 
+/// `x` as [`push_exact`] writes it.
+pub(crate) fn exact(x: f64) -> String {
+    let mut out = String::new();
+    push_exact(&mut out, x);
+    out
+}
+
 /// `x` with at most `digits` significant digits, for people.
-pub(super) fn rounded(x: f64, digits: usize) -> String {
+pub(crate) fn rounded(x: f64, digits: usize) -> String {
     let mut out = String::new();
     push_general(&mut out, x, digits);
     out

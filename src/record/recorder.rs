@@ -24,6 +24,14 @@ impl Recorder {
         }
     }
 
+    /// A recorder that appends to a trajectory, with room for so many rows more.
+    pub fn continuing(mut trajectory: Trajectory, rows: usize) -> Recorder {
+        trajectory.t.reserve(rows);
+        trajectory.mode.reserve(rows);
+        trajectory.values.reserve(rows * trajectory.columns.len());
+        Recorder { trajectory }
+    }
+
     /// Number of rows on the grid `0, every, 2 every, … ≤ end`, and one for an end off the grid.
     pub fn grid_rows(end: f64, every: f64) -> usize {
         (end / every).floor() as usize + 2

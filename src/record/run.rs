@@ -154,7 +154,7 @@ pub struct Failure {
 }
 
 /// Work done by the integrator.
-#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Solver {
     /// Name of the method.
     pub method: String,
@@ -227,6 +227,12 @@ impl Trajectory {
     pub fn row(&self, i: usize) -> &[f64] {
         let width = self.columns.len();
         &self.values[i * width..(i + 1) * width]
+    }
+    /// Keeps the first `rows` rows.
+    pub fn truncate(&mut self, rows: usize) {
+        self.t.truncate(rows);
+        self.mode.truncate(rows);
+        self.values.truncate(rows * self.columns.len());
     }
     /// Index of a column by name.
     pub fn column(&self, name: &str) -> Option<usize> {

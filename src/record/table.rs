@@ -8,6 +8,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use super::layout::Layout;
 use super::number::push_exact;
 use super::run::{Column, EnergyJump, Group, Run};
 
@@ -18,14 +19,24 @@ pub const EVENTS: &str = "events.csv";
 /// File name of the description of both tables.
 pub const METADATA: &str = "csv-metadata.json";
 
+/// Names of the columns of the table of samples.
+pub(super) fn trajectory_header(columns: &[Column]) -> Vec<&str> {
+    let names = columns.iter().map(|column| column.name.as_str());
+    ["t"].into_iter().chain(names).chain(["mode"]).collect()
+}
+
+/// Names of the columns of the table of transitions.
+pub(super) fn events_header(layout: &Layout) -> Vec<String> {
+    let columns = event_columns(layout).into_iter();
+    columns.map(|column| column.name).collect()
+}
+
 /// Writes the samples: `t`, every column of the trajectory by name, `mode` by name.
 pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
     let mut rows = Rows::new(out);
-    rows.text("t")?;
-    for column in &run.trajectory.columns {
-        rows.text(&column.name)?;
+    for name in trajectory_header(&run.trajectory.columns) {
+        rows.text(name)?;
     }
-    rows.text("mode")?;
     rows.end()?;
     for (i, &t) in run.trajectory.t.iter().enumerate() {
         rows.number(t)?;
@@ -43,7 +54,7 @@ pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
 /// `ground_work`, 0 where the transition is no impact.
 pub fn write_events(run: &Run, out: impl Write) -> io::Result<()> {
     let mut rows = Rows::new(out);
-    for name in event_columns(run).into_iter().map(|column| column.name) {
+    for name in events_header(&run.layout) {
         rows.text(&name)?;
     }
     rows.end()?;
@@ -79,7 +90,7 @@ pub fn write_metadata(run: &Run, out: impl Write) -> io::Result<()> {
             Table {
                 url: EVENTS,
                 schema: Schema {
-                    columns: event_columns(run),
+                    columns: event_columns(&run.layout),
                 },
             },
         ],
@@ -90,7 +101,7 @@ pub fn write_metadata(run: &Run, out: impl Write) -> io::Result<()> {
 }
 
 /// Name and description of each column of the table of events.
-fn event_columns(run: &Run) -> Vec<Described> {
+fn event_columns(layout: &Layout) -> Vec<Described> {
     let mut columns = vec![
         Described::time(),
         Described {
@@ -104,8 +115,7 @@ fn event_columns(run: &Run) -> Vec<Described> {
         Described::text("to", "mode entered"),
     ];
     for side in ["before", "after"] {
-        let state = run
-            .layout
+        let state = layout
             .columns()
             .into_iter()
             .filter(|c| c.group.is_of_the_state());

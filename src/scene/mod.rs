@@ -28,6 +28,7 @@ pub use error::{SceneError, SceneErrorKind, SceneErrors};
 pub use files::{Disk, Files};
 pub use schema::schema;
 pub use source::Position;
+pub(crate) use wording::nearest;
 
 use crate::hybrid::Problem;
 use crate::model::Model;

@@ -1,0 +1,92 @@
+//! What is compared: a few numbers of each run.
+
+use std::collections::BTreeSet;
+
+use super::{Case, Comparison};
+use crate::record::{Group, Run, peaks};
+
+/// A number of each case.
+#[derive(Debug)]
+pub struct Measure {
+    pub name: String,
+    pub unit: String,
+    /// One a case; `None` where there is no run.
+    pub values: Vec<Option<f64>>,
+}
+
+impl Comparison {
+    /// The runs there are.
+    pub fn runs(&self) -> impl Iterator<Item = (&Case, &Run)> {
+        let cases = self.cases.iter();
+        cases.filter_map(|case| Some((case, case.run.as_ref().ok()?)))
+    }
+
+    /// The coordinates that are not zero throughout in every run.
+    pub fn coordinates(&self) -> Vec<usize> {
+        let moves = |i: usize| {
+            let mut peaks = self.runs().filter_map(|(_, run)| extremes(run, i));
+            peaks.any(|(min, max)| min != 0.0 || max != 0.0)
+        };
+        (0..self.model.coordinates.len())
+            .filter(|&i| moves(i))
+            .collect()
+    }
+
+    /// Where the runs ended, the extremes and last values of the coordinates, the number of each
+    /// transition, and the energies.
+    pub fn measures(&self) -> Vec<Measure> {
+        let mut measures = vec![self.measure("end", "s", |run| Some(run.end.t))];
+        for i in self.coordinates() {
+            let (name, unit) = (
+                self.model.coordinates[i].name,
+                self.model.coordinates[i].unit,
+            );
+            let extreme = |run: &Run| extremes(run, i);
+            let max = |run: &Run| extreme(run).map(|(_, max)| max);
+            let min = |run: &Run| extreme(run).map(|(min, _)| min);
+            measures.push(self.measure(&format!("{name} max"), unit, max));
+            measures.push(self.measure(&format!("{name} min"), unit, min));
+            let end = |run: &Run| Some(run.end.state.q[i]);
+            measures.push(self.measure(&format!("{name} end"), unit, end));
+        }
+        let events = self.runs().flat_map(|(_, run)| &run.events);
+        let transitions: BTreeSet<&str> = events.map(|event| event.transition).collect();
+        for name in transitions {
+            let count =
+                |run: &Run| Some(run.events.iter().filter(|e| e.transition == name).count() as f64);
+            measures.push(self.measure(&format!("{name} count"), "1", count));
+        }
+        let energies: [(&str, fn(&Run) -> f64); 5] = [
+            ("energy initial", |run| run.energy.initial),
+            ("input work", |run| run.energy.input_work),
+            ("dissipated", |run| run.energy.dissipated),
+            ("lost at impacts", |run| run.energy.lost_at_impacts),
+            ("energy final", |run| run.energy.final_),
+        ];
+        for (name, energy) in energies {
+            measures.push(self.measure(name, "J", |run| Some(energy(run))));
+        }
+        let gaining = |run: &Run| {
+            let jumps = run.events.iter().filter_map(|event| event.energy);
+            Some(jumps.filter(|jump| jump.lost < 0.0).count() as f64)
+        };
+        measures.push(self.measure("impacts that gained energy", "1", gaining));
+        measures
+    }
+
+    fn measure(&self, name: &str, unit: &str, of: impl Fn(&Run) -> Option<f64>) -> Measure {
+        let value = |case: &Case| case.run.as_ref().ok().and_then(&of);
+        Measure {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values: self.cases.iter().map(value).collect(),
+        }
+    }
+}
+
+/// Smallest and largest value of a coordinate.
+fn extremes(run: &Run, coordinate: usize) -> Option<(f64, f64)> {
+    let column = run.layout.range(Group::Coordinate).start + coordinate;
+    let peak = peaks(run).into_iter().find(|(i, _)| *i == column);
+    peak.map(|(_, peak)| (peak.min, peak.max))
+}

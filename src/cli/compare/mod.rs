@@ -1,0 +1,163 @@
+//! `dalembert compare`.
+
+mod measures;
+mod write;
+
+use std::path::PathBuf;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use super::interrupt::{self, Interruptible};
+use super::outcome::{Failure, Outcome, Result};
+use super::run::refusal;
+use super::{models, print};
+use crate::hybrid::simulate;
+use crate::kernel::MODELS;
+use crate::model::Model;
+use crate::record::{OutputFolder, Run, Silent};
+use crate::scene::Scene;
+
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Each variant is a combination of the options of the model's choices (`dalembert describe MODEL` \
+lists them). A variant that is refused, or that stops early, says why and where, below the table; \
+that is a result, so the status is 0. Ctrl-C ends all simulations; status 3.
+
+--out DIR writes the table as comparison.csv, and a plot over time for each coordinate.")]
+pub struct CompareArguments {
+    /// Scene file (JSON)
+    scene: PathBuf,
+    /// Vary this choice only, such as `rules`; may be given several times; by default all choices
+    #[arg(long, value_name = "CHOICE")]
+    vary: Vec<String>,
+    /// Folder for the table and the plots
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace a value of the scene in all variants, such as `parameters.mu_s=0.3`
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    overrides: Vec<String>,
+}
+
+/// A comparison of the variants of a model on one scene.
+#[derive(Debug)]
+struct Comparison {
+    model: &'static Model,
+    /// Names of the choices that vary.
+    choices: Vec<&'static str>,
+    cases: Vec<Case>,
+}
+
+/// One variant.
+#[derive(Debug)]
+struct Case {
+    /// Options of the choices that vary.
+    options: Vec<&'static str>,
+    /// The run, complete or stopped early, or why there is none.
+    run: std::result::Result<Run, String>,
+}
+
+impl Case {
+    /// The options in words.
+    fn label(&self) -> String {
+        self.options.join(" · ")
+    }
+}
+
+pub fn compare(arguments: &CompareArguments) -> Result {
+    let scene = Scene::load(&arguments.scene, &arguments.overrides, MODELS)?;
+    let model = scene.problem.model;
+    let varied = varied(model, &arguments.vary)?;
+    let folder = arguments
+        .out
+        .as_deref()
+        .map(OutputFolder::new)
+        .transpose()?;
+    interrupt::listen()?;
+
+    let combinations = combinations(model, &varied);
+    let style = ProgressStyle::with_template("{bar:30} {pos} of {len} variants  {elapsed}");
+    let bar = ProgressBar::new(combinations.len() as u64)
+        .with_style(style.expect("the template is well-formed"));
+    let cases = combinations.into_par_iter().map(|options| {
+        let case = case(model, &varied, options, arguments);
+        bar.inc(1);
+        case
+    });
+    let comparison = Comparison {
+        model,
+        choices: varied.iter().map(|&i| model.choices[i].name).collect(),
+        cases: cases.collect(),
+    };
+    bar.finish_and_clear();
+
+    if let Some(folder) = &folder {
+        comparison.write(folder)?;
+    }
+    print::output(&comparison)?;
+    Ok(if interrupt::asked() {
+        Outcome::StoppedEarly
+    } else {
+        Outcome::Done
+    })
+}
+
+/// Indices of the choices that vary.
+fn varied(model: &Model, names: &[String]) -> std::result::Result<Vec<usize>, Failure> {
+    if model.choices.is_empty() {
+        let name = model.name;
+        return Err(Failure::wrong_input(format!(
+            "the model `{name}` has no choices, so there is nothing to compare; run the scene \
+             twice with different `--set` instead"
+        )));
+    }
+    if names.is_empty() {
+        return Ok((0..model.choices.len()).collect());
+    }
+    let known: Vec<&str> = model.choices.iter().map(|c| c.name).collect();
+    let mut varied = Vec::new();
+    for name in names {
+        let i = models::place("choice", name, &known)?;
+        if !varied.contains(&i) {
+            varied.push(i);
+        }
+    }
+    Ok(varied)
+}
+
+/// The combinations of options that the model offers for the choices that vary, in its order.
+fn combinations(model: &Model, varied: &[usize]) -> Vec<Vec<&'static str>> {
+    let mut combinations = Vec::new();
+    for variant in model.variants {
+        let options = varied.iter().map(|&i| variant.options[i]).collect();
+        if !combinations.contains(&options) {
+            combinations.push(options);
+        }
+    }
+    combinations
+}
+
+/// Reads the scene once more under these options, and runs it: whatever the scene says is checked
+/// against the variant, such as the name of a mode.
+fn case(
+    model: &Model,
+    varied: &[usize],
+    options: Vec<&'static str>,
+    arguments: &CompareArguments,
+) -> Case {
+    let settings = varied.iter().zip(&options);
+    let settings = settings.map(|(&i, option)| format!("{}={option}", model.choices[i].name));
+    let overrides: Vec<String> = arguments
+        .overrides
+        .iter()
+        .cloned()
+        .chain(settings)
+        .collect();
+    let run = Scene::load(&arguments.scene, &overrides, MODELS)
+        .map_err(|errors| errors.to_string())
+        .and_then(|scene| {
+            let run = simulate(&scene.problem, &mut Interruptible(Silent));
+            run.map_err(|reason| refusal(&scene, &reason).to_string())
+        });
+    Case { options, run }
+}

@@ -1,0 +1,293 @@
+//! What a variant of a model offers, as data: printed as JSON as it is, and as tables.
+
+use serde::Serialize;
+
+use crate::model::{self, Model, Variant};
+use crate::record::{Layout, Recorded};
+
+/// A model under the chosen options.
+#[derive(Debug, Serialize)]
+pub struct Description {
+    pub name: &'static str,
+    pub title: &'static str,
+    pub source: &'static str,
+    pub choices: Vec<Choice>,
+    pub coordinates: Vec<Coordinate>,
+    pub discrete: Vec<Discrete>,
+    pub inputs: Vec<Input>,
+    pub parameters: Vec<Parameter>,
+    pub parameter_sets: Vec<ParameterSet>,
+    pub reactions: Vec<Reaction>,
+    pub modes: Vec<Mode>,
+}
+
+/// A modelling choice, and the option that is described.
+#[derive(Debug, Serialize)]
+pub struct Choice {
+    pub name: &'static str,
+    pub options: &'static [&'static str],
+    pub chosen: &'static str,
+    pub meaning: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Coordinate {
+    pub name: &'static str,
+    pub unit: &'static str,
+    /// Lower bound of every admissible state.
+    pub minimum: Option<f64>,
+    /// Typical magnitudes, of the coordinate and of its velocity.
+    pub scale: f64,
+    pub rate_scale: f64,
+    pub meaning: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Discrete {
+    pub name: &'static str,
+    pub values: &'static [f64],
+    pub meaning: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Input {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub meaning: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Parameter {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub default: f64,
+    /// Bounds; `None` where there is none.
+    pub minimum: Option<f64>,
+    pub minimum_exclusive: bool,
+    pub maximum: Option<f64>,
+    /// Parameter that this one must not exceed.
+    pub at_most: Option<&'static str>,
+    pub meaning: &'static str,
+}
+
+#[derive(Debug, Serialize)]
+pub struct ParameterSet {
+    pub name: &'static str,
+    pub meaning: &'static str,
+    /// Parameters that differ from their defaults.
+    pub values: Vec<Value>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Value {
+    pub parameter: &'static str,
+    pub value: f64,
+}
+
+/// A reaction, as the trajectory names it.
+#[derive(Debug, Serialize)]
+pub struct Reaction {
+    pub name: String,
+    pub unit: String,
+    pub meaning: String,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Mode {
+    pub name: &'static str,
+    pub meaning: &'static str,
+    /// The coordinates that are integrated.
+    pub free: Vec<&'static str>,
+    pub held: Vec<Held>,
+    pub guards: Vec<Guard>,
+    pub requirements: Vec<Requirement>,
+    /// Mode at the limit of an accumulation of this mode's impacts.
+    pub rest: Option<&'static str>,
+    pub operations: Vec<Operations>,
+}
+
+/// A coordinate that is not integrated.
+#[derive(Debug, Serialize)]
+pub struct Held {
+    pub coordinate: &'static str,
+    /// Where; `None`: wherever it was.
+    pub at: Option<f64>,
+    /// Whether it moves at a given rate.
+    pub drifts: bool,
+}
+
+/// What makes the mode inadmissible where it falls through zero.
+#[derive(Debug, Serialize)]
+pub struct Guard {
+    pub name: &'static str,
+    pub text: &'static str,
+    pub unit: &'static str,
+    /// Tried in order.
+    pub transitions: Vec<Transition>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Transition {
+    pub name: &'static str,
+    pub to: &'static str,
+    /// Whether it is taken only where its condition, evaluated in the next mode, holds.
+    pub conditional: bool,
+    /// Whether velocities jump and energy may be lost.
+    pub impact: bool,
+    /// What the reset may change.
+    pub changes: &'static [&'static str],
+}
+
+#[derive(Debug, Serialize)]
+pub struct Requirement {
+    pub text: &'static str,
+    pub unit: &'static str,
+    pub failure: &'static str,
+}
+
+/// Operations of a generated function.
+#[derive(Debug, Serialize)]
+pub struct Operations {
+    pub function: &'static str,
+    pub count: usize,
+}
+
+impl Description {
+    pub fn new(model: &Model, variant: &Variant) -> Description {
+        let choices = model.choices.iter().zip(variant.options);
+        let coordinates = model.coordinates.iter();
+        let parameter_sets = model.parameter_sets.iter();
+        Description {
+            name: model.name,
+            title: model.title,
+            source: model.source,
+            choices: choices
+                .map(|(choice, chosen)| Choice {
+                    name: choice.name,
+                    options: choice.options,
+                    chosen,
+                    meaning: choice.meaning,
+                })
+                .collect(),
+            coordinates: coordinates
+                .map(|c| Coordinate {
+                    name: c.name,
+                    unit: c.unit,
+                    minimum: c.minimum,
+                    scale: c.scale,
+                    rate_scale: c.rate_scale,
+                    meaning: c.meaning,
+                })
+                .collect(),
+            discrete: (model.discretes.iter())
+                .map(|d| Discrete {
+                    name: d.name,
+                    values: d.values,
+                    meaning: d.meaning,
+                })
+                .collect(),
+            inputs: (model.inputs.iter())
+                .map(|i| Input {
+                    name: i.name,
+                    unit: i.unit,
+                    meaning: i.meaning,
+                })
+                .collect(),
+            parameters: model.parameters.iter().map(Parameter::new).collect(),
+            parameter_sets: parameter_sets
+                .map(|set| ParameterSet {
+                    name: set.name,
+                    meaning: set.meaning,
+                    values: (set.values.iter())
+                        .map(|&(parameter, value)| Value { parameter, value })
+                        .collect(),
+                })
+                .collect(),
+            reactions: reactions(model, variant),
+            modes: variant
+                .modes
+                .iter()
+                .map(|mode| Mode::new(model, variant, mode))
+                .collect(),
+        }
+    }
+}
+
+impl Parameter {
+    fn new(p: &model::Parameter) -> Parameter {
+        Parameter {
+            name: p.name,
+            unit: p.unit,
+            default: p.default,
+            minimum: Some(p.minimum).filter(|x| x.is_finite()),
+            minimum_exclusive: p.minimum_exclusive,
+            maximum: Some(p.maximum).filter(|x| x.is_finite()),
+            at_most: p.at_most,
+            meaning: p.meaning,
+        }
+    }
+}
+
+impl Mode {
+    fn new(model: &Model, variant: &Variant, mode: &model::Mode) -> Mode {
+        let name = |i: usize| model.coordinates[i].name;
+        let is_held = |i: &usize| !mode.free.contains(i);
+        let to = |target: usize| variant.modes[target].name;
+        let transition = |t: &model::Transition| Transition {
+            name: t.name,
+            to: to(t.target),
+            conditional: t.conditional,
+            impact: t.impact,
+            changes: t.changes,
+        };
+        let guard = |g: &model::Guard| Guard {
+            name: g.name,
+            text: g.text,
+            unit: g.unit,
+            transitions: g.transitions.iter().map(transition).collect(),
+        };
+        let held = |i: usize| Held {
+            coordinate: name(i),
+            at: mode.held_at[i],
+            drifts: mode.drifts[i],
+        };
+        Mode {
+            name: mode.name,
+            meaning: mode.meaning,
+            free: mode.free.iter().copied().map(name).collect(),
+            held: (0..model.coordinates.len())
+                .filter(is_held)
+                .map(held)
+                .collect(),
+            guards: mode.guards.iter().map(guard).collect(),
+            requirements: (mode.requirements.iter())
+                .map(|r| Requirement {
+                    text: r.text,
+                    unit: r.unit,
+                    failure: r.failure,
+                })
+                .collect(),
+            rest: mode.rest.map(to),
+            operations: (mode.operations.iter())
+                .map(|&(function, count)| Operations { function, count })
+                .collect(),
+        }
+    }
+}
+
+/// The reactions, under the names that the trajectory gives them.
+fn reactions(model: &Model, variant: &Variant) -> Vec<Reaction> {
+    let recorded = Recorded {
+        reactions: true,
+        energies: false,
+        inputs: false,
+    };
+    let quantities = Layout::new(model, variant, recorded).reactions.into_iter();
+    quantities
+        .map(|q| Reaction {
+            name: q.name,
+            unit: q.unit,
+            meaning: q.meaning,
+        })
+        .collect()
+}

@@ -1,0 +1,60 @@
+//! `dalembert describe`.
+
+mod description;
+mod text;
+
+use super::outcome::{Failure, Outcome, Result};
+use super::{models, print};
+use crate::model::{Model, Variant};
+use description::Description;
+
+#[derive(Debug, clap::Args)]
+pub struct DescribeArguments {
+    /// Name of the model
+    model: String,
+    /// Choose an option, such as `rules=paper`; other choices keep their defaults
+    #[arg(long = "set", value_name = "CHOICE=OPTION")]
+    choices: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn describe(arguments: &DescribeArguments) -> Result {
+    let model = models::find(&arguments.model)?;
+    let variant = choose(model, &arguments.choices)?;
+    let description = Description::new(model, variant);
+    if arguments.json {
+        let json = serde_json::to_string_pretty(&description).map_err(Failure::system)?;
+        print::output(json)?;
+    } else {
+        print::output(text::Text(&description))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The variant with the options asked for, and the defaults of all other choices.
+fn choose(model: &Model, asked: &[String]) -> std::result::Result<&'static Variant, Failure> {
+    let mut wanted: Vec<Option<&str>> = vec![None; model.choices.len()];
+    for setting in asked {
+        let Some((name, option)) = setting.split_once('=') else {
+            return Err(Failure::wrong_input(format!(
+                "`--set {setting}`: expected CHOICE=OPTION, such as `rules=paper`"
+            )));
+        };
+        let names: Vec<&str> = model.choices.iter().map(|c| c.name).collect();
+        let i = models::place("choice", name, &names)?;
+        models::place("option", option, model.choices[i].options)?;
+        wanted[i] = Some(option);
+    }
+    let fits = |variant: &&Variant| {
+        wanted.iter().enumerate().all(|(i, wanted)| match wanted {
+            Some(option) => variant.options[i] == *option,
+            None => variant.defaults[i],
+        })
+    };
+    model.variants.iter().find(fits).ok_or_else(|| {
+        let asked = asked.join(", ");
+        Failure::wrong_input(format!("the model does not offer {asked} together"))
+    })
+}

@@ -1,0 +1,43 @@
+//! Ctrl-C: a simulation ends at its next step and keeps what it has.
+
+use std::ops::ControlFlow;
+use std::process;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::outcome::Failure;
+use crate::record::Progress;
+
+/// Whether a signal asked the process to end.
+static ASKED: AtomicBool = AtomicBool::new(false);
+
+/// What a shell reports for a process that SIGINT ended: 128 + 2.
+const ENDED_BY_SIGNAL: i32 = 130;
+
+/// From here on SIGINT (Ctrl-C), SIGTERM and SIGHUP end simulations early instead of the process.
+/// A second signal ends the process at once.
+pub fn listen() -> Result<(), Failure> {
+    let on_signal = || {
+        if ASKED.swap(true, Ordering::Relaxed) {
+            process::exit(ENDED_BY_SIGNAL);
+        }
+    };
+    ctrlc::set_handler(on_signal)
+        .map_err(|error| Failure::system(format!("cannot listen to Ctrl-C: {error}")))
+}
+
+/// Whether a signal asked the process to end.
+pub fn asked() -> bool {
+    ASKED.load(Ordering::Relaxed)
+}
+
+/// Progress that ends a simulation where a signal asks for it.
+pub struct Interruptible<P>(pub P);
+
+impl<P: Progress> Progress for Interruptible<P> {
+    fn advance(&mut self, t: f64, events: u64) -> ControlFlow<()> {
+        if asked() {
+            return ControlFlow::Break(());
+        }
+        self.0.advance(t, events)
+    }
+}

@@ -1,0 +1,97 @@
+//! Going on with a run that was interrupted or has ended.
+
+use super::failure::Reason;
+use super::instant::Instant;
+use super::ledger::RunningLedger;
+use super::problem::Problem;
+use super::samples::sample_time;
+use super::simulation::Simulation;
+use crate::record::{Progress, Recorder, Run};
+use std::time::Instant as WallClock;
+
+/// Continues a run from its end to the end of the problem, and gives the whole: tables, counters
+/// and ledger go on where they were.
+///
+/// The integrator starts anew at the last state, in the mode the run was in; so the result is that
+/// of an uninterrupted run up to the accuracy, not to the last bit. Two things are not remembered:
+/// the intervals of an accumulation that had begun, which is recognised again from those that
+/// follow, and the digits of t beyond a double.
+///
+/// # Errors
+/// [`Reason::OtherRun`] if the run is not one of this problem.
+pub fn resume(problem: &Problem, run: Run, progress: &mut dyn Progress) -> Result<Run, Reason> {
+    let clock = WallClock::now();
+    check(problem, &run)?;
+    let wall = run.wall;
+    let mut simulation = Simulation::new(problem, progress)?;
+    simulation.restore(run);
+    let outcome = simulation.run();
+    let mut run = simulation.finish(outcome.err(), clock);
+    run.wall += wall;
+    Ok(run)
+}
+
+/// Model, choices and columns are those of the problem, or the run could not have been read.
+fn check(problem: &Problem, run: &Run) -> Result<(), Reason> {
+    let now = problem.model.parameters.iter().zip(&problem.parameters);
+    for ((parameter, &now), (_, then)) in now.zip(&run.subject.parameters) {
+        if now.to_bits() != then.to_bits() {
+            let name = parameter.name;
+            let why = format!("`{name}` is {now} now and was {then}");
+            return Err(Reason::OtherRun { why });
+        }
+    }
+    // The last row may be off the grid: it is where the run ended.
+    let rows = run.trajectory.t.iter().enumerate();
+    let grid = rows.take(run.trajectory.len().saturating_sub(1));
+    let every = problem.record.every;
+    for (i, &t) in grid.filter(|_| every.is_some()) {
+        let now = sample_time(every, i as u64);
+        if t != now {
+            let why = format!(
+                "row {} of the trajectory would be at {now} s and is at {t} s",
+                i + 1
+            );
+            return Err(Reason::OtherRun { why });
+        }
+    }
+    Ok(())
+}
+
+impl Simulation<'_> {
+    /// Goes to the end of a run, and takes over what it has recorded.
+    fn restore(&mut self, run: Run) {
+        let Run {
+            mut trajectory,
+            events,
+            end,
+            solver,
+            energy,
+            ..
+        } = run;
+        self.here.now = Instant::new(end.t);
+        self.here.j = end.j;
+        self.here.mode = end.mode;
+        self.here.q.copy_from_slice(&end.state.q);
+        self.here.v.copy_from_slice(&end.state.v);
+        self.context.discrete.copy_from_slice(&end.state.discrete);
+        self.ledger = RunningLedger::continuing(&energy);
+        self.solver = solver;
+        if let Some((name, _)) = self.problem.end.after {
+            self.counted = events.iter().filter(|e| e.transition == name).count() as u64;
+        }
+        self.events = events;
+        let every = self.problem.record.every;
+        let is_on_grid = |i: usize, t: f64| every.is_none() || t == sample_time(every, i as u64);
+        if let Some(last) = trajectory.len().checked_sub(1)
+            && !is_on_grid(last, trajectory.t[last])
+        {
+            trajectory.truncate(last);
+        }
+        self.next_sample = trajectory.len() as u64;
+        let to_come = every.map_or(0, |every| {
+            Recorder::grid_rows(self.problem.end.time - end.t, every)
+        });
+        self.recorder = Recorder::continuing(trajectory, to_come);
+    }
+}

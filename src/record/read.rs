@@ -1,0 +1,291 @@
+//! Reads back what [`Run::write`] has written. Every number comes back to the bit.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Duration;
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+use super::layout::{Layout, Quantity, Recorded};
+use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
+use super::summary::SUMMARY;
+use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
+use crate::model::{Model, Variant};
+
+/// Why a run cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {reason}", path.display())]
+pub struct ReadError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+/// What is read of `summary.json`; the rest of it follows from the tables.
+#[derive(Deserialize)]
+struct Written {
+    model: String,
+    #[serde(default)]
+    title: String,
+    choices: BTreeMap<String, String>,
+    parameters: BTreeMap<String, f64>,
+    end: End,
+    impacts: BTreeMap<String, IgnoredAny>,
+    energy: Energy,
+    solver: Solver,
+    wall_seconds: f64,
+}
+
+#[derive(Deserialize)]
+struct End {
+    t: f64,
+    j: u64,
+    mode: String,
+    q: BTreeMap<String, f64>,
+    v: BTreeMap<String, f64>,
+    discrete: BTreeMap<String, f64>,
+    reactions: BTreeMap<String, f64>,
+}
+
+#[derive(Deserialize)]
+struct Energy {
+    initial: f64,
+    #[serde(rename = "final")]
+    final_: f64,
+    dissipated: f64,
+    input_work: f64,
+    lost_at_impacts: f64,
+    frame: String,
+}
+
+impl Run {
+    /// Reads the run in a folder, which must be one of this model and variant, with these columns.
+    /// The reason why it stopped, if it did, is not read.
+    pub fn read(
+        folder: &Path,
+        model: &'static Model,
+        variant: &'static Variant,
+        recorded: Recorded,
+    ) -> Result<Run, ReadError> {
+        let layout = Layout::new(model, variant, recorded);
+        let path = folder.join(SUMMARY);
+        let error = |reason| ReadError {
+            path: path.clone(),
+            reason,
+        };
+        let file = File::open(&path).map_err(|e| error(format!("cannot read the run: {e}")))?;
+        let written: Written = serde_json::from_reader(BufReader::new(file))
+            .map_err(|e| error(format!("not the summary of a run: {e}")))?;
+        let subject = subject(&written, model, variant).map_err(error)?;
+        let end = end(&written.end, &layout).map_err(error)?;
+        let Energy {
+            initial,
+            final_,
+            dissipated,
+            input_work,
+            lost_at_impacts,
+            frame,
+        } = written.energy;
+        Ok(Run {
+            subject,
+            trajectory: trajectory(&folder.join(TRAJECTORY), &layout)?,
+            events: events(&folder.join(EVENTS), &layout, variant, &written.impacts)?,
+            layout,
+            end,
+            solver: written.solver,
+            energy: Ledger {
+                initial,
+                final_,
+                dissipated,
+                input_work,
+                lost_at_impacts,
+                frame,
+            },
+            wall: Duration::try_from_secs_f64(written.wall_seconds).unwrap_or_default(),
+            failure: None,
+        })
+    }
+}
+
+/// What the run was of: the model and variant that it must be of.
+fn subject(written: &Written, model: &Model, variant: &Variant) -> Result<Subject, String> {
+    if written.model != model.name {
+        return Err(format!(
+            "a run of the model `{}`, not `{}`",
+            written.model, model.name
+        ));
+    }
+    let mut choices = Vec::new();
+    for (choice, option) in model.choices.iter().zip(variant.options) {
+        match written.choices.get(choice.name) {
+            Some(was) if was == option => choices.push((choice.name.into(), was.clone())),
+            was => {
+                let was = was.map_or("not stated", String::as_str);
+                return Err(format!("`{}` was {was} and is {option} now", choice.name));
+            }
+        }
+    }
+    let names = model.parameters.iter().map(|p| p.name);
+    let parameters = names.clone().zip(values(names, &written.parameters)?);
+    Ok(Subject {
+        model: written.model.clone(),
+        title: written.title.clone(),
+        choices,
+        parameters: parameters
+            .map(|(name, value)| (name.into(), value))
+            .collect(),
+    })
+}
+
+/// The values of these names, in their order.
+fn values<'a>(
+    names: impl Iterator<Item = &'a str>,
+    map: &BTreeMap<String, f64>,
+) -> Result<Vec<f64>, String> {
+    let value = |name| {
+        map.get(name)
+            .copied()
+            .ok_or_else(|| format!("`{name}` is missing"))
+    };
+    names.map(value).collect()
+}
+
+fn end(end: &End, layout: &Layout) -> Result<Place, String> {
+    let of = |quantities: &[Quantity], map| values(quantities.iter().map(|q| q.name.as_str()), map);
+    Ok(Place {
+        t: end.t,
+        j: end.j,
+        mode: mode(layout, &end.mode)?,
+        state: Snapshot {
+            q: of(&layout.coordinates, &end.q)?,
+            v: of(&layout.velocities, &end.v)?,
+            discrete: of(&layout.discretes, &end.discrete)?,
+            reactions: of(&layout.reactions, &end.reactions)?,
+        },
+    })
+}
+
+fn mode(layout: &Layout, name: &str) -> Result<usize, String> {
+    let found = layout.modes.iter().position(|mode| mode == name);
+    found.ok_or_else(|| format!("the model has no mode `{name}`"))
+}
+
+fn trajectory(path: &Path, layout: &Layout) -> Result<Trajectory, ReadError> {
+    let columns = layout.columns();
+    let header = trajectory_header(&columns);
+    let mut trajectory = Trajectory {
+        columns: columns.clone(),
+        ..Trajectory::default()
+    };
+    rows(path, &header, |row| {
+        trajectory.t.push(row.number()?);
+        for _ in &columns {
+            trajectory.values.push(row.number()?);
+        }
+        let mode = mode(layout, row.text()?)?;
+        trajectory
+            .mode
+            .push(u16::try_from(mode).expect("as when it was recorded"));
+        Ok(())
+    })?;
+    Ok(trajectory)
+}
+
+/// `impacts` holds the transitions that are impacts.
+fn events(
+    path: &Path,
+    layout: &Layout,
+    variant: &'static Variant,
+    impacts: &BTreeMap<String, IgnoredAny>,
+) -> Result<Vec<Event>, ReadError> {
+    let mut events = Vec::new();
+    rows(path, &events_header(layout), |row| {
+        events.push(Event {
+            t: row.number()?,
+            j: row.parse()?,
+            transition: transition(variant, row.text()?)?,
+            from: mode(layout, row.text()?)?,
+            to: mode(layout, row.text()?)?,
+            before: snapshot(layout, row)?,
+            after: snapshot(layout, row)?,
+            energy: Some(EnergyJump {
+                lost: row.number()?,
+                ground_work: row.number()?,
+            }),
+        });
+        Ok(())
+    })?;
+    for event in &mut events {
+        event.energy = event
+            .energy
+            .filter(|_| impacts.contains_key(event.transition));
+    }
+    Ok(events)
+}
+
+/// The transition of that name; `rest` is the one that every accumulation ends with.
+fn transition(variant: &'static Variant, name: &str) -> Result<&'static str, String> {
+    let guards = variant.modes.iter().flat_map(|mode| mode.guards);
+    let names = guards.flat_map(|guard| guard.transitions).map(|t| t.name);
+    let found = names.chain(["rest"]).find(|known| *known == name);
+    found.ok_or_else(|| format!("the model has no transition `{name}`"))
+}
+
+fn snapshot(layout: &Layout, row: &mut Row) -> Result<Snapshot, String> {
+    let mut take = |quantities: &[Quantity]| -> Result<Vec<f64>, String> {
+        quantities.iter().map(|_| row.number()).collect()
+    };
+    Ok(Snapshot {
+        q: take(&layout.coordinates)?,
+        v: take(&layout.velocities)?,
+        reactions: take(&layout.reactions)?,
+        discrete: take(&layout.discretes)?,
+    })
+}
+
+/// A row of a table, read field by field.
+struct Row<'a>(csv::StringRecordIter<'a>);
+
+impl<'a> Row<'a> {
+    fn text(&mut self) -> Result<&'a str, String> {
+        self.0.next().ok_or_else(|| "a field is missing".to_owned())
+    }
+    fn parse<T: FromStr>(&mut self) -> Result<T, String> {
+        let text = self.text()?;
+        text.parse()
+            .map_err(|_| format!("`{text}` is not a number"))
+    }
+    fn number(&mut self) -> Result<f64, String> {
+        self.parse()
+    }
+}
+
+/// Reads the rows of a table with the given header.
+fn rows<T: AsRef<str> + PartialEq>(
+    path: &Path,
+    header: &[T],
+    mut read: impl FnMut(&mut Row) -> Result<(), String>,
+) -> Result<(), ReadError> {
+    let error = |reason: String| ReadError {
+        path: path.to_owned(),
+        reason,
+    };
+    let mut reader = csv::Reader::from_path(path).map_err(|e| error(e.to_string()))?;
+    let found = reader.headers().map_err(|e| error(e.to_string()))?;
+    if !found.iter().eq(header.iter().map(AsRef::as_ref)) {
+        let why = "other columns than the scene records now; leave `record` as it was";
+        return Err(error(why.to_owned()));
+    }
+    for (i, record) in reader.records().enumerate() {
+        // The header is the first line.
+        let at_line = |reason| error(format!("line {}: {reason}", i + 2));
+        let record = record.map_err(|e| at_line(e.to_string()))?;
+        read(&mut Row(record.iter())).map_err(at_line)?;
+    }
+    Ok(())
+}
