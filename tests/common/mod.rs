@@ -63,3 +63,14 @@ pub fn at_end(run: &Run, name: &str) -> f64 {
         .or_else(|| find(&layout.discretes, &state.discrete))
         .unwrap_or_else(|| panic!("no `{name}`"))
 }
+
+/// Index of a mode of the problem's variant.
+pub fn mode(problem: &Problem, name: &str) -> usize {
+    let mut modes = problem.variant.modes.iter();
+    modes.position(|m| m.name == name).expect("the mode exists")
+}
+
+/// Names of the transitions of a run, in their order.
+pub fn transitions(run: &Run) -> Vec<&'static str> {
+    run.events.iter().map(|e| e.transition).collect()
+}

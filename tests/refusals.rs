@@ -1,0 +1,121 @@
+//! What cannot be simulated stops with a reason that names it, and keeps the motion so far.
+
+mod common;
+use common::*;
+use dalembert::hybrid::{Problem, Reason, simulate};
+use dalembert::record::{Failure, Run, Silent};
+
+/// Runs a problem that stops early.
+fn stopped(problem: &Problem) -> (Run, Failure) {
+    let run = simulate(problem, &mut Silent).expect("the problem can be started");
+    let failure = run.failure.clone().expect("the run stops early");
+    (run, failure)
+}
+
+#[test]
+fn guards_that_contradict_each_other_are_named() {
+    let mut problem = problem("contradiction", &[]);
+    problem.set_initial("x", 3.0).unwrap();
+    problem.set_initial("x.rate", -1.0).unwrap();
+    problem.initial.mode = Some(mode(&problem, "right"));
+    problem.end.time = 10.0;
+    let (run, failure) = stopped(&problem);
+    for name in ["to_left (right → left)", "to_right (left → right)"] {
+        assert!(failure.reason.contains(name), "{}", failure.reason);
+    }
+    // The place of the failure, and the motion up to it.
+    assert!((failure.at.t - 2.0).abs() < 1e-12);
+    assert!((failure.at.state.q[0] - 1.0).abs() < 1e-12);
+    assert_eq!(failure.at.state.v, [-1.0]);
+    assert_eq!(failure.at.j, run.events.len() as u64);
+    assert!(run.trajectory.t.last().unwrap() >= &2.0);
+}
+
+#[test]
+fn chattering_without_a_limit_names_its_guards() {
+    let mut problem = problem("chatter", &[]);
+    problem.set_initial("x", 1.0).unwrap();
+    problem.end.time = 10.0;
+    let (run, failure) = stopped(&problem);
+    assert!(failure.reason.contains("chattering"), "{}", failure.reason);
+    assert!(failure.reason.contains("down, up"), "{}", failure.reason);
+    // x = 1 − t² and the surface x + x' = 0 meet at t = √2 − 1.
+    assert!((failure.at.t - (2.0f64.sqrt() - 1.0)).abs() < 1e-8);
+    assert!(run.events.len() < 100);
+}
+
+#[test]
+fn a_block_that_would_leave_the_ground_stops() {
+    let mut problem = problem("rocking_block", &[]);
+    problem.set_initial("theta", 0.05).unwrap();
+    problem.set_initial("theta.rate", 5.0).unwrap();
+    let (_, failure) = stopped(&problem);
+    assert!(failure.reason.contains("leave the ground"), "{}", failure.reason);
+    assert_eq!(failure.at.t, 0.0);
+}
+
+#[test]
+fn a_tank_without_weight_on_the_ground_stops() {
+    let mut problem = problem("walking_tank", &[]);
+    problem.set_initial("theta", 0.02).unwrap();
+    problem.set_initial("theta.rate", 20.0).unwrap();
+    let (_, failure) = stopped(&problem);
+    assert!(failure.reason.contains("normal force"), "{}", failure.reason);
+}
+
+#[test]
+fn kinetic_energies_that_are_no_norm_are_refused() {
+    let indefinite = [("m_y", -1.0)];
+    let singular = [("m_xy", 1.0 - 1e-16)];
+    let indefinite_off_diagonal = [("m_xy", 1.5)];
+    for parameters in [indefinite, singular, indefinite_off_diagonal] {
+        let (_, failure) = stopped(&problem("coupled_masses", &parameters));
+        assert!(failure.reason.contains("not positive definite"), "{}", failure.reason);
+        assert!(failure.reason.contains("`y`"), "{}", failure.reason);
+    }
+    // A double pendulum with a massless tip, a tank whose shell has a negative inertia.
+    let (_, failure) = stopped(&problem("double_pendulum", &[("m_2", 0.0)]));
+    assert!(failure.reason.contains("`theta_2`"), "{}", failure.reason);
+    let mut tank = problem("walking_tank", &[("I_S", 0.0), ("I_E", 0.0)]);
+    tank.set_initial("theta", 0.01).unwrap();
+    let (_, failure) = stopped(&tank);
+    assert!(failure.reason.contains("not positive definite"), "{}", failure.reason);
+}
+
+#[test]
+fn nearly_singular_mass_matrices_are_solved_as_well_as_they_can_be() {
+    let reference = reference("12_mass_matrix");
+    let items = reference["reference"]["items"].as_array().unwrap();
+    let item = items.iter().find(|i| i["name"] == "12c_nearly_singular").unwrap();
+    for row in &item["rows"].as_array().unwrap()[..3] {
+        let (eps, condition) = (number(&row["eps"]), number(&row["cond"]));
+        for (f_y, key) in [(-1.0, "acc_for_f=(1,-1)"), (1.0, "acc_for_f=(1,1)")] {
+            let mut problem = problem("coupled_masses", &[("m_xy", 1.0 - eps), ("f_y", f_y)]);
+            problem.end.time = 2.0;
+            let run = run(&problem);
+            let exact = numbers(&row[key]);
+            for i in 0..2 {
+                // x = a t²/2 at t = 2.
+                let error = run.end.state.q[i] / (2.0 * exact[i]) - 1.0;
+                assert!(error.abs() < condition * f64::EPSILON, "ε = {eps:e}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn states_that_fit_no_mode_and_scenes_that_freeze_too_much_are_refused() {
+    let refused = |problem: &Problem| simulate(problem, &mut Silent).expect_err("it is refused");
+    let mut below = problem("bouncing_ball", &[]);
+    below.set_initial("h", -0.1).unwrap();
+    assert!(matches!(refused(&below), Reason::Initial { .. }));
+    let mut lifted = problem("rocking_block", &[]);
+    lifted.set_initial("y", 0.1).unwrap();
+    assert!(matches!(refused(&lifted), Reason::Initial { .. }));
+    let mut frozen = problem("double_pendulum", &[]);
+    frozen.freeze = vec![0];
+    let Reason::NoModeLeft { frozen } = refused(&frozen) else {
+        panic!("another reason")
+    };
+    assert_eq!(frozen, "theta_1");
+}
