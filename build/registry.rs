@@ -7,10 +7,20 @@ use std::path::Path;
 use super::error::Error;
 use super::generate::Generated;
 
-/// Writes the file. It holds a module per model, with the generated fragment inside, and
+/// Most free coordinates that a mode may have: the cases of `ModeKernels` in `src/kernel.rs`.
+const MOST_FREE: usize = 6;
+
+/// Writes the file, and tells the crate which numbers of free coordinates its modes have. It holds a module per model, with the generated fragment inside, and
 /// `MODELS`, in the order of the names. The fragments are copied, not included by path: the cache
 /// they come from may be deleted.
 pub fn write(models: &[Generated], path: &Path) -> Result<(), Error> {
+    for free in 0..=MOST_FREE {
+        println!("cargo::rustc-check-cfg=cfg(free_{free})");
+        let kernel = format!("ModeKernels::F{free}(");
+        if models.iter().any(|m| m.fragment.contains(&kernel)) {
+            println!("cargo::rustc-cfg=free_{free}");
+        }
+    }
     fs::write(path, text(models)).map_err(Error::io("write", path))
 }
 

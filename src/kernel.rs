@@ -474,35 +474,56 @@ pub struct TransitionKernel {
     condition: Option<(Raw, usize, usize)>,
 }
 
-macro_rules! mode_kernels {
-    ($($variant:ident = $free:literal),*) => {
-        /// The functions of a mode, typed by its number of free coordinates.
-        #[derive(Debug)]
-        pub enum ModeKernels {
-            $(
-                #[doc = concat!("A mode with ", $free, " free coordinates.")]
-                $variant(ModeKernel<$free>),
-            )*
-        }
-    };
+/// The functions of a mode, typed by its number of free coordinates. The numbers that some model
+/// has are told by the build script (`free_2` and so on): the event engine is compiled for each.
+#[derive(Debug)]
+pub enum ModeKernels {
+    /// A mode with 0 free coordinates.
+    #[cfg(free_0)]
+    F0(ModeKernel<0>),
+    /// A mode with 1 free coordinates.
+    #[cfg(free_1)]
+    F1(ModeKernel<1>),
+    /// A mode with 2 free coordinates.
+    #[cfg(free_2)]
+    F2(ModeKernel<2>),
+    /// A mode with 3 free coordinates.
+    #[cfg(free_3)]
+    F3(ModeKernel<3>),
+    /// A mode with 4 free coordinates.
+    #[cfg(free_4)]
+    F4(ModeKernel<4>),
+    /// A mode with 5 free coordinates.
+    #[cfg(free_5)]
+    F5(ModeKernel<5>),
+    /// A mode with 6 free coordinates.
+    #[cfg(free_6)]
+    F6(ModeKernel<6>),
 }
-mode_kernels!(F0 = 0, F1 = 1, F2 = 2, F3 = 3, F4 = 4, F5 = 5, F6 = 6);
 
 /// Runs an expression with the typed kernel of a mode: `with_kernel!(kernels, k => expression)`.
 #[macro_export]
 macro_rules! with_kernel {
     ($kernels:expr, $kernel:ident => $body:expr) => {
         match $kernels {
+            #[cfg(free_0)]
             $crate::kernel::ModeKernels::F0($kernel) => $body,
+            #[cfg(free_1)]
             $crate::kernel::ModeKernels::F1($kernel) => $body,
+            #[cfg(free_2)]
             $crate::kernel::ModeKernels::F2($kernel) => $body,
+            #[cfg(free_3)]
             $crate::kernel::ModeKernels::F3($kernel) => $body,
+            #[cfg(free_4)]
             $crate::kernel::ModeKernels::F4($kernel) => $body,
+            #[cfg(free_5)]
             $crate::kernel::ModeKernels::F5($kernel) => $body,
+            #[cfg(free_6)]
             $crate::kernel::ModeKernels::F6($kernel) => $body,
         }
     };
 }
+pub use crate::with_kernel;
 
 /// Most free coordinates that a mode may have.
 pub const MOST_FREE: usize = 6;

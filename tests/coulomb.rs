@@ -35,7 +35,10 @@ fn motion_without_stops_stays_on_its_orbit() {
     assert_eq!(cases.len(), 7);
     for case in cases {
         let (beta, f) = (number(&case["beta"]), number(&case["f_over_a"]));
-        let (x0, phase) = (number(&case["x0_over_a"]), number(&case["phase_phi_at_max"]));
+        let (x0, phase) = (
+            number(&case["x0_over_a"]),
+            number(&case["phase_phi_at_max"]),
+        );
         let mut problem = oscillator(f, Some((beta, phase)), x0, -1.0);
         problem.initial.mode = Some(mode(&problem, "slides"));
         problem.end.time = 5.25 * TAU / beta;
@@ -48,7 +51,10 @@ fn motion_without_stops_stays_on_its_orbit() {
             let phase = beta * event.t - PI * half_cycles;
             assert!(phase.abs() < 1e-11, "β = {beta}: phase off by {phase:e}");
             let error = event.after.q[0] - exact;
-            assert!(error.abs() < 1e-11, "β = {beta}: amplitude off by {error:e}");
+            assert!(
+                error.abs() < 1e-11,
+                "β = {beta}: amplitude off by {error:e}"
+            );
         }
     }
 }
@@ -56,7 +62,10 @@ fn motion_without_stops_stays_on_its_orbit() {
 /// Name, phase and place of the events of one cycle on an orbit with two stops a cycle.
 fn stops(case: &serde_json::Value) -> [(&'static str, f64, f64); 4] {
     let orbit = &case["algebraic"];
-    let (x0, release) = (number(&orbit["x0_over_a"]), number(&orbit["release_phase_from_+x0"]));
+    let (x0, release) = (
+        number(&orbit["x0_over_a"]),
+        number(&orbit["release_phase_from_+x0"]),
+    );
     let entry = number(&orbit["stick_entry_phase_at_-x0"]);
     [
         ("slip", release, x0),
@@ -74,7 +83,11 @@ fn check_stops(events: &[Event], beta: f64, start: f64, cycle: &[(&str, f64, f64
             .filter(|c| c.0 == event.transition)
             .min_by(|a, b| error(a).total_cmp(&error(b)))
             .unwrap_or_else(|| panic!("β = {beta}: an event {}", event.transition));
-        assert!(error(nearest) < 1e-11, "β = {beta}: phase off by {:e}", error(nearest));
+        assert!(
+            error(nearest) < 1e-11,
+            "β = {beta}: phase off by {:e}",
+            error(nearest)
+        );
         let place = event.after.q[0] - nearest.2;
         assert!(place.abs() < 1e-11, "β = {beta}: place off by {place:e}");
     }
@@ -122,12 +135,22 @@ fn free_decay_stops_where_friction_holds_it() {
         problem.initial.mode = Some(mode(&problem, "slides"));
         problem.end.time = 30.0;
         let run = run(&problem);
-        let (times, places) = (numbers(&case["turn_times"]), numbers(&case["turning_points"]));
+        let (times, places) = (
+            numbers(&case["turn_times"]),
+            numbers(&case["turning_points"]),
+        );
         assert_eq!(run.events.len(), times.len() - 1);
         for (event, (t, x)) in run.events.iter().zip(times.iter().zip(&places).skip(1)) {
-            assert!((event.t / t - 1.0).abs() < 1e-13, "turn at {:.17}, not {t:.17}", event.t);
+            assert!(
+                (event.t / t - 1.0).abs() < 1e-13,
+                "turn at {:.17}, not {t:.17}",
+                event.t
+            );
             let place = event.after.q[0];
-            assert!((place - x).abs() < 1e-13, "turns at {place:.17}, not {x:.17}");
+            assert!(
+                (place - x).abs() < 1e-13,
+                "turns at {place:.17}, not {x:.17}"
+            );
         }
         assert_eq!(run.events.last().unwrap().transition, "stick");
         assert!((at_end(&run, "x") - number(&case["final_position"])).abs() < 1e-13);
@@ -137,7 +160,10 @@ fn free_decay_stops_where_friction_holds_it() {
 #[test]
 fn a_newmark_block_slips_both_ways() {
     let reference = reference("04_newmark");
-    for case in reference["reference"]["sine_two_way_steady"].as_array().unwrap() {
+    for case in reference["reference"]["sine_two_way_steady"]
+        .as_array()
+        .unwrap()
+    {
         let eta = number(&case["eta"]);
         let mut problem = oscillator(eta, Some((1.0, -FRAC_PI_2)), 0.0, 1.0);
         problem.set_parameter("k", 0.0).unwrap();
@@ -157,7 +183,11 @@ fn a_newmark_block_slips_both_ways() {
                 let exact = number(&case[if starts { "t_start" } else { "t_stop" }]);
                 let half_cycles = ((pair[1].t - exact) / PI).round();
                 let error = pair[1].t - exact - half_cycles * PI;
-                assert!(error.abs() < 1e-12, "η = {eta}: {} off by {error:e}", pair[1].transition);
+                assert!(
+                    error.abs() < 1e-12,
+                    "η = {eta}: {} off by {error:e}",
+                    pair[1].transition
+                );
             }
             let slip = (pair[1].after.q[0] - pair[0].after.q[0]).abs();
             if slip_slip || pair[1].transition == "stick" {

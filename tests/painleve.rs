@@ -9,7 +9,12 @@ use dalembert::record::Silent;
 /// A rod at `theta` whose lower end slips in the direction `slip`.
 fn rod(mu: f64, theta: f64, rate: f64, slip: f64) -> Problem {
     let mut problem = problem("painleve_rod", &[("mu", mu)]);
-    let initial = [("theta", theta), ("theta.rate", rate), ("x.rate", slip), ("slip", slip.signum())];
+    let initial = [
+        ("theta", theta),
+        ("theta.rate", rate),
+        ("x.rate", slip),
+        ("slip", slip.signum()),
+    ];
     for (name, value) in initial {
         problem.set_initial(name, value).unwrap();
     }
@@ -34,10 +39,18 @@ fn the_rod_slides_or_leaves_the_ground_as_it_must() {
     for case in cases {
         let theta = number(&case["theta_deg"]).to_radians();
         let slip = case["slip_sign"].as_f64().unwrap();
-        let refusal = refusal(&rod(number(&case["mu"]), theta, number(&case["thetadot"]), slip));
+        let refusal = refusal(&rod(
+            number(&case["mu"]),
+            theta,
+            number(&case["thetadot"]),
+            slip,
+        ));
         match case["class"].as_str().unwrap() {
             "unique contact (slide)" => assert_eq!(refusal, None, "{case}"),
-            _ => assert!(refusal.unwrap().contains("the rod leaves the ground"), "{case}"),
+            _ => assert!(
+                refusal.unwrap().contains("the rod leaves the ground"),
+                "{case}"
+            ),
         }
     }
 }
@@ -48,7 +61,10 @@ fn an_undetermined_motion_is_refused() {
     let windows = &reference["reference"]["singular_windows(tan^2 th - 3 mu tan th + 4 = 0)"];
     for window in windows.as_array().unwrap() {
         let mu = number(&window["mu"]);
-        let (low, high) = (number(&window["theta_low_deg"]), number(&window["theta_high_deg"]));
+        let (low, high) = (
+            number(&window["theta_low_deg"]),
+            number(&window["theta_high_deg"]),
+        );
         for (degrees, determined) in [
             (low - 1e-9, true),
             (low + 1e-9, false),
@@ -60,7 +76,11 @@ fn an_undetermined_motion_is_refused() {
             // Near the window the friction is nearly infinite and stops the rod at once.
             problem.end.time = 1e-12;
             let refusal = refusal(&problem);
-            assert_eq!(refusal.is_none(), determined, "μ = {mu}, {degrees}°: {refusal:?}");
+            assert_eq!(
+                refusal.is_none(),
+                determined,
+                "μ = {mu}, {degrees}°: {refusal:?}"
+            );
             if let Some(reason) = refusal {
                 assert!(reason.contains("Painlevé"), "{reason}");
             }
@@ -71,16 +91,28 @@ fn an_undetermined_motion_is_refused() {
 #[test]
 fn slip_ends_when_the_reference_says() {
     let reference = reference("06_painleve_rod");
-    for case in reference["reference"]["slide_until_contact_velocity_zero"].as_array().unwrap() {
+    for case in reference["reference"]["slide_until_contact_velocity_zero"]
+        .as_array()
+        .unwrap()
+    {
         let mu = number(&case["mu"]);
-        let mut problem = rod(mu, std::f64::consts::FRAC_PI_3, 0.0, number(&case["v_contact0"]));
+        let mut problem = rod(
+            mu,
+            std::f64::consts::FRAC_PI_3,
+            0.0,
+            number(&case["v_contact0"]),
+        );
         problem.end.time = 0.03;
         let run = run(&problem);
         let stick = &run.events[0];
         assert_eq!(stick.transition, "stick");
         let exact = number(&case["t_slip_end"]);
         let error = (stick.t / exact - 1.0).abs();
-        assert!(error < 1e-11, "μ = {mu}: slip ends at {:.17}, not {exact:.17}", stick.t);
+        assert!(
+            error < 1e-11,
+            "μ = {mu}: slip ends at {:.17}, not {exact:.17}",
+            stick.t
+        );
         let theta = number(&case["theta_at_slip_end"]);
         assert!((stick.before.q[2] - theta).abs() < 1e-11);
     }

@@ -23,7 +23,9 @@ fn swing(case: &Value, end: f64) -> Run {
 /// amplification).
 fn check(name: &str) {
     let reference = reference("09_pendulums");
-    let cases = reference["reference"]["double_pendulum"].as_array().unwrap();
+    let cases = reference["reference"]["double_pendulum"]
+        .as_array()
+        .unwrap();
     let case = cases.iter().find(|c| c["name"] == name).unwrap();
     for row in case["rows"].as_array().unwrap() {
         let t = number(&row["t"]);
@@ -35,7 +37,11 @@ fn check(name: &str) {
             .zip(&exact)
             .map(|(x, exact)| (x - exact).abs())
             .fold(0.0, f64::max);
-        println!("{name} t={t} steps {} error {error:e} amp {amplification} ratio {:.2}", run.solver.steps, error / (1e-14 * amplification));
+        println!(
+            "{name} t={t} steps {} error {error:e} amp {amplification} ratio {:.2}",
+            run.solver.steps,
+            error / (1e-14 * amplification)
+        );
         let drift = run.energy.imbalance() / run.energy.initial;
         println!("   drift {drift:e}");
     }

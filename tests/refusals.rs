@@ -50,7 +50,11 @@ fn a_block_that_would_leave_the_ground_stops() {
     problem.set_initial("theta", 0.05).unwrap();
     problem.set_initial("theta.rate", 5.0).unwrap();
     let (_, failure) = stopped(&problem);
-    assert!(failure.reason.contains("leave the ground"), "{}", failure.reason);
+    assert!(
+        failure.reason.contains("leave the ground"),
+        "{}",
+        failure.reason
+    );
     assert_eq!(failure.at.t, 0.0);
 }
 
@@ -60,7 +64,11 @@ fn a_tank_without_weight_on_the_ground_stops() {
     problem.set_initial("theta", 0.02).unwrap();
     problem.set_initial("theta.rate", 20.0).unwrap();
     let (_, failure) = stopped(&problem);
-    assert!(failure.reason.contains("normal force"), "{}", failure.reason);
+    assert!(
+        failure.reason.contains("normal force"),
+        "{}",
+        failure.reason
+    );
 }
 
 #[test]
@@ -70,7 +78,11 @@ fn kinetic_energies_that_are_no_norm_are_refused() {
     let indefinite_off_diagonal = [("m_xy", 1.5)];
     for parameters in [indefinite, singular, indefinite_off_diagonal] {
         let (_, failure) = stopped(&problem("coupled_masses", &parameters));
-        assert!(failure.reason.contains("not positive definite"), "{}", failure.reason);
+        assert!(
+            failure.reason.contains("not positive definite"),
+            "{}",
+            failure.reason
+        );
         assert!(failure.reason.contains("`y`"), "{}", failure.reason);
     }
     // A double pendulum with a massless tip, a tank whose shell has a negative inertia.
@@ -79,14 +91,21 @@ fn kinetic_energies_that_are_no_norm_are_refused() {
     let mut tank = problem("walking_tank", &[("I_S", 0.0), ("I_E", 0.0)]);
     tank.set_initial("theta", 0.01).unwrap();
     let (_, failure) = stopped(&tank);
-    assert!(failure.reason.contains("not positive definite"), "{}", failure.reason);
+    assert!(
+        failure.reason.contains("not positive definite"),
+        "{}",
+        failure.reason
+    );
 }
 
 #[test]
 fn nearly_singular_mass_matrices_are_solved_as_well_as_they_can_be() {
     let reference = reference("12_mass_matrix");
     let items = reference["reference"]["items"].as_array().unwrap();
-    let item = items.iter().find(|i| i["name"] == "12c_nearly_singular").unwrap();
+    let item = items
+        .iter()
+        .find(|i| i["name"] == "12c_nearly_singular")
+        .unwrap();
     for row in &item["rows"].as_array().unwrap()[..3] {
         let (eps, condition) = (number(&row["eps"]), number(&row["cond"]));
         for (f_y, key) in [(-1.0, "acc_for_f=(1,-1)"), (1.0, "acc_for_f=(1,1)")] {
@@ -97,7 +116,10 @@ fn nearly_singular_mass_matrices_are_solved_as_well_as_they_can_be() {
             for i in 0..2 {
                 // x = a t²/2 at t = 2.
                 let error = run.end.state.q[i] / (2.0 * exact[i]) - 1.0;
-                assert!(error.abs() < condition * f64::EPSILON, "ε = {eps:e}: {error:e}");
+                assert!(
+                    error.abs() < condition * f64::EPSILON,
+                    "ε = {eps:e}: {error:e}"
+                );
             }
         }
     }

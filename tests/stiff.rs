@@ -18,6 +18,13 @@ fn a_block_with_a_stiff_oscillator_stops() {
         problem.end.time = 1.0;
         let run = run(&problem);
         let stop = run.events.iter().find(|e| e.transition == "stick").unwrap();
-        println!("k {k:e} c {c:e} steps {} rejected {} t {:e} x {:e} r {:e}", run.solver.steps, run.solver.rejected, stop.t - number(&row["t_stop"]), stop.after.q[0] - number(&row["x_block_stop"]), stop.after.q[1] / number(&row["r_at_stop"]) - 1.0);
+        println!(
+            "k {k:e} c {c:e} steps {} rejected {} t {:e} x {:e} r {:e}",
+            run.solver.steps,
+            run.solver.rejected,
+            stop.t - number(&row["t_stop"]),
+            stop.after.q[0] - number(&row["x_block_stop"]),
+            stop.after.q[1] / number(&row["r_at_stop"]) - 1.0
+        );
     }
 }

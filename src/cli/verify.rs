@@ -70,6 +70,12 @@ pub fn verify(arguments: &VerifyArguments) -> Result {
     if let Some(html) = &arguments.html {
         command.arg("--html").arg(absolute(html)?);
     }
+    // The verification simulates what each slip does to the model's scenes.
+    if !arguments.seeded
+        && let Ok(own) = env::current_exe()
+    {
+        command.arg("--program").arg(own);
+    }
     let status = command.status().map_err(|error| {
         let program = program.display();
         Failure::system(format!("{program} does not run: {error}; {}", advice()))

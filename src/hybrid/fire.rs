@@ -4,9 +4,9 @@ use super::failure::Reason;
 use super::guards::Conditions;
 use super::plan::is_impact;
 use super::simulation::{Here, Simulation};
+use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::record::{EnergyJump, Event};
-use crate::with_kernel;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 

@@ -1,9 +1,9 @@
 //! Samples of the trajectory.
 
 use super::simulation::Simulation;
+use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::record::{Group, Layout};
-use crate::with_kernel;
 
 /// What a row needs besides the state.
 pub(super) struct Row<'a> {

@@ -7,12 +7,12 @@ use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
 use super::problem::Problem;
+use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::record::{
     Event, Failure, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
 };
-use crate::with_kernel;
 use nalgebra::SVector;
 use std::time::Instant as WallClock;
 
