@@ -81,7 +81,14 @@ pub(super) fn cut<const F: usize>(
         let hit = earliest(start, to, watches, found, |i, _, to, watch| {
             let guard = &mode.guards[watched[i].guard];
             let window = (from[i].min(to), to);
-            guards::search(equations, conditions, &dense, (guard, watched[i]), window, watch)
+            guards::search(
+                equations,
+                conditions,
+                &dense,
+                (guard, watched[i]),
+                window,
+                watch,
+            )
         });
         let Some(first) = hit
             .time

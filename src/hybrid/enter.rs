@@ -69,10 +69,19 @@ impl Simulation<'_> {
                 v: &v,
                 a: &a,
             };
-            let own = watched_value(kernel, &mut self.context, &mut conditions, guard, watched, at);
+            let own = watched_value(
+                kernel,
+                &mut self.context,
+                &mut conditions,
+                guard,
+                watched,
+                at,
+            );
             let mut watch = Watch::of(own);
             let violated = match watched.condition {
-                None if conditional => value(kernel, &mut self.context, &mut conditions, guard, at) < 0.0,
+                None if conditional => {
+                    value(kernel, &mut self.context, &mut conditions, guard, at) < 0.0
+                }
                 None => watch == Watch::Violated,
                 // The guard's own entry has decided about its conditions, too.
                 Some(_) => false,
@@ -94,7 +103,10 @@ impl Simulation<'_> {
                 watch = Watch::Violated;
             }
             if (violated || at_once) && violation.is_none() {
-                violation = Some(Violation { guard: watched.guard, at_once });
+                violation = Some(Violation {
+                    guard: watched.guard,
+                    at_once,
+                });
             }
             self.signs.watches.push(watch);
         }

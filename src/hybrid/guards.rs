@@ -52,16 +52,12 @@ impl Conditions<'_> {
         let n = context.held.len();
         let target = &self.variant.modes[transition.target];
         context.held.swap_with_slice(&mut self.next[..n]);
-        context
-            .discrete
-            .swap_with_slice(&mut self.next[2 * n..]);
+        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
         let condition = with_kernel!(&target.kernels, k => {
             conditions_in(k, context, transition, target.free, &self.next[n..2 * n], reduce)
         });
         context.held.swap_with_slice(&mut self.next[..n]);
-        context
-            .discrete
-            .swap_with_slice(&mut self.next[2 * n..]);
+        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
         condition
     }
 
@@ -94,7 +90,11 @@ fn conditions_in<const F: usize>(
     let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
         return f64::NAN;
     };
-    let at = Free { q: &q, v: &v, a: &a };
+    let at = Free {
+        q: &q,
+        v: &v,
+        a: &a,
+    };
     let mut room = [0.0; MOST_CONDITIONS];
     reduce(kernel.conditions(context, &transition.kernel, at, &mut room))
 }
@@ -192,7 +192,14 @@ pub(super) fn search<const F: usize>(
                     v: &v,
                     a: &a,
                 };
-                watched_value(equations.kernel, equations.context, conditions, guard, watched, at)
+                watched_value(
+                    equations.kernel,
+                    equations.context,
+                    conditions,
+                    guard,
+                    watched,
+                    at,
+                )
             };
             roots::search(evaluate, window.0, window.1, watch, 0.0)
         }

@@ -42,7 +42,11 @@ impl Plan {
             return Err(Reason::NoModeLeft { frozen });
         }
         let watched = (modes.iter())
-            .map(|m| (0..m.guards.len()).flat_map(|g| watched(g, &m.guards[g], &allowed)).collect())
+            .map(|m| {
+                (0..m.guards.len())
+                    .flat_map(|g| watched(g, &m.guards[g], &allowed))
+                    .collect()
+            })
             .collect();
         Ok(Plan { allowed, watched })
     }
@@ -59,11 +63,17 @@ fn watched(guard: usize, model: &Guard, allowed: &[bool]) -> Vec<Watched> {
     if transitions().next().is_none() {
         return Vec::new();
     }
-    let mut all = vec![Watched { guard, condition: None }];
+    let mut all = vec![Watched {
+        guard,
+        condition: None,
+    }];
     if transitions().all(|(_, t)| t.conditional) {
         all.extend(transitions().flat_map(|(t, transition)| {
             let components = 0..transition.kernel.conditions();
-            components.map(move |c| Watched { guard, condition: Some((t, c)) })
+            components.map(move |c| Watched {
+                guard,
+                condition: Some((t, c)),
+            })
         }));
     }
     all

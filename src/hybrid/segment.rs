@@ -65,12 +65,26 @@ impl Simulation<'_> {
             let resolution = problem.signals.resolution(start.plus(from).seconds());
             radau.step(&mut equations, until, resolution)?;
 
-            let cut = cut(radau, &mut equations, &mut conditions, mode, watched, &mut self.signs)?;
+            let cut = cut(
+                radau,
+                &mut equations,
+                &mut conditions,
+                mode,
+                watched,
+                &mut self.signs,
+            )?;
             let event = match cut {
                 Cut::Nothing => None,
-                Cut::Event { guard, state, beyond } => Some((guard, state, beyond)),
+                Cut::Event {
+                    guard,
+                    state,
+                    beyond,
+                } => Some((guard, state, beyond)),
                 Cut::Violated { guard } => {
-                    return Ok(Stop::Violated(Violation { guard, at_once: true }));
+                    return Ok(Stop::Violated(Violation {
+                        guard,
+                        at_once: true,
+                    }));
                 }
             };
 
