@@ -15,8 +15,11 @@ use nalgebra::SVector;
 /// A component that the step resolves uses the interpolant of its acceleration through the start and
 /// all stages; q, v and a join those at both ends (S = 3: the quintic Hermite polynomial). A stiff
 /// component that the step does not resolve uses the collocation polynomial (see
-/// [`super::Radau::step`]). Uniform global order, S ≥ 3: q and v min(2S − 1, S + 2) and the error
-/// of the interpolant itself is of order S + 3 in q and S + 2 in v; for stiff components S + 1.
+/// [`super::Radau::step`]).
+///
+/// Order of the error at any time of a run (S ≥ 3): q min(2S − 1, S + 3), v min(2S − 1, S + 2), a
+/// S + 1; on the collocation polynomial one less, where that is below 2S − 1. For S = 3 that is 5, 5
+/// and 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dense<const S: usize, const F: usize> {
     pub(super) t0: f64,

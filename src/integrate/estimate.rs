@@ -2,7 +2,7 @@
 //! do not count (Hairer & Wanner 1996, IV.8, eqs. 8.17–8.20), with q̇ = v eliminated.
 
 use super::newton::{Linearization, Newton, Stages};
-use super::radau::State;
+use super::state::State;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Weights, nth_root, power};
 use nalgebra::SVector;

@@ -1,8 +1,8 @@
 //! Length of the first step after a start or an event.
 
 use super::newton::{Linearization, Newton};
-use super::radau::State;
 use super::report::Counters;
+use super::state::State;
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Weights};

@@ -12,8 +12,11 @@
 //! used, so that results have the same bits on every processor.
 //!
 //! Files: `tableau` (coefficients), `linear` (LU), `newton` (stage equations), `estimate` (local
-//! error), `controller` (step sizes), `first_step`, `dense`, `radau` (the step), `tolerances`,
+//! error), `controller` (step sizes), `first_step`, `dense`, `radau` (the step), `state`, `tolerances`,
 //! `system` (the interface to the equations), `report` (counters and errors).
+
+// Formulas over several indexed arrays read as in the literature when all of them are indexed.
+#![allow(clippy::needless_range_loop)]
 
 mod coefficients;
 mod controller;
@@ -24,14 +27,16 @@ mod linear;
 mod newton;
 mod radau;
 mod report;
+mod state;
 mod system;
 mod tableau;
 mod tolerances;
 
 pub use dense::Dense;
 pub use linear::{Singular, solve};
-pub use radau::{Radau, Stage, State};
+pub use radau::Radau;
 pub use report::{Counters, StepError, StepReport};
+pub use state::{Stage, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};
 pub use tolerances::{ToleranceError, Tolerances};

@@ -5,8 +5,8 @@
 //! IV.8, with q̇ = v eliminated).
 
 use super::linear::{Lu, Singular};
-use super::radau::State;
 use super::report::Counters;
+use super::state::State;
 use super::system::System;
 use super::tableau::{Coefficients, MAX_PAIRS, RadauIia, Tableau};
 use super::tolerances::Weights;

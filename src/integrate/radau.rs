@@ -6,6 +6,7 @@ use super::estimate::Estimate;
 use super::first_step;
 use super::newton::{Newton, Outcome, Stages};
 use super::report::{Counters, StepError, StepReport};
+use super::state::{Lost, Stage, State, add};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances, Weights};
@@ -13,79 +14,6 @@ use nalgebra::SVector;
 
 /// A Jacobian with which Newton's iteration contracted at least this fast serves the next step too.
 const REUSE: f64 = 1e-3;
-
-/// A point of the motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State<const F: usize> {
-    /// Time, s.
-    pub t: f64,
-    /// Coordinates.
-    pub q: SVector<f64, F>,
-    /// Velocities.
-    pub v: SVector<f64, F>,
-    /// Accelerations.
-    pub a: SVector<f64, F>,
-}
-
-impl<const F: usize> State<F> {
-    /// Name of the part that is not finite, if any.
-    fn not_finite(&self) -> Option<&'static str> {
-        let finite = |x: &SVector<f64, F>| x.iter().all(|x| x.is_finite());
-        match self {
-            state if !state.t.is_finite() => Some("time"),
-            state if !finite(&state.q) => Some("a coordinate"),
-            state if !finite(&state.v) => Some("a velocity"),
-            state if !finite(&state.a) => Some("an acceleration"),
-            _ => None,
-        }
-    }
-}
-
-/// A stage of the last step: a point at which the motion satisfies the equations.
-#[derive(Debug, Clone, Copy)]
-pub struct Stage<'a, const F: usize> {
-    /// Time, s.
-    pub t: f64,
-    /// Weight h b_i of this stage in the integral over the step, s: Σ weight · f(stage) is ∫ f dt to
-    /// the order of the method.
-    pub weight: f64,
-    /// Coordinates.
-    pub q: &'a SVector<f64, F>,
-    /// Velocities.
-    pub v: &'a SVector<f64, F>,
-    /// Accelerations.
-    pub a: &'a SVector<f64, F>,
-}
-
-/// Sums that are carried on to the next step because they were lost in rounding t, q and v.
-#[derive(Debug, Clone, Copy)]
-struct Lost<const F: usize> {
-    t: f64,
-    q: SVector<f64, F>,
-    v: SVector<f64, F>,
-}
-
-impl<const F: usize> Lost<F> {
-    fn nothing() -> Self {
-        Lost {
-            t: 0.0,
-            q: SVector::zeros(),
-            v: SVector::zeros(),
-        }
-    }
-}
-
-/// The sum x + (change + lost), rounded, and what rounding lost (Knuth's two-sum).
-#[inline(always)]
-fn add(x: f64, change: f64, lost: f64) -> (f64, f64) {
-    let change = change + lost;
-    let sum = x + change;
-    let virtual_change = sum - x;
-    (
-        sum,
-        (x - (sum - virtual_change)) + (change - virtual_change),
-    )
-}
 
 /// A successful attempt.
 struct Trial {

@@ -1,0 +1,76 @@
+//! Points of the motion, and what is lost when they are rounded.
+
+use nalgebra::SVector;
+
+/// A point of the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<const F: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// Coordinates.
+    pub q: SVector<f64, F>,
+    /// Velocities.
+    pub v: SVector<f64, F>,
+    /// Accelerations.
+    pub a: SVector<f64, F>,
+}
+
+impl<const F: usize> State<F> {
+    /// Name of the part that is not finite, if any.
+    pub(super) fn not_finite(&self) -> Option<&'static str> {
+        let finite = |x: &SVector<f64, F>| x.iter().all(|x| x.is_finite());
+        match self {
+            state if !state.t.is_finite() => Some("time"),
+            state if !finite(&state.q) => Some("a coordinate"),
+            state if !finite(&state.v) => Some("a velocity"),
+            state if !finite(&state.a) => Some("an acceleration"),
+            _ => None,
+        }
+    }
+}
+
+/// A stage of the last step: a point at which the motion satisfies the equations.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage<'a, const F: usize> {
+    /// Time, s.
+    pub t: f64,
+    /// Weight h b_i of this stage in the integral over the step, s: Σ weight · f(stage) is ∫ f dt to
+    /// the order of the method.
+    pub weight: f64,
+    /// Coordinates.
+    pub q: &'a SVector<f64, F>,
+    /// Velocities.
+    pub v: &'a SVector<f64, F>,
+    /// Accelerations.
+    pub a: &'a SVector<f64, F>,
+}
+
+/// Sums that are carried on to the next step because they were lost in rounding t, q and v.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lost<const F: usize> {
+    pub t: f64,
+    pub q: SVector<f64, F>,
+    pub v: SVector<f64, F>,
+}
+
+impl<const F: usize> Lost<F> {
+    pub fn nothing() -> Self {
+        Lost {
+            t: 0.0,
+            q: SVector::zeros(),
+            v: SVector::zeros(),
+        }
+    }
+}
+
+/// The sum x + (change + lost), rounded, and what rounding lost (Knuth's two-sum).
+#[inline(always)]
+pub(super) fn add(x: f64, change: f64, lost: f64) -> (f64, f64) {
+    let change = change + lost;
+    let sum = x + change;
+    let virtual_change = sum - x;
+    (
+        sum,
+        (x - (sum - virtual_change)) + (change - virtual_change),
+    )
+}
