@@ -281,6 +281,14 @@ fn short_flights_after_a_zero_of_any_order() {
 }
 
 #[test]
+fn a_guard_that_leaves_downwards_and_soon_turns() {
+    // Negative in (0, 1/64), positive up to 3/64.
+    let g = |t: f64| -t.powi(3) * (t - 1.0 / 64.0) * (t - 3.0 / 64.0);
+    let found = search(g, 0.0, 1.0, Watch::Dormant, 0.0);
+    assert_eq!(crossing(found, g).kind, Kind::LeavesNegative);
+}
+
+#[test]
 fn curved_guards_leave_zero_of_any_order() {
     for order in 1..=4_i32 {
         for sign in [1.0, -1.0] {

@@ -65,27 +65,26 @@ pub(super) fn close(f: &mut impl FnMut(f64) -> f64, left: Point, right: Point) -
 
 /// Shrinks a window at whose left end a dormant guard is zero and at whose right end it is negative
 /// to neighbouring doubles, the right one negative. Halves by count, so a short flight near the
-/// start is looked for at every magnitude; if one is met, the fall that ends it is closed in on,
-/// and the last item is `true`.
+/// start is looked for at every magnitude; if one is met, a fall after it is closed in on, and
+/// the second item is `true`.
 pub(super) fn departure(
     f: &mut impl FnMut(f64) -> f64,
     start: f64,
     right: Point,
-) -> (Point, Point, bool) {
+) -> ((Point, Point), bool) {
     let (mut l, mut r) = ((start, 0.0), right);
     while steps(l.0, r.0) > 1 {
         let x = middle(l.0, r.0);
         let value = f(x);
         if value > 0.0 {
-            let (l, r) = close(f, (x, value), r);
-            return (l, r, true);
+            return (close(f, (x, value), r), true);
         } else if value < 0.0 {
             r = (x, value);
         } else {
             l = (x, value);
         }
     }
-    (l, r, false)
+    ((l, r), false)
 }
 
 /// Lowest value near a minimum that is known but for its last digits: goes downhill along the

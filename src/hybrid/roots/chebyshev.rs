@@ -6,6 +6,8 @@ use super::extrema::{Count, Expansion};
 pub(super) const DEGREE: usize = 16;
 /// Nodes at that degree. Those of degree 8 and 4 are every second and fourth.
 pub(super) const NODES: usize = DEGREE + 1;
+/// The nodes and one more place, between the middle ones, that tests the highest degree.
+pub(super) const SAMPLES: usize = NODES + 1;
 
 /// sin²(jπ/32), j = 0 to 8: the nodes' places in a window of length 1 are these and their mirror
 /// images.
@@ -21,10 +23,12 @@ const HALF: [f64; 9] = [
     0.5,
 ];
 
-/// Place of a node of the highest degree in a window of length 1, exact relative to its distance
-/// from the left end.
+/// Place of a sample in a window of length 1, exact relative to its distance from the left end.
 pub(super) const fn place(node: usize) -> f64 {
-    if node <= 8 {
+    if node == NODES {
+        // sin²(15π/64)
+        0.4509914298352197
+    } else if node <= 8 {
         HALF[node]
     } else {
         1.0 - HALF[DEGREE - node]
@@ -59,7 +63,7 @@ pub(super) struct Chebyshev {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interpolant {
     pub(super) expansion: Chebyshev,
-    pub(super) degree: usize,
+    degree: usize,
     /// Sum of the coefficients' magnitudes from 1 to half the degree, and from there on.
     halves: [f64; 2],
     /// Bound of the rounding errors of interpolation and evaluation.
@@ -70,7 +74,7 @@ pub(super) struct Interpolant {
 
 impl Interpolant {
     /// Through `values` at every `DEGREE / degree`-th node; `degree` is 4, 8 or 16.
-    pub(super) fn through(values: &[f64; NODES], degree: usize) -> Self {
+    pub(super) fn through(values: &[f64; SAMPLES], degree: usize) -> Self {
         let stride = DEGREE / degree;
         let mut coefficients = [0.0; NODES];
         for (k, coefficient) in coefficients[..=degree].iter_mut().enumerate() {
@@ -85,7 +89,7 @@ impl Interpolant {
             let weight = if k == 0 || k == degree { 1.0 } else { 2.0 };
             *coefficient = sign * weight * sum / degree as f64;
         }
-        let magnitude = values
+        let magnitude = values[..NODES]
             .iter()
             .step_by(stride)
             .fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -120,11 +124,11 @@ impl Interpolant {
     /// power of their distance, at the end itself by the interpolant through the others, which is
     /// the condition that the last coefficient is zero. Returns the quotients as well.
     pub(super) fn deflated(
-        values: &[f64; NODES],
-        distances: &[f64; NODES],
+        values: &[f64; SAMPLES],
+        distances: &[f64; SAMPLES],
         order: usize,
         degree: usize,
-    ) -> (Self, [f64; NODES]) {
+    ) -> (Self, [f64; SAMPLES]) {
         let mut quotients = *values;
         for (quotient, distance) in quotients.iter_mut().zip(distances).skip(1) {
             for _ in 0..order {
@@ -132,8 +136,7 @@ impl Interpolant {
             }
         }
         quotients[0] = 0.0;
-        for (j, &quotient) in quotients
-            .clone()
+        for (j, &quotient) in quotients.clone()[..NODES]
             .iter()
             .step_by(DEGREE / degree)
             .enumerate()
@@ -153,11 +156,14 @@ impl Interpolant {
         (interpolant, quotients)
     }
 
-    /// The node of the next higher degree that shows the error best: the error is close to a
-    /// multiple of sin θ sin nθ, which is largest next to the middle of the window. `None` at the
-    /// highest degree.
-    pub(super) fn test_node(degree: usize) -> Option<usize> {
-        (degree < DEGREE).then_some(DEGREE / 2 - DEGREE / (2 * degree))
+    /// The sample that tests a degree: half-way in angle between its nodes next to the middle of
+    /// the window. The error is close to a multiple of sin θ sin nθ, which is largest there.
+    pub(super) const fn test_sample(degree: usize) -> usize {
+        if degree == DEGREE {
+            NODES
+        } else {
+            DEGREE / 2 - DEGREE / (2 * degree)
+        }
     }
 
     /// Whether the function is represented as well as doubles, and a rounding error of `noise` in
@@ -171,10 +177,11 @@ impl Interpolant {
     ///
     /// If the sums of the halves shrink by a ratio r from each to the next, what follows sums to
     /// r/(1 − r) of the upper half; it acts twice, as truncated and as aliased. That is no more
-    /// than the upper half for r ≤ 1/3.
+    /// than the upper half for r ≤ 1/3. The two coefficients of each half at degree 4 may do so by
+    /// chance: there the upper half must vanish.
     pub(super) fn decays(&self) -> bool {
         let [lower, upper] = self.halves;
-        3.0 * upper <= lower || upper <= self.rounding
+        self.degree > 4 && 3.0 * upper <= lower || upper <= self.rounding
     }
 
     /// What the interpolant may differ from the function: the upper half of the coefficients if

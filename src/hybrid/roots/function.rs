@@ -1,15 +1,15 @@
 //! A guard that is any smooth function.
 
 use super::bracket::{Point, departure};
-use super::chebyshev::{DEGREE, Interpolant, NODES, place};
-use super::doubles::{middle, moved};
+use super::chebyshev::{DEGREE, Interpolant, NODES, SAMPLES, place};
+use super::doubles::moved;
 use super::extrema::{Expansion, Places, extrema};
 use super::walk::{Pieces, walk};
 use super::{Kind, Search, Watch};
 
 /// Evaluations after which a search stops halving windows. One singular place (a jump, a kink at
 /// zero) is halved down to neighbouring doubles in 53 halvings, with two windows each.
-const EVALUATIONS: usize = f64::MANTISSA_DIGITS as usize * 2 * NODES;
+const EVALUATIONS: usize = f64::MANTISSA_DIGITS as usize * 2 * SAMPLES;
 
 /// Half of a double's digits. Over this fraction of a window a function that the window's size
 /// resolves hardly changes, and rounding errors have become independent.
@@ -21,7 +21,7 @@ const HALF_DIGITS: u32 = f64::MANTISSA_DIGITS / 2;
 /// `guard`, in its unit, used while it is dormant and to see when it is resolved (0: unknown). A
 /// dormant guard is exactly 0 at `from`, or has not left zero since it was.
 ///
-/// A guard far from zero takes 6 evaluations, one that falls about 15; see the
+/// A guard far from zero takes 6 evaluations, one that falls about 20; see the
 /// [module's page](super) for what is guaranteed.
 pub fn search(
     guard: impl FnMut(f64) -> f64,
@@ -51,8 +51,8 @@ struct Guard<F> {
 struct Samples {
     from: f64,
     to: f64,
-    nodes: [f64; NODES],
-    values: [f64; NODES],
+    nodes: [f64; SAMPLES],
+    values: [f64; SAMPLES],
 }
 
 impl Samples {
@@ -63,7 +63,7 @@ impl Samples {
             from,
             to,
             nodes,
-            values: [f64::NAN; NODES],
+            values: [f64::NAN; SAMPLES],
         }
     }
 
@@ -73,7 +73,7 @@ impl Samples {
     }
 
     fn magnitude(&self, degree: usize) -> f64 {
-        self.values
+        self.values[..NODES]
             .iter()
             .step_by(DEGREE / degree)
             .fold(0.0, |m: f64, v| m.max(v.abs()))
@@ -90,11 +90,11 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         (self.function)(t)
     }
 
-    /// Fills in the values at the nodes of a degree and at its test node.
+    /// Fills in the values at the nodes of a degree and at the sample that tests it.
     fn sample(&mut self, samples: &mut Samples, degree: usize) {
         for node in (0..NODES)
             .step_by(DEGREE / degree)
-            .chain(Interpolant::test_node(degree))
+            .chain([Interpolant::test_sample(degree)])
         {
             if samples.values[node].is_nan() {
                 samples.values[node] = self.value(samples.nodes[node]);
@@ -186,19 +186,19 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
             let start = quotients[0];
             if start.abs() > interpolant.error() {
                 let near = samples.nodes[DEGREE / degree];
-                let right = if start < 0.0 {
-                    self.negative_near(from, near)
-                } else {
-                    None
-                };
-                if let Some(right) = right {
-                    let (l, r, flew) = departure(&mut |t| self.value(t), from, right);
-                    let kind = if flew {
-                        Kind::Fall
-                    } else {
-                        Kind::LeavesNegative
-                    };
-                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
+                if start < 0.0 {
+                    let right = self.negative_near(from, near)?;
+                    let ((l, r), flew) = departure(&mut |t| self.value(t), from, right);
+                    if flew {
+                        // The interpolant did not see a flight; at the scale of its end one does.
+                        return Some(self.window(from, r.0, Watch::Dormant));
+                    }
+                    return Some(Search::found(
+                        l.0,
+                        r.0,
+                        Kind::LeavesNegative,
+                        Watch::Violated,
+                    ));
                 }
                 let ends = (start, quotients[DEGREE]);
                 return Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed);
@@ -210,17 +210,15 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         None
     }
 
-    /// A place in (`from`, `right`] where the guard is negative, nearer to `from` by halving the
-    /// number of doubles.
+    /// A place in (`from`, `right`] where the guard is negative, nearer to `from` by halving, until
+    /// the value underflows.
     fn negative_near(&mut self, from: f64, mut right: f64) -> Option<Point> {
-        while right > from {
-            let value = self.value(right);
-            if value < 0.0 {
-                return Some((right, value));
-            }
-            right = middle(from, right);
+        let mut value = self.value(right);
+        while right > from && value > 0.0 {
+            right = from + (right - from) / 2.0;
+            value = self.value(right);
         }
-        None
+        (value < 0.0).then_some((right, value))
     }
 
     /// Whether the values in the window are no more than rounding errors, and the size of these.
@@ -285,11 +283,11 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
     }
 }
 
-/// Whether the value at the test node agrees with the interpolant.
-fn stands_test(interpolant: &Interpolant, values: &[f64; NODES], degree: usize) -> bool {
-    Interpolant::test_node(degree).is_none_or(|node| {
-        (interpolant.expansion.value(place(node)) - values[node]).abs() <= interpolant.error()
-    })
+/// Whether the sample that tests a degree agrees with the interpolant.
+fn stands_test(interpolant: &Interpolant, values: &[f64; SAMPLES], degree: usize) -> bool {
+    let sample = Interpolant::test_sample(degree);
+    let difference = interpolant.expansion.value(place(sample)) - values[sample];
+    difference.abs() <= interpolant.error()
 }
 
 /// The guard cut at the extrema of its interpolant, divided by the `order`-th power of the fraction
@@ -336,9 +334,7 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
         if watch == Watch::Armed && below > error || watch == Watch::Violated && above < -error {
             return Some(Search::quiet(watch));
         }
-        // Five values may decay by chance; those of degree 8 then do not.
-        let decays = self.interpolant.degree > 4 && self.interpolant.decays();
-        if !decays && !self.resolved {
+        if !self.interpolant.decays() && !self.resolved {
             return None;
         }
         self.extrema = extrema(&self.interpolant.expansion);

@@ -95,18 +95,14 @@ impl<const N: usize> Polynomial<N> {
         if coefficients[0] > 0.0 {
             return quotient.search(0.0, to, Watch::Armed, 0.0);
         }
-        let mut right = to;
-        while quotient.value(right) >= 0.0 {
-            right /= 2.0;
-        }
+        // Cauchy: the quotient has no root nearer to 0 than this.
+        let largest = coefficients[1..]
+            .iter()
+            .fold(0.0, |m: f64, c| m.max(c.abs()));
+        let right = to.min(-coefficients[0] / (largest - coefficients[0]));
         let right = (right, self.value(right));
-        let (l, r, flew) = departure(&mut |s| self.value(s), 0.0, right);
-        let kind = if flew {
-            Kind::Fall
-        } else {
-            Kind::LeavesNegative
-        };
-        Search::found(l.0, r.0, kind, Watch::Violated)
+        let (l, r) = departure(&mut |s| self.value(s), 0.0, right).0;
+        Search::found(l.0, r.0, Kind::LeavesNegative, Watch::Violated)
     }
 
     /// Bound of the rounding error of [`Self::value`]: 2n·u·Σ|cₖ|sᵏ (Higham, Accuracy and Stability

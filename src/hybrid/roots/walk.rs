@@ -73,7 +73,7 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
                 if left.1 == 0.0 && right.1 > 0.0 {
                     let outside = above(left.0);
                     let value = pieces.own(outside);
-                    return Some(touch(left.0, outside, value));
+                    return Some(touch(left.0, outside, value, noise));
                 }
                 if doubtful && right.1 >= 0.0 && inner {
                     let high = pieces.node(index + 1);
@@ -92,9 +92,16 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
     Some(Search::quiet(watch))
 }
 
-/// A touch of zero at `inside`. The guard stays dormant on the zeros that follow it.
-fn touch(inside: f64, outside: f64, value: f64) -> Search {
-    // A zero is a minimum of a piece that rises from it: a negative neighbour is a fall.
-    let kind = if value < 0.0 { Kind::Fall } else { Kind::Touch };
-    Search::found(inside, outside, kind, Watch::of(value))
+/// A touch of zero at `inside`. Among the zeros and the rounding errors that follow it the guard is
+/// dormant, so that they are not events of their own.
+fn touch(inside: f64, outside: f64, value: f64, noise: f64) -> Search {
+    if value < 0.0 {
+        return Search::found(inside, outside, Kind::Fall, Watch::Violated);
+    }
+    let watch = if value <= noise {
+        Watch::Dormant
+    } else {
+        Watch::Armed
+    };
+    Search::found(inside, outside, Kind::Touch, watch)
 }
