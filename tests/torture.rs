@@ -16,18 +16,14 @@ fn item(name: &str) -> Value {
 
 /// An oscillator without friction or spring, between stops at ±`stop`.
 fn slot(stop: f64, e: f64, x: f64, speed: f64) -> Problem {
-    let none = [
-        ("k", 0.0),
-        ("static_friction", 0.0),
-        ("kinetic_friction", 0.0),
-    ];
+    let none = [("k", 0.0), ("static_friction", 0.0), ("kinetic_friction", 0.0)];
     let mut problem = problem("coulomb_oscillator", &none);
     for (name, value) in [("stop", stop), ("e", e)] {
         problem.set_parameter(name, value).unwrap();
     }
     problem.set_initial("x", x).unwrap();
     problem.set_initial("x.rate", speed).unwrap();
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     problem
 }
 
@@ -41,6 +37,7 @@ fn grazing_impacts_are_found() {
         let item = item(name);
         let mut problem = slot(1.0, 0.5, 0.0, 1.0 + excess);
         problem.set_parameter("k", 1.0).unwrap();
+        tighten(&mut problem, 1e-2);
         problem.end.time = 2.0;
         let run = run(&problem);
         let impact = &run.events[0];
@@ -48,14 +45,8 @@ fn grazing_impacts_are_found() {
         // A relative error u of the state moves the impact by u ÷ speed: √(2 excess).
         let allowed = 1e-15 / (2.0 * excess).sqrt();
         let error = impact.t - number(&item["t_impact"]);
-        println!(
-            "{name}: {error:e} {allowed:e} {:e}",
-            impact.before.v[0] / number(&item["v_minus"]) - 1.0
-        );
-        assert!(
-            error.abs() < allowed,
-            "{name}: {error:e}, allowed {allowed:e}"
-        );
+        println!("{name}: {error:e} {allowed:e} {:e}", impact.before.v[0] / number(&item["v_minus"]) - 1.0);
+        assert!(error.abs() < allowed, "{name}: {error:e}, allowed {allowed:e}");
         let speed = number(&item["v_minus"]);
         assert!(relative(impact.before.v[0], speed) < allowed / speed);
     }
@@ -103,7 +94,7 @@ fn ball_at_the_floor(velocity: f64) -> Run {
     let mut problem = problem("bouncing_ball", &[("e", 0.5)]);
     problem.set_initial("h.rate", velocity).unwrap();
     problem.initial.mode = Some(mode(&problem, "flies"));
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     problem.end.time = 0.5;
     run(&problem)
 }
@@ -132,17 +123,14 @@ fn short_flights_are_flown() {
         let item = item(name);
         let mut problem = problem("bouncing_ball", &[("e", e)]);
         problem.set_initial("h", 1.0).unwrap();
-        problem.set_tolerance(1e-13);
+        problem.set_tolerance(TIGHTEST);
         let run = run(&problem);
         let impacts = times(&run, "impact");
         assert!(relative(impacts[0], number(&item["t1"])) < 1e-14, "{name}");
         assert!(relative(impacts[1], number(&item["t2"])) < 1e-14, "{name}");
         let limit = times(&run, "rest");
         assert_eq!(limit.len(), 1, "{name}: {:?}", transitions(&run));
-        assert!(
-            relative(limit[0], number(&item["accumulation"])) < 1e-14,
-            "{name}"
-        );
+        assert!(relative(limit[0], number(&item["accumulation"])) < 1e-14, "{name}");
     }
 }
 
@@ -161,12 +149,7 @@ fn a_thousand_impacts_in_a_narrow_slot() {
 
 /// A function that rises from zero at `slope` until `end`.
 fn ramp(slope: f64, end: f64) -> Function {
-    let table = Table::new(
-        &[0.0, end],
-        &[0.0, slope * end],
-        Interpolation::Linear,
-        Outside::Hold,
-    );
+    let table = Table::new(&[0.0, end], &[0.0, slope * end], Interpolation::Linear, Outside::Hold);
     Function::from(table.unwrap())
 }
 
@@ -179,7 +162,7 @@ fn a_long_stick_neither_creeps_nor_misses_its_release() {
     problem.initial.mode = Some(mode(&problem, "sticks"));
     let release = number(&item["t_release"]);
     problem.end.time = release + 1000.0;
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     let run = run(&problem);
     assert_eq!(transitions(&run), ["slip"]);
     assert!(relative(run.events[0].t, release) < 1e-14);
@@ -195,7 +178,7 @@ fn stick_and_slip_on_a_belt_repeat() {
     let mut problem = problem("belt_oscillator", &parameters);
     problem.initial.mode = Some(mode(&problem, "sticks"));
     problem.end.time = 60.0;
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     let run = run(&problem);
     let (slips, sticks) = (times(&run, "slip"), times(&run, "stick"));
     assert!(slips.len() >= 5);
@@ -204,10 +187,8 @@ fn stick_and_slip_on_a_belt_repeat() {
     let (slip, period) = (number(&item["slip_duration"]), number(&item["period"]));
     for k in 0..4 {
         assert!((sticks[k] - slips[k] - slip).abs() < 1e-12, "slip {k}");
-        assert!(
-            (slips[k + 1] - slips[k] - period).abs() < 1e-12,
-            "period {k}"
-        );
+        println!("{k} slip {:e} period {:e}", sticks[k] - slips[k] - slip, slips[k + 1] - slips[k] - period);
+        assert!((slips[k + 1] - slips[k] - period).abs() < 1e-12, "period {k}");
     }
     let restick = run.events.iter().find(|e| e.transition == "stick").unwrap();
     assert!((restick.after.q[0] - number(&item["x_restick"])).abs() < 1e-12);
@@ -236,7 +217,6 @@ fn a_stop_at_the_instant_of_a_touch_is_no_impact() {
         problem.set_parameter(friction, 2.0).unwrap();
     }
     let run = run(&problem);
-    println!("{:#?}", run.events);
     assert_eq!(run.layout.modes[run.end.mode], "sticks");
     assert!((at_end(&run, "x") - number(&item["x"])).abs() < 1e-14);
     assert!((run.events[0].t - number(&item["t"])).abs() < 1e-8);
@@ -249,13 +229,12 @@ fn a_guard_that_is_zero_throughout_does_not_fire_without_end() {
     let mut problem = problem("circle", &[("omega", 0.1)]);
     problem.set_initial("x", 1.0).unwrap();
     problem.set_initial("y.rate", -0.1).unwrap();
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     problem.end.time = 10.0;
     let run = run(&problem);
     for name in ["x", "y"] {
         assert!((at_end(&run, name) - number(&item[name])).abs() < 1e-13);
     }
-    println!("{} events", run.events.len());
     assert!(run.events.len() < 10, "{} events", run.events.len());
 }
 
@@ -263,25 +242,13 @@ fn a_guard_that_is_zero_throughout_does_not_fire_without_end() {
 fn simultaneous_contacts_are_recorded_at_one_instant() {
     for e in [1.0, 0.5] {
         let mut problem = problem("three_balls", &[("e", e)]);
-        for (name, value) in [
-            ("left", -1.0),
-            ("right", 1.0),
-            ("left.rate", 1.0),
-            ("right.rate", -1.0),
-        ] {
+        for (name, value) in [("left", -1.0), ("right", 1.0), ("left.rate", 1.0), ("right.rate", -1.0)] {
             problem.set_initial(name, value).unwrap();
         }
         problem.end.time = 2.0;
-        problem.set_tolerance(1e-13);
+        problem.set_tolerance(TIGHTEST);
         let run = run(&problem);
-        println!(
-            "e = {e}: {:?} {:?}",
-            run.events
-                .iter()
-                .map(|e| (e.t, e.transition))
-                .collect::<Vec<_>>(),
-            run.end.state
-        );
+        println!("e = {e}: {:?} {:?}", run.events.iter().map(|e| (e.t, e.transition)).collect::<Vec<_>>(), run.end.state);
         assert!(run.events.iter().any(|e| e.transition == "left_contact"));
         assert!(run.events.iter().any(|e| e.transition == "right_contact"));
         assert!(run.events.iter().all(|e| relative(e.t, 1.0) < 1e-14));
