@@ -32,7 +32,12 @@ struct Point<const F: usize> {
 }
 
 impl<const F: usize> Point<F> {
-    fn random(model: &'static Model, mode: &Mode, kernel: &ModeKernel<F>, random: &mut Random) -> Self {
+    fn random(
+        model: &'static Model,
+        mode: &Mode,
+        kernel: &ModeKernel<F>,
+        random: &mut Random,
+    ) -> Self {
         let parameters: Vec<f64> = (model.parameters.iter())
             .map(|p| (p.default * (1.0 + 0.01 * random.next())).clamp(p.minimum, p.maximum))
             .collect();
@@ -46,7 +51,11 @@ impl<const F: usize> Point<F> {
         }
         context.signals.fill_with(|| random.next());
         context.signal_rates.fill_with(|| random.next());
-        for input in model.inputs.iter().filter(|i| i.kind == InputKind::Acceleration) {
+        for input in model
+            .inputs
+            .iter()
+            .filter(|i| i.kind == InputKind::Acceleration)
+        {
             // Velocity and displacement of the ground belong to its acceleration.
             for k in 0..2 {
                 context.signal_rates[input.signal + k + 1] = context.signals[input.signal + k];
@@ -106,7 +115,10 @@ fn derivative<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>, h: f64) -> SVe
 /// Compares relative to `size`, the largest magnitude involved.
 fn close<const N: usize>(what: &str, found: &SVector<f64, N>, exact: &SVector<f64, N>, size: f64) {
     let error = (found - exact).amax();
-    assert!(error <= 1e-9 * size, "{what}: {found} instead of {exact} (size {size:e})");
+    assert!(
+        error <= 1e-9 * size,
+        "{what}: {found} instead of {exact} (size {size:e})"
+    );
 }
 
 fn residual<const F: usize>(kernel: &ModeKernel<F>, point: &Point<F>) -> SVector<f64, F> {
@@ -120,19 +132,33 @@ fn energy<const F: usize>(kernel: &ModeKernel<F>, point: &Point<F>) -> [f64; 2] 
 }
 
 /// Equations and their derivatives.
-fn check_equations<const F: usize>(what: &str, kernel: &ModeKernel<F>, point: &Point<F>, scale: &SVector<f64, F>) {
+fn check_equations<const F: usize>(
+    what: &str,
+    kernel: &ModeKernel<F>,
+    point: &Point<F>,
+    scale: &SVector<f64, F>,
+) {
     let r = residual(kernel, point);
     let system = kernel.system(&point.context, &point.q, &point.v);
     let sizes = kernel.magnitude(&point.context, point.at());
     let rounding = sizes.amax() * f64::EPSILON;
     let linear = system.mass * point.a + system.load;
-    assert!((linear - r).amax() <= rounding, "{what}: r = {r}, M a + b = {linear}");
-    assert!(r.iter().zip(&sizes).all(|(r, size)| r.abs() <= *size), "{what}: magnitude");
+    assert!(
+        (linear - r).amax() <= rounding,
+        "{what}: r = {r}, M a + b = {linear}"
+    );
+    assert!(
+        r.iter().zip(&sizes).all(|(r, size)| r.abs() <= *size),
+        "{what}: magnitude"
+    );
 
     let mut jacobians = [SMatrix::zeros(); 3];
     kernel.jacobian(&point.context, point.at(), &mut jacobians);
     let [m, c, k] = jacobians;
-    assert!((m - system.mass).amax() <= m.amax() * 1e-14, "{what}: mass matrix");
+    assert!(
+        (m - system.mass).amax() <= m.amax() * 1e-14,
+        "{what}: mass matrix"
+    );
     for j in 0..F {
         let moved = |h: f64, of: fn(&mut Point<F>) -> &mut SVector<f64, F>| {
             let mut moved = point.later(0.0);
@@ -142,13 +168,28 @@ fn check_equations<const F: usize>(what: &str, kernel: &ModeKernel<F>, point: &P
         let step = 1e-2 * scale[j];
         let size = sizes.amax() / step * 1e-2;
         let by_v = derivative(|h| moved(h, |p| &mut p.v), step);
-        close(&format!("{what}: ∂r/∂v[{j}]"), &c.column(j).into(), &by_v, size);
+        close(
+            &format!("{what}: ∂r/∂v[{j}]"),
+            &c.column(j).into(),
+            &by_v,
+            size,
+        );
         let by_q = derivative(|h| moved(h, |p| &mut p.q), step);
-        close(&format!("{what}: ∂r/∂q[{j}]"), &k.column(j).into(), &by_q, size.max(k.amax()));
+        close(
+            &format!("{what}: ∂r/∂q[{j}]"),
+            &k.column(j).into(),
+            &by_q,
+            size.max(k.amax()),
+        );
     }
     let along = derivative(|t| residual(kernel, &point.later(t)), 1e-3);
     let load = kernel.jerk_load(&point.context, point.at()) + system.mass * point.jerk;
-    close(&format!("{what}: jerk"), &load, &along, sizes.amax().max(along.amax()));
+    close(
+        &format!("{what}: jerk"),
+        &load,
+        &along,
+        sizes.amax().max(along.amax()),
+    );
 }
 
 fn check_guards<const F: usize>(what: &str, kernel: &ModeKernel<F>, mode: &Mode, point: &Point<F>) {
@@ -160,12 +201,23 @@ fn check_guards<const F: usize>(what: &str, kernel: &ModeKernel<F>, mode: &Mode,
         let rate = kernel.guard_rate(&point.context, &guard.kernel, point.at(), &point.jerk);
         let exact = derivative(value, 1e-3);
         let size = value(0.0).amax().max(exact.amax());
-        close(&format!("{what}: rate of {}", guard.name), &SVector::from([rate]), &exact, size);
+        close(
+            &format!("{what}: rate of {}", guard.name),
+            &SVector::from([rate]),
+            &exact,
+            size,
+        );
     }
 }
 
 /// ∂T/∂v, and the power of all forces on the motion that obeys the equations.
-fn check_energies<const F: usize>(what: &str, kernel: &ModeKernel<F>, model: &Model, mode: &Mode, point: &Point<F>) {
+fn check_energies<const F: usize>(
+    what: &str,
+    kernel: &ModeKernel<F>,
+    model: &Model,
+    mode: &Mode,
+    point: &Point<F>,
+) {
     let mut momenta = vec![0.0; model.coordinates.len() + model.motions.len()];
     kernel.momenta(&point.context, point.at(), &mut momenta);
     for (j, &free) in mode.free.iter().enumerate() {
@@ -176,7 +228,12 @@ fn check_energies<const F: usize>(what: &str, kernel: &ModeKernel<F>, model: &Mo
         };
         let exact = derivative(kinetic, 1.0);
         let size = kinetic(1.0).amax();
-        close(&format!("{what}: momentum"), &SVector::from([momenta[free]]), &exact, size);
+        close(
+            &format!("{what}: momentum"),
+            &SVector::from([momenta[free]]),
+            &exact,
+            size,
+        );
     }
     let system = kernel.system(&point.context, &point.q, &point.v);
     let mut motion = point.later(0.0);
@@ -186,7 +243,12 @@ fn check_energies<const F: usize>(what: &str, kernel: &ModeKernel<F>, model: &Mo
     let [dissipated, input] = kernel.powers(&motion.context, motion.at());
     let exact = derivative(stored, 1e-4 / (1.0 + motion.a.amax()));
     let size = stored(0.0).amax() * 1e3 + dissipated.abs() + input.abs();
-    close(&format!("{what}: power"), &SVector::from([input - dissipated]), &exact, size);
+    close(
+        &format!("{what}: power"),
+        &SVector::from([input - dissipated]),
+        &exact,
+        size,
+    );
 }
 
 fn check_mode(model: &'static Model, variant: &Variant, mode: &Mode, random: &mut Random) {

@@ -22,23 +22,30 @@ fn swing(case: &Value, end: f64, size: f64) -> Run {
 /// amplification).
 fn check(name: &str) {
     let reference = reference("09_pendulums");
-    let cases = reference["reference"]["double_pendulum"].as_array().unwrap();
+    let cases = reference["reference"]["double_pendulum"]
+        .as_array()
+        .unwrap();
     let case = cases.iter().find(|c| c["name"] == name).unwrap();
-    for size in [1.0, 0.3, 0.1, 0.03, 0.01]{
-    for row in case["rows"].as_array().unwrap() {
-        let t = number(&row["t"]);
-        let run = swing(case, t, size);
-        let amplification = number(&row["amplification_d/dth1(0)"]);
-        let exact = numbers(&row["th1,th2,w1,w2"]);
-        let state = &run.end.state;
-        let error = (state.q.iter().chain(&state.v))
-            .zip(&exact)
-            .map(|(x, exact)| (x - exact).abs())
-            .fold(0.0, f64::max);
-        println!("{size} {name} t={t} steps {} error {error:e} amp {amplification} ratio {:.2}", run.solver.steps, error / (1e-14 * amplification));
-        let drift = run.energy.imbalance() / run.energy.initial;
-        println!("   drift {drift:e}");
-    }}
+    for size in [1.0, 0.3, 0.1, 0.03, 0.01] {
+        for row in case["rows"].as_array().unwrap() {
+            let t = number(&row["t"]);
+            let run = swing(case, t, size);
+            let amplification = number(&row["amplification_d/dth1(0)"]);
+            let exact = numbers(&row["th1,th2,w1,w2"]);
+            let state = &run.end.state;
+            let error = (state.q.iter().chain(&state.v))
+                .zip(&exact)
+                .map(|(x, exact)| (x - exact).abs())
+                .fold(0.0, f64::max);
+            println!(
+                "{size} {name} t={t} steps {} error {error:e} amp {amplification} ratio {:.2}",
+                run.solver.steps,
+                error / (1e-14 * amplification)
+            );
+            let drift = run.energy.imbalance() / run.energy.initial;
+            println!("   drift {drift:e}");
+        }
+    }
 }
 
 #[test]

@@ -17,7 +17,14 @@ fn run_tests(folder: &str) {
     }
     let output = command
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["-B", "-m", "unittest", "discover", "--top-level-directory", "."])
+        .args([
+            "-B",
+            "-m",
+            "unittest",
+            "discover",
+            "--top-level-directory",
+            ".",
+        ])
         .args(["--start-directory", folder])
         .output()
         .expect("the interpreter of the build runs");

@@ -16,7 +16,11 @@ fn item(name: &str) -> Value {
 
 /// An oscillator without friction or spring, between stops at ±`stop`.
 fn slot(stop: f64, e: f64, x: f64, speed: f64) -> Problem {
-    let none = [("k", 0.0), ("static_friction", 0.0), ("kinetic_friction", 0.0)];
+    let none = [
+        ("k", 0.0),
+        ("static_friction", 0.0),
+        ("kinetic_friction", 0.0),
+    ];
     let mut problem = problem("coulomb_oscillator", &none);
     for (name, value) in [("stop", stop), ("e", e)] {
         problem.set_parameter(name, value).unwrap();
@@ -45,8 +49,14 @@ fn grazing_impacts_are_found() {
         // A relative error u of the state moves the impact by u ÷ speed: √(2 excess).
         let allowed = 1e-15 / (2.0 * excess).sqrt();
         let error = impact.t - number(&item["t_impact"]);
-        println!("{name}: {error:e} {allowed:e} {:e}", impact.before.v[0] / number(&item["v_minus"]) - 1.0);
-        assert!(error.abs() < allowed, "{name}: {error:e}, allowed {allowed:e}");
+        println!(
+            "{name}: {error:e} {allowed:e} {:e}",
+            impact.before.v[0] / number(&item["v_minus"]) - 1.0
+        );
+        assert!(
+            error.abs() < allowed,
+            "{name}: {error:e}, allowed {allowed:e}"
+        );
         let speed = number(&item["v_minus"]);
         assert!(relative(impact.before.v[0], speed) < allowed / speed);
     }
@@ -130,7 +140,10 @@ fn short_flights_are_flown() {
         assert!(relative(impacts[1], number(&item["t2"])) < 1e-14, "{name}");
         let limit = times(&run, "rest");
         assert_eq!(limit.len(), 1, "{name}: {:?}", transitions(&run));
-        assert!(relative(limit[0], number(&item["accumulation"])) < 1e-14, "{name}");
+        assert!(
+            relative(limit[0], number(&item["accumulation"])) < 1e-14,
+            "{name}"
+        );
     }
 }
 
@@ -149,7 +162,12 @@ fn a_thousand_impacts_in_a_narrow_slot() {
 
 /// A function that rises from zero at `slope` until `end`.
 fn ramp(slope: f64, end: f64) -> Function {
-    let table = Table::new(&[0.0, end], &[0.0, slope * end], Interpolation::Linear, Outside::Hold);
+    let table = Table::new(
+        &[0.0, end],
+        &[0.0, slope * end],
+        Interpolation::Linear,
+        Outside::Hold,
+    );
     Function::from(table.unwrap())
 }
 
@@ -187,8 +205,15 @@ fn stick_and_slip_on_a_belt_repeat() {
     let (slip, period) = (number(&item["slip_duration"]), number(&item["period"]));
     for k in 0..4 {
         assert!((sticks[k] - slips[k] - slip).abs() < 1e-12, "slip {k}");
-        println!("{k} slip {:e} period {:e}", sticks[k] - slips[k] - slip, slips[k + 1] - slips[k] - period);
-        assert!((slips[k + 1] - slips[k] - period).abs() < 1e-12, "period {k}");
+        println!(
+            "{k} slip {:e} period {:e}",
+            sticks[k] - slips[k] - slip,
+            slips[k + 1] - slips[k] - period
+        );
+        assert!(
+            (slips[k + 1] - slips[k] - period).abs() < 1e-12,
+            "period {k}"
+        );
     }
     let restick = run.events.iter().find(|e| e.transition == "stick").unwrap();
     assert!((restick.after.q[0] - number(&item["x_restick"])).abs() < 1e-12);
@@ -242,13 +267,25 @@ fn a_guard_that_is_zero_throughout_does_not_fire_without_end() {
 fn simultaneous_contacts_are_recorded_at_one_instant() {
     for e in [1.0, 0.5] {
         let mut problem = problem("three_balls", &[("e", e)]);
-        for (name, value) in [("left", -1.0), ("right", 1.0), ("left.rate", 1.0), ("right.rate", -1.0)] {
+        for (name, value) in [
+            ("left", -1.0),
+            ("right", 1.0),
+            ("left.rate", 1.0),
+            ("right.rate", -1.0),
+        ] {
             problem.set_initial(name, value).unwrap();
         }
         problem.end.time = 2.0;
         problem.set_tolerance(TIGHTEST);
         let run = run(&problem);
-        println!("e = {e}: {:?} {:?}", run.events.iter().map(|e| (e.t, e.transition)).collect::<Vec<_>>(), run.end.state);
+        println!(
+            "e = {e}: {:?} {:?}",
+            run.events
+                .iter()
+                .map(|e| (e.t, e.transition))
+                .collect::<Vec<_>>(),
+            run.end.state
+        );
         assert!(run.events.iter().any(|e| e.transition == "left_contact"));
         assert!(run.events.iter().any(|e| e.transition == "right_contact"));
         assert!(run.events.iter().all(|e| relative(e.t, 1.0) < 1e-14));

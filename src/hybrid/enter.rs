@@ -104,7 +104,10 @@ impl Simulation<'_> {
             }
             if (violated || at_once) && violation.is_none() {
                 let rests = at_once && is_at_rest(guard, &v);
-                violation = Some(Violation { guard: watched.guard, rests });
+                violation = Some(Violation {
+                    guard: watched.guard,
+                    rests,
+                });
             }
             self.signs.watches.push(watch);
         }

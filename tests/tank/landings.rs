@@ -27,13 +27,30 @@ fn releases() -> impl Strategy<Value = Release> {
         (any::<bool>(), 0.1..1.5, 0.0..0.02, -0.5..0.5, sign),
         (-1e-3..1e-3, -0.1..0.1, -0.2..0.2, 0.0..20.0, 0.0..6.3),
     )
-        .prop_map(|((doughnut, mu, theta, theta_rate, side), (x_i, x_i_rate, x_rate, acceleration, phase))| Release {
-            doughnut, mu, theta, theta_rate, x_i, x_i_rate, x_rate, side, acceleration, phase,
-        })
+        .prop_map(
+            |(
+                (doughnut, mu, theta, theta_rate, side),
+                (x_i, x_i_rate, x_rate, acceleration, phase),
+            )| Release {
+                doughnut,
+                mu,
+                theta,
+                theta_rate,
+                x_i,
+                x_i_rate,
+                x_rate,
+                side,
+                acceleration,
+                phase,
+            },
+        )
 }
 
 fn tank(release: &Release, law: &str) -> Problem {
-    let mut tank = problem("walking_tank", &[("mu_s", release.mu), ("mu_k", 0.9 * release.mu)]);
+    let mut tank = problem(
+        "walking_tank",
+        &[("mu_s", release.mu), ("mu_k", 0.9 * release.mu)],
+    );
     tank.choose(&[("landing", law)]).unwrap();
     if release.doughnut {
         for (name, value) in tank.model.parameter_sets[1].values {
@@ -53,7 +70,8 @@ fn tank(release: &Release, law: &str) -> Problem {
     }
     tank.initial.mode = Some(mode(&tank, "rocks_slides"));
     let shake = Sine::new(release.acceleration, 44.0, release.phase);
-    tank.set_input("ground_acceleration", Function::from(shake)).unwrap();
+    tank.set_input("ground_acceleration", Function::from(shake))
+        .unwrap();
     tank.end.time = 0.3;
     tank
 }
@@ -97,12 +115,22 @@ fn a_landing_that_keeps_the_velocities_may_gain_energy() {
         phase: 0.0,
     };
     let gains = [1.0, -1.0].map(|side| {
-        let release = Release { side, ..release.clone() };
-        landings(&release, "velocities").iter().any(|jump| jump.lost < -1e-3)
+        let release = Release {
+            side,
+            ..release.clone()
+        };
+        landings(&release, "velocities")
+            .iter()
+            .any(|jump| jump.lost < -1e-3)
     });
     assert!(gains.contains(&true));
     assert!([1.0, -1.0].iter().all(|&side| {
-        let release = Release { side, ..release.clone() };
-        landings(&release, "momenta").iter().all(|jump| jump.lost >= -ROUNDING)
+        let release = Release {
+            side,
+            ..release.clone()
+        };
+        landings(&release, "momenta")
+            .iter()
+            .all(|jump| jump.lost >= -ROUNDING)
     }));
 }

@@ -13,9 +13,15 @@ fn contact_and_friction_hold_at_every_instant() {
         let run = run(&problem);
         let tank = Tank::of(&problem);
         let trajectory = &run.trajectory;
-        let [theta, slip, rate, base, shear, normal] =
-            ["theta", "slip", "x.rate", "reaction.z_h", "reaction.x", "reaction.y"]
-                .map(|name| trajectory.column(name).unwrap());
+        let [theta, slip, rate, base, shear, normal] = [
+            "theta",
+            "slip",
+            "x.rate",
+            "reaction.z_h",
+            "reaction.x",
+            "reaction.y",
+        ]
+        .map(|name| trajectory.column(name).unwrap());
         let mut worst = [0.0f64; 3];
         for i in 0..trajectory.len() {
             let (t, row) = (trajectory.t[i], trajectory.row(i));
@@ -26,12 +32,19 @@ fn contact_and_friction_hold_at_every_instant() {
                 worst[1] = worst[1].max(row[shear].abs() / (tank.mu_s * row[normal]) - 1.0);
                 assert_eq!(row[shear], row[base]);
             } else {
-                assert!(row[slip] * row[rate] >= 0.0, "{name}, t = {t}: {}", row[rate]);
+                assert!(
+                    row[slip] * row[rate] >= 0.0,
+                    "{name}, t = {t}: {}",
+                    row[rate]
+                );
                 let friction = -tank.mu_k * row[normal] * row[slip];
                 worst[2] = worst[2].max((row[base] / friction - 1.0).abs());
             }
         }
-        println!("{name}: θ {:e}, stick {:e}, slide {:e}", worst[0], worst[1], worst[2]);
+        println!(
+            "{name}: θ {:e}, stick {:e}, slide {:e}",
+            worst[0], worst[1], worst[2]
+        );
         assert!(worst[0] <= 0.0, "{name}: θ = {:e}", -worst[0]);
         assert!(worst[1] <= 1e-9, "{name}: |R|/μN − 1 = {:e}", worst[1]);
         assert!(worst[2] <= 1e-9, "{name}: |R|/μN − 1 = {:e}", worst[2]);
@@ -43,14 +56,20 @@ fn the_energy_ledger_closes_in_every_scene() {
     for name in SCENES {
         for law in ["momenta", "velocities"] {
             for (tolerance, allowed) in [("1e-6", 1e-5), ("1e-10", 1e-9)] {
-                let overrides = [format!("accuracy.relative={tolerance}"), format!("landing=\"{law}\"")];
+                let overrides = [
+                    format!("accuracy.relative={tolerance}"),
+                    format!("landing=\"{law}\""),
+                ];
                 let problem = scene(name, &[&overrides[0], &overrides[1]]);
                 let run = run(&problem);
                 let energy = &run.energy;
                 let turnover = energy.initial.abs() + energy.input_work.abs() + energy.dissipated;
                 let imbalance = energy.imbalance().abs() / turnover;
                 println!("{name} {law} {tolerance}: {imbalance:e}");
-                assert!(imbalance < allowed, "{name} {law} {tolerance}: {imbalance:e}");
+                assert!(
+                    imbalance < allowed,
+                    "{name} {law} {tolerance}: {imbalance:e}"
+                );
             }
         }
     }

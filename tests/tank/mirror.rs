@@ -45,10 +45,28 @@ fn the_mirror_image_of_a_scene_gives_the_mirrored_result() {
         assert_eq!(transitions(&run), transitions(&image), "{name}");
         for (event, image) in run.events.iter().zip(&image.events) {
             assert_eq!(event.t, image.t, "{name}: {}", event.transition);
-            let after = Snapshot { reactions: vec![], ..event.after.clone() };
-            let image = Snapshot { reactions: vec![], ..image.after.clone() };
-            assert_eq!(mirrored(&after).q, image.q, "{name}: {} at {}", event.transition, event.t);
-            assert_eq!(mirrored(&after).v, image.v, "{name}: {} at {}", event.transition, event.t);
+            let after = Snapshot {
+                reactions: vec![],
+                ..event.after.clone()
+            };
+            let image = Snapshot {
+                reactions: vec![],
+                ..image.after.clone()
+            };
+            assert_eq!(
+                mirrored(&after).q,
+                image.q,
+                "{name}: {} at {}",
+                event.transition,
+                event.t
+            );
+            assert_eq!(
+                mirrored(&after).v,
+                image.v,
+                "{name}: {} at {}",
+                event.transition,
+                event.t
+            );
         }
         assert_eq!(mirrored(&run.end.state).q, image.end.state.q, "{name}");
         println!("{name}: {} events", run.events.len());

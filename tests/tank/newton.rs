@@ -89,7 +89,8 @@ fn reactions_are_the_rates_of_the_momenta() {
                 let u = rows.rate(row, |r| {
                     rows.value(r, "x.rate") + rows.value(r, "ground_acceleration.velocity")
                 });
-                let error = tank.holding_moment(&motion, x_i, u) - rows.value(row, "reaction.theta");
+                let error =
+                    tank.holding_moment(&motion, x_i, u) - rows.value(row, "reaction.theta");
                 worst[2] = worst[2].max(error.abs() / (weight * tank.r_0));
             }
         }
@@ -148,7 +149,10 @@ fn momentum_changes_by_the_impulses_of_the_ground_alone() {
         // Trapezoids of 2e-5 s: forces of the weight's order jump at events in the middle of one.
         let weight = tank.mass() * tank.g;
         let allowed = weight * 2e-5 * (1.0 + run.events.len() as f64);
-        println!("{name}: {change} {impulse} {landings} {:e} {allowed:e}", change - impulse - landings);
+        println!(
+            "{name}: {change} {impulse} {landings} {:e} {allowed:e}",
+            change - impulse - landings
+        );
         assert!((change - impulse - landings).abs() < allowed, "{name}");
     }
 }
