@@ -276,31 +276,36 @@ def _check_energies(model):
     energy = units.parse("kg m^2/s^2")
     for what, expressions in where.items():
         want = units.combine(energy, units.parse("1/s")) if what == "dissipation" else energy
-        for expression in expressions:
+        for k, expression in enumerate(expressions):
             for term in graph.additive_terms(expression):
-                _check_unit(term, want, table, what, model.file)
+                _check_unit(term, want, table, what, model.location(expressions, k))
     for k, body in enumerate(model.bodies):
-        what = f"body {k + 1}"
-        _check_unit(body.mass, units.parse("kg"), table, what + ": mass", model.file)
+        what, location = f"body {k + 1}", model.location(model.bodies, k)
+        _check_unit(body.mass, units.parse("kg"), table, what + ": mass", location)
         for axis, position in zip("XY", body.position):
             for term in graph.additive_terms(position):
-                _check_unit(term, units.parse("m"), table, f"{what}: position {axis}", model.file)
+                _check_unit(term, units.parse("m"), table, f"{what}: position {axis}", location)
         if body.angle is not None:
-            _check_unit(body.inertia, units.parse("kg m^2"), table, what + ": inertia", model.file)
-            _check_unit(body.angle, units.NONE, table, what + ": angle", model.file)
+            _check_unit(body.inertia, units.parse("kg m^2"), table, what + ": inertia", location)
+            _check_unit(body.angle, units.NONE, table, what + ": angle", location)
     if model.bodies:
         _check_unit(ca.SX(model.gravity_constant), units.parse("m/s^2"), table, "gravity", model.file)
-    forces = [(c, f, f"force on `{c.name()}`") for c, f in model.external]
+    forces = [
+        (c, f, f"force on `{c.name()}`", model.location(model.external, k)) for k, (c, f) in enumerate(model.external)
+    ]
     for mode in model.modes:
-        forces += [(c, f, f"force on `{c.name()}` in mode `{mode.name}`") for c, f, _ in mode.forces]
+        forces += [
+            (c, f, f"force on `{c.name()}` in mode `{mode.name}`", model.location(mode.forces, k))
+            for k, (c, f, _) in enumerate(mode.forces)
+        ]
     forces += [
-        (next(c.symbol for c in model.coordinates if c.name == name), f, f"equation of `{name}`")
+        (next(c.symbol for c in model.coordinates if c.name == name), f, f"equation of `{name}`", model.file)
         for name, f in model.hand_written.items() if name not in model.unchecked
     ]
-    for coordinate, force, what in forces:
+    for coordinate, force, what, location in forces:
         want = units.combine(energy, table[coordinate.name()], -1)
         for term in graph.additive_terms(force):
-            _check_unit(term, want, table, what, model.file)
+            _check_unit(term, want, table, what, location)
     for transition in model.transitions:
         _check_unit(transition.guard, None, table, f"guard of `{transition.name}`", transition.location)
         if transition.condition is not None:

@@ -117,11 +117,13 @@ class Mode:
         normal·coefficient·|slip rate| is dissipated, the rest is work of the moving partner.
         """
         self._check_free(coordinate)
+        self.model._locate(self.forces)
         self.forces.append((coordinate, -coefficient * normal * direction, ca.SX(against)))
 
     def force(self, coordinate, expression, against=0):
         """A dissipative force on a free coordinate, in this mode only (as `friction`)."""
         self._check_free(coordinate)
+        self.model._locate(self.forces)
         self.forces.append((coordinate, ca.SX(expression), ca.SX(against)))
 
     def _check_free(self, coordinate):
@@ -141,6 +143,7 @@ class Model:
         self.discretes, self.choices = [], []
         self.bodies, self.kinetic_terms, self.potentials, self.dissipations = [], [], [], []
         self.external, self.hand_written, self.unchecked = [], {}, set()
+        self.locations = {}
         self.modes, self.transitions = [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -227,26 +230,32 @@ class Model:
 
     def point_mass(self, mass, position):
         """A point mass at `position` = (X, Y) relative to the ground."""
+        self._locate(self.bodies)
         self.bodies.append(Body(ca.SX(mass), tuple(ca.SX(p) for p in position)))
 
     def rigid_body(self, mass, inertia, position, angle):
         """A rigid body: mass, inertia about its centre, position of the centre, angle."""
+        self._locate(self.bodies)
         self.bodies.append(Body(ca.SX(mass), tuple(ca.SX(p) for p in position), ca.SX(inertia), ca.SX(angle)))
 
     def kinetic(self, energy):
         """Kinetic energy that is not a body's, as an expression in coordinates and rates."""
+        self._locate(self.kinetic_terms)
         self.kinetic_terms.append(ca.SX(energy))
 
     def potential(self, energy):
         """Potential energy besides the weight of the bodies."""
+        self._locate(self.potentials)
         self.potentials.append(ca.SX(energy))
 
     def dissipation(self, rayleigh):
         """Rayleigh's function D(q, v): the force −∂D/∂v acts, the power v·∂D/∂v is dissipated."""
+        self._locate(self.dissipations)
         self.dissipations.append(ca.SX(rayleigh))
 
     def force(self, coordinate, expression):
         """A generalized force on a coordinate; its power counts as input work."""
+        self._locate(self.external)
         self.external.append((coordinate, ca.SX(expression)))
 
     def by_hand(self, coordinate, residual, *, check_units=True):
@@ -313,6 +322,13 @@ class Model:
         """
         from .derive import impact_velocities
         return impact_velocities(self, before, after, prescribed, conserve)
+
+    def location(self, group, index):
+        """Where entry `index` of one of the lists above was declared."""
+        return self.locations.get((id(group), index), self.file)
+
+    def _locate(self, group):
+        self.locations[id(group), len(group)] = caller_location(self.file)
 
     def error(self, message):
         """A ModelError that points at the line of the model file being run."""

@@ -18,7 +18,7 @@ fn oscillator(f: f64, force: Option<(f64, f64)>, x: f64, slip: f64) -> Problem {
     }
     problem.set_initial("x", x).unwrap();
     problem.set_initial("slip", slip).unwrap();
-    problem.set_tolerance(1e-13);
+    tighten(&mut problem, 1e-2);
     problem
 }
 
@@ -167,7 +167,8 @@ fn a_newmark_block_slips_both_ways() {
         let eta = number(&case["eta"]);
         let mut problem = oscillator(eta, Some((1.0, -FRAC_PI_2)), 0.0, 1.0);
         problem.set_parameter("k", 0.0).unwrap();
-        problem.end.time = 40.0 * TAU;
+        // The mean velocity of the start dies out by a third a cycle.
+        problem.end.time = 120.0 * TAU;
         let run = run(&problem);
         let last = &run.events[run.events.len() - 8..];
         let slip_slip = case["regime"] == "slip-slip";

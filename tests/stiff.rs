@@ -10,7 +10,6 @@ fn a_block_with_a_stiff_oscillator_stops() {
         let (k, c) = (number(&row["k"]), number(&row["c"]));
         let mut problem = problem("stiff_block", &[("k", k), ("c", c)]);
         problem.set_initial("x.rate", 2.0).unwrap();
-        problem.accuracy.relative = 1e-12;
         // The elongation is of the order μ (M + m) g/k.
         problem.set_tolerance(1e-12);
         let r = problem.model.coordinate("r").unwrap();

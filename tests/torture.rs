@@ -27,7 +27,7 @@ fn slot(stop: f64, e: f64, x: f64, speed: f64) -> Problem {
     }
     problem.set_initial("x", x).unwrap();
     problem.set_initial("x.rate", speed).unwrap();
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     problem
 }
 
@@ -41,6 +41,7 @@ fn grazing_impacts_are_found() {
         let item = item(name);
         let mut problem = slot(1.0, 0.5, 0.0, 1.0 + excess);
         problem.set_parameter("k", 1.0).unwrap();
+        tighten(&mut problem, 1e-2);
         problem.end.time = 2.0;
         let run = run(&problem);
         let impact = &run.events[0];
@@ -103,7 +104,7 @@ fn ball_at_the_floor(velocity: f64) -> Run {
     let mut problem = problem("bouncing_ball", &[("e", 0.5)]);
     problem.set_initial("h.rate", velocity).unwrap();
     problem.initial.mode = Some(mode(&problem, "flies"));
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     problem.end.time = 0.5;
     run(&problem)
 }
@@ -132,7 +133,7 @@ fn short_flights_are_flown() {
         let item = item(name);
         let mut problem = problem("bouncing_ball", &[("e", e)]);
         problem.set_initial("h", 1.0).unwrap();
-        problem.set_tolerance(1e-13);
+        problem.set_tolerance(TIGHTEST);
         let run = run(&problem);
         let impacts = times(&run, "impact");
         assert!(relative(impacts[0], number(&item["t1"])) < 1e-14, "{name}");
@@ -179,7 +180,7 @@ fn a_long_stick_neither_creeps_nor_misses_its_release() {
     problem.initial.mode = Some(mode(&problem, "sticks"));
     let release = number(&item["t_release"]);
     problem.end.time = release + 1000.0;
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     let run = run(&problem);
     assert_eq!(transitions(&run), ["slip"]);
     assert!(relative(run.events[0].t, release) < 1e-14);
@@ -195,7 +196,7 @@ fn stick_and_slip_on_a_belt_repeat() {
     let mut problem = problem("belt_oscillator", &parameters);
     problem.initial.mode = Some(mode(&problem, "sticks"));
     problem.end.time = 60.0;
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     let run = run(&problem);
     let (slips, sticks) = (times(&run, "slip"), times(&run, "stick"));
     assert!(slips.len() >= 5);
@@ -204,6 +205,11 @@ fn stick_and_slip_on_a_belt_repeat() {
     let (slip, period) = (number(&item["slip_duration"]), number(&item["period"]));
     for k in 0..4 {
         assert!((sticks[k] - slips[k] - slip).abs() < 1e-12, "slip {k}");
+        println!(
+            "{k} slip {:e} period {:e}",
+            sticks[k] - slips[k] - slip,
+            slips[k + 1] - slips[k] - period
+        );
         assert!(
             (slips[k + 1] - slips[k] - period).abs() < 1e-12,
             "period {k}"
@@ -236,7 +242,6 @@ fn a_stop_at_the_instant_of_a_touch_is_no_impact() {
         problem.set_parameter(friction, 2.0).unwrap();
     }
     let run = run(&problem);
-    println!("{:#?}", run.events);
     assert_eq!(run.layout.modes[run.end.mode], "sticks");
     assert!((at_end(&run, "x") - number(&item["x"])).abs() < 1e-14);
     assert!((run.events[0].t - number(&item["t"])).abs() < 1e-8);
@@ -249,13 +254,12 @@ fn a_guard_that_is_zero_throughout_does_not_fire_without_end() {
     let mut problem = problem("circle", &[("omega", 0.1)]);
     problem.set_initial("x", 1.0).unwrap();
     problem.set_initial("y.rate", -0.1).unwrap();
-    problem.set_tolerance(1e-13);
+    problem.set_tolerance(TIGHTEST);
     problem.end.time = 10.0;
     let run = run(&problem);
     for name in ["x", "y"] {
         assert!((at_end(&run, name) - number(&item[name])).abs() < 1e-13);
     }
-    println!("{} events", run.events.len());
     assert!(run.events.len() < 10, "{} events", run.events.len());
 }
 
@@ -272,7 +276,7 @@ fn simultaneous_contacts_are_recorded_at_one_instant() {
             problem.set_initial(name, value).unwrap();
         }
         problem.end.time = 2.0;
-        problem.set_tolerance(1e-13);
+        problem.set_tolerance(TIGHTEST);
         let run = run(&problem);
         println!(
             "e = {e}: {:?} {:?}",

@@ -27,6 +27,8 @@ struct Hop {
     at: Instant,
     /// State after the event: all coordinates, then all velocities.
     state: Vec<f64>,
+    /// Whether something moved since the event before, but nothing by more than rounding.
+    still: bool,
 }
 
 /// Limit of an accumulation.
@@ -65,16 +67,19 @@ impl Accumulation {
         }
     }
 
-    /// Remembers an event, with the state after it.
+    /// Remembers an event, with the states before and after it.
     pub fn push(
         &mut self,
         signature: u64,
         impact: bool,
         at: Instant,
+        before: impl Iterator<Item = f64>,
         state: impl Iterator<Item = f64>,
     ) {
+        let still = self.count > 0 && hardly_moved(before.zip(self.hop(0).state.iter().copied()));
         let slot = self.count % Self::MEMORY;
         let hop = &mut self.hops[slot];
+        hop.still = still;
         hop.signature = signature;
         hop.impact = impact;
         hop.at = at;
@@ -160,13 +165,25 @@ impl Accumulation {
     }
 
     /// Whether the memory is full of events that together do not advance the time by one unit in
-    /// its last place.
+    /// its last place, or between which nothing moves by more than rounding.
     pub fn stands_still(&self) -> bool {
         self.count >= Self::MEMORY && {
             let (new, old) = (self.hop(0).at, self.hop(Self::MEMORY - 1).at);
             new.since(old) < new.seconds().abs() * f64::EPSILON
+                || self.hops.iter().all(|hop| hop.still)
         }
     }
+}
+
+/// Whether of pairs (after, before) some differ, but none by more than the rounding of a guard: as
+/// many units in the last place as events are remembered. A state that is held still is no evidence.
+fn hardly_moved(mut pairs: impl Iterator<Item = (f64, f64)>) -> bool {
+    let mut moved = false;
+    let hardly = pairs.all(|(after, before)| {
+        moved |= after != before;
+        (after - before).abs() <= Accumulation::MEMORY as f64 * f64::EPSILON * before.abs()
+    });
+    hardly && moved
 }
 
 #[cfg(test)]
@@ -179,7 +196,7 @@ mod tests {
         let mut t = Instant::new((2.0f64 / g).sqrt());
         let mut v = e * (2.0 * g).sqrt();
         for k in 0.. {
-            accumulation.push(1, true, t, [0.0, v].into_iter());
+            accumulation.push(1, true, t, [0.0, -v].into_iter(), [0.0, v].into_iter());
             if let Some(limit) = accumulation.limit(tolerance, |_, _| tolerance) {
                 return (k, limit);
             }
@@ -219,7 +236,7 @@ mod tests {
         let (mut long, mut short) = (1.0, 0.3);
         let mut found = None;
         for k in 0..400u64 {
-            accumulation.push(k % 2, true, t, [long].into_iter());
+            accumulation.push(k % 2, true, t, [0.0].into_iter(), [long].into_iter());
             found = accumulation.limit(1e-12, |_, _| 1e-9);
             if found.is_some() {
                 break;
@@ -241,9 +258,22 @@ mod tests {
     fn regular_events_do_not_accumulate() {
         let mut accumulation = Accumulation::new(1);
         for k in 0..100 {
-            accumulation.push(0, true, Instant::new(k as f64 * 1e-6), [1.0].into_iter());
+            let (at, v) = (Instant::new(k as f64 * 1e-6), 1.0);
+            accumulation.push(0, true, at, [-v].into_iter(), [v].into_iter());
             assert!(accumulation.limit(1e-12, |_, _| 1.0).is_none());
             assert!(!accumulation.stands_still());
+        }
+    }
+
+    #[test]
+    fn events_between_which_nothing_moves_stand_still() {
+        for (moved, stands) in [(2.0 * f64::EPSILON, true), (1e-12, false), (0.0, false)] {
+            let mut accumulation = Accumulation::new(1);
+            for k in 0..Accumulation::MEMORY + 1 {
+                let (at, x) = (Instant::new(1.0 + k as f64 * 1e-15), 1.0 + k as f64 * moved);
+                accumulation.push(0, false, at, [x].into_iter(), [x].into_iter());
+            }
+            assert_eq!(accumulation.stands_still(), stands);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::failure::Reason;
 use super::guards::{Conditions, value, watched_value};
 use super::roots::Watch;
-use super::segment::determinant_sign;
+use super::segment::{check_requirements, determinant_sign};
 use super::simulation::{Simulation, Violation};
 use crate::integrate::solve;
 use crate::kernel::{Context, Free, ModeKernel};
@@ -103,14 +103,23 @@ impl Simulation<'_> {
                 watch = Watch::Violated;
             }
             if (violated || at_once) && violation.is_none() {
+                let rests = at_once && is_at_rest(guard, &v);
                 violation = Some(Violation {
                     guard: watched.guard,
-                    at_once,
+                    rests,
                 });
             }
             self.signs.watches.push(watch);
         }
         self.signs.start();
+        if violation.is_none() {
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            check_requirements(kernel, &self.context, mode, at)?;
+        }
         self.here.a.fill(0.0);
         self.here.set_free(mode.free, [&q, &v, &a]);
         Ok(violation)
@@ -180,6 +189,17 @@ fn departure<const F: usize>(
         GuardShape::General { .. } => {
             kernel.guard_rate(context, &guard.kernel, Free { q, v, a }, jerk)
         }
+    }
+}
+
+/// Whether a guard that leaves zero at once does so from rest: a coordinate without speed. Any other
+/// departure that is decided on entry has a rate.
+fn is_at_rest<const F: usize>(guard: &Guard, v: &SVector<f64, F>) -> bool {
+    match guard.shape {
+        GuardShape::Linear {
+            index, rate: false, ..
+        } => v[index] == 0.0,
+        _ => false,
     }
 }
 

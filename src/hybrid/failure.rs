@@ -62,15 +62,15 @@ pub enum Reason {
         /// The transitions of the cycle, `name (from → to)`, separated by commas.
         cycle: String,
     },
-    /// Events follow each other without advancing the time and without a limit.
+    /// Events follow each other without a limit, and between them neither time nor motion goes on.
     #[error(
-        "events accumulate without a limit (chattering): the last {count} did not advance the time; guards involved: {guards}"
+        "events accumulate without a limit (chattering): between the last {count} nothing moved by more than rounding; transitions involved: {transitions}; a mode is missing in which the motion goes on between them"
     )]
     Chattering {
         /// Number of events looked at.
         count: usize,
-        /// Names of the guards.
-        guards: String,
+        /// Names of the transitions.
+        transitions: String,
     },
     /// The model needs a mode that the scene left out by freezing a coordinate.
     #[error("no mode is left in which {frozen} may be frozen")]

@@ -146,9 +146,11 @@ impl Simulation<'_> {
             .discrete
             .iter()
             .for_each(|d| d.to_bits().hash(&mut hasher));
-        let state = self.here.q.iter().chain(&self.here.v).copied();
+        let event = self.events.last().expect("the event was recorded");
+        let before = event.before.q.iter().chain(&event.before.v).copied();
+        let after = event.after.q.iter().chain(&event.after.v).copied();
         self.accumulation
-            .push(hasher.finish(), impact, self.here.now, state);
+            .push(hasher.finish(), impact, self.here.now, before, after);
         self.look_for_accumulation()
     }
 

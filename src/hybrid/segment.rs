@@ -8,7 +8,8 @@ use super::instant::Instant;
 use super::samples::{Row, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use crate::integrate::{Counters, Radau, Tolerances};
-use crate::kernel::{Free, ModeKernel};
+use crate::kernel::{Context, Free, ModeKernel};
+use crate::model::Mode;
 use nalgebra::{SMatrix, SVector};
 
 impl Simulation<'_> {
@@ -81,10 +82,7 @@ impl Simulation<'_> {
                     beyond,
                 } => Some((guard, state, beyond)),
                 Cut::Violated { guard } => {
-                    return Ok(Stop::Violated(Violation {
-                        guard,
-                        at_once: true,
-                    }));
+                    return Ok(Stop::Violated(Violation { guard, rests: true }));
                 }
             };
 
@@ -171,20 +169,7 @@ impl Simulation<'_> {
                 return Err(Reason::DeterminantChangesSign { mode: mode.name });
             }
             determinant = sign;
-            let mut requirements = [0.0; MOST_REQUIREMENTS];
-            let requirements = &mut requirements[..mode.requirements.len()];
-            kernel.requirements(equations.context, at, requirements);
-            for (value, requirement) in requirements.iter().zip(mode.requirements) {
-                if value.is_nan() || *value <= 0.0 {
-                    return Err(Reason::Requirement {
-                        mode: mode.name,
-                        failure: requirement.failure,
-                        text: requirement.text,
-                        value: *value,
-                        unit: requirement.unit,
-                    });
-                }
-            }
+            check_requirements(kernel, equations.context, mode, at)?;
             if problem.record.every.is_none() {
                 let ledger = self.ledger.row(0.0);
                 let Here { q, v, .. } = &self.here;
@@ -246,6 +231,29 @@ impl Simulation<'_> {
 
 /// Most requirements that a mode may have.
 const MOST_REQUIREMENTS: usize = 8;
+
+/// What the mode requires to be positive must be so.
+pub(super) fn check_requirements<const F: usize>(
+    kernel: &ModeKernel<F>,
+    context: &Context,
+    mode: &Mode,
+    at: Free<F>,
+) -> Result<(), Reason> {
+    let mut values = [0.0; MOST_REQUIREMENTS];
+    let values = &mut values[..mode.requirements.len()];
+    kernel.requirements(context, at, values);
+    let unmet = |(value, _): &(&f64, _)| value.is_nan() || **value <= 0.0;
+    match values.iter().zip(mode.requirements).find(unmet) {
+        None => Ok(()),
+        Some((&value, requirement)) => Err(Reason::Requirement {
+            mode: mode.name,
+            failure: requirement.failure,
+            text: requirement.text,
+            value,
+            unit: requirement.unit,
+        }),
+    }
+}
 
 /// Drifting coordinates move although they are frozen.
 fn copy_drifting(q: &mut [f64], drifts: &[bool], held: &[f64]) {

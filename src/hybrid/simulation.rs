@@ -48,8 +48,8 @@ pub(super) struct Here {
 pub(super) struct Violation {
     /// Index of the guard in its mode.
     pub guard: usize,
-    /// Whether it was zero and leaves zero at once: a hop of no duration.
-    pub at_once: bool,
+    /// Whether it leaves zero at once and from rest: as an impact, a hop of no height.
+    pub rests: bool,
 }
 
 /// Why a segment ended.
@@ -265,11 +265,11 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// A violated guard: the limit of its accumulation if it is an impact of no duration, else its
+    /// A violated guard: the limit of its accumulation if it is an impact from rest, else its
     /// transition.
     fn resolve(&mut self, violation: Violation) -> Result<(), Reason> {
         let mode = self.mode();
-        let rests = violation.at_once && super::plan::is_impact(&mode.guards[violation.guard]);
+        let rests = violation.rests && super::plan::is_impact(&mode.guards[violation.guard]);
         match self.plan.rest(mode) {
             Some(rest) if rests => self.come_to_rest(rest, None),
             _ => self.fire(violation.guard),
@@ -302,12 +302,12 @@ impl<'p> Simulation<'p> {
         }
         if self.accumulation.stands_still() {
             let recent = self.events.iter().rev().take(Accumulation::MEMORY);
-            let mut guards: Vec<_> = recent.map(|e| e.transition).collect();
-            guards.sort_unstable();
-            guards.dedup();
+            let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
+            transitions.sort_unstable();
+            transitions.dedup();
             return Err(Reason::Chattering {
                 count: Accumulation::MEMORY,
-                guards: guards.join(", "),
+                transitions: transitions.join(", "),
             });
         }
         Ok(())

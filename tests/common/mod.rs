@@ -6,6 +6,18 @@ use dalembert::kernel::MODELS;
 use dalembert::record::{Run, Silent};
 use serde_json::Value;
 
+/// The tightest tolerance that the method takes: ten roundings.
+pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
+
+/// Sets the tightest tolerances for a motion of the given size, in the units of its coordinates and
+/// rates.
+pub fn tighten(problem: &mut Problem, size: f64) {
+    let accuracy = &mut problem.accuracy;
+    accuracy.relative = TIGHTEST;
+    accuracy.q_absolute.fill(TIGHTEST * size);
+    accuracy.v_absolute.fill(TIGHTEST * size);
+}
+
 /// A problem of a model by name, with the given parameters.
 pub fn problem(model: &str, parameters: &[(&str, f64)]) -> Problem {
     let model = MODELS

@@ -1,0 +1,158 @@
+//! Reactions and momenta against Newton's second law on the whole tank.
+
+use crate::body::{Motion, Tank};
+use crate::common::*;
+use crate::scenes::{SCENES, scene};
+use dalembert::hybrid::Problem;
+use dalembert::record::{Run, Snapshot};
+
+/// Interval of the samples, s: a fortieth of a radian of bulging, so that differences over four of
+/// them are good to 1e-8 of the largest force.
+const EVERY: f64 = 1e-4;
+
+/// A scene with fine samples of everything, long enough to rock and to slide.
+fn sampled(name: &str) -> (Problem, Run) {
+    let mut problem = scene(name, &["accuracy.relative=1e-12"]);
+    problem.end.time = problem.end.time.min(0.5);
+    problem.record.every = Some(EVERY);
+    problem.record.columns.reactions = true;
+    problem.record.columns.inputs = true;
+    let run = run(&problem);
+    (problem, run)
+}
+
+/// A row as a motion, with a look-up of further columns.
+struct Rows<'r> {
+    run: &'r Run,
+}
+
+impl Rows<'_> {
+    fn value(&self, row: usize, name: &str) -> f64 {
+        let trajectory = &self.run.trajectory;
+        trajectory.row(row)[trajectory.column(name).unwrap()]
+    }
+
+    fn motion(&self, row: usize) -> Motion {
+        Motion {
+            theta: self.value(row, "theta"),
+            x_i: self.value(row, "x_I"),
+            theta_rate: self.value(row, "theta.rate"),
+            x_i_rate: self.value(row, "x_I.rate"),
+            x_rate: self.value(row, "x.rate"),
+            side: self.value(row, "side"),
+            ground_velocity: self.value(row, "ground_acceleration.velocity"),
+        }
+    }
+
+    /// Rows around which two rows on either side are free of events.
+    fn smooth(&self) -> Vec<usize> {
+        let t = &self.run.trajectory.t;
+        let events = &self.run.events;
+        (2..t.len() - 2)
+            .filter(|&row| t[row + 2] - t[row - 2] < 4.5 * EVERY)
+            .filter(|&row| {
+                let first = events.partition_point(|e| e.t < t[row - 2] - EVERY);
+                events.get(first).is_none_or(|e| e.t > t[row + 2] + EVERY)
+            })
+            .collect()
+    }
+
+    /// Rate of a function of the row, by the five-point formula.
+    fn rate(&self, row: usize, f: impl Fn(usize) -> f64) -> f64 {
+        (8.0 * (f(row + 1) - f(row - 1)) - (f(row + 2) - f(row - 2))) / (12.0 * EVERY)
+    }
+}
+
+#[test]
+fn reactions_are_the_rates_of_the_momenta() {
+    for name in SCENES {
+        let (problem, run) = sampled(name);
+        let tank = Tank::of(&problem);
+        let rows = Rows { run: &run };
+        let weight = tank.mass() * tank.g;
+        let smooth = rows.smooth();
+        assert!(smooth.len() > 500, "{name}: {} rows", smooth.len());
+        let mut worst = [0.0f64; 3];
+        for row in smooth {
+            let horizontal = rows.rate(row, |r| tank.horizontal_momentum(&rows.motion(r)));
+            let vertical = rows.rate(row, |r| tank.vertical_momentum(&rows.motion(r))) + weight;
+            let error = [
+                horizontal - rows.value(row, "reaction.z_h"),
+                vertical - rows.value(row, "reaction.y"),
+            ];
+            for (worst, error) in worst.iter_mut().zip(error) {
+                *worst = worst.max(error.abs() / weight);
+            }
+            if run.layout.modes[usize::from(run.trajectory.mode[row])].starts_with("stands") {
+                let motion = rows.motion(row);
+                let x_i = rows.rate(row, |r| rows.value(r, "x_I.rate"));
+                let u = rows.rate(row, |r| {
+                    rows.value(r, "x.rate") + rows.value(r, "ground_acceleration.velocity")
+                });
+                let error =
+                    tank.holding_moment(&motion, x_i, u) - rows.value(row, "reaction.theta");
+                worst[2] = worst[2].max(error.abs() / (weight * tank.r_0));
+            }
+        }
+        println!("{name}: {worst:?}");
+        assert!(worst.iter().all(|&w| w < 1e-6), "{name}: {worst:?}");
+    }
+}
+
+fn motion_of(snapshot: &Snapshot, ground_velocity: f64) -> Motion {
+    let (q, v) = (&snapshot.q, &snapshot.v);
+    Motion {
+        theta: q[0],
+        x_i: q[1],
+        theta_rate: v[0],
+        x_i_rate: v[1],
+        x_rate: v[2],
+        side: snapshot.discrete[0],
+        ground_velocity,
+    }
+}
+
+/// Velocity of the ground at `t`.
+fn ground_velocity(problem: &Problem, t: f64) -> f64 {
+    let mut signals = vec![0.0; problem.model.signal_count()];
+    problem.signals.evaluate(t, &mut signals);
+    signals[1]
+}
+
+#[test]
+fn momentum_changes_by_the_impulses_of_the_ground_alone() {
+    for name in SCENES {
+        let mut problem = scene(name, &["accuracy.relative=1e-10"]);
+        problem.end.time = problem.end.time.min(0.5);
+        // Rows at the steps: their impulses are summed over pieces that no event cuts.
+        problem.record.every = Some(2e-5);
+        problem.record.columns.reactions = true;
+        problem.record.columns.inputs = true;
+        let run = run(&problem);
+        let tank = Tank::of(&problem);
+        let rows = Rows { run: &run };
+        let t = &run.trajectory.t;
+        let mut impulse = 0.0;
+        for row in 1..t.len() {
+            let force = |r| rows.value(r, "reaction.z_h");
+            impulse += 0.5 * (force(row) + force(row - 1)) * (t[row] - t[row - 1]);
+        }
+        let mut landings = 0.0;
+        for event in &run.events {
+            let u = ground_velocity(&problem, event.t);
+            let jump = tank.horizontal_momentum(&motion_of(&event.after, u))
+                - tank.horizontal_momentum(&motion_of(&event.before, u));
+            landings += jump;
+        }
+        let last = rows.motion(t.len() - 1);
+        let change = tank.horizontal_momentum(&last) - tank.horizontal_momentum(&rows.motion(0));
+        // Trapezoids of 2e-5 s: forces of the weight's order jump at events in the middle of one.
+        let weight = tank.mass() * tank.g;
+        let allowed = weight * 2e-5 * (1.0 + run.events.len() as f64);
+        println!(
+            "{name}: {change} {impulse} {landings} {:e} {allowed:e}",
+            change - impulse - landings
+        );
+        assert!((change - impulse - landings).abs() < allowed, "{name}");
+    }
+}
