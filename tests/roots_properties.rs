@@ -183,7 +183,7 @@ fn rounding<const N: usize>(p: &Polynomial<N>, s: f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig {
         failure_persistence: None,
-        ..ProptestConfig::with_cases(20000)
+        ..ProptestConfig::with_cases(1000)
     })]
 
     /// Nothing missed, nothing doubled, the earliest first; on any windows. About a triple root the

@@ -190,6 +190,20 @@ impl Interpolant {
         let [lower, upper] = self.halves;
         self.rounding + if self.decays() { upper } else { lower + upper }
     }
+
+    /// Whether the sample that tests the degree differs by no more than the error that the decay
+    /// foretells, 2r/(1 − r) of the upper half, and errors of `noise` in each value explain.
+    pub(super) fn agrees(&self, values: &[f64; SAMPLES], noise: f64) -> bool {
+        let [lower, upper] = self.halves;
+        let foretold = if self.decays() && upper < lower {
+            2.0 * upper * upper / (lower - upper)
+        } else {
+            lower + upper
+        };
+        let sample = Self::test_sample(self.degree);
+        let difference = self.expansion.value(place(sample)) - values[sample];
+        difference.abs() <= foretold + self.degree as f64 * noise + self.rounding
+    }
 }
 
 impl Chebyshev {

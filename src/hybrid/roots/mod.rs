@@ -36,10 +36,12 @@
 //! *Functions* are represented by Chebyshev interpolants of degree 4, 8, 16, then by halving the
 //! window; a decision is taken from an interpolant only where its value exceeds its error, and by
 //! the function's own values elsewhere. The error is the sum of the upper half of its coefficients
-//! if that is at most a third of the lower half, and one more value has agreed with it: this
-//! **assumes** that the coefficients go on to decay, which finitely many values cannot prove. So a
-//! feature narrower than the spacing of the six first evaluations may not be seen. Windows of the
-//! size of an integrator's step, whose own error control resolves the motion, meet this.
+//! if that is at most a third of the lower half and one more sample differs by no more than such a
+//! decay foretells; at degree 4 it is the whole variation. This **assumes** that the coefficients
+//! go on to decay, which finitely many values cannot prove: a feature narrower than the spacing of
+//! the first six samples may not be seen. Windows of the size of an integrator's step, whose own
+//! error control resolves the motion, meet this. Of two crossings closer than their interpolant's
+//! error shows, both are found if the value at the extremum between them has the other sign.
 //!
 //! *Dormant functions* need their values near the start to full relative accuracy, which a guard
 //! written in time since its start has. The zero is divided out; a fall after a short flight is
