@@ -27,24 +27,42 @@ const ALL: usize = 3;
 
 fn main() {
     println!("1. free coordinates of each mode, against always all {ALL}\n");
-    println!("{:24}{:>12}{:>12}{:>8}   largest difference", "scene", "free / µs", "all / µs", "ratio");
-    for name in ["tank_full_plate", "tank_doughnut", "tank_free_release", "tank_rocks_and_slides"] {
+    println!(
+        "{:24}{:>12}{:>12}{:>8}   largest difference",
+        "scene", "free / µs", "all / µs", "ratio"
+    );
+    for name in [
+        "tank_full_plate",
+        "tank_doughnut",
+        "tank_free_release",
+        "tank_rocks_and_slides",
+    ] {
         let problem = problem(name, &[]);
         let stretches = stretches(&problem);
         let (free, ends) = fastest(|| integrate_free(&problem, &stretches));
         let (all, other_ends) = fastest(|| integrate_all(&problem, &stretches));
         let pairs = ends.iter().zip(&other_ends);
         let difference = pairs.map(|(a, b)| (a - b).abs().max()).fold(0.0, f64::max);
-        println!("{name:24}{free:12.0}{all:12.0}{:8.2}   {difference:.0e} m or rad", all / free);
+        println!(
+            "{name:24}{free:12.0}{all:12.0}{:8.2}   {difference:.0e} m or rad",
+            all / free
+        );
     }
 
-    println!("\n2. the doughnut under 1 m/s², where nothing slips or lifts, with and without its guards\n");
+    println!(
+        "\n2. the doughnut under 1 m/s², where nothing slips or lifts, with and without its guards\n"
+    );
     println!("{:24}{:>12}{:>12}", "frozen", "guards", "run / µs");
     let quiet = "inputs.ground_acceleration.sine.amplitude=1";
     let mut times = Vec::new();
     for freeze in ["[]", r#"["x"]"#, r#"["theta", "x"]"#] {
         let problem = problem("tank_doughnut", &[quiet, &format!("freeze={freeze}")]);
-        let (time, events) = fastest(|| simulate(&problem, &mut Silent).expect("it starts").events.len());
+        let (time, events) = fastest(|| {
+            simulate(&problem, &mut Silent)
+                .expect("it starts")
+                .events
+                .len()
+        });
         assert_eq!(events, 0);
         println!("{freeze:24}{:12}{time:12.0}", guards(&problem));
         times.push(time);
@@ -56,11 +74,19 @@ fn main() {
 fn problem(scene: &str, overrides: &[&str]) -> Problem {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
-    let scene = Scene::load(&folder.join(scene).with_extension("json"), &overrides, MODELS)
-        .unwrap_or_else(|errors| panic!("{errors}"));
+    let scene = Scene::load(
+        &folder.join(scene).with_extension("json"),
+        &overrides,
+        MODELS,
+    )
+    .unwrap_or_else(|errors| panic!("{errors}"));
     let mut problem = scene.problem;
     problem.record.every = Some(f64::INFINITY);
-    problem.record.columns = Recorded { reactions: false, energies: false, inputs: false };
+    problem.record.columns = Recorded {
+        reactions: false,
+        energies: false,
+        inputs: false,
+    };
     problem
 }
 
@@ -113,7 +139,11 @@ fn stretches(problem: &Problem) -> Vec<Stretch> {
         from,
     };
     // Hops at the end of an accumulation are shorter than the last place of t.
-    starts.zip(ends).map(stretch).filter(|s| s.duration > 0.0).collect()
+    starts
+        .zip(ends)
+        .map(stretch)
+        .filter(|s| s.duration > 0.0)
+        .collect()
 }
 
 /// A mode's equations over a stretch.
@@ -129,11 +159,17 @@ impl<'a, const F: usize> Reduced<'a, F> {
         let mut context = Context::new(problem.model, &problem.parameters);
         context.discrete.copy_from_slice(&stretch.from.discrete);
         context.held.copy_from_slice(&stretch.from.q);
-        Reduced { kernel, context, signals: &problem.signals, start: stretch.start }
+        Reduced {
+            kernel,
+            context,
+            signals: &problem.signals,
+            start: stretch.start,
+        }
     }
 
     fn at(&mut self, t: f64) {
-        self.signals.evaluate(self.start + t, &mut self.context.signals);
+        self.signals
+            .evaluate(self.start + t, &mut self.context.signals);
     }
 }
 
@@ -158,7 +194,8 @@ impl<const F: usize> System<F> for Reduced<'_, F> {
     ) {
         self.at(t);
         let mut out = [SMatrix::zeros(); 3];
-        self.kernel.jacobian(&self.context, Free { q, v, a }, &mut out);
+        self.kernel
+            .jacobian(&self.context, Free { q, v, a }, &mut out);
         [*m, *c, *k] = out;
     }
 }
@@ -218,12 +255,16 @@ fn integrate<const F: usize, Y: System<F>>(
     let tolerances = Tolerances::new(accuracy.relative, absolute.0, absolute.1)
         .expect("a scene's tolerances are positive");
     let mut a = Vector::<F>::zeros();
-    system.acceleration(0.0, &q, &v, &mut a).expect("a regular mass matrix");
+    system
+        .acceleration(0.0, &q, &v, &mut a)
+        .expect("a regular mass matrix");
     let mut radau = Radau::<3, F>::new(&tolerances);
     radau.restart(0.0, &q, &v, &a);
     while radau.state().t < stretch.duration {
         let longest = problem.signals.resolution(stretch.start + radau.state().t);
-        radau.step(system, stretch.duration, longest).expect("the step succeeds");
+        radau
+            .step(system, stretch.duration, longest)
+            .expect("the step succeeds");
     }
     let mut end = Vector::<ALL>::from_row_slice(&stretch.from.q[..ALL]);
     for (i, &coordinate) in free.iter().enumerate() {
@@ -245,12 +286,21 @@ fn integrate_free(problem: &Problem, stretches: &[Stretch]) -> Vec<Vector<ALL>> 
 fn integrate_all(problem: &Problem, stretches: &[Stretch]) -> Vec<Vector<ALL>> {
     let modes = problem.variant.modes;
     let kernels = modes.iter().map(|m| &m.kernels);
-    let mut all = kernels.filter_map(|k| if let ModeKernels::F3(k) = k { Some(k) } else { None });
+    let mut all = kernels.filter_map(|k| {
+        if let ModeKernels::F3(k) = k {
+            Some(k)
+        } else {
+            None
+        }
+    });
     let kernel = all.next().expect("in one mode all are free");
     let end = |stretch: &Stretch| {
         let free = modes[stretch.mode].free;
         let held = std::array::from_fn(|i| !free.contains(&i));
-        let mut system = Whole { all: Reduced::new(problem, stretch, kernel), held };
+        let mut system = Whole {
+            all: Reduced::new(problem, stretch, kernel),
+            held,
+        };
         integrate(problem, stretch, &[0, 1, 2], &mut system)
     };
     stretches.iter().map(end).collect()

@@ -52,8 +52,12 @@ fn run(scene: &str, changes: &[&str], rules: &str, landing: &str) -> Run {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let mut overrides: Vec<String> = changes.iter().map(|&c| c.into()).collect();
     overrides.extend([format!("rules={rules}"), format!("landing={landing}")]);
-    let scene = Scene::load(&folder.join(scene).with_extension("json"), &overrides, MODELS)
-        .unwrap_or_else(|errors| panic!("{errors}"));
+    let scene = Scene::load(
+        &folder.join(scene).with_extension("json"),
+        &overrides,
+        MODELS,
+    )
+    .unwrap_or_else(|errors| panic!("{errors}"));
     let run = simulate(&scene.problem, &mut Silent).expect("the initial state fits a mode");
     assert_eq!(run.failure, None);
     run
@@ -62,7 +66,10 @@ fn run(scene: &str, changes: &[&str], rules: &str, landing: &str) -> Run {
 fn row(run: &Run) -> String {
     let values = |name: &str| {
         let columns = &run.trajectory.columns;
-        let i = columns.iter().position(|c| c.name == name).expect("a column of the model");
+        let i = columns
+            .iter()
+            .position(|c| c.name == name)
+            .expect("a column of the model");
         let rows = run.trajectory.values.chunks(columns.len());
         rows.map(move |row| 1e3 * row[i])
     };
@@ -70,14 +77,20 @@ fn row(run: &Run) -> String {
         .filter(|e| e.transition == "landing")
         .map(|e| e.energy.expect("a landing is an impact").lost)
         .collect();
-    let gain = landings.iter().fold(0.0, |most, lost| f64::max(most, -lost));
+    let gain = landings
+        .iter()
+        .fold(0.0, |most, lost| f64::max(most, -lost));
     let peak = values("theta").fold(0.0, f64::max);
     format!(
         "{:+.3} | {:+.2} … {:+.2} | {} | {} | {:.4} | {:.3}",
         values("x").last().expect("a run has samples"),
         values("x").fold(0.0, f64::min),
         values("x").fold(0.0, f64::max),
-        if peak == 0.0 { "0".into() } else { format!("{peak:.3}") },
+        if peak == 0.0 {
+            "0".into()
+        } else {
+            format!("{peak:.3}")
+        },
         landings.len(),
         landings.iter().sum::<f64>(),
         1e3 * gain,

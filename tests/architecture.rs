@@ -16,11 +16,17 @@ fn code() -> impl Iterator<Item = &'static str> {
 fn is_path(code: &str) -> bool {
     let endings = [".rs", ".py", ".md", ".json", ".toml", ".lock"];
     let looks_like_one = code.contains('/') || endings.iter().any(|e| code.ends_with(e));
-    looks_like_one && code.chars().all(|c| c.is_ascii_alphanumeric() || "._-/".contains(c))
+    looks_like_one
+        && code
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "._-/".contains(c))
 }
 
 fn paths() -> BTreeSet<&'static str> {
-    code().filter(|c| is_path(c)).map(|c| c.trim_end_matches('/')).collect()
+    code()
+        .filter(|c| is_path(c))
+        .map(|c| c.trim_end_matches('/'))
+        .collect()
 }
 
 fn root() -> &'static Path {
@@ -43,19 +49,31 @@ fn every_path_it_names_exists() {
     let named = paths();
     assert!(named.len() > 30, "the paths are recognised: {named:?}");
     let missing: Vec<_> = named.iter().filter(|p| !root().join(p).exists()).collect();
-    assert!(missing.is_empty(), "ARCHITECTURE.md names what does not exist: {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "ARCHITECTURE.md names what does not exist: {missing:?}"
+    );
 }
 
 #[test]
 fn every_folder_and_every_module_is_named() {
     let named = paths();
-    let folders = contents("").into_iter().filter(|name| root().join(name).is_dir());
-    let modules = contents("src").into_iter().map(|name| format!("src/{name}"));
-    let parts = contents("src/hybrid").into_iter().map(|name| format!("src/hybrid/{name}"));
+    let folders = contents("")
+        .into_iter()
+        .filter(|name| root().join(name).is_dir());
+    let modules = contents("src")
+        .into_iter()
+        .map(|name| format!("src/{name}"));
+    let parts = contents("src/hybrid")
+        .into_iter()
+        .map(|name| format!("src/hybrid/{name}"));
     let missing: Vec<_> = folders
         .chain(modules)
         .chain(parts)
         .filter(|path| !named.contains(path.as_str()))
         .collect();
-    assert!(missing.is_empty(), "ARCHITECTURE.md does not name {missing:?}");
+    assert!(
+        missing.is_empty(),
+        "ARCHITECTURE.md does not name {missing:?}"
+    );
 }
