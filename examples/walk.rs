@@ -83,7 +83,7 @@ fn row(run: &Run) -> String {
     let peak = values("theta").fold(0.0, f64::max);
     format!(
         "{:+.3} | {:+.2} … {:+.2} | {} | {} | {:.4} | {:.3}",
-        values("x").last().expect("a run has samples"),
+        values("x").next_back().expect("a run has samples"),
         values("x").fold(0.0, f64::min),
         values("x").fold(0.0, f64::max),
         if peak == 0.0 {
