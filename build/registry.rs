@@ -39,6 +39,7 @@ fn text(models: &[Generated]) -> String {
         let _ = write!(
             text,
             "/// The model `{folder}`, as generated.\n\
+             #[allow(clippy::approx_constant)] // numbers are those of the model file\n\
              pub mod {name} {{\n\
              use super::*;\n\
              {fragment}\n\

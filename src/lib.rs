@@ -2,12 +2,45 @@
 //! derived from their energies at build time.
 //!
 //! energies → derivation → C → [`kernel`] → [`integrate`] → [`hybrid`] (events) → [`record`]
+//!
+//! A ball that bounces infinitely often comes to rest at a known time:
+//!
+//! ```
+//! use dalembert::hybrid::{Problem, simulate};
+//! use dalembert::kernel::MODELS;
+//! use dalembert::record::Silent;
+//!
+//! let model = MODELS.iter().find(|m| m.name == "bouncing_ball").expect("it is in models/");
+//! let mut problem = Problem::new(model);
+//! problem.set_parameter("e", 0.5)?;
+//! problem.set_initial("h", 1.0)?;
+//! problem.end.time = 2.0;
+//! let run = simulate(&problem, &mut Silent)?;
+//!
+//! let rest = run.events.iter().find(|e| e.transition == "rest").expect("it comes to rest");
+//! let exact = (2.0f64 / 9.81).sqrt() * (1.0 + 0.5) / (1.0 - 0.5);
+//! assert!((rest.t / exact - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`scene::Scene::load`] makes a [`hybrid::Problem`] of a JSON file, [`record::Run::write`] makes
+//! tables and plots of the result.
+
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
 
 pub mod cli;
 pub mod hybrid;
 pub mod input;
 pub mod integrate;
+// The calls into the generated C.
+#[allow(unsafe_code)]
 pub mod kernel;
 pub mod model;
 pub mod record;
 pub mod scene;
+
+/// Compiles and runs the examples of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

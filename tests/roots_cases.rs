@@ -1,4 +1,5 @@
 //! Location of events: cases with exact answers, each named for what it guards.
+#![allow(clippy::excessive_precision)] // references keep the digits they were computed with
 
 use dalembert::hybrid::roots::{Crossing, Kind, Polynomial, Search, Watch, earliest, search};
 use std::cell::Cell;

@@ -56,7 +56,8 @@ impl Comparison {
                 |run: &Run| Some(run.events.iter().filter(|e| e.transition == name).count() as f64);
             measures.push(self.measure(&format!("{name} count"), "1", count));
         }
-        let energies: [(&str, fn(&Run) -> f64); 5] = [
+        type Energy = fn(&Run) -> f64;
+        let energies: [(&str, Energy); 5] = [
             ("energy initial", |run| run.energy.initial),
             ("input work", |run| run.energy.input_work),
             ("dissipated", |run| run.energy.dissipated),

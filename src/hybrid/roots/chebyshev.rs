@@ -136,7 +136,8 @@ impl Interpolant {
             }
         }
         quotients[0] = 0.0;
-        for (j, &quotient) in quotients.clone()[..NODES]
+        let others = quotients;
+        for (j, &quotient) in others[..NODES]
             .iter()
             .step_by(DEGREE / degree)
             .enumerate()

@@ -46,9 +46,9 @@ fn change() -> impl Strategy<Value = Change> {
         "\u{b}",
     ]);
     prop_oneof![
-        (place.clone(), length.clone()).prop_map(|(at, n)| Change::Delete(at, n)),
-        (place.clone(), length).prop_map(|(at, n)| Change::Duplicate(at, n)),
-        (place.clone(), any::<u8>()).prop_map(|(at, byte)| Change::Overwrite(at, byte)),
+        (place, length.clone()).prop_map(|(at, n)| Change::Delete(at, n)),
+        (place, length).prop_map(|(at, n)| Change::Duplicate(at, n)),
+        (place, any::<u8>()).prop_map(|(at, byte)| Change::Overwrite(at, byte)),
         (place, piece).prop_map(|(at, piece)| Change::Insert(at, piece.to_owned())),
     ]
 }

@@ -1,0 +1,38 @@
+"""The model in docs/models.md is a model, and has the reactions that the page says."""
+
+import pathlib
+import re
+import tempfile
+import unittest
+
+import casadi as ca
+
+from codegen import derive, generate
+
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "models.md"
+
+
+class Documentation(unittest.TestCase):
+
+    def test_the_complete_model_generates_and_holds_the_block(self):
+        source = re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL).group(1)
+        with tempfile.TemporaryDirectory() as folder:
+            model_folder = pathlib.Path(folder) / "slope_block"
+            model_folder.mkdir()
+            (model_folder / "model.py").write_text(source, encoding="utf-8")
+            self.assertIn("slope_block.c", generate.generate(str(model_folder)))
+            model, = generate.load(str(model_folder))
+        held = ca.SX.sym("held", len(model.coordinates))
+        sticks = derive.ModeEquations(model, model.modes[0], derive.residual_from_bodies(model), held)
+        values = {p.name: p.extra["default"] for p in model.parameters}
+        values["force"] = 0.7
+        reactions = ca.vertcat(*[reaction for _, reaction in sticks.reactions])
+        symbols = ca.symvar(reactions)
+        found = ca.Function("reactions", symbols, [reactions])(*[values.get(s.name(), 0.0) for s in symbols])
+        m, g, beta = values["m"], values["g"], values["beta"]
+        self.assertAlmostEqual(float(found[0]), m * g * float(ca.sin(beta)) - 0.7, places=12)
+        self.assertAlmostEqual(float(found[1]), m * g * float(ca.cos(beta)), places=12)
+
+
+if __name__ == "__main__":
+    unittest.main()
