@@ -141,7 +141,8 @@ fn check_equations<const F: usize>(
     let r = residual(kernel, point);
     let system = kernel.system(&point.context, &point.q, &point.v);
     let sizes = kernel.magnitude(&point.context, point.at());
-    let rounding = sizes.amax() * f64::EPSILON;
+    // Two orders of evaluation, and terms that are products of a few factors.
+    let rounding = 8.0 * sizes.amax() * f64::EPSILON;
     let linear = system.mass * point.a + system.load;
     assert!(
         (linear - r).amax() <= rounding,
@@ -239,7 +240,7 @@ fn check_energies<const F: usize>(
     let mut motion = point.later(0.0);
     motion.a = solve(&system.mass, &-system.load, &SVector::repeat(1.0)).expect("regular");
     motion.jerk.fill(0.0);
-    let stored = |t: f64| SVector::from([energy(kernel, &motion.later(t)).iter().sum()]);
+    let stored = |t: f64| SVector::from([energy(kernel, &motion.later(t)).iter().sum::<f64>()]);
     let [dissipated, input] = kernel.powers(&motion.context, motion.at());
     let exact = derivative(stored, 1e-4 / (1.0 + motion.a.amax()));
     let size = stored(0.0).amax() * 1e3 + dissipated.abs() + input.abs();

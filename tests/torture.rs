@@ -2,7 +2,7 @@
 
 mod common;
 use common::*;
-use dalembert::hybrid::Problem;
+use dalembert::hybrid::{Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Table};
 use dalembert::record::Run;
 use serde_json::Value;
@@ -41,8 +41,26 @@ fn grazing_impacts_are_found() {
         let item = item(name);
         let mut problem = slot(1.0, 0.5, 0.0, 1.0 + excess);
         problem.set_parameter("k", 1.0).unwrap();
-        tighten(&mut problem, 1e-2);
         problem.end.time = 2.0;
+        for size in [1e-2, 1e-3, 1e-4, 1e-6] {
+            for omega in [1e-3f64, 200.0, 400.0, 800.0, 1600.0, 3200.0] {
+                tighten(&mut problem, size);
+                problem
+                    .set_input(
+                        "force",
+                        Function::from(dalembert::input::Sine::new(0.0, omega, 0.0)),
+                    )
+                    .unwrap();
+                let run = simulate(&problem, &mut dalembert::record::Silent).unwrap();
+                let impact = &run.events[0];
+                println!(
+                    "{size} {omega} steps {} {name}: {:e} of {:e}",
+                    run.solver.steps,
+                    impact.t - number(&item["t_impact"]),
+                    1e-15 / (2.0 * excess).sqrt()
+                );
+            }
+        }
         let run = run(&problem);
         let impact = &run.events[0];
         assert_eq!(impact.transition, "impact");
