@@ -200,7 +200,7 @@ fn check_guards<const F: usize>(what: &str, kernel: &ModeKernel<F>, mode: &Mode,
             SVector::from([kernel.guard(&point.context, &guard.kernel, point.at())])
         };
         let rate = kernel.guard_rate(&point.context, &guard.kernel, point.at(), &point.jerk);
-        let exact = derivative(value, 1e-3);
+        let exact = derivative(value, 2e-4);
         let size = value(0.0).amax().max(exact.amax());
         close(
             &format!("{what}: rate of {}", guard.name),
