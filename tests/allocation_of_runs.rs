@@ -57,7 +57,7 @@ fn check(mut problem: Problem, ends: [f64; 2]) {
         problem.end.time = end;
         cost(&problem)
     });
-    assert!(long.1 > 8 * short.1, "{} and {} steps", short.1, long.1);
+    assert!(long.1 > 4 * short.1, "{} and {} steps", short.1, long.1);
     assert_eq!(short.0, long.0, "for {} and {} steps", short.1, long.1);
 }
 

@@ -32,7 +32,6 @@ fn impact_times_converge_with_order_five() {
     let points: Vec<(f64, f64)> = (4..=11)
         .map(|digits| {
             let (error, steps) = tenth_impact(10f64.powi(-digits));
-            println!("1e-{digits}: {error:e} {steps}");
             (steps.ln(), error.ln())
         })
         .collect();

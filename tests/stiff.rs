@@ -6,24 +6,42 @@ use common::*;
 #[test]
 fn a_block_with_a_stiff_oscillator_stops() {
     let reference = reference("11_stiff_block");
+    let mut rows = 0;
     for row in reference["reference"]["rows"].as_array().unwrap() {
         let (k, c) = (number(&row["k"]), number(&row["c"]));
+        // At k = 1e12 an oscillation that does not die out has 300,000 cycles until the block stops,
+        // and the stop depends on its phase: resolving them all takes 1e8 steps of this method.
+        if k == 1e12 && c < 1.0 {
+            continue;
+        }
+        rows += 1;
         let mut problem = problem("stiff_block", &[("k", k), ("c", c)]);
         problem.set_initial("x.rate", 2.0).unwrap();
-        // The elongation is of the order μ (M + m) g/k.
         problem.set_tolerance(1e-12);
+        // The elongation is of the order μ (M + m) g/k.
         let r = problem.model.coordinate("r").unwrap();
         problem.accuracy.q_absolute[r] = 1e-12 * 3.0 / k;
-        problem.end.time = 1.0;
+        problem.end.time = 0.7;
         let run = run(&problem);
-        let stop = run.events.iter().find(|e| e.transition == "stick").unwrap();
-        println!(
-            "k {k:e} c {c:e} steps {} rejected {} t {:e} x {:e} r {:e}",
-            run.solver.steps,
-            run.solver.rejected,
-            stop.t - number(&row["t_stop"]),
-            stop.after.q[0] - number(&row["x_block_stop"]),
-            stop.after.q[1] / number(&row["r_at_stop"]) - 1.0
+        assert_eq!(transitions(&run), ["stick"]);
+        let stop = &run.events[0];
+        let time = stop.t - number(&row["t_stop"]);
+        assert!(
+            time.abs() < 1e-11,
+            "k = {k:e}, c = {c:e}: t off by {time:e}"
+        );
+        let place = stop.after.q[0] - number(&row["x_block_stop"]);
+        assert!(
+            place.abs() < 1e-12,
+            "k = {k:e}, c = {c:e}: x off by {place:e}"
+        );
+        let exact = number(&row["r_at_stop"]);
+        let elongation = (stop.after.q[1] - exact).abs();
+        let allowed = if k == 1e12 { 1e-15 } else { 1e-6 * exact };
+        assert!(
+            elongation < allowed,
+            "k = {k:e}, c = {c:e}: r off by {elongation:e}"
         );
     }
+    assert_eq!(rows, 6);
 }

@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use dalembert::hybrid::Problem;
-use dalembert::input::{Function, Interpolation, Outside, Table};
+use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::record::Run;
 use serde_json::Value;
 
@@ -41,18 +41,18 @@ fn grazing_impacts_are_found() {
         let item = item(name);
         let mut problem = slot(1.0, 0.5, 0.0, 1.0 + excess);
         problem.set_parameter("k", 1.0).unwrap();
-        tighten(&mut problem, 1e-2);
         problem.end.time = 2.0;
+        tighten(&mut problem, 1e-2);
+        // The tightest tolerance leaves three roundings of x. Inputs limit the steps: one without
+        // amplitude, but of high frequency, makes them shorter than the tolerance asks for.
+        let nothing = Function::from(Sine::new(0.0, 1000.0, 0.0));
+        problem.set_input("force", nothing).unwrap();
         let run = run(&problem);
         let impact = &run.events[0];
         assert_eq!(impact.transition, "impact");
         // A relative error u of the state moves the impact by u ÷ speed: √(2 excess).
         let allowed = 1e-15 / (2.0 * excess).sqrt();
         let error = impact.t - number(&item["t_impact"]);
-        println!(
-            "{name}: {error:e} {allowed:e} {:e}",
-            impact.before.v[0] / number(&item["v_minus"]) - 1.0
-        );
         assert!(
             error.abs() < allowed,
             "{name}: {error:e}, allowed {allowed:e}"
@@ -205,11 +205,6 @@ fn stick_and_slip_on_a_belt_repeat() {
     let (slip, period) = (number(&item["slip_duration"]), number(&item["period"]));
     for k in 0..4 {
         assert!((sticks[k] - slips[k] - slip).abs() < 1e-12, "slip {k}");
-        println!(
-            "{k} slip {:e} period {:e}",
-            sticks[k] - slips[k] - slip,
-            slips[k + 1] - slips[k] - period
-        );
         assert!(
             (slips[k + 1] - slips[k] - period).abs() < 1e-12,
             "period {k}"
@@ -278,14 +273,6 @@ fn simultaneous_contacts_are_recorded_at_one_instant() {
         problem.end.time = 2.0;
         problem.set_tolerance(TIGHTEST);
         let run = run(&problem);
-        println!(
-            "e = {e}: {:?} {:?}",
-            run.events
-                .iter()
-                .map(|e| (e.t, e.transition))
-                .collect::<Vec<_>>(),
-            run.end.state
-        );
         assert!(run.events.iter().any(|e| e.transition == "left_contact"));
         assert!(run.events.iter().any(|e| e.transition == "right_contact"));
         assert!(run.events.iter().all(|e| relative(e.t, 1.0) < 1e-14));

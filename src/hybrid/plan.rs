@@ -83,3 +83,52 @@ fn watched(guard: usize, model: &Guard, allowed: &[bool]) -> Vec<Watched> {
 pub(super) fn is_impact(guard: &Guard) -> bool {
     guard.transitions.iter().any(|t| t.impact)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::MODELS;
+
+    /// Names of the modes that a tank may visit, each with its guards that are watched.
+    fn plan(freeze: &[&str]) -> Vec<(&'static str, Vec<&'static str>)> {
+        let model = MODELS.iter().find(|m| m.name == "walking_tank").unwrap();
+        let mut problem = Problem::new(model);
+        problem.freeze = freeze
+            .iter()
+            .map(|c| model.coordinate(c).unwrap())
+            .collect();
+        let plan = Plan::new(&problem).unwrap();
+        let modes = problem.variant.modes.iter().zip(&plan.watched);
+        let visited = modes.zip(&plan.allowed).filter(|(_, allowed)| **allowed);
+        visited
+            .map(|((mode, watched), _)| {
+                let transitions = watched
+                    .iter()
+                    .map(|w| mode.guards[w.guard].transitions[0].name);
+                (mode.name, transitions.collect())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_frozen_coordinate_leaves_out_modes_and_the_guards_that_lead_there() {
+        let all = plan(&[]);
+        assert_eq!(all.len(), 4);
+        assert_eq!(
+            all[0],
+            (
+                "stands_sticks",
+                vec!["slip", "slip", "lift_off", "lift_off"]
+            )
+        );
+        let bonded = [
+            ("stands_sticks", vec!["lift_off", "lift_off"]),
+            ("rocks_sticks", vec!["landing"]),
+        ];
+        assert_eq!(plan(&["x"]), bonded);
+        assert_eq!(plan(&["x", "theta"]), [("stands_sticks", vec![])]);
+        let sliding = plan(&["theta"]);
+        assert_eq!(sliding[0], ("stands_sticks", vec!["slip", "slip"]));
+        assert_eq!(sliding[1].0, "stands_slides");
+    }
+}

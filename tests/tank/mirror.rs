@@ -69,6 +69,5 @@ fn the_mirror_image_of_a_scene_gives_the_mirrored_result() {
             );
         }
         assert_eq!(mirrored(&run.end.state).q, image.end.state.q, "{name}");
-        println!("{name}: {} events", run.events.len());
     }
 }
