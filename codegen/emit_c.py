@@ -16,6 +16,7 @@ CONTEXT_FIELDS = ("u", "u_dot", "d", "h", "c", "j")
 
 HEADER = """\
 #include <math.h>
+#include <stddef.h>
 struct dalembert_context { const double %s; };
 """ % ", ".join(f"*{name}" for name in CONTEXT_FIELDS)
 
@@ -51,12 +52,12 @@ def body(arguments, output):
             lines.append(f"  out[{into[1]}] = {work[source[0]]};")
             continue
         if op == ca.OP_CONST:
-            work[into[0]] = _literal(function.instruction_constant(k))
+            work[into[0]] = literal(function.instruction_constant(k))
             continue
         if op == ca.OP_INPUT:
             text = place[symbols[source[0]].element_hash()]
         else:
-            text = _operation(op, [work[i] for i in source])
+            text = operation(op, [work[i] for i in source])
             operations += 1
         lines.append(f"  const double t{fresh} = {text};")
         work[into[0]] = f"t{fresh}"
@@ -64,23 +65,24 @@ def body(arguments, output):
     return lines, operations
 
 
-def _literal(value):
+def literal(value):
     """A double as C text that reads back to the same bits."""
     return repr(float(value)) if value == value and abs(value) != float("inf") else (
         "NAN" if value != value else ("INFINITY" if value > 0 else "-INFINITY"))
 
 
-def _operation(op, arguments):
+def operation(op, arguments):
+    """A CasADi operation as C text."""
     if op in _BINARY:
-        return f"{arguments[0]} {_BINARY[op]} {_parenthesized(arguments[1])}"
+        return f"{arguments[0]} {_BINARY[op]} {parenthesized(arguments[1])}"
     if op == ca.OP_NEG:
-        return f"-{_parenthesized(arguments[0])}"
+        return f"-{parenthesized(arguments[0])}"
     if op == ca.OP_SQ:
         return f"{arguments[0]} * {arguments[0]}"
     if op == ca.OP_TWICE:
         return f"2.0 * {arguments[0]}"
     if op == ca.OP_INV:
-        return f"1.0 / {_parenthesized(arguments[0])}"
+        return f"1.0 / {parenthesized(arguments[0])}"
     if op == ca.OP_ASSIGN:
         return arguments[0]
     if op in _CALLS:
@@ -88,8 +90,13 @@ def _operation(op, arguments):
     raise ValueError(f"CasADi operation {op} cannot be emitted as C")
 
 
-def _parenthesized(text):
+def parenthesized(text):
+    """An operand, in parentheses if it begins with a sign."""
     return f"({text})" if text.startswith("-") else text
+
+
+_SIGNATURE = ("const double *q, const double *v, const double *a,\n"
+              "    const struct dalembert_context *x, double *out")
 
 
 class Source:
@@ -102,23 +109,21 @@ class Source:
         """Adds a function and returns the name under which it can be called."""
         lines, operations = body(arguments, output)
         text = "\n".join(lines)
-        if text in self.by_body:
-            known = self.by_body[text]
-            self.operations[name] = operations
-            return known
         unused = "".join(f"  (void){array};\n" for array in ("q", "v", "a", "x"))
         arrays = "".join(
             f"  const double *const {field} = x->{field};\n"
             for field in CONTEXT_FIELDS if f" {field}[" in text or f"({field}[" in text
         )
-        self.functions.append(
-            f"void {name}(const double *q, const double *v, const double *a,\n"
-            f"    const struct dalembert_context *x, double *out) {{\n"
-            f"{unused}{arrays}{text}\n}}\n"
-        )
-        self.by_body[text] = name
         self.operations[name] = operations
-        return name
+        return self.add_text(name, _SIGNATURE, unused + arrays + text)
+
+    def add_text(self, name, signature, text):
+        """Adds a function with the given C parameters and body; returns its name, or that of an
+        identical one."""
+        known = self.by_body.setdefault((signature, text), name)
+        if known == name:
+            self.functions.append(f"void {name}({signature}) {{\n{text}\n}}\n")
+        return known
 
     def text(self, title):
         """The C file."""

@@ -20,12 +20,17 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     """The Rust fragment of a model."""
     model = variants[0].model
     signals = sum(len(i.signals) for i in model.inputs)
-    externs = sorted({f.symbol for v in variants for f in v.functions.values()} | {constants_symbol})
+    functions = [(slot, f) for v in variants for slot, f in v.functions.items()]
+    externs = sorted({f.symbol for slot, f in functions if slot[1] != "series"} | {constants_symbol})
+    series = [f.symbol for slot, f in functions if slot[1] == "series" and f.symbol]
     lines = ["use crate::model::*;", "", 'unsafe extern "C" {']
     lines += [
         f"    fn {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
         for e in externs
     ]
+    arrays = "q: *const f64, v: *const f64, a: *const f64, u: *const f64, x: *const RawContext, w: *mut f64, out: *mut f64"
+    lines += [f"    fn {e}({arrays});" for e in sorted({start for start, _ in series})]
+    lines += [f"    fn {e}(k: usize, {arrays});" for e in sorted({next for _, next in series})]
     lines += ["}", "", "static DIMENSIONS: Dimensions = Dimensions {",
               f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
               f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
@@ -177,6 +182,8 @@ def _mode(variant, i, equations):
     for what in _MODE_FUNCTIONS:
         yield f"{pad}        {what}: {functions[(what,)].symbol},"
     yield f"{pad}        requirements: ({functions[('requirements',)].symbol}, {len(mode.requirements)}),"
+    series = functions[("series",)]
+    yield f"{pad}        series: {_option(series.symbol and series, _series)},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
     yield f"{pad}    }}),"
     counts = ", ".join(
@@ -184,6 +191,11 @@ def _mode(variant, i, equations):
         for what, f in functions.items())
     yield f"{pad}    operations: &[{counts}],"
     yield f"{pad}}},"
+
+
+def _series(function):
+    (start, next), (lead, row) = function.symbol, function.workspace
+    return f"SeriesKernel {{ start: {start}, next: {next}, lead: {lead}, row: {row} }}"
 
 
 def _guard_name(transitions):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import derive, emit_rust, graph, units
+from . import derive, emit_rust, emit_series, graph, units
 from .emit_c import Source
 from .errors import ModelError, error_location
 from .model import build
@@ -23,6 +23,7 @@ class Function:
     slot: tuple = ()
     symbol: str = ""
     operations: int = 0
+    workspace: tuple = ()
 
 
 @dataclass
@@ -65,8 +66,11 @@ def generate(folder, for_tests=False):
     parameters = ca.vertcat(*[p.symbol for p in models[0].parameters])
     constants_symbol = source.add(f"{prefix}_constants", [("q", parameters)], constants.values)
     for variant in variants:
-        for function in variant.functions.values():
+        for slot, function in variant.functions.items():
             equations = function.equations
+            if slot[1] == "series":
+                _emit_series(source, prefix, variant, function, constants)
+                continue
             arguments = [
                 ("q", equations.q), ("v", equations.v), ("a", equations.a), ("j", equations.j),
                 ("u", _signals(variant.model)), ("u_dot", _signal_rates(variant.model)),
@@ -88,6 +92,25 @@ def generate(folder, for_tests=False):
         },
     }
     return {f"{name}.c": c_text, "model.rs": rust_text, "manifest.json": json.dumps(manifest, indent=1) + "\n"}
+
+
+def _emit_series(source, prefix, variant, function, constants):
+    """Emits the Taylor series of a mode, if there is a recurrence for every operation."""
+    equations = function.equations
+    drifting = [i for i, c in enumerate(variant.model.coordinates) if c.name in equations.mode.drift]
+    first_rate = len(equations.free) * (len(equations.free) + 1)
+    try:
+        series = emit_series.Equations(
+            len(equations.free), function.output,
+            moving=[("q", equations.q), ("v", equations.v), ("u", _signals(variant.model))],
+            constant=[("d", _discretes(variant.model)), ("c", constants.symbols)],
+            held=equations.held, drifting={i: first_rate + n for n, i in enumerate(drifting)})
+    except emit_series.NotAnalytic:
+        function.symbol = None
+        return
+    function.symbol = series.add_to(source, f"{prefix}_{function.name}")
+    function.workspace = (series.lead, series.row)
+    function.operations = len(series.next)
 
 
 def _check_same_declarations(models):
@@ -164,6 +187,7 @@ def _mode_functions(variant, equations, slot, prefix):
         name = equations.mode.name
         _check_smooth(equations.r, f"equations of mode `{name}`", model.file, [p.symbol for p in model.parameters])
     mass, load = equations.system()
+    system = graph.without_idle(ca.vertcat(ca.vec(mass), load), ca.vertcat(equations.q, equations.v))
     jacobians = equations.jacobians()
     reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
     for i, reaction in equations.reactions:
@@ -172,7 +196,8 @@ def _mode_functions(variant, equations, slot, prefix):
     for what, output in (
         ("residual", equations.r),
         ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
-        ("system", ca.vertcat(ca.vec(mass), load)),
+        ("system", system),
+        ("series", ca.vertcat(system, _drift_rates(model, equations))),
         ("inertia", ca.vec(equations.inertia())),
         ("jerk_load", equations.jerk_load(signals, rates)),
         ("magnitude", equations.magnitude()),
@@ -184,6 +209,12 @@ def _mode_functions(variant, equations, slot, prefix):
         ("held_rates", equations.freeze(equations.rates_of_held)),
     ):
         _add(variant, prefix + what, output, equations, slot + (what,))
+
+
+def _drift_rates(model, equations):
+    """Rates of the frozen coordinates that drift."""
+    drift = equations.mode.drift
+    return equations.freeze(ca.vertcat(*[ca.SX(drift[c.name]) for c in model.coordinates if c.name in drift]))
 
 
 def _check_smooth(expression, what, location, parameters):

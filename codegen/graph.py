@@ -1,5 +1,7 @@
 """Work on CasADi expression graphs: smoothness, shape of the generated code, additive terms."""
 
+import random
+
 import casadi as ca
 
 _NON_SMOOTH = {
@@ -51,6 +53,41 @@ def additive_terms(expression):
         elif not node.is_zero():
             terms.append(node if sign > 0 else -node)
     return terms
+
+
+def without_idle(column, symbols):
+    """The same column with each entry rid of the `symbols` on which it does not depend, although it
+    contains them: sin² + cos², or velocities whose terms cancel.
+
+    An entry does not depend on a symbol if its derivative vanishes at several points drawn at
+    random, all numbers of the order of 1, but for rounding: then it vanishes everywhere, since the
+    expressions are analytic. What is not defined at a point is left as it is.
+    """
+    draw = random.Random(0)
+    known = ca.symvar(column)
+    idle = [s for s in ca.vertsplit(symbols) if s.element_hash() in {k.element_hash() for k in known}]
+    if not idle:
+        return column
+    column = ca.densify(column)
+    old = ca.vertcat(*idle)
+    value = ca.Function("value", known, [column])
+    derivative = ca.Function("derivative", known, [ca.densify(ca.jacobian(column, old))])
+    depends = [[False] * len(idle) for _ in range(column.numel())]
+    for _ in range(4):
+        point = [draw.uniform(0.5, 1.5) for _ in known]
+        sizes, slopes = value(*point), derivative(*point)
+        for i, row in enumerate(depends):
+            for j in range(len(idle)):
+                # A NaN counts as dependence.
+                if not abs(float(slopes[i, j])) <= 1e-12 * (1.0 + abs(float(sizes[i]))):
+                    row[j] = True
+    rows = []
+    for entry, row in zip(ca.vertsplit(column), depends):
+        gone = [s for s, dependent in zip(idle, row) if not dependent]
+        if gone:
+            entry = ca.substitute(entry, ca.vertcat(*gone), ca.SX.zeros(len(gone)))
+        rows.append(entry)
+    return ca.vertcat(*rows)
 
 
 class _Value:

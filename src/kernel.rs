@@ -4,6 +4,7 @@
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
+use crate::integrate::{ORDERS, Series};
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
 
@@ -21,6 +22,28 @@ struct RawContext {
 
 /// A generated C function.
 type Raw = unsafe extern "C" fn(*const f64, *const f64, *const f64, *const RawContext, *mut f64);
+
+/// Generated C functions that expand the motion in time: coefficients of order 0, and of order k.
+/// The arrays q, v, a and u hold one row an order.
+type RawStart = unsafe extern "C" fn(
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const RawContext,
+    *mut f64,
+    *mut f64,
+);
+type RawNext = unsafe extern "C" fn(
+    usize,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const f64,
+    *const RawContext,
+    *mut f64,
+    *mut f64,
+);
 
 /// Numbers of entries of the context arrays of a model; its address identifies the model.
 #[derive(Debug)]
@@ -51,7 +74,11 @@ pub struct Context {
     pub discrete: Box<[f64]>,
     /// All coordinates; the generated functions read those that the mode holds.
     pub held: Box<[f64]>,
+    /// Taylor coefficients of the signals, one row an order.
+    pub signal_series: Box<[f64]>,
     constants: Box<[f64]>,
+    /// What the series functions carry from one order to the next.
+    workspace: Box<[f64]>,
 }
 
 impl Context {
@@ -61,13 +88,17 @@ impl Context {
     /// If the number of parameters is not the model's.
     pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
         let dimensions = model.constants.dimensions;
+        let modes = model.variants.iter().flat_map(|variant| variant.modes);
+        let workspace = modes.map(|mode| with_kernel!(&mode.kernels, k => k.workspace()));
         Context {
             dimensions,
             signals: vec![0.0; dimensions.signals].into(),
             signal_rates: vec![0.0; dimensions.signals].into(),
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
+            signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             constants: model.constants.evaluate(parameters),
+            workspace: vec![0.0; workspace.max().unwrap_or(0)].into(),
         }
     }
 
@@ -84,24 +115,34 @@ impl Context {
         [q, v, a, j]: [*const f64; 4],
         out: *mut f64,
     ) {
+        let raw = self.raw(dimensions, j);
+        // SAFETY: the lengths of the context arrays were checked, the rest is the caller's.
+        unsafe { function(q, v, a, &raw, out) }
+    }
+
+    /// The context as C sees it.
+    ///
+    /// # Panics
+    /// If it was made for another model, or an array has lost its length.
+    #[inline(always)]
+    fn raw(&self, dimensions: &'static Dimensions, j: *const f64) -> RawContext {
         assert!(
             std::ptr::eq(self.dimensions, dimensions)
                 && self.signals.len() == dimensions.signals
                 && self.signal_rates.len() == dimensions.signals
+                && self.signal_series.len() == ORDERS * dimensions.signals
                 && self.discrete.len() == dimensions.discretes
                 && self.held.len() == dimensions.coordinates,
             "a context is used with the functions of the model it was made for"
         );
-        let raw = RawContext {
+        RawContext {
             u: self.signals.as_ptr(),
             u_dot: self.signal_rates.as_ptr(),
             d: self.discrete.as_ptr(),
             h: self.held.as_ptr(),
             c: self.constants.as_ptr(),
             j,
-        };
-        // SAFETY: the lengths of the context arrays were checked above, the rest is the caller's.
-        unsafe { function(q, v, a, &raw, out) }
+        }
     }
 }
 
@@ -183,7 +224,19 @@ pub struct ModeKernel<const F: usize> {
     powers: Raw,
     momenta: Raw,
     requirements: (Raw, usize),
+    series: Option<SeriesKernel>,
     held_rates: Raw,
+}
+
+/// The generated Taylor series of a mode.
+#[derive(Debug)]
+struct SeriesKernel {
+    start: RawStart,
+    next: RawNext,
+    /// Doubles of the workspace that do not grow with the order.
+    lead: usize,
+    /// Doubles of the workspace for each order.
+    row: usize,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -225,6 +278,79 @@ impl<const F: usize> ModeKernel<F> {
         let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
         unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
+        out
+    }
+
+    /// Whether the motion can be expanded in a Taylor series: not if an operation of its equations
+    /// has no recurrence.
+    pub fn is_analytic(&self) -> bool {
+        self.series.is_some()
+    }
+
+    fn workspace(&self) -> usize {
+        self.series.as_ref().map_or(0, |s| s.lead + s.row * ORDERS)
+    }
+
+    /// Begins a Taylor series: mass matrix and load at order 0 of q and v.
+    ///
+    /// # Panics
+    /// If the mode is not analytic.
+    #[inline]
+    pub fn series_start(&self, x: &mut Context, at: &Series<F>) -> LinearSystem<F> {
+        let series = self.series.as_ref().expect("the mode is analytic");
+        let mut out = LinearSystem {
+            mass: SMatrix::zeros(),
+            load: SVector::zeros(),
+        };
+        let raw = x.raw(self.dimensions, std::ptr::null());
+        assert!(x.workspace.len() >= self.workspace());
+        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        // SAFETY: F entries a row, all rows are there; F × F and F outputs, contiguous in a repr(C)
+        // struct; the workspace is as long as the generated tables say.
+        unsafe {
+            (series.start)(
+                q.cast(),
+                v.cast(),
+                a.cast(),
+                u,
+                &raw,
+                w,
+                (&raw mut out).cast(),
+            )
+        }
+        out
+    }
+
+    /// Goes on to order `k` of the series begun by [`Self::series_start`], for the same context and
+    /// the orders 1 … k − 1 in turn: with q and v known to order k, and a to order k − 1, gives
+    /// b_k + Σ_{j=1}^{k} M_j a_{k−j}, so that M_0 a_k is its negative.
+    ///
+    /// # Panics
+    /// If the mode is not analytic, or `k` is not in 1 … [`ORDERS`] − 1.
+    #[inline]
+    pub fn series_next(&self, x: &mut Context, k: usize, at: &Series<F>) -> SVector<f64, F> {
+        let series = self.series.as_ref().expect("the mode is analytic");
+        assert!((1..ORDERS).contains(&k));
+        let mut out = SVector::<f64, F>::zeros();
+        let raw = x.raw(self.dimensions, std::ptr::null());
+        assert!(x.workspace.len() >= self.workspace());
+        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        // SAFETY: F entries a row, and rows 0 … k are there; F outputs; the workspace is as long as
+        // the generated tables say.
+        unsafe {
+            (series.next)(
+                k,
+                q.cast(),
+                v.cast(),
+                a.cast(),
+                u,
+                &raw,
+                w,
+                out.as_mut_ptr(),
+            )
+        }
         out
     }
 

@@ -6,7 +6,7 @@ use super::guards::{self, Conditions};
 use super::locate::{Landing, land};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind, Search, Watch, earliest};
-use crate::integrate::{Radau, State};
+use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
 use crate::model::Mode;
 
@@ -58,21 +58,21 @@ impl Signs {
     }
 }
 
-/// Cuts the last step of `radau` at its first event. The shortened step is searched again, since it
+/// Cuts the last step at its first event. The shortened step is searched again, since it
 /// is a better solution than the dense output of the longer one.
-pub(super) fn cut<const F: usize>(
-    radau: &mut Radau<3, F>,
-    equations: &mut Equations<F>,
+pub(super) fn cut<'a, const F: usize>(
+    method: &mut impl OneStep<F, Equations<'a, F>>,
+    equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     mode: &'static Mode,
     watched: &[Watched],
     signs: &mut Signs,
 ) -> Result<Cut<F>, Reason> {
-    let start = radau.start().t;
+    let start = method.start().t;
     signs.from.fill(start);
     loop {
-        let dense = *radau.dense().expect("a step was made");
-        let to = radau.state().t;
+        let dense = method.dense().expect("a step was made");
+        let to = method.state().t;
         let Signs {
             watches,
             found,
@@ -84,7 +84,7 @@ pub(super) fn cut<const F: usize>(
             guards::search(
                 equations,
                 conditions,
-                &dense,
+                dense,
                 (guard, watched[i]),
                 window,
                 watch,
@@ -104,14 +104,14 @@ pub(super) fn cut<const F: usize>(
         }
         let is_event = crossing.kind != Kind::Pole
             && (!conditions.are_part_of(guard)
-                || both_violated(equations, conditions, &dense, guard, crossing));
+                || both_violated(equations, conditions, dense, guard, crossing));
         if !is_event {
             // The sign changes, but not through zero, or guard and condition are not both violated.
             watches[first] = Watch::Violated;
             from[first] = crossing.outside;
             continue;
         }
-        match land(radau, equations, conditions, guard, crossing)? {
+        match land(method, equations, conditions, guard, crossing)? {
             Landing::On { state, beyond } => {
                 return Ok(Cut::Event {
                     guard: index,
@@ -119,7 +119,7 @@ pub(super) fn cut<const F: usize>(
                     beyond,
                 });
             }
-            Landing::Short if radau.state().t == to => {
+            Landing::Short if method.state().t == to => {
                 // The end point itself, more accurate than the dense output, is not across.
                 found[first] = Search::quiet(Watch::Armed);
                 return Ok(Cut::Nothing);
@@ -133,7 +133,7 @@ pub(super) fn cut<const F: usize>(
 fn both_violated<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
-    dense: &crate::integrate::Dense<3, F>,
+    dense: &impl Motion<F>,
     guard: &crate::model::Guard,
     crossing: Crossing,
 ) -> bool {

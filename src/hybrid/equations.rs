@@ -2,7 +2,7 @@
 
 use super::instant::Instant;
 use crate::input::Signals;
-use crate::integrate::{Singular, System, solve};
+use crate::integrate::{Analytic, Series, Singular, System, solve};
 use crate::kernel::{Context, Free, ModeKernel};
 use nalgebra::{SMatrix, SVector};
 
@@ -32,9 +32,39 @@ impl Clock<'_> {
             self.signals
                 .evaluate_left(self.until.1, &mut context.signals);
         }
+        self.set_held(tau, context);
+    }
+
+    fn set_held(&self, tau: f64, context: &mut Context) {
         for ((h, q), rate) in context.held.iter_mut().zip(self.held).zip(self.drift) {
             *h = q + rate * tau;
         }
+    }
+
+    /// Absolute time from which on the inputs are the analytic functions that act just after local
+    /// time `tau`, and the local time until which they are.
+    ///
+    /// A knot belongs to the piece after it, even if its local time is rounded to an instant before.
+    fn piece(&self, tau: f64) -> (f64, f64) {
+        let mut t = self.start.plus(tau).seconds();
+        loop {
+            let knot = self.signals.next_knot(t);
+            let limit = Instant::new(knot).since(self.start);
+            if limit > tau || !knot.is_finite() {
+                return (t, limit);
+            }
+            t = knot;
+        }
+    }
+
+    /// Sets the Taylor coefficients of the signals about local time `tau`, and everything else as
+    /// `set` does.
+    fn expand(&self, tau: f64, orders: usize, context: &mut Context) {
+        let width = context.signals.len();
+        let rows = &mut context.signal_series[..orders * width];
+        self.signals.series(self.piece(tau).0, rows);
+        context.signals.copy_from_slice(&rows[..width]);
+        self.set_held(tau, context);
     }
 }
 
@@ -98,6 +128,11 @@ impl<'a, const F: usize> Equations<'a, F> {
 }
 
 impl<const F: usize> System<F> for Equations<'_, F> {
+    fn resolution(&self, t: f64) -> f64 {
+        let clock = &self.clock;
+        clock.signals.resolution(clock.start.plus(t).seconds())
+    }
+
     #[inline]
     fn residual(
         &mut self,
@@ -141,5 +176,23 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         let system = self.kernel.system(self.context, q, v);
         *a = solve(&system.mass, &-system.load, &self.scale)?;
         Ok(())
+    }
+}
+
+impl<const F: usize> Analytic<F> for Equations<'_, F> {
+    #[inline]
+    fn start(&mut self, t: f64, order: usize, series: &Series<F>) -> SMatrix<f64, F, F> {
+        self.clock.expand(t, order + 1, self.context);
+        self.set_for = t;
+        self.kernel.series_start(self.context, series).mass
+    }
+
+    #[inline]
+    fn next(&mut self, k: usize, series: &Series<F>) -> SVector<f64, F> {
+        self.kernel.series_next(self.context, k, series)
+    }
+
+    fn horizon(&self, t: f64) -> f64 {
+        self.clock.piece(t).1
     }
 }

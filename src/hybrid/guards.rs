@@ -3,14 +3,11 @@
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
 use super::roots::{self, Polynomial, Search, Watch};
-use crate::integrate::{Dense, System, solve};
+use crate::integrate::{Motion, ORDERS, System, solve};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
 use crate::model::{Guard, GuardShape, Transition, Variant};
 use nalgebra::SVector;
-
-/// Number of coefficients of a coordinate on the dense output of three stages.
-const COEFFICIENTS: usize = 6;
 
 /// What the conditions of transitions are evaluated with.
 pub(super) struct Conditions<'a> {
@@ -146,7 +143,7 @@ pub(super) fn value<const F: usize>(
 /// Motion at local time `tau` of a step, with accelerations from the equations where asked for.
 pub(super) fn motion<const F: usize>(
     equations: &mut Equations<F>,
-    dense: &Dense<3, F>,
+    dense: &impl Motion<F>,
     tau: f64,
     accelerations: bool,
 ) -> [SVector<f64, F>; 3] {
@@ -162,7 +159,7 @@ pub(super) fn motion<const F: usize>(
 pub(super) fn search<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
-    dense: &Dense<3, F>,
+    dense: &impl Motion<F>,
     (guard, watched): (&Guard, Watched),
     window: (f64, f64),
     watch: Watch,
@@ -208,34 +205,44 @@ pub(super) fn search<const F: usize>(
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
 fn search_linear<const F: usize>(
-    dense: &Dense<3, F>,
+    dense: &impl Motion<F>,
     index: usize,
     rate: bool,
     factor: f64,
     (from, to): (f64, f64),
     watch: Watch,
 ) -> Search {
-    let h = dense.length();
-    let coefficients = std::array::from_fn(|k| {
-        let coefficient = |power: usize| {
-            if power < COEFFICIENTS {
-                dense.coefficient(power)[index]
-            } else {
-                0.0
-            }
-        };
-        if rate {
-            factor * (k + 1) as f64 * coefficient(k + 1) / h
-        } else {
-            factor * coefficient(k)
-        }
-    });
-    let polynomial = Polynomial::<COEFFICIENTS> { coefficients };
-    let local = |tau: f64| ((tau - dense.start()) / h).clamp(0.0, 1.0);
-    let mut search = polynomial.search(local(from), local(to), watch, 0.0);
+    let mut coefficients = [0.0; ORDERS];
+    let count = dense.polynomial(index, rate, &mut coefficients);
+    let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
+    let window = (local(from), local(to));
+    let coefficients = &coefficients[..count];
+    // Work grows with the square of the room.
+    let mut search = match count {
+        0..=6 => search_polynomial::<6>(coefficients, factor, window, watch),
+        7..=10 => search_polynomial::<10>(coefficients, factor, window, watch),
+        11..=16 => search_polynomial::<16>(coefficients, factor, window, watch),
+        _ => search_polynomial::<ORDERS>(coefficients, factor, window, watch),
+    };
     if let Some(crossing) = &mut search.crossing {
-        crossing.inside = dense.start() + crossing.inside * h;
-        crossing.outside = (dense.start() + crossing.outside * h).min(to);
+        crossing.inside = dense.start() + crossing.inside * dense.length();
+        crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
     }
     search
+}
+
+/// Searches `factor` times the polynomial with the given coefficients, at most `N`.
+fn search_polynomial<const N: usize>(
+    coefficients: &[f64],
+    factor: f64,
+    (from, to): (f64, f64),
+    watch: Watch,
+) -> Search {
+    let mut polynomial = Polynomial::<N> {
+        coefficients: [0.0; N],
+    };
+    for (coefficient, given) in polynomial.coefficients.iter_mut().zip(coefficients) {
+        *coefficient = factor * given;
+    }
+    polynomial.search(from, to, watch, 0.0)
 }

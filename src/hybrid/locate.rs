@@ -9,7 +9,7 @@ use super::equations::Equations;
 use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::roots::{Crossing, Kind};
-use crate::integrate::{Radau, State, System};
+use crate::integrate::{OneStep, State, System};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape};
 use nalgebra::SVector;
@@ -31,23 +31,23 @@ pub(super) enum Landing<const F: usize> {
 /// leaves out is of the order of its cube, 2⁻⁵⁴ (cube root of the unit roundoff, rounded down).
 const TAYLOR: f64 = 3.8e-6;
 
-/// Retakes the last step of `radau` so that it ends at `crossing` of `guard`.
-pub(super) fn land<const F: usize>(
-    radau: &mut Radau<3, F>,
-    equations: &mut Equations<F>,
+/// Retakes the last step so that it ends at `crossing` of `guard`.
+pub(super) fn land<'a, const F: usize>(
+    method: &mut impl OneStep<F, Equations<'a, F>>,
+    equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: &Guard,
     crossing: Crossing,
 ) -> Result<Landing<F>, Reason> {
-    let start = radau.start().t;
-    let window = radau.state().t;
+    let start = method.start().t;
+    let window = method.state().t;
     let mut tau = crossing.outside;
     let mut correction_before = f64::INFINITY;
     loop {
-        if tau != radau.state().t {
-            radau.step_exactly(equations, tau - start)?;
+        if tau != method.state().t {
+            method.step_exactly(equations, tau - start)?;
         }
-        let end = *radau.state();
+        let end = *method.state();
         let value = value_at(equations, conditions, guard, &end);
         if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
             // There is no slope to follow: the place is as good as the dense output.

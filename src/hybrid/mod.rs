@@ -23,6 +23,6 @@ mod segment;
 mod simulation;
 
 pub use failure::Reason;
-pub use problem::{Accuracy, End, Initial, Problem, Record, Unknown};
+pub use problem::{Accuracy, End, Initial, Method, Problem, Record, Unknown};
 pub use resume::resume;
 pub use simulation::simulate;

@@ -25,6 +25,8 @@ pub struct Problem {
     pub end: End,
     /// Tolerances.
     pub accuracy: Accuracy,
+    /// Method of integration.
+    pub method: Method,
     /// What is recorded.
     pub record: Record,
 }
@@ -40,6 +42,17 @@ pub struct Initial {
     pub discrete: Vec<f64>,
     /// Mode; `None`: the mode with the fewest free coordinates that holds the state.
     pub mode: Option<usize>,
+}
+
+/// A method of integration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Radau IIA: implicit, for stiff and non-stiff equations.
+    #[default]
+    Radau,
+    /// Taylor series of the motion: the fastest for equations that are not stiff. Modes whose
+    /// equations cannot be expanded are left to Radau.
+    Taylor,
 }
 
 /// End of a run: whichever comes first.
@@ -117,6 +130,7 @@ impl Problem {
                 q_absolute: vec![0.0; n],
                 v_absolute: vec![0.0; n],
             },
+            method: Method::default(),
             record: Record {
                 every: Some(f64::INFINITY),
                 columns: Recorded {

@@ -5,9 +5,10 @@ use super::equations::{Clock, Equations};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
+use super::problem::Method;
 use super::samples::{Row, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
-use crate::integrate::{Counters, Radau, Tolerances};
+use crate::integrate::{Counters, Node, OneStep, Radau, Taylor, Tolerances};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use nalgebra::{SMatrix, SVector};
@@ -18,16 +19,29 @@ impl Simulation<'_> {
         &mut self,
         kernel: &'static ModeKernel<F>,
     ) -> Result<Stop, Reason> {
-        let mut radau = Radau::<3, F>::new(&self.tolerances());
-        let stop = self.integrate(kernel, &mut radau);
-        self.count(radau.counters());
-        stop
+        let tolerances = self.tolerances();
+        match self.problem.method {
+            Method::Taylor if kernel.is_analytic() => {
+                self.integrate(kernel, Taylor::new(&tolerances))
+            }
+            _ => self.integrate(kernel, Radau::<3, F>::new(&tolerances)),
+        }
     }
 
     fn integrate<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-        radau: &mut Radau<3, F>,
+        mut method: impl for<'a> OneStep<F, Equations<'a, F>>,
+    ) -> Result<Stop, Reason> {
+        let stop = self.follow(kernel, &mut method);
+        self.count(OneStep::<F, Equations<F>>::counters(&method));
+        stop
+    }
+
+    fn follow<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        method: &mut impl for<'a> OneStep<F, Equations<'a, F>>,
     ) -> Result<Stop, Reason> {
         let problem = self.problem;
         let mode = self.mode();
@@ -37,7 +51,7 @@ impl Simulation<'_> {
         let last = breakpoint.min(problem.end.time);
         let until = Instant::new(last).since(start);
         let [q, v, a] = self.here.free::<F>(mode.free);
-        radau.restart(0.0, &q, &v, &a);
+        method.restart(0.0, &q, &v, &a);
         let held = self.here.q.clone();
         let drift = if mode.drifts.contains(&true) {
             self.drift.clone()
@@ -62,12 +76,10 @@ impl Simulation<'_> {
         let mut ledger_from = 0.0;
 
         loop {
-            let from = radau.state().t;
-            let resolution = problem.signals.resolution(start.plus(from).seconds());
-            radau.step(&mut equations, until, resolution)?;
+            method.step(&mut equations, until)?;
 
             let cut = cut(
-                radau,
+                method,
                 &mut equations,
                 &mut conditions,
                 mode,
@@ -86,8 +98,8 @@ impl Simulation<'_> {
                 }
             };
 
-            let dense = *radau.dense().expect("a step was made");
-            let end = *radau.state();
+            let dense = method.dense().expect("a step was made");
+            let end = *method.state();
             let (state, beyond) = event.map_or((end, 0.0), |(_, state, beyond)| (state, beyond));
 
             // Samples before the ledger moves on to the end of the step.
@@ -101,7 +113,7 @@ impl Simulation<'_> {
                 let energies = problem.record.columns.energies;
                 if energies {
                     for (node, weight) in gauss(ledger_from, tau) {
-                        let [q, v, a] = guards::motion(&mut equations, &dense, node, true);
+                        let [q, v, a] = guards::motion(&mut equations, dense, node, true);
                         let at = Free {
                             q: &q,
                             v: &v,
@@ -111,7 +123,7 @@ impl Simulation<'_> {
                     }
                 }
                 let needed = energies || problem.record.columns.reactions;
-                let [q, v, a] = guards::motion(&mut equations, &dense, tau, needed);
+                let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
                 let here = &mut self.here;
                 here.set_free(mode.free, [&q, &v, &a]);
                 copy_drifting(&mut here.q, mode.drifts, &equations.context.held);
@@ -136,15 +148,15 @@ impl Simulation<'_> {
                 self.next_sample += 1;
             }
 
-            for stage in radau.stages() {
-                equations.at(stage.t);
+            for Node { weight, state } in method.nodes() {
+                equations.at(state.t);
                 let at = Free {
-                    q: stage.q,
-                    v: stage.v,
-                    a: stage.a,
+                    q: &state.q,
+                    v: &state.v,
+                    a: &state.a,
                 };
                 self.ledger
-                    .add_powers(kernel.powers(equations.context, at), stage.weight);
+                    .add_powers(kernel.powers(equations.context, at), weight);
             }
             ledger_from = end.t;
             equations.at(state.t);

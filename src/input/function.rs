@@ -77,6 +77,25 @@ impl Function {
             .fold(Jet::default(), |sum, term| sum + term.at(t, side))
     }
 
+    /// Fills `out` with the coefficients of f(t + τ) in powers of τ, of the function that acts just
+    /// before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in `out[k]`. They are those of
+    /// one analytic function up to [`Function::next_knot`].
+    pub fn series(&self, t: f64, side: Side, out: &mut [f64]) {
+        out.fill(0.0);
+        for term in &self.terms {
+            term.add_series(t, side, out);
+        }
+    }
+
+    /// The first time after `t` at which the function is not analytic, in s: a breakpoint or any
+    /// knot of a spline; infinite if there is none.
+    pub fn next_knot(&self, t: f64) -> f64 {
+        self.terms
+            .iter()
+            .map(|term| term.next_knot(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// The first time after `t` at which the function is not smooth, in s; infinite if there is
     /// none.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
@@ -125,6 +144,25 @@ impl Term {
             },
             Term::Sine(sine) => sine.at(t, side),
             Term::Table(table) => table.at(t, side),
+        }
+    }
+
+    fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
+        match self {
+            Term::Constant(c) => {
+                if let Some(first) = out.first_mut() {
+                    *first += c;
+                }
+            }
+            Term::Sine(sine) => sine.add_series(t, side, out),
+            Term::Table(table) => table.add_series(t, side, out),
+        }
+    }
+
+    fn next_knot(&self, t: f64) -> f64 {
+        match self {
+            Term::Table(table) => table.next_knot(t),
+            _ => self.next_breakpoint(t),
         }
     }
 

@@ -101,6 +101,50 @@ impl Signals {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// The first time after `t` at which some input is not analytic, in s; infinite if there is none.
+    pub fn next_knot(&self, t: f64) -> f64 {
+        self.channels
+            .iter()
+            .map(|c| c.function.next_knot(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Fills `rows` with the Taylor coefficients of the signals about `t` (s), as they go on after
+    /// it: one row an order, with the layout of [`Signals::evaluate`]. They hold until
+    /// [`Signals::next_knot`].
+    ///
+    /// # Panics
+    /// If there are more than [`Signals::MOST_ORDERS`] rows.
+    pub fn series(&self, t: f64, rows: &mut [f64]) {
+        let width = self.channels.iter().map(|c| c.kind.signals()).sum();
+        if width == 0 {
+            return;
+        }
+        let orders = rows.len() / width;
+        let mut room = [0.0; Self::MOST_ORDERS];
+        for c in &self.channels {
+            let coefficients = &mut room[..orders];
+            c.function.series(t, Side::Right, coefficients);
+            for (row, value) in rows.chunks_exact_mut(width).zip(&*coefficients) {
+                row[c.signal] = *value;
+            }
+            if c.kind == InputKind::Acceleration {
+                let jet = c.function.at(t, Side::Right);
+                rows[c.signal + 1] = jet.integral;
+                rows[c.signal + 2] = jet.double_integral;
+                for k in 1..orders {
+                    for antiderivative in [c.signal + 1, c.signal + 2] {
+                        rows[k * width + antiderivative] =
+                            rows[(k - 1) * width + antiderivative - 1] / k as f64;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Most orders of [`Signals::series`].
+    pub const MOST_ORDERS: usize = 32;
+
     fn fill_values(&self, t: f64, side: Side, u: &mut [f64]) {
         for c in &self.channels {
             let jet = c.function.at(t, side);

@@ -75,6 +75,23 @@ impl Sine {
         }
     }
 
+    /// Adds the Taylor coefficients about `t`, of which each is −ω²/(k (k − 1)) times the last but
+    /// one.
+    pub(super) fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
+        let Jet { rate, value, .. } = self.at(t, side);
+        let omega = self.angular_frequency;
+        let (mut even, mut odd) = (value, rate);
+        for (k, pair) in out.chunks_mut(2).enumerate() {
+            let k = 2.0 * k as f64;
+            pair[0] += even;
+            even *= -(omega * omega) / ((k + 1.0) * (k + 2.0));
+            if let Some(out) = pair.get_mut(1) {
+                *out += odd;
+                odd *= -(omega * omega) / ((k + 2.0) * (k + 3.0));
+            }
+        }
+    }
+
     /// Start and end, if they are after `t`.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
         [self.start, self.end]

@@ -161,6 +161,23 @@ impl Table {
         self.pieces[self.piece_index(t, side)].at(t)
     }
 
+    /// Adds the coefficients of the piece about `t`.
+    pub(super) fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
+        let piece = &self.pieces[self.piece_index(t, side)];
+        let [_, _, c2, c3] = piece.coefficients;
+        let Jet { rate, value, .. } = piece.at(t);
+        let about_t = [value, rate, c2 + 3.0 * c3 * (t - piece.origin), c3];
+        for (out, c) in out.iter_mut().zip(about_t) {
+            *out += c;
+        }
+    }
+
+    /// The first row after `t`.
+    pub(super) fn next_knot(&self, t: f64) -> f64 {
+        let next = self.piece_index(t, Side::Right);
+        self.knots.get(next).copied().unwrap_or(f64::INFINITY)
+    }
+
     /// The first knot after `t` at which value, slope or curvature jump.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
         let next = self.breakpoints.partition_point(|&b| b <= t);

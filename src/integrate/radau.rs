@@ -6,7 +6,7 @@ use super::estimate::Estimate;
 use super::first_step;
 use super::newton::{Newton, Outcome, Stages};
 use super::report::{Counters, StepError, StepReport};
-use super::state::{Lost, Stage, State, add};
+use super::state::{Lost, Node, State, add, fit};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances, Weights};
@@ -141,15 +141,17 @@ where
 
     /// The stages of the last step, in the order of time; the last is its end. Meaningless after a
     /// restart or a failure.
-    pub fn stages(&self) -> impl Iterator<Item = Stage<'_, F>> {
+    pub fn stages(&self) -> impl Iterator<Item = Node<F>> {
         let tableau = RadauIia::<S>::TABLEAU;
         let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
-        (0..S).map(move |i| Stage {
-            t: self.start.t + tableau.c[i] * h,
+        (0..S).map(move |i| Node {
             weight: h * tableau.a[S - 1][i],
-            q: &self.stages.q[i],
-            v: &self.stages.v[i],
-            a: &self.stages.a[i],
+            state: State {
+                t: self.start.t + tableau.c[i] * h,
+                q: self.stages.q[i],
+                v: self.stages.v[i],
+                a: self.stages.a[i],
+            },
         })
     }
 
@@ -454,19 +456,5 @@ where
             iterations,
             discarded,
         }
-    }
-}
-
-/// The length closest to `h` that neither exceeds `h_max` nor leaves a rest of `remaining` shorter
-/// than itself.
-#[inline]
-fn fit(h: f64, remaining: f64, h_max: f64) -> f64 {
-    let h = h.min(h_max);
-    if h >= remaining {
-        remaining
-    } else if 2.0 * h > remaining {
-        0.5 * remaining
-    } else {
-        h
     }
 }

@@ -1,4 +1,4 @@
-//! Points of the motion, and what is lost when they are rounded.
+//! Points of the motion, and what every one-step method does with them.
 
 use nalgebra::SVector;
 
@@ -29,20 +29,14 @@ impl<const F: usize> State<F> {
     }
 }
 
-/// A stage of the last step: a point at which the motion satisfies the equations.
-#[derive(Debug, Clone, Copy)]
-pub struct Stage<'a, const F: usize> {
-    /// Time, s.
-    pub t: f64,
-    /// Weight h b_i of this stage in the integral over the step, s: Σ weight · f(stage) is ∫ f dt to
-    /// the order of the method.
+/// A point at which an integral over the last step is sampled: Σ weight · f(state) is ∫ f dt over the
+/// step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node<const F: usize> {
+    /// Weight, s.
     pub weight: f64,
-    /// Coordinates.
-    pub q: &'a SVector<f64, F>,
-    /// Velocities.
-    pub v: &'a SVector<f64, F>,
-    /// Accelerations.
-    pub a: &'a SVector<f64, F>,
+    /// Motion there.
+    pub state: State<F>,
 }
 
 /// Sums that are carried on to the next step because they were lost in rounding t, q and v.
@@ -73,4 +67,18 @@ pub(super) fn add(x: f64, change: f64, lost: f64) -> (f64, f64) {
         sum,
         (x - (sum - virtual_change)) + (change - virtual_change),
     )
+}
+
+/// The length closest to `h` that neither exceeds `h_max` nor leaves a rest of `remaining` shorter
+/// than itself.
+#[inline]
+pub(super) fn fit(h: f64, remaining: f64, h_max: f64) -> f64 {
+    let h = h.min(h_max);
+    if h >= remaining {
+        remaining
+    } else if 2.0 * h > remaining {
+        0.5 * remaining
+    } else {
+        h
+    }
 }

@@ -56,6 +56,12 @@ pub trait System<const F: usize> {
         Ok(())
     }
 
+    /// Longest step from time `t`, s, in which the few points where a step looks at the equations
+    /// cannot miss what they do in between; infinite where nothing limits it.
+    fn resolution(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// True if M, C and K are constant: Newton's method then converges in one iteration and the
     /// Jacobian is never evaluated again. A true that is wrong gives wrong results.
     fn is_linear(&self) -> bool {

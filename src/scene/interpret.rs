@@ -9,7 +9,7 @@ use super::shape::Shape;
 use super::tree::{Node, Value};
 use super::wording::listing;
 use super::{Scene, SceneSource, format, inputs, state};
-use crate::hybrid::{Accuracy, End, Problem, Record};
+use crate::hybrid::{Accuracy, End, Method, Problem, Record};
 use crate::model::{Model, Variant};
 use crate::record::Recorded;
 
@@ -60,6 +60,7 @@ pub(crate) fn scene(
         freeze,
         end,
         accuracy: accuracy(model, &checked),
+        method: Method::default(),
         record: record(&checked),
     };
     let source = SceneSource { root };

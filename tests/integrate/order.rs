@@ -162,10 +162,10 @@ fn stages_integrate_with_the_order_of_the_method() {
             .unwrap();
         let work: f64 = radau
             .stages()
-            .map(|stage| -stage.weight * stage.q[0] * stage.v[0])
+            .map(|node| -node.weight * node.state.q[0] * node.state.v[0])
             .sum();
         let end = radau.stages().last().unwrap();
-        assert_eq!(end.a, &radau.state().a);
+        assert_eq!(end.state.a, radau.state().a);
         let (sin, cos) = radau.state().t.sin_cos();
         (work - 0.5 * (0.3 * 0.3 - (0.3 * cos + sin).powi(2))).abs()
     };

@@ -1,0 +1,379 @@
+"""Emission of C that computes Taylor coefficients: automatic differentiation of the time series.
+
+A column of expressions becomes two C functions. The first gives the coefficients of order 0 of all
+nodes of the expression graph; the second appends those of order k ≥ 1, given what it has left in
+its workspace at the orders before. Each is one pass over the graph (Moore 1966; Jorba and Zou 2005,
+Experiment. Math. 14, section 2).
+
+A product z = x y has z_k = x_0 y_k + x_k y_0 + Σ_{j=1}^{k-1} x_j y_{k-j}. The sum, the interior of
+the convolution, is known before order k is begun. So is that of every other node that is not
+linear, since each obeys a product rule: the function first computes all interiors in one loop over
+j, side by side in vector lanes, and then walks the graph once in straight-line code. The left and
+right factors of the interiors are two tables in the workspace, one row an order.
+
+Nodes that are constant in time are recognised: a constant times a series is one product an order.
+"""
+
+import casadi as ca
+
+from .emit_c import literal, operation, parenthesized
+
+
+class NotAnalytic(Exception):
+    """The graph has an operation for which there is no recurrence."""
+
+
+class _Node:
+    """C text of the coefficients of order 0 and k; `next` is None where all but the first vanish."""
+
+    __slots__ = ("zeroth", "next", "slot")
+
+    def __init__(self, zeroth, next=None):
+        self.zeroth, self.next, self.slot = zeroth, next, None
+
+    @property
+    def constant(self):
+        return self.next is None
+
+
+class Graph:
+    """The two function bodies under construction."""
+
+    def __init__(self):
+        self.start, self.next, self.store = [], [], []
+        self.fresh = self.slots = 0
+        self.interiors, self.pairs = {}, {}
+
+    # ---- text ---------------------------------------------------------------------------------
+
+    def _name(self):
+        self.fresh += 1
+        return f"t{self.fresh - 1}"
+
+    def zeroth(self, text):
+        """A node that is constant in time."""
+        name = self._name()
+        self.start.append(f"  const double {name} = {text};")
+        return _Node(name)
+
+    def series(self, zeroth, next):
+        """A node with coefficients of all orders."""
+        name = self._name()
+        self.start.append(f"  const double {name} = {zeroth};")
+        self.next.append(f"  const double {name} = {next};")
+        return _Node(name, name)
+
+    def first(self, node):
+        """Coefficient of order 0, as text of the second function."""
+        if not node.zeroth.startswith("t"):
+            return node.zeroth  # a literal, or an entry of a constant array
+        if node.slot is None:
+            node.slot, self.slots = self.slots, self.slots + 1
+            self.start.append(f"  w[{node.slot}] = {node.zeroth};")
+        return f"w[{node.slot}]"
+
+    def interior(self, left, right):
+        """Σ_{j=1}^{k-1} left_j right_{k-j}; both are text of the second function."""
+        for key in ((left, right), (right, left)):
+            if key in self.interiors:
+                return f"y[{self.interiors[key]}]"
+        index = self.interiors[left, right] = len(self.interiors)
+        return f"y[{index}]"
+
+    # ---- operations ---------------------------------------------------------------------------
+
+    def operation(self, op, arguments):
+        """The node of an operation."""
+        if all(a.constant for a in arguments):
+            return self.zeroth(operation(op, [a.zeroth for a in arguments]))
+        rule = _RULES.get(op)
+        if rule is None:
+            raise NotAnalytic(f"CasADi operation {op} has no Taylor recurrence")
+        return rule(self, *arguments)
+
+    def linear(self, op):
+        def rule(x, *y):
+            both = (x, *y)
+            zeroth = operation(op, [a.zeroth for a in both])
+            if y and y[0].constant:
+                return self.series(zeroth, x.next)
+            if x.constant:
+                return self.series(zeroth, y[0].next if op == ca.OP_ADD else f"-{y[0].next}")
+            return self.series(zeroth, operation(op, [a.next for a in both]))
+        return rule
+
+    def product(self, x, y):
+        zeroth = operation(ca.OP_MUL, [x.zeroth, y.zeroth])
+        for constant, other in ((x, y), (y, x)):
+            if constant.constant:
+                return self.series(zeroth, f"{self.first(constant)} * {other.next}")
+        inner = self.interior(x.next, y.next)
+        return self.series(zeroth, f"{inner} + ({self.first(x)} * {y.next} + {x.next} * {self.first(y)})")
+
+    def square(self, x):
+        inner = self.interior(x.next, x.next)
+        return self.series(f"{x.zeroth} * {x.zeroth}", f"{inner} + 2.0 * {self.first(x)} * {x.next}")
+
+    def quotient(self, x, y):
+        """z with y z = x."""
+        zeroth = operation(ca.OP_DIV, [x.zeroth, y.zeroth])
+        if y.constant:
+            return self.series(zeroth, f"{x.next} / {parenthesized(self.first(y))}")
+        reciprocal = self.first(self.zeroth(f"1.0 / {y.zeroth}"))
+        z = _Node(self._name())
+        z.next = z.zeroth
+        self.start.append(f"  const double {z.zeroth} = {zeroth};")
+        rest = f"({self.interior(y.next, z.next)} + {y.next} * {self.first(z)})"
+        numerator = f"-{rest}" if x.constant else f"({x.next} - {rest})"
+        self.next.append(f"  const double {z.next} = {numerator} * {reciprocal};")
+        return z
+
+    def inverse(self, x):
+        return self.quotient(_Node("1.0"), x)
+
+    def root(self, x):
+        """z with z z = x."""
+        z = self._integral(f"sqrt({x.zeroth})")
+        half = self.first(self.zeroth(f"0.5 / {z.zeroth}"))
+        self.next.append(f"  const double {z.next} = ({x.next} - {self.interior(z.next, z.next)}) * {half};")
+        return z
+
+    def _integral(self, zeroth):
+        """A node whose `next` is given later, by its own recurrence."""
+        name = self._name()
+        self.start.append(f"  const double {name} = {zeroth};")
+        return _Node(name, name)
+
+    def _grows(self, z, x, w, sign=""):
+        """z with ż = ± w ẋ: k z_k = ± Σ_{j=1}^{k} j x_j w_{k-j}."""
+        inner = self.interior(self._scaled(x), w.next)
+        text = f"{inner} * inverse_k + {x.next} * {self.first(w)}"
+        self.next.append(f"  const double {z.next} = {sign}({text});")
+
+    def _quotient_grows(self, zeroth, x, w, sign=""):
+        """z with w ż = ± ẋ: w_0 k z_k = ± k x_k − Σ_{j=1}^{k-1} j z_j w_{k-j}."""
+        z = self._integral(zeroth)
+        reciprocal = self.first(self.zeroth(f"1.0 / {w.zeroth}"))
+        inner = self.interior(self._scaled(z), w.next)
+        self.next.append(f"  const double {z.next} = ({sign}{x.next} - {inner} * inverse_k) * {reciprocal};")
+        return z
+
+    @staticmethod
+    def _scaled(x):
+        """k x_k: the derivative's coefficient of order k − 1."""
+        return f"order * {x.next}"
+
+    def _pair(self, x, names, sign, pick):
+        """sin and cos, or sinh and cosh: each is the derivative of the other, but for a sign."""
+        key = (names[0], x.zeroth)
+        if key not in self.pairs:
+            s, c = (self._integral(f"{name}({x.zeroth})") for name in names)
+            self._grows(s, x, c)
+            self._grows(c, x, s, sign)
+            self.pairs[key] = (s, c)
+        return self.pairs[key][pick]
+
+    def exponential(self, x):
+        z = self._integral(f"exp({x.zeroth})")
+        self._grows(z, x, z)
+        return z
+
+    def logarithm(self, x):
+        return self._quotient_grows(f"log({x.zeroth})", x, x)
+
+    def tangent(self, x, name="tan", sign="+"):
+        """ż = (1 ± z²) ẋ."""
+        z = self._integral(f"{name}({x.zeroth})")
+        slope = _Node(self._name())
+        slope.next = slope.zeroth
+        self.start.append(f"  const double {slope.zeroth} = 1.0 {sign} {z.zeroth} * {z.zeroth};")
+        self._grows(z, x, slope)
+        square = f"{self.interior(z.next, z.next)} + 2.0 * {self.first(z)} * {z.next}"
+        self.next.append(f"  const double {slope.next} = {'' if sign == '+' else '-'}({square});")
+        return z
+
+    def arc_tangent(self, x):
+        """(1 + x²) ż = ẋ."""
+        square = self.square(x)
+        slope = self.series(f"1.0 + {square.zeroth}", square.next)
+        return self._quotient_grows(f"atan({x.zeroth})", x, slope)
+
+    def arc_sine(self, x, name="asin", sign=""):
+        """√(1 − x²) ż = ± ẋ."""
+        square = self.square(x)
+        slope = self.root(self.series(f"1.0 - {square.zeroth}", f"-{square.next}"))
+        return self._quotient_grows(f"{name}({x.zeroth})", x, slope, sign)
+
+    def power(self, x, exponent):
+        """x ż = p ẋ z: x_0 k z_k = p k x_k z_0 + Σ_{j=1}^{k-1} (p j − (k − j)) x_j z_{k-j}."""
+        if not exponent.constant:
+            raise NotAnalytic("a power whose exponent varies in time has no Taylor recurrence here")
+        whole = _whole(exponent.zeroth)
+        if whole is not None:
+            return self._whole_power(x, whole)
+        z = self._integral(f"pow({x.zeroth}, {exponent.zeroth})")
+        p, reciprocal = self.first(exponent), self.first(self.zeroth(f"1.0 / {x.zeroth}"))
+        weighted = f"({p} + 1.0) * inverse_k * {self.interior(self._scaled(x), z.next)}"
+        plain = self.interior(x.next, z.next)
+        self.next.append(
+            f"  const double {z.next} = ({p} * {x.next} * {self.first(z)} + ({weighted} - {plain})) * {reciprocal};")
+        return z
+
+    def _whole_power(self, x, exponent):
+        """Repeated multiplication, which is defined at x = 0 too."""
+        if exponent < 0:
+            return self.inverse(self._whole_power(x, -exponent))
+        result = None
+        while exponent:
+            if exponent & 1:
+                result = x if result is None else self.product(result, x)
+            exponent >>= 1
+            x = self.square(x) if exponent else x
+        return result
+
+
+def _whole(text):
+    """An exponent that is a small whole number other than 0, else None."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return int(value) if value == int(value) and 0 < abs(value) <= 16 else None
+
+
+_RULES = {
+    ca.OP_ADD: lambda g, x, y: g.linear(ca.OP_ADD)(x, y),
+    ca.OP_SUB: lambda g, x, y: g.linear(ca.OP_SUB)(x, y),
+    ca.OP_NEG: lambda g, x: g.linear(ca.OP_NEG)(x),
+    ca.OP_TWICE: lambda g, x: g.linear(ca.OP_TWICE)(x),
+    ca.OP_ASSIGN: lambda g, x: x,
+    ca.OP_MUL: Graph.product,
+    ca.OP_SQ: Graph.square,
+    ca.OP_DIV: Graph.quotient,
+    ca.OP_INV: Graph.inverse,
+    ca.OP_SQRT: Graph.root,
+    ca.OP_SIN: lambda g, x: g._pair(x, ("sin", "cos"), "-", 0),
+    ca.OP_COS: lambda g, x: g._pair(x, ("sin", "cos"), "-", 1),
+    ca.OP_SINH: lambda g, x: g._pair(x, ("sinh", "cosh"), "", 0),
+    ca.OP_COSH: lambda g, x: g._pair(x, ("sinh", "cosh"), "", 1),
+    ca.OP_TAN: Graph.tangent,
+    ca.OP_TANH: lambda g, x: g.tangent(x, "tanh", "-"),
+    ca.OP_ATAN: Graph.arc_tangent,
+    ca.OP_ASIN: Graph.arc_sine,
+    ca.OP_ACOS: lambda g, x: g.arc_sine(x, "acos", "-"),
+    ca.OP_EXP: Graph.exponential,
+    ca.OP_LOG: Graph.logarithm,
+    ca.OP_POW: Graph.power,
+    ca.OP_CONSTPOW: Graph.power,
+}
+
+
+def _walk(graph, place, output):
+    """The nodes of a column of expressions; `place` maps symbols to nodes, or to functions that
+    make them."""
+    symbols = ca.symvar(output)
+    missing = [s.name() for s in symbols if s.element_hash() not in place]
+    if missing:
+        raise ValueError(f"expression depends on {', '.join(missing)}, which is not an argument")
+    function = ca.Function("series", symbols, [ca.cse(output)])
+    work, result = {}, [None] * output.numel()
+    for k in range(function.n_instructions()):
+        op = function.instruction_id(k)
+        into, source = function.instruction_output(k), function.instruction_input(k)
+        if op == ca.OP_OUTPUT:
+            result[into[1]] = work[source[0]]
+        elif op == ca.OP_CONST:
+            work[into[0]] = _Node(literal(function.instruction_constant(k)))
+        elif op == ca.OP_INPUT:
+            work[into[0]] = place[symbols[source[0]].element_hash()]
+        else:
+            work[into[0]] = graph.operation(op, [work[i] for i in source])
+    return result
+
+
+def _columns(symbols, node):
+    return {symbols[i].element_hash(): node(i) for i in range(symbols.numel())}
+
+
+class Equations:
+    """The series functions of r = M a + b.
+
+    `moving` lists (C array, column of symbols) that vary in time, one row of the array an order;
+    `constant` those that do not; `drifting` maps the index of a held coordinate to the index of
+    its constant rate in `output`, which holds M (column-major), b, and these rates.
+    """
+
+    def __init__(self, free, output, moving, constant, held, drifting):
+        self.free, graph = free, Graph()
+        self.graph = graph
+        place = {}
+        for array, symbols in moving:
+            width = symbols.numel()
+            place.update(_columns(symbols, lambda i: _Node(f"{array}[{i}]", f"{array}[{width} * k + {i}]")))
+        for array, symbols in constant:
+            place.update(_columns(symbols, lambda i: _Node(f"{array}[{i}]")))
+        rates = _walk(Graph(), place, output[free * (free + 1):])
+        place.update(_columns(held, lambda i: _Node(f"h[{i}]", f"(k == 1 ? {rates[drifting[i]].zeroth} : 0.0)")
+                              if i in drifting else _Node(f"h[{i}]")))
+        nodes = _walk(graph, place, output[: free * (free + 1)])
+        for i, node in enumerate(nodes):
+            graph.start.append(f"  out[{i}] = {node.zeroth};")
+        self.mass_is_constant = all(node.constant for node in nodes[: free * free])
+        for i in range(free):
+            self._right_side(i, nodes[i: free * free: free], nodes[free * free + i])
+        self._finish()
+
+    def _right_side(self, i, row, load):
+        """b_k + Σ_{j=1}^{k} M_j a_{k-j} of one equation."""
+        terms = [] if load.constant else [load.next]
+        for j, mass in enumerate(row):
+            if not mass.constant:
+                # The acceleration of order k is not known yet: a factor of the order before.
+                terms.append(f"({self.graph.interior(mass.next, f'a[{j}]')} + {mass.next} * a[{j}])")
+        self.graph.next.append(f"  out[{i}] = {' + '.join(terms) or '0.0'};")
+
+    def _finish(self):
+        graph, count = self.graph, len(self.graph.interiors)
+        self.lead, self.row = graph.slots, 2 * count
+        before, after = [], []
+        for (left, right), n in graph.interiors.items():
+            after.append(f"  now[{n}] = {left};")
+            if right.startswith("a["):
+                before.append(f"  row[{self.row} * (k - 1) + {count + n}] = a[{self.free} * (k - 1) + {right[2:-1]}];")
+            else:
+                after.append(f"  now[{count + n}] = {right};")
+        inner = [
+            f"  double y[{count}] = {{0.0}};",
+            f"  for (size_t j = 1; j < k; ++j) {{",
+            f"    const double *const left = row + {self.row} * j, *const right = row + {self.row} * (k - j) + {count};",
+            f"    for (size_t n = 0; n < {count}; ++n) y[n] += left[n] * right[n];",
+            "  }",
+        ]
+        rows = [
+            f"  double *const row = w + {self.lead}, *const now = row + {self.row} * k;",
+            "  const double order = (double)k, inverse_k = 1.0 / order;",
+            "  (void)inverse_k;",
+        ]
+        self.next = (rows + before + inner if count else []) + graph.next + after
+        self.start = graph.start
+
+    def add_to(self, source, name):
+        """Adds both functions to a `Source`; returns the names under which they can be called."""
+        start = _text(self.start)
+        next = _text(self.next)
+        return (source.add_text(f"{name}_start", _SIGNATURE, start),
+                source.add_text(f"{name}_next", "size_t k, " + _SIGNATURE, next))
+
+
+_SIGNATURE = ("const double *q, const double *v, const double *a, const double *u,\n"
+              "    const struct dalembert_context *x, double *w, double *out")
+
+
+def _text(lines):
+    text = "\n".join(lines)
+    arrays = "".join(
+        f"  const double *const {field} = x->{field};\n"
+        for field in ("d", "h", "c") if f" {field}[" in text or f"({field}[" in text
+    )
+    unused = "".join(f"  (void){name};\n" for name in ("q", "v", "a", "u", "x", "w"))
+    return unused + arrays + text

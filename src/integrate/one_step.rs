@@ -1,0 +1,184 @@
+//! What the one-step methods have in common, so that whatever follows a motion can take any of them.
+
+use super::dense::Dense;
+use super::radau::Radau;
+use super::report::{Counters, StepError, StepReport};
+use super::state::{Node, State};
+use super::system::System;
+use super::tableau::{Coefficients, RadauIia};
+use super::taylor::{Analytic, ORDERS, Taylor, TaylorDense};
+use nalgebra::SVector;
+
+/// A one-step method with dense output, for systems of type `Y`.
+pub trait OneStep<const F: usize, Y> {
+    /// Its dense output.
+    type Motion: Motion<F>;
+
+    /// Goes on from a state that the last step did not lead to.
+    fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>);
+
+    /// Makes one step, not beyond `t_end`.
+    ///
+    /// # Errors
+    /// [`StepError`] when no step, however short, succeeds.
+    fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError>;
+
+    /// Makes the last step again, with exactly the length `h`.
+    ///
+    /// # Errors
+    /// [`StepError`] if that fails.
+    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError>;
+
+    /// The state the last step started from.
+    fn start(&self) -> &State<F>;
+
+    /// The state the last step led to.
+    fn state(&self) -> &State<F>;
+
+    /// The motion within the last step.
+    fn dense(&self) -> Option<&Self::Motion>;
+
+    /// Nodes of a quadrature over the last step, as accurate as the step.
+    fn nodes(&self) -> impl Iterator<Item = Node<F>>;
+
+    /// Work done since construction.
+    fn counters(&self) -> &Counters;
+}
+
+/// The motion within a step: each coordinate is a polynomial.
+pub trait Motion<const F: usize> {
+    /// Start of the step, s.
+    fn start(&self) -> f64;
+
+    /// Length of the step that the polynomial was made for, s.
+    fn length(&self) -> f64;
+
+    /// Coordinates, velocities and accelerations at time `t` of the step.
+    fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>);
+
+    /// Writes the coefficients, in powers of s = (t − start)/length, of coordinate `index` or of its
+    /// rate; gives their number.
+    fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize;
+}
+
+impl<const S: usize, const F: usize, Y: System<F>> OneStep<F, Y> for Radau<S, F>
+where
+    RadauIia<S>: Coefficients<S>,
+{
+    type Motion = Dense<S, F>;
+
+    fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>) {
+        self.restart(t, q, v, a);
+    }
+
+    fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
+        let h_max = system.resolution(self.state().t);
+        self.step(system, t_end, h_max)
+    }
+
+    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
+        self.step_exactly(system, h)
+    }
+
+    fn start(&self) -> &State<F> {
+        self.start()
+    }
+
+    fn state(&self) -> &State<F> {
+        self.state()
+    }
+
+    fn dense(&self) -> Option<&Dense<S, F>> {
+        self.dense()
+    }
+
+    fn nodes(&self) -> impl Iterator<Item = Node<F>> {
+        self.stages()
+    }
+
+    fn counters(&self) -> &Counters {
+        self.counters()
+    }
+}
+
+impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
+    type Motion = TaylorDense<F>;
+
+    fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>) {
+        self.restart(t, q, v, a);
+    }
+
+    fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
+        self.step(system, t_end, f64::INFINITY)
+    }
+
+    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
+        self.step_exactly(system, h)
+    }
+
+    fn start(&self) -> &State<F> {
+        self.start()
+    }
+
+    fn state(&self) -> &State<F> {
+        self.state()
+    }
+
+    fn dense(&self) -> Option<&TaylorDense<F>> {
+        self.dense()
+    }
+
+    fn nodes(&self) -> impl Iterator<Item = Node<F>> {
+        self.nodes()
+    }
+
+    fn counters(&self) -> &Counters {
+        self.counters()
+    }
+}
+
+impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
+    fn start(&self) -> f64 {
+        self.start()
+    }
+
+    fn length(&self) -> f64 {
+        self.length()
+    }
+
+    fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+        self.at(t)
+    }
+
+    fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {
+        let degree = Self::DEGREE;
+        for power in 0..=degree {
+            out[power] = self.coefficient(power)[index];
+        }
+        if !rate {
+            return degree + 1;
+        }
+        for power in 0..degree {
+            out[power] = (power + 1) as f64 * out[power + 1] / self.length();
+        }
+        degree
+    }
+}
+
+impl<const F: usize> Motion<F> for TaylorDense<F> {
+    fn start(&self) -> f64 {
+        self.start()
+    }
+
+    fn length(&self) -> f64 {
+        self.length()
+    }
+
+    fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+        self.at(t)
+    }
+
+    fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {
+        self.scaled(index, rate, out)
+    }
+}

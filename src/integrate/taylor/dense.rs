@@ -1,0 +1,96 @@
+//! Dense output: the series itself.
+
+use super::series::{ORDERS, Series};
+use nalgebra::SVector;
+
+/// The motion within a step as the Taylor series about its start, which is what the method computed:
+/// a shortened step is the same polynomial on a shorter window.
+///
+/// The first power of τ = t − start that is not zero decides the sign of a coordinate just after the
+/// start, however small τ is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TaylorDense<const F: usize> {
+    pub(super) t0: f64,
+    pub(super) h: f64,
+    pub(super) t_end: f64,
+    /// Order p: highest coefficients are q_{p+1}, v_p, a_{p−1}.
+    pub(super) order: usize,
+    pub(super) series: Series<F>,
+}
+
+impl<const F: usize> TaylorDense<F> {
+    /// Time at τ = 0, s.
+    pub fn start(&self) -> f64 {
+        self.t0
+    }
+
+    /// Length of the step the series was cut off for, s.
+    pub fn length(&self) -> f64 {
+        self.h
+    }
+
+    /// End of the window in which the polynomial is valid, s.
+    pub fn end(&self) -> f64 {
+        self.t_end
+    }
+
+    /// Degree of the polynomials of q.
+    pub fn degree(&self) -> usize {
+        self.order + 1
+    }
+
+    /// The coefficients.
+    pub fn series(&self) -> &Series<F> {
+        &self.series
+    }
+
+    /// Coordinates, velocities and accelerations at time `t` of the window.
+    #[inline]
+    pub fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+        self.at_offset(t - self.t0)
+    }
+
+    /// The same at τ = t − start, which resolves times close to the start.
+    #[inline]
+    pub fn at_offset(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+        let (dq, dv) = self.change(tau);
+        let a = horner(&self.series.a[..self.order], tau);
+        (self.series.q[0] + dq, self.series.v[0] + dv, a)
+    }
+
+    /// By how much coordinates and velocities change in τ.
+    #[inline]
+    pub(super) fn change(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>) {
+        let Series { q, v, .. } = &self.series;
+        (
+            horner(&q[1..self.order + 2], tau) * tau,
+            horner(&v[1..self.order + 1], tau) * tau,
+        )
+    }
+
+    /// Writes the coefficients in powers of s = τ/length of coordinate `index`, or of its rate;
+    /// gives their number.
+    #[inline]
+    pub fn scaled(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {
+        let (rows, count) = match rate {
+            false => (&self.series.q, self.order + 2),
+            true => (&self.series.v, self.order + 1),
+        };
+        let mut power = 1.0;
+        for k in 0..count {
+            out[k] = rows[k][index] * power;
+            power *= self.h;
+        }
+        count
+    }
+}
+
+/// Σ c_k τᵏ.
+#[inline]
+fn horner<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f64, F> {
+    let mut sum = SVector::zeros();
+    for c in coefficients.iter().rev() {
+        sum = sum * tau + c;
+    }
+    sum
+}

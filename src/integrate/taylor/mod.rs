@@ -1,0 +1,337 @@
+//! The Taylor method: the motion's own power series, to an order chosen by the tolerance.
+//!
+//! A step expands the motion about its start ([`Analytic`]), takes the length at which the last
+//! terms fall below the tolerance, and ends at the value of the polynomial there (Jorba, À. and
+//! Zou, M. (2005), Experiment. Math. 14(1), 99–117). The polynomial is the dense output, so a step
+//! that is cut by an event is not made again.
+//!
+//! Not for stiff equations: the length is bounded by the radius of convergence, thus by a few times
+//! the shortest time scale, resolved or not.
+
+mod dense;
+mod length;
+mod quadrature;
+mod series;
+
+pub use dense::TaylorDense;
+pub use series::{Analytic, ORDERS, Series};
+
+use super::linear::Lu;
+use super::report::{Counters, StepError, StepReport};
+use super::state::{Lost, Node, State, add, fit};
+use super::tolerances::Tolerances;
+use nalgebra::SVector;
+
+/// The Taylor method for an [`Analytic`] system of `F` coordinates. It is used as
+/// [`super::Radau`] is.
+#[derive(Debug, Clone)]
+pub struct Taylor<const F: usize> {
+    tolerances: Tolerances<F>,
+    order: usize,
+    start: State<F>,
+    end: State<F>,
+    lost_at_start: Lost<F>,
+    lost: Lost<F>,
+    dense: TaylorDense<F>,
+    /// Whether `dense` is the last step.
+    stepped: bool,
+    counters: Counters,
+}
+
+impl<const F: usize> Taylor<F> {
+    /// An integrator at rest at zero; call [`Taylor::restart`] before the first step.
+    pub fn new(tolerances: &Tolerances<F>) -> Self {
+        let zero = SVector::zeros();
+        let origin = State {
+            t: 0.0,
+            q: zero,
+            v: zero,
+            a: zero,
+        };
+        let order = length::order(tolerances.relative()).min(ORDERS - 2);
+        Taylor {
+            tolerances: *tolerances,
+            order,
+            start: origin,
+            end: origin,
+            lost_at_start: Lost::nothing(),
+            lost: Lost::nothing(),
+            dense: TaylorDense {
+                t0: 0.0,
+                h: 0.0,
+                t_end: 0.0,
+                order,
+                series: Series::zero(),
+            },
+            stepped: false,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Goes on from a state that the last step did not lead to, as [`super::Radau::restart`].
+    pub fn restart(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: &SVector<f64, F>,
+    ) {
+        self.end = State {
+            t,
+            q: *q,
+            v: *v,
+            a: *a,
+        };
+        self.start = self.end;
+        self.lost = Lost::nothing();
+        self.lost_at_start = self.lost;
+        self.stepped = false;
+    }
+
+    /// Order of the method: that of the last coefficient of the velocities.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// The state the last step started from.
+    pub fn start(&self) -> &State<F> {
+        &self.start
+    }
+
+    /// The state the last step led to (or the restart set).
+    pub fn state(&self) -> &State<F> {
+        &self.end
+    }
+
+    /// The motion within the last step; `None` after a restart or a failure.
+    pub fn dense(&self) -> Option<&TaylorDense<F>> {
+        self.stepped.then_some(&self.dense)
+    }
+
+    /// Work done since construction. An order of a series counts as an evaluation of the residual.
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// Makes one step, not beyond `t_end`, not longer than `h_max` (∞ where nothing limits it) and
+    /// not beyond [`Analytic::horizon`]. A step that could reach `t_end` ends there exactly.
+    ///
+    /// # Errors
+    /// [`StepError`] if the mass matrix is singular, a coefficient is not finite, or the step would
+    /// be shorter than the resolution of time. The state remains that of the step before.
+    ///
+    /// # Panics
+    /// If `t_end` is not after the present time, or `h_max` is not positive.
+    pub fn step<Y: Analytic<F>>(
+        &mut self,
+        system: &mut Y,
+        t_end: f64,
+        h_max: f64,
+    ) -> Result<StepReport, StepError> {
+        assert!(
+            t_end > self.end.t,
+            "t_end = {t_end} is not after t = {}",
+            self.end.t
+        );
+        assert!(h_max > 0.0, "h_max = {h_max} is not positive");
+        let origin = self.end;
+        self.expand(system, &origin)?;
+        let remaining = (t_end - origin.t) - self.lost.t;
+        let horizon = system.horizon(origin.t) - origin.t;
+        let h = fit(self.length(), remaining, h_max.min(horizon));
+        if origin.t + h == origin.t {
+            return Err(StepError::Tolerance {
+                t: origin.t,
+                h,
+                error: self.error(h),
+            });
+        }
+        let t = (h == remaining).then_some(t_end);
+        self.finish(system, &origin, self.lost, h, t)?;
+        self.dense.h = h;
+        self.counters.steps += 1;
+        Ok(self.report(self.error(h)))
+    }
+
+    /// Shortens the last step to the length `h`, or makes a step of it right after a restart. The
+    /// polynomial is kept. May be repeated.
+    ///
+    /// # Errors
+    /// As for [`Taylor::step`].
+    ///
+    /// # Panics
+    /// If `h` is not positive.
+    pub fn step_exactly<Y: Analytic<F>>(
+        &mut self,
+        system: &mut Y,
+        h: f64,
+    ) -> Result<StepReport, StepError> {
+        assert!(h > 0.0, "h = {h} is not positive");
+        let origin = self.start;
+        if !self.stepped {
+            self.expand(system, &origin)?;
+            self.dense.h = h;
+        }
+        self.finish(system, &origin, self.lost_at_start, h, None)?;
+        self.counters.retaken += 1;
+        Ok(self.report(f64::NAN))
+    }
+
+    /// Expands the motion about `origin`.
+    fn expand<Y: Analytic<F>>(
+        &mut self,
+        system: &mut Y,
+        origin: &State<F>,
+    ) -> Result<(), StepError> {
+        self.stepped = false;
+        let t = origin.t;
+        if let Some(what) = origin.not_finite() {
+            return Err(StepError::NonFinite { t, h: 0.0, what });
+        }
+        self.dense.t0 = t;
+        let Series { q, v, a } = &mut self.dense.series;
+        (q[0], v[0], a[0]) = (origin.q, origin.v, origin.a);
+        (q[1], v[1], q[2]) = (origin.v, origin.a, origin.a * 0.5);
+        let mass = system.start(t, self.order, &self.dense.series);
+        let scale = self.tolerances.v_absolute();
+        let lu = Lu::factorize(|i, j| mass[(i, j)], scale).map_err(|singular| {
+            let coordinate = singular.coordinate;
+            StepError::Singular {
+                t,
+                h: 0.0,
+                coordinate,
+            }
+        })?;
+        for k in 1..self.order {
+            let rest = system.next(k, &self.dense.series);
+            let Series { q, v, a } = &mut self.dense.series;
+            a[k] = SVector::from(lu.solve(|i| -rest[i]));
+            v[k + 1] = a[k] * (1.0 / (k + 1) as f64);
+            q[k + 2] = v[k + 1] * (1.0 / (k + 2) as f64);
+        }
+        self.counters.factorizations += 1;
+        self.counters.residual_evaluations += self.order as u64;
+        let finite = self.dense.series.a[..self.order]
+            .iter()
+            .all(|a| a.iter().all(|x| x.is_finite()));
+        match finite {
+            true => Ok(()),
+            false => Err(StepError::NonFinite {
+                t,
+                h: 0.0,
+                what: "the Taylor series of the motion",
+            }),
+        }
+    }
+
+    /// Sizes of the last terms in units of the tolerance, as (power, coefficient). Two orders are
+    /// looked at, since those of an even or odd motion vanish alternately.
+    fn last_terms(&self) -> [(usize, f64); 3] {
+        let Series { q, v, .. } = &self.dense.series;
+        let p = self.order;
+        let mut terms = [(p - 1, 0.0), (p, 0.0), (p + 1, 0.0)];
+        for i in 0..F {
+            let relative = self.tolerances.relative();
+            let of_q = 1.0 / (self.tolerances.q_absolute()[i] + relative * q[0][i].abs());
+            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
+            for (power, size) in &mut terms {
+                if *power <= p {
+                    *size = f64::max(*size, v[*power][i].abs() * of_v);
+                }
+                if *power >= p {
+                    *size = f64::max(*size, q[*power][i].abs() * of_q);
+                }
+            }
+        }
+        terms
+    }
+
+    /// The length at which the last terms equal the tolerance.
+    fn length(&self) -> f64 {
+        self.last_terms()
+            .iter()
+            .fold(f64::INFINITY, |h, &(power, size)| {
+                h.min(length::root(size, power))
+            })
+    }
+
+    /// The largest of the last terms at τ = `h`, in units of the tolerance.
+    fn error(&self, h: f64) -> f64 {
+        self.last_terms().iter().fold(0.0, |most, &(power, size)| {
+            most.max(size * super::tolerances::power(h, power))
+        })
+    }
+
+    /// Ends the step from `origin` after `h`, at `t` if that is given.
+    fn finish<Y: Analytic<F>>(
+        &mut self,
+        system: &mut Y,
+        origin: &State<F>,
+        lost: Lost<F>,
+        h: f64,
+        t: Option<f64>,
+    ) -> Result<(), StepError> {
+        let mut end = *origin;
+        let mut now_lost = Lost::nothing();
+        match t {
+            Some(t) => end.t = t,
+            None => (end.t, now_lost.t) = add(origin.t, h, lost.t),
+        }
+        let (dq, dv) = self.dense.change(h);
+        for i in 0..F {
+            (end.q[i], now_lost.q[i]) = add(origin.q[i], dq[i], lost.q[i]);
+            (end.v[i], now_lost.v[i]) = add(origin.v[i], dv[i], lost.v[i]);
+        }
+        if let Err(singular) = system.acceleration(end.t, &end.q, &end.v, &mut end.a) {
+            let coordinate = singular.coordinate;
+            return Err(StepError::Singular {
+                t: origin.t,
+                h,
+                coordinate,
+            });
+        }
+        self.start = *origin;
+        self.end = end;
+        self.lost_at_start = lost;
+        self.lost = now_lost;
+        self.dense.t_end = end.t;
+        self.stepped = true;
+        Ok(())
+    }
+
+    /// Nodes of Gauss's quadrature over the last step; none after a restart.
+    ///
+    /// On a window of length h in a series of radius ρ the error of n nodes falls like
+    /// (h/4ρ)^(2n), that of the series like (h/ρ)^p: with n = p/4 + 2 nodes that of the quadrature is
+    /// the smaller one.
+    pub fn nodes(&self) -> impl Iterator<Item = Node<F>> {
+        let rule = match self.stepped {
+            true => quadrature::gauss(self.order / 4 + 2),
+            false => &[],
+        };
+        let (t, h) = (self.start.t, self.end.t - self.start.t);
+        rule.iter().map(move |&(place, weight)| {
+            let (q, v, a) = self.dense.at_offset(place * h);
+            Node {
+                weight: weight * h,
+                state: State {
+                    t: t + place * h,
+                    q,
+                    v,
+                    a,
+                },
+            }
+        })
+    }
+
+    fn report(&self, error: f64) -> StepReport {
+        StepReport {
+            t_start: self.start.t,
+            t_end: self.end.t,
+            h: self.end.t - self.start.t,
+            error,
+            iterations: 0,
+            discarded: 0,
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! The motion as a power series in time, and what a system must offer to expand it.
+
+use crate::integrate::System;
+use nalgebra::{SMatrix, SVector};
+
+/// Most coefficients of a series, the one of order 0 included. Order 24 serves the smallest relative
+/// tolerance (see `length`); accelerations have one order less than velocities, coordinates one more.
+pub const ORDERS: usize = 26;
+
+/// Taylor coefficients of the motion about some time: x(t + τ) = Σ x_k τᵏ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Series<const F: usize> {
+    /// Of the coordinates.
+    pub q: [SVector<f64, F>; ORDERS],
+    /// Of the velocities.
+    pub v: [SVector<f64, F>; ORDERS],
+    /// Of the accelerations.
+    pub a: [SVector<f64, F>; ORDERS],
+}
+
+impl<const F: usize> Series<F> {
+    /// All coefficients zero.
+    pub fn zero() -> Self {
+        let zero = [SVector::zeros(); ORDERS];
+        Series {
+            q: zero,
+            v: zero,
+            a: zero,
+        }
+    }
+}
+
+/// A [`System`] whose motion can be expanded in powers of time, order by order.
+///
+/// With M and b of r = M a + b as series along the motion, M_0 a_k = −(b_k + Σ_{j=1}^{k} M_j a_{k−j}).
+pub trait Analytic<const F: usize>: System<F> {
+    /// Begins an expansion about time `t` to order `order`, with the coefficients of order 0 of q
+    /// and v; gives M_0.
+    fn start(&mut self, t: f64, order: usize, series: &Series<F>) -> SMatrix<f64, F, F>;
+
+    /// b_k + Σ_{j=1}^{k} M_j a_{k−j}, given q_k, v_k and a_{k−1}; called for k = 1, 2, … in turn.
+    fn next(&mut self, k: usize, series: &Series<F>) -> SVector<f64, F>;
+
+    /// Time until which the equations are the analytic functions of time that they are just after
+    /// `t`; infinite if there is no limit.
+    fn horizon(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+}
