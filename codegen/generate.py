@@ -187,7 +187,9 @@ def _mode_functions(variant, equations, slot, prefix):
         name = equations.mode.name
         _check_smooth(equations.r, f"equations of mode `{name}`", model.file, [p.symbol for p in model.parameters])
     mass, load = equations.system()
-    system = graph.without_idle(ca.vertcat(ca.vec(mass), load), ca.vertcat(equations.q, equations.v))
+    system = graph.without_idle(
+        ca.vertcat(ca.vec(mass), load), ca.vertcat(equations.q, equations.v),
+        [(d.symbol, d.values) for d in model.discretes])
     jacobians = equations.jacobians()
     reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
     for i, reaction in equations.reactions:

@@ -55,14 +55,16 @@ def additive_terms(expression):
     return terms
 
 
-def without_idle(column, symbols):
+def without_idle(column, symbols, discretes):
     """The same column with each entry rid of the `symbols` on which it does not depend, although it
     contains them: sin² + cos², or velocities whose terms cancel.
 
     An entry does not depend on a symbol if its derivative vanishes at several points drawn at
     random, all numbers of the order of 1, but for rounding: then it vanishes everywhere, since the
-    expressions are analytic. What is not defined at a point is left as it is.
+    expressions are analytic. `discretes` lists (symbol, values) of what takes no other values. What
+    is not defined at a point is left as it is.
     """
+    values = {symbol.element_hash(): values for symbol, values in discretes}
     draw = random.Random(0)
     known = ca.symvar(column)
     idle = [s for s in ca.vertsplit(symbols) if s.element_hash() in {k.element_hash() for k in known}]
@@ -73,8 +75,9 @@ def without_idle(column, symbols):
     value = ca.Function("value", known, [column])
     derivative = ca.Function("derivative", known, [ca.densify(ca.jacobian(column, old))])
     depends = [[False] * len(idle) for _ in range(column.numel())]
-    for _ in range(4):
-        point = [draw.uniform(0.5, 1.5) for _ in known]
+    for _ in range(8):
+        point = [draw.choice(values[k.element_hash()]) if k.element_hash() in values else draw.uniform(0.5, 1.5)
+                 for k in known]
         sizes, slopes = value(*point), derivative(*point)
         for i, row in enumerate(depends):
             for j in range(len(idle)):
