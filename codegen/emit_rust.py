@@ -15,14 +15,17 @@ MOST_FREE = 6
 _MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions",
                    "energies", "powers", "momenta")
 
+SERIES = ("series", "guard_series")
+"""What is emitted as a Taylor series."""
+
 
 def model_text(name, variants, constants_symbol, constants_count, for_tests):
     """The Rust fragment of a model."""
     model = variants[0].model
     signals = sum(len(i.signals) for i in model.inputs)
     functions = [(slot, f) for v in variants for slot, f in v.functions.items()]
-    externs = sorted({f.symbol for slot, f in functions if slot[1] != "series"} | {constants_symbol})
-    series = [f.symbol for slot, f in functions if slot[1] == "series" and f.symbol]
+    externs = sorted({f.symbol for slot, f in functions if slot[1] not in SERIES} | {constants_symbol})
+    series = [f.symbol for slot, f in functions if slot[1] in SERIES and f.symbol]
     lines = ["use crate::model::*;", "", 'unsafe extern "C" {']
     lines += [
         f"    fn {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
@@ -182,8 +185,10 @@ def _mode(variant, i, equations):
     for what in _MODE_FUNCTIONS:
         yield f"{pad}        {what}: {functions[(what,)].symbol},"
     yield f"{pad}        requirements: ({functions[('requirements',)].symbol}, {len(mode.requirements)}),"
-    series = functions[("series",)]
-    yield f"{pad}        series: {_option(series.symbol and series, _series)},"
+    for what in SERIES:
+        series = functions[(what,)]
+        yield f"{pad}        {what}: {_option(series.symbol and series, _series)},"
+    yield f"{pad}        guards: {len(equations.guards)},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
     yield f"{pad}    }}),"
     counts = ", ".join(

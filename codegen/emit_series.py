@@ -42,7 +42,7 @@ class Graph:
     def __init__(self):
         self.start, self.next, self.store = [], [], []
         self.fresh = self.slots = 0
-        self.interiors, self.pairs = {}, {}
+        self.interiors, self.late, self.pairs = {}, {}, {}
 
     # ---- text ---------------------------------------------------------------------------------
 
@@ -291,78 +291,100 @@ def _walk(graph, place, output):
     return result
 
 
-def _columns(symbols, node):
-    return {symbols[i].element_hash(): node(i) for i in range(symbols.numel())}
+class Series:
+    """The two series functions of a column of expressions.
 
-
-class Equations:
-    """The series functions of r = M a + b.
-
-    `moving` lists (C array, column of symbols) that vary in time, one row of the array an order;
-    `constant` those that do not; `drifting` maps the index of a held coordinate to the index of
-    its constant rate in `output`, which holds M (column-major), b, and these rates.
+    `moving` lists (C array, column of symbols) of what varies in time, one row of the array an
+    order; `constant` what does not. `drift` maps the index of a held coordinate to the expression of
+    its constant rate; the other `held` ones rest.
     """
 
-    def __init__(self, free, output, moving, constant, held, drifting):
-        self.free, graph = free, Graph()
-        self.graph = graph
+    def __init__(self, output, moving, constant, held, drift):
+        self.graph = Graph()
         place = {}
         for array, symbols in moving:
             width = symbols.numel()
-            place.update(_columns(symbols, lambda i: _Node(f"{array}[{i}]", f"{array}[{width} * k + {i}]")))
+            for i in range(width):
+                place[symbols[i].element_hash()] = _Node(f"{array}[{i}]", f"{array}[{width} * k + {i}]")
         for array, symbols in constant:
-            place.update(_columns(symbols, lambda i: _Node(f"{array}[{i}]")))
-        rates = _walk(Graph(), place, output[free * (free + 1):])
-        place.update(_columns(held, lambda i: _Node(f"h[{i}]", f"(k == 1 ? {rates[drifting[i]].zeroth} : 0.0)")
-                              if i in drifting else _Node(f"h[{i}]")))
-        nodes = _walk(graph, place, output[: free * (free + 1)])
-        for i, node in enumerate(nodes):
-            graph.start.append(f"  out[{i}] = {node.zeroth};")
-        self.mass_is_constant = all(node.constant for node in nodes[: free * free])
-        for i in range(free):
-            self._right_side(i, nodes[i: free * free: free], nodes[free * free + i])
-        self._finish()
+            for i in range(symbols.numel()):
+                place[symbols[i].element_hash()] = _Node(f"{array}[{i}]")
+        for i in range(held.numel()):
+            place[held[i].element_hash()] = _Node(f"h[{i}]")
+        if drift:
+            rates = _walk(self.graph, place, ca.vertcat(*drift.values()))
+            for i, rate in zip(drift, rates):
+                next = f"(k == 1 ? {self.graph.first(rate)} : 0.0)"
+                place[held[i].element_hash()] = _Node(f"h[{i}]", next)
+        self.nodes = _walk(self.graph, place, output)
+        for i, node in enumerate(self.nodes):
+            self.graph.start.append(f"  out[{i}] = {node.zeroth};")
 
-    def _right_side(self, i, row, load):
-        """b_k + Σ_{j=1}^{k} M_j a_{k-j} of one equation."""
-        terms = [] if load.constant else [load.next]
-        for j, mass in enumerate(row):
-            if not mass.constant:
-                # The acceleration of order k is not known yet: a factor of the order before.
-                terms.append(f"({self.graph.interior(mass.next, f'a[{j}]')} + {mass.next} * a[{j}])")
-        self.graph.next.append(f"  out[{i}] = {' + '.join(terms) or '0.0'};")
-
-    def _finish(self):
+    def finish(self):
+        """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
+        right factors of the interiors."""
         graph, count = self.graph, len(self.graph.interiors)
         self.lead, self.row = graph.slots, 2 * count
-        before, after = [], []
+        self.operations = len(graph.next)
+        if not count:
+            self.next = graph.next
+            return
+        late = [f"  row[{self.row} * (k - 1) + {count + n}] = {text};" for n, text in graph.late.items()]
+        now = []
         for (left, right), n in graph.interiors.items():
-            after.append(f"  now[{n}] = {left};")
-            if right.startswith("a["):
-                before.append(f"  row[{self.row} * (k - 1) + {count + n}] = a[{self.free} * (k - 1) + {right[2:-1]}];")
-            else:
-                after.append(f"  now[{count + n}] = {right};")
-        inner = [
-            f"  double y[{count}] = {{0.0}};",
-            f"  for (size_t j = 1; j < k; ++j) {{",
-            f"    const double *const left = row + {self.row} * j, *const right = row + {self.row} * (k - j) + {count};",
-            f"    for (size_t n = 0; n < {count}; ++n) y[n] += left[n] * right[n];",
-            "  }",
-        ]
-        rows = [
+            now.append(f"  now[{n}] = {left};")
+            if n not in graph.late:
+                now.append(f"  now[{count + n}] = {right};")
+        self.next = [
             f"  double *const row = w + {self.lead}, *const now = row + {self.row} * k;",
             "  const double order = (double)k, inverse_k = 1.0 / order;",
             "  (void)inverse_k;",
+            *late,
+            f"  double y[{count}] = {{0.0}};",
+            "  for (size_t j = 1; j < k; ++j) {",
+            f"    const double *const left = row + {self.row} * j, *const right = row + {self.row} * (k - j) + {count};",
+            f"    for (size_t n = 0; n < {count}; ++n) y[n] += left[n] * right[n];",
+            "  }",
+            *graph.next, *now,
         ]
-        self.next = (rows + before + inner if count else []) + graph.next + after
-        self.start = graph.start
 
     def add_to(self, source, name):
         """Adds both functions to a `Source`; returns the names under which they can be called."""
-        start = _text(self.start)
-        next = _text(self.next)
-        return (source.add_text(f"{name}_start", _SIGNATURE, start),
-                source.add_text(f"{name}_next", "size_t k, " + _SIGNATURE, next))
+        return (source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start)),
+                source.add_text(f"{name}_next", "size_t k, " + _SIGNATURE, _text(self.next)))
+
+
+class Outputs(Series):
+    """Series of functions of a motion whose coefficients are all known."""
+
+    def __init__(self, output, **arguments):
+        super().__init__(output, **arguments)
+        for i, node in enumerate(self.nodes):
+            self.graph.next.append(f"  out[{i}] = {node.next or '0.0'};")
+        self.finish()
+
+
+class Equations(Series):
+    """Series of M (column-major) and b of r = M a + b: of order 0 both, of order k
+    b_k + Σ_{j=1}^{k} M_j a_{k-j}, which the accelerations up to order k − 1 give."""
+
+    def __init__(self, free, output, **arguments):
+        super().__init__(output, **arguments)
+        for i in range(free):
+            load = self.nodes[free * free + i]
+            terms = [] if load.constant else [load.next]
+            for j, mass in enumerate(self.nodes[i: free * free: free]):
+                if not mass.constant:
+                    terms.append(f"({self._late(mass, j, free)} + {mass.next} * a[{j}])")
+            self.graph.next.append(f"  out[{i}] = {' + '.join(terms) or '0.0'};")
+        self.finish()
+
+    def _late(self, mass, j, free):
+        """Interior of M a. The acceleration of order k is not known at order k: its factor is stored
+        at the beginning of the next."""
+        inner = self.graph.interior(mass.next, f"acceleration {j}")
+        self.graph.late[len(self.graph.interiors) - 1] = f"a[{free} * (k - 1) + {j}]"
+        return inner
 
 
 _SIGNATURE = ("const double *q, const double *v, const double *a, const double *u,\n"

@@ -68,8 +68,8 @@ def generate(folder, for_tests=False):
     for variant in variants:
         for slot, function in variant.functions.items():
             equations = function.equations
-            if slot[1] == "series":
-                _emit_series(source, prefix, variant, function, constants)
+            if slot[1] in emit_rust.SERIES:
+                _emit_series(source, prefix, variant, slot[1], function, constants)
                 continue
             arguments = [
                 ("q", equations.q), ("v", equations.v), ("a", equations.a), ("j", equations.j),
@@ -94,23 +94,29 @@ def generate(folder, for_tests=False):
     return {f"{name}.c": c_text, "model.rs": rust_text, "manifest.json": json.dumps(manifest, indent=1) + "\n"}
 
 
-def _emit_series(source, prefix, variant, function, constants):
-    """Emits the Taylor series of a mode, if there is a recurrence for every operation."""
-    equations = function.equations
-    drifting = [i for i, c in enumerate(variant.model.coordinates) if c.name in equations.mode.drift]
-    first_rate = len(equations.free) * (len(equations.free) + 1)
+def _emit_series(source, prefix, variant, slot, function, constants):
+    """Emits Taylor series, if there is a recurrence for every operation."""
+    equations, model = function.equations, variant.model
+    drifting = [i for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
+    count = function.output.numel() - len(drifting)
+    arguments = dict(
+        output=function.output[:count],
+        moving=[("q", equations.q), ("v", equations.v), ("u", _signals(model))],
+        constant=[("d", _discretes(model)), ("c", constants.symbols)],
+        held=equations.held,
+        drift={i: function.output[count + n] for n, i in enumerate(drifting)})
     try:
-        series = emit_series.Equations(
-            len(equations.free), function.output,
-            moving=[("q", equations.q), ("v", equations.v), ("u", _signals(variant.model))],
-            constant=[("d", _discretes(variant.model)), ("c", constants.symbols)],
-            held=equations.held, drifting={i: first_rate + n for n, i in enumerate(drifting)})
+        if slot == "series":
+            series = emit_series.Equations(len(equations.free), **arguments)
+        else:
+            arguments["moving"].append(("a", equations.a))
+            series = emit_series.Outputs(**arguments)
     except emit_series.NotAnalytic:
         function.symbol = None
         return
     function.symbol = series.add_to(source, f"{prefix}_{function.name}")
     function.workspace = (series.lead, series.row)
-    function.operations = len(series.next)
+    function.operations = series.operations
 
 
 def _check_same_declarations(models):
@@ -157,10 +163,12 @@ def _variant(model):
         _mode_functions(variant, equations, (i,), prefix)
         guards = _guards(model, equations)
         equations.guards = guards
+        values = []
         for g, (expression, transitions) in enumerate(guards):
             placed = equations.place(expression)
             _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
             _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
+            values.append(placed)
             rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
             _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
             for t, transition in enumerate(transitions):
@@ -171,6 +179,8 @@ def _variant(model):
                     condition = target.place(transition.condition)
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
                     _add(variant, prefix + f"guard{g}_condition{t}", condition, target, (i, "condition", g, t))
+        rates = _drift_rates(model, equations)
+        _add(variant, prefix + "guard_series", ca.vertcat(*values, rates), equations, (i, "guard_series"))
     return variant
 
 

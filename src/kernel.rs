@@ -77,6 +77,8 @@ pub struct Context {
     /// Taylor coefficients of the signals, one row an order.
     pub signal_series: Box<[f64]>,
     constants: Box<[f64]>,
+    /// Taylor coefficients of the guards, one row an order.
+    pub guard_series: Box<[f64]>,
     /// What the series functions carry from one order to the next.
     workspace: Box<[f64]>,
 }
@@ -89,7 +91,10 @@ impl Context {
     pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
         let dimensions = model.constants.dimensions;
         let modes = model.variants.iter().flat_map(|variant| variant.modes);
-        let workspace = modes.map(|mode| with_kernel!(&mode.kernels, k => k.workspace()));
+        let rooms = modes.map(|mode| with_kernel!(&mode.kernels, k => (k.workspace(), k.guards)));
+        let (workspace, guards) = rooms.fold((0, 0), |most, room| {
+            (most.0.max(room.0), most.1.max(room.1))
+        });
         Context {
             dimensions,
             signals: vec![0.0; dimensions.signals].into(),
@@ -98,7 +103,8 @@ impl Context {
             held: vec![0.0; dimensions.coordinates].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             constants: model.constants.evaluate(parameters),
-            workspace: vec![0.0; workspace.max().unwrap_or(0)].into(),
+            guard_series: vec![0.0; ORDERS * guards].into(),
+            workspace: vec![0.0; workspace].into(),
         }
     }
 
@@ -225,6 +231,8 @@ pub struct ModeKernel<const F: usize> {
     momenta: Raw,
     requirements: (Raw, usize),
     series: Option<SeriesKernel>,
+    guard_series: Option<SeriesKernel>,
+    guards: usize,
     held_rates: Raw,
 }
 
@@ -287,8 +295,51 @@ impl<const F: usize> ModeKernel<F> {
         self.series.is_some()
     }
 
+    /// Doubles of workspace that the series of this mode need.
     fn workspace(&self) -> usize {
-        self.series.as_ref().map_or(0, |s| s.lead + s.row * ORDERS)
+        let all = [&self.series, &self.guard_series].into_iter().flatten();
+        all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
+    }
+
+    /// Fills `Context::guard_series` with the Taylor coefficients of all guards, one row an order,
+    /// along a motion that is known to that order; false if an operation of theirs has no
+    /// recurrence.
+    ///
+    /// # Panics
+    /// If `orders` is more than [`ORDERS`].
+    pub fn guard_series(&self, x: &mut Context, orders: usize, at: &Series<F>) -> bool {
+        let Some(series) = &self.guard_series else {
+            return false;
+        };
+        assert!(orders <= ORDERS && x.guard_series.len() >= ORDERS * self.guards);
+        let raw = x.raw(self.dimensions, std::ptr::null());
+        assert!(x.workspace.len() >= self.workspace());
+        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        for k in 0..orders {
+            let row = x.guard_series[k * self.guards..(k + 1) * self.guards].as_mut_ptr();
+            // SAFETY: F entries a row of q, v and a, and all rows are there; one output a guard; the
+            // workspace is as long as the generated tables say.
+            unsafe {
+                match k {
+                    0 => (series.start)(q.cast(), v.cast(), a.cast(), u, &raw, w, row),
+                    _ => (series.next)(k, q.cast(), v.cast(), a.cast(), u, &raw, w, row),
+                }
+            }
+        }
+        true
+    }
+
+    /// Coefficients of a guard, by its index in the mode, in the order of the powers of time; set by
+    /// [`Self::guard_series`].
+    pub fn guard_coefficients<'x>(
+        &self,
+        x: &'x Context,
+        guard: usize,
+        orders: usize,
+    ) -> impl Iterator<Item = f64> + use<'x, F> {
+        let guards = self.guards;
+        (0..orders).map(move |k| x.guard_series[k * guards + guard])
     }
 
     /// Begins a Taylor series: mass matrix and load at order 0 of q and v.

@@ -73,10 +73,14 @@ pub(super) struct Equations<'a, const F: usize> {
     pub kernel: &'static ModeKernel<F>,
     pub context: &'a mut Context,
     pub clock: Clock<'a>,
+    /// Relative tolerance of the run.
+    pub tolerance: f64,
     /// Typical sizes of the accelerations' coordinates, for the choice of pivots.
     scale: SVector<f64, F>,
     /// Local time for which the context is set; NaN: none.
     set_for: f64,
+    /// Local time about which the guards were last expanded; NaN: none.
+    guards_expanded_at: f64,
 }
 
 impl<'a, const F: usize> Equations<'a, F> {
@@ -84,14 +88,17 @@ impl<'a, const F: usize> Equations<'a, F> {
         kernel: &'static ModeKernel<F>,
         context: &'a mut Context,
         clock: Clock<'a>,
+        tolerance: f64,
         scale: SVector<f64, F>,
     ) -> Self {
         Equations {
             kernel,
             context,
             clock,
+            tolerance,
             scale,
             set_for: f64::NAN,
+            guards_expanded_at: f64::NAN,
         }
     }
 
@@ -102,6 +109,20 @@ impl<'a, const F: usize> Equations<'a, F> {
             self.clock.set(tau, self.context);
             self.set_for = tau;
         }
+    }
+
+    /// Expands the guards about the start of a step of the Taylor method, local time `tau`, unless
+    /// that was done before. Gives false where that is not possible.
+    pub fn expand_guards(&mut self, tau: f64, orders: usize, series: &Series<F>) -> bool {
+        if tau == self.guards_expanded_at {
+            return true;
+        }
+        self.at(tau);
+        let expanded = self.kernel.guard_series(self.context, orders, series);
+        if expanded {
+            self.guards_expanded_at = tau;
+        }
+        expanded
     }
 
     /// The jerk at a point whose time the context and its signal rates are set for.

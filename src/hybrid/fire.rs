@@ -167,15 +167,13 @@ impl Simulation<'_> {
             .chain(&self.context.discrete);
         state.for_each(|x| x.to_bits().hash(&mut hasher));
         let key = hasher.finish();
-        let step = format!(
-            "{name} ({} → {})",
-            modes[from].name, modes[self.here.mode].name
-        );
+        let step = (name, from, self.here.mode);
         if let Some(first) = self.visited.iter().position(|(seen, _)| *seen == key) {
-            let steps = self.visited[first + 1..]
-                .iter()
-                .map(|(_, step)| step.clone());
-            let cycle = steps.chain([step]).collect::<Vec<_>>().join(", ");
+            let steps = self.visited[first + 1..].iter().map(|(_, step)| *step);
+            let text = steps.chain([step]).map(|(name, from, to)| {
+                format!("{name} ({} → {})", modes[from].name, modes[to].name)
+            });
+            let cycle = text.collect::<Vec<_>>().join(", ");
             return Err(Reason::Cycle { cycle });
         }
         self.visited.push((key, step));

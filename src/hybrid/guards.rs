@@ -175,6 +175,11 @@ pub(super) fn search<const F: usize>(
             search_linear(dense, index, rate, factor, window, watch)
         }
         _ => {
+            if watched.condition.is_none()
+                && let Some(found) = search_series(equations, dense, guard, watched, window, watch)
+            {
+                return found;
+            }
             let accelerations = !matches!(
                 guard.shape,
                 GuardShape::General {
@@ -214,15 +219,71 @@ fn search_linear<const F: usize>(
 ) -> Search {
     let mut coefficients = [0.0; ORDERS];
     let count = dense.polynomial(index, rate, &mut coefficients);
+    for coefficient in &mut coefficients[..count] {
+        *coefficient *= factor;
+    }
+    search_polynomial(&coefficients[..count], dense, (from, to), watch)
+}
+
+/// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
+///
+/// `None` if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
+/// that the last terms are not small: two derivatives of the motion multiply its last term by order².
+fn search_series<const F: usize>(
+    equations: &mut Equations<F>,
+    dense: &impl Motion<F>,
+    guard: &Guard,
+    watched: Watched,
+    window: (f64, f64),
+    watch: Watch,
+) -> Option<Search> {
+    let (series, orders) = dense.series()?;
+    let tau = dense.start();
+    if !equations.expand_guards(tau, orders, series) {
+        return None;
+    }
+    let (kernel, context) = (equations.kernel, &*equations.context);
+    let mut coefficients = [0.0; ORDERS];
+    let mut power = 1.0;
+    let given = kernel.guard_coefficients(context, watched.guard, orders);
+    for (coefficient, given) in coefficients.iter_mut().zip(given) {
+        *coefficient = given * power;
+        power *= dense.length();
+    }
+    let coefficients = &mut coefficients[..orders];
+    let size = |of: &[f64]| of.iter().map(|c| c.abs()).sum::<f64>();
+    let allowed = equations.tolerance * (orders * orders) as f64 * size(coefficients);
+    if !(size(&coefficients[orders - 2..]) <= allowed) {
+        return None;
+    }
+    // The guard's own value decides on which side of zero it starts.
+    equations.at(tau);
+    let at = Free {
+        q: &series.q[0],
+        v: &series.v[0],
+        a: &series.a[0],
+    };
+    coefficients[0] = kernel.guard(equations.context, &guard.kernel, at);
+    Some(search_polynomial(coefficients, dense, window, watch))
+}
+
+/// Searches a polynomial in s = (τ − start)/length of the step.
+fn search_polynomial<const F: usize>(
+    coefficients: &[f64],
+    dense: &impl Motion<F>,
+    (from, to): (f64, f64),
+    watch: Watch,
+) -> Search {
     let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
     let window = (local(from), local(to));
-    let coefficients = &coefficients[..count];
+    let degree = coefficients.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     // Work grows with the square of the room.
-    let mut search = match count {
-        0..=6 => search_polynomial::<6>(coefficients, factor, window, watch),
-        7..=10 => search_polynomial::<10>(coefficients, factor, window, watch),
-        11..=16 => search_polynomial::<16>(coefficients, factor, window, watch),
-        _ => search_polynomial::<ORDERS>(coefficients, factor, window, watch),
+    let mut search = match degree {
+        0..=3 => search_padded::<4>(coefficients, window, watch),
+        4..=5 => search_padded::<6>(coefficients, window, watch),
+        6..=9 => search_padded::<10>(coefficients, window, watch),
+        10..=15 => search_padded::<16>(coefficients, window, watch),
+        _ => search_padded::<ORDERS>(coefficients, window, watch),
     };
     if let Some(crossing) = &mut search.crossing {
         crossing.inside = dense.start() + crossing.inside * dense.length();
@@ -231,18 +292,11 @@ fn search_linear<const F: usize>(
     search
 }
 
-/// Searches `factor` times the polynomial with the given coefficients, at most `N`.
-fn search_polynomial<const N: usize>(
-    coefficients: &[f64],
-    factor: f64,
-    (from, to): (f64, f64),
-    watch: Watch,
-) -> Search {
-    let mut polynomial = Polynomial::<N> {
-        coefficients: [0.0; N],
-    };
-    for (coefficient, given) in polynomial.coefficients.iter_mut().zip(coefficients) {
-        *coefficient = factor * given;
+/// Searches a polynomial whose coefficients beyond the first `N` vanish.
+fn search_padded<const N: usize>(given: &[f64], (from, to): (f64, f64), watch: Watch) -> Search {
+    let mut coefficients = [0.0; N];
+    for (coefficient, given) in coefficients.iter_mut().zip(given) {
+        *coefficient = *given;
     }
-    polynomial.search(from, to, watch, 0.0)
+    Polynomial { coefficients }.search(from, to, watch, 0.0)
 }

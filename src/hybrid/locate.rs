@@ -115,8 +115,8 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// The first state on the far side, from the end of the step on by about `correction`.
 ///
 /// The guard's own values decide. Its rounding may keep them at or above zero at the computed
-/// root: the move is lengthened by its own last place, doubled each time, until it is strictly
-/// crossed; after `smooth` the Taylor polynomial ends.
+/// root: the move is lengthened by its last place, or by that of `smooth` if it is hardly a move at
+/// all, doubled each time, until it is strictly crossed; after `smooth` the Taylor polynomial ends.
 fn beyond_the_crossing<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
@@ -125,19 +125,27 @@ fn beyond_the_crossing<const F: usize>(
     correction: f64,
     smooth: f64,
 ) -> Landing<F> {
-    let mut place = (f64::EPSILON * correction.abs()).max(f64::MIN_POSITIVE);
+    let accelerated = matches!(
+        guard.shape,
+        GuardShape::General {
+            accelerations: true,
+            ..
+        }
+    );
+    let of_accelerations = accelerated || conditions.are_part_of(guard);
+    let least = (f64::EPSILON * smooth).max(f64::MIN_POSITIVE);
+    let mut place = (f64::EPSILON * correction.abs()).max(least);
     let mut beyond = correction;
     loop {
         let mut state = moved(end, beyond);
-        if !matches!(guard.shape, GuardShape::Linear { .. })
-            && equations
-                .acceleration(state.t, &state.q, &state.v, &mut state.a)
-                .is_err()
-        {
-            state.a = end.a;
+        if of_accelerations {
+            accelerate(equations, &mut state);
         }
         let value = value_at(equations, conditions, guard, &state);
         if value < 0.0 || !value.is_finite() {
+            if !of_accelerations {
+                accelerate(equations, &mut state);
+            }
             return Landing::On { state, beyond };
         }
         if place > smooth {
@@ -145,6 +153,17 @@ fn beyond_the_crossing<const F: usize>(
         }
         beyond += place;
         place *= 2.0;
+    }
+}
+
+/// Sets the accelerations of a state by the equations, where they determine them.
+fn accelerate<const F: usize>(equations: &mut Equations<F>, state: &mut State<F>) {
+    let mut a = state.a;
+    if equations
+        .acceleration(state.t, &state.q, &state.v, &mut a)
+        .is_ok()
+    {
+        state.a = a;
     }
 }
 

@@ -35,6 +35,10 @@ impl Simulation<'_> {
     ) -> Result<Stop, Reason> {
         let stop = self.follow(kernel, &mut method);
         self.count(OneStep::<F, Equations<F>>::counters(&method));
+        let name = OneStep::<F, Equations<F>>::name(&method);
+        if !self.methods.contains(&name) {
+            self.methods.push(name);
+        }
         stop
     }
 
@@ -65,7 +69,13 @@ impl Simulation<'_> {
             held: &held,
             drift: &drift,
         };
-        let mut equations = Equations::new(kernel, &mut self.context, clock, scale);
+        let mut equations = Equations::new(
+            kernel,
+            &mut self.context,
+            clock,
+            problem.accuracy.relative,
+            scale,
+        );
         let watched = &self.plan.watched[self.here.mode];
         let mut conditions = Conditions {
             variant: problem.variant,

@@ -78,12 +78,14 @@ pub(super) struct Simulation<'p> {
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
     /// Modes and states seen since the time last advanced, with the transition that led there.
-    pub visited: Vec<(u64, String)>,
+    pub visited: Vec<(u64, (&'static str, usize, usize))>,
     pub ledger: RunningLedger,
     pub recorder: Recorder,
     pub layout: Layout,
     pub events: Vec<Event>,
     pub solver: Solver,
+    /// Name and order of every method that was used.
+    pub methods: Vec<(&'static str, usize)>,
     /// Index of the next sample of the grid.
     pub next_sample: u64,
     /// How often the transition that ends the run has happened.
@@ -125,10 +127,8 @@ impl<'p> Simulation<'p> {
             recorder: Recorder::new(&layout, rows + 1),
             layout,
             events: Vec::new(),
-            solver: Solver {
-                method: "Radau IIA, order 5".into(),
-                ..Solver::default()
-            },
+            solver: Solver::default(),
+            methods: Vec::new(),
             next_sample: 0,
             counted: 0,
             progress,
@@ -373,6 +373,19 @@ impl<'p> Simulation<'p> {
         }
     }
 
+    /// Names the methods in the account of the work, after those of the run that was resumed.
+    fn name_methods(&mut self) {
+        let mut named = std::mem::take(&mut self.solver.method);
+        for (name, order) in &self.methods {
+            let method = format!("{name}, order {order}");
+            if !named.split("; ").any(|known| known == method) {
+                let separator = if named.is_empty() { "" } else { "; " };
+                named = format!("{named}{separator}{method}");
+            }
+        }
+        self.solver.method = named;
+    }
+
     fn place(&self) -> Place {
         Place {
             t: self.here.now.seconds(),
@@ -392,6 +405,7 @@ impl<'p> Simulation<'p> {
         let problem = self.problem;
         let end = self.place();
         let stored = self.stored_energy();
+        self.name_methods();
         Run {
             subject: Subject {
                 model: problem.model.name.into(),

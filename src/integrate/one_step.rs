@@ -6,13 +6,16 @@ use super::report::{Counters, StepError, StepReport};
 use super::state::{Node, State};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
-use super::taylor::{Analytic, ORDERS, Taylor, TaylorDense};
+use super::taylor::{Analytic, ORDERS, Series, Taylor, TaylorDense};
 use nalgebra::SVector;
 
 /// A one-step method with dense output, for systems of type `Y`.
 pub trait OneStep<const F: usize, Y> {
     /// Its dense output.
     type Motion: Motion<F>;
+
+    /// Name, and order of accuracy.
+    fn name(&self) -> (&'static str, usize);
 
     /// Goes on from a state that the last step did not lead to.
     fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>);
@@ -56,6 +59,12 @@ pub trait Motion<const F: usize> {
     /// Coordinates, velocities and accelerations at time `t` of the step.
     fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>);
 
+    /// The motion as a Taylor series and the number of its orders that are known of everything, if
+    /// that is what it is.
+    fn series(&self) -> Option<(&Series<F>, usize)> {
+        None
+    }
+
     /// Writes the coefficients, in powers of s = (t − start)/length, of coordinate `index` or of its
     /// rate; gives their number.
     fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize;
@@ -66,6 +75,10 @@ where
     RadauIia<S>: Coefficients<S>,
 {
     type Motion = Dense<S, F>;
+
+    fn name(&self) -> (&'static str, usize) {
+        ("Radau IIA", 2 * S - 1)
+    }
 
     fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>) {
         self.restart(t, q, v, a);
@@ -103,6 +116,10 @@ where
 
 impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     type Motion = TaylorDense<F>;
+
+    fn name(&self) -> (&'static str, usize) {
+        ("Taylor", self.order())
+    }
 
     fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>) {
         self.restart(t, q, v, a);
@@ -176,6 +193,10 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
 
     fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
         self.at(t)
+    }
+
+    fn series(&self) -> Option<(&Series<F>, usize)> {
+        Some((self.series(), self.degree() - 1))
     }
 
     fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {

@@ -3,11 +3,16 @@
 //! Reading a scene and `dalembert schema` both follow these tables.
 
 use super::shape::{Key, Object, Quantity, Shape};
+use crate::hybrid::Method;
 use crate::model::{Coordinate, Input, Model, Variant};
 
 /// Relative tolerance of a scene that asks for none: eight digits, well above the rounding of long
 /// runs and well below what a plot shows.
 pub(crate) const DEFAULT_RELATIVE: f64 = 1e-8;
+
+/// The methods of integration by name, the default first.
+pub(crate) const METHODS: [(&str, Method); 2] =
+    [("radau", Method::Radau), ("taylor", Method::Taylor)];
 
 /// The shape of a scene of a model; of any model, with less detail, for `None`.
 pub(crate) fn scene(model: Option<&Model>) -> Object {
@@ -43,6 +48,12 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
         Key::new("freeze", "coordinates held still throughout", freeze(model)),
         Key::new("end", "when the run ends", end(model)).required(),
         Key::new("accuracy", "error tolerances", accuracy(model)),
+        Key::new(
+            "method",
+            "method of integration: `radau` for all equations; `taylor`, the faster one, for equations \
+             that are not stiff",
+            Shape::Choice("method", METHODS.map(|(name, _)| name).to_vec()),
+        ),
         Key::new("record", "what is written", record()),
     ]);
     let object = Object::new("key", keys);

@@ -60,7 +60,7 @@ pub(crate) fn scene(
         freeze,
         end,
         accuracy: accuracy(model, &checked),
-        method: Method::default(),
+        method: method(&checked),
         record: record(&checked),
     };
     let source = SceneSource { root };
@@ -268,4 +268,10 @@ fn record(scene: &Checked) -> Record {
             inputs: flag("inputs"),
         },
     }
+}
+
+fn method(scene: &Checked) -> Method {
+    let named = |name: &str| format::METHODS.iter().find(|(known, _)| *known == name);
+    let chosen = scene.get("method").and_then(|method| named(method.text()));
+    chosen.map_or(Method::default(), |(_, method)| *method)
 }
