@@ -283,6 +283,7 @@ fn search_polynomial<const F: usize>(
         4..=5 => search_padded::<6>(coefficients, window, watch),
         6..=9 => search_padded::<10>(coefficients, window, watch),
         10..=15 => search_padded::<16>(coefficients, window, watch),
+        16..=20 => search_padded::<21>(coefficients, window, watch),
         _ => search_padded::<ORDERS>(coefficients, window, watch),
     };
     if let Some(crossing) = &mut search.crossing {

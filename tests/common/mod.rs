@@ -1,10 +1,11 @@
 //! Helpers of the tests that simulate.
 #![allow(dead_code)] // each test file uses some of them
 
-use dalembert::hybrid::{Problem, simulate};
+use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::kernel::MODELS;
 use dalembert::record::{Run, Silent};
 use serde_json::Value;
+use std::cell::Cell;
 
 /// The tightest tolerance that the method takes: ten roundings.
 pub const TIGHTEST: f64 = 10.0 * f64::EPSILON;
@@ -18,6 +19,19 @@ pub fn tighten(problem: &mut Problem, size: f64) {
     accuracy.v_absolute.fill(TIGHTEST * size);
 }
 
+thread_local! {
+    static METHOD: Cell<Method> = Cell::default();
+}
+
+/// Runs a test with each method of integration: `problem` makes problems that use it.
+pub fn with_each_method(test: impl Fn()) {
+    for method in [Method::Radau, Method::Taylor] {
+        println!("method: {method:?}"); // is shown with a failure
+        METHOD.set(method);
+        test();
+    }
+}
+
 /// A problem of a model by name, with the given parameters.
 pub fn problem(model: &str, parameters: &[(&str, f64)]) -> Problem {
     let model = MODELS
@@ -25,6 +39,7 @@ pub fn problem(model: &str, parameters: &[(&str, f64)]) -> Problem {
         .find(|m| m.name == model)
         .expect("the model exists");
     let mut problem = Problem::new(model);
+    problem.method = METHOD.get();
     for (name, value) in parameters {
         problem.set_parameter(name, *value).unwrap();
     }
