@@ -288,7 +288,13 @@ fn integrate_free(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
 fn integrate_all(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
     let modes = problem.variant.modes;
     let kernels = modes.iter().map(|m| &m.kernels);
-    let mut all = kernels.filter_map(|k| if let ModeKernels::F3(k) = k { Some(k) } else { None });
+    let mut all = kernels.filter_map(|k| {
+        if let ModeKernels::F3(k) = k {
+            Some(k)
+        } else {
+            None
+        }
+    });
     let kernel = all.next().expect("in one mode all are free");
     let free = modes[stretch.mode].free;
     let mut system = Whole {
