@@ -62,7 +62,7 @@ fn the_right_scene_is_right() {
 
 #[test]
 fn malformed_json() {
-    is_refused(r#""end": 0.01"#, r#""end": 0.01 ¶"model""#, &["error: "]);
+    is_refused(r#""end": 0.01"#, r#""end": 0.01¶ "model""#, &["error: "]);
     is_refused(r#""end": 0.01"#, r#""end": ¶// soon"#, &["error: "]);
 }
 
