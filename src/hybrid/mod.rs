@@ -2,7 +2,8 @@
 //!
 //! [`simulate`] runs a [`Problem`]. `simulation` holds the loop; `enter` starts a segment, `segment`
 //! integrates it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
-//! the transition; `accumulation` recognises where infinitely many of them end.
+//! the transition; `accumulation` recognises where infinitely many of them end. [`resume`] goes on with
+//! a run that was interrupted.
 
 mod accumulation;
 mod crossing;
