@@ -22,6 +22,7 @@ pub mod roots;
 mod samples;
 mod segment;
 mod simulation;
+mod work;
 
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Method, Problem, Record, Unknown};
