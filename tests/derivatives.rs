@@ -244,7 +244,7 @@ fn check_energies<const F: usize>(
     motion.jerk.fill(0.0);
     let stored = |t: f64| SVector::from([energy(kernel, &motion.later(t)).iter().sum::<f64>()]);
     let [dissipated, input] = kernel.powers(&motion.context, motion.at());
-    let exact = derivative(stored, 1e-4 / (1.0 + motion.a.amax()));
+    let exact = derivative(stored, 1e-2 / (1.0 + motion.a.amax()).sqrt());
     let size = stored(0.0).amax() * 1e3 + dissipated.abs() + input.abs();
     close(
         &format!("{what}: power"),
