@@ -92,7 +92,7 @@ fn row(run: &Run) -> String {
             format!("{peak:.3}")
         },
         landings.len(),
-        landings.iter().sum::<f64>(),
+        landings.iter().fold(0.0, |sum, lost| sum + lost),
         1e3 * gain,
     )
 }

@@ -1,6 +1,6 @@
 //! Calls into the generated C: the only unsafe code of the crate.
 //!
-//! Every generated function has the signature [`Raw`]. Safety rests on two facts, both checked
+//! Every generated function has the signature `Raw`. Safety rests on two facts, both checked
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 

@@ -12,7 +12,8 @@ use crate::scene::Scene;
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
-Ctrl-C ends the simulation at its next step; what was computed is written, with status 3.
+Ctrl-C ends the simulation at its next step; what was computed is written, with status 3. A second \
+Ctrl-C ends it at once, and nothing is written.
 
 --resume continues the run in DIR, whether it was interrupted or reached its end, to the end of \
 the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, columns \
@@ -59,7 +60,13 @@ pub fn run(arguments: &RunArguments) -> Result {
         Some(earlier) => resume(problem, earlier, &mut progress),
     };
     drop(progress);
-    let run = run.map_err(|reason| refusal(&scene, &reason))?;
+    let run = run.map_err(|reason| match (&reason, &arguments.resume) {
+        (Reason::OtherRun { .. }, Some(folder)) => Failure::wrong_input(format!(
+            "{}: {reason}; continue it with the scene it was made with",
+            folder.display()
+        )),
+        _ => refusal(&scene, &reason),
+    })?;
     if let Some(folder) = &folder {
         run.write(folder)?;
     }
@@ -69,6 +76,11 @@ pub fn run(arguments: &RunArguments) -> Result {
         Some(failure) => {
             let (t, reason) = (failure.at.t, &failure.reason);
             print::error(format!("stopped early at t = {t} s: {reason}"));
+            if let Some(out) = out
+                && interrupt::asked()
+            {
+                print::error(format!("continue with --resume {}", out.display()));
+            }
             Ok(Outcome::StoppedEarly)
         }
     }
@@ -78,7 +90,6 @@ pub fn run(arguments: &RunArguments) -> Result {
 pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
     let (path, help) = match reason {
         Reason::NoModeLeft { .. } => ("freeze", "freeze fewer coordinates"),
-        Reason::OtherRun { .. } => ("", "continue it with the scene that it was made with"),
         _ => (
             "initial",
             "change the initial state, or name another mode in `initial.mode`",

@@ -79,7 +79,7 @@ pub enum Reason {
         frozen: String,
     },
     /// The initial state fits no mode.
-    #[error("the initial state fits mode `{mode}` not: {why}")]
+    #[error("the initial state does not fit mode `{mode}`: {why}")]
     Initial {
         /// Mode.
         mode: &'static str,

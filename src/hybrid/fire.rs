@@ -10,6 +10,9 @@ use crate::record::{EnergyJump, Event};
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
 
+/// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 impl Simulation<'_> {
     /// Takes the first transition of a guard whose condition holds.
     pub fn fire(&mut self, guard: usize) -> Result<(), Reason> {
@@ -90,8 +93,12 @@ impl Simulation<'_> {
         let ground_work: f64 = impulses
             .map(|((after, rate), (before, _))| (after - before) * rate)
             .sum();
+        let energy_after = self.stored_energy();
+        let lost = energy_before - energy_after + ground_work;
+        // A difference of three numbers is told from zero only above their rounding.
+        let rounding = ROUNDING * (energy_before.abs() + energy_after.abs() + ground_work.abs());
         let energy = EnergyJump {
-            lost: energy_before - self.stored_energy() + ground_work,
+            lost: if lost.abs() <= rounding { 0.0 } else { lost },
             ground_work,
         };
         self.ledger.add_jump(energy);

@@ -2,7 +2,8 @@
 //!
 //! [`simulate`] runs a [`Problem`]. `simulation` holds the loop; `enter` starts a segment, `segment`
 //! integrates it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
-//! the transition; `accumulation` recognises where infinitely many of them end.
+//! the transition; `accumulation` recognises where infinitely many of them end. [`resume`] goes on with
+//! a run that was interrupted.
 
 mod accumulation;
 mod crossing;
@@ -21,6 +22,7 @@ pub mod roots;
 mod samples;
 mod segment;
 mod simulation;
+mod work;
 
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Method, Problem, Record, Unknown};

@@ -8,6 +8,7 @@ use super::instant::Instant;
 use super::problem::Method;
 use super::samples::{Row, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
+use super::work::work;
 use crate::integrate::{Counters, Node, OneStep, Radau, Taylor, Tolerances};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
@@ -122,15 +123,9 @@ impl Simulation<'_> {
                 let mut ledger = self.ledger.clone();
                 let energies = problem.record.columns.energies;
                 if energies {
-                    for (node, weight) in gauss(ledger_from, tau) {
-                        let [q, v, a] = guards::motion(&mut equations, dense, node, true);
-                        let at = Free {
-                            q: &q,
-                            v: &v,
-                            a: &a,
-                        };
-                        ledger.add_powers(kernel.powers(equations.context, at), weight);
-                    }
+                    let tolerance = problem.accuracy.relative;
+                    let work = work(&mut equations, dense, (ledger_from, tau), tolerance);
+                    ledger.add_powers(work, 1.0);
                 }
                 let needed = energies || problem.record.columns.reactions;
                 let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
@@ -158,7 +153,12 @@ impl Simulation<'_> {
                 self.next_sample += 1;
             }
 
-            for Node { weight, state } in method.nodes() {
+            if F == 0 {
+                let tolerance = problem.accuracy.relative;
+                let work = work(&mut equations, dense, (ledger_from, end.t), tolerance);
+                self.ledger.add_powers(work, 1.0);
+            }
+            for Node { weight, state } in method.nodes().take(if F == 0 { 0 } else { usize::MAX }) {
                 equations.at(state.t);
                 let at = Free {
                     q: &state.q,
@@ -284,16 +284,6 @@ fn copy_drifting(q: &mut [f64], drifts: &[bool], held: &[f64]) {
             *q = held;
         }
     }
-}
-
-/// Nodes and weights of Gauss's three-point rule on [from, to] (order 6, above that of a step).
-fn gauss(from: f64, to: f64) -> [(f64, f64); 3] {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let node = 0.6f64.sqrt();
-    [-node, 0.0, node].map(|x| {
-        let weight = if x == 0.0 { 8.0 / 9.0 } else { 5.0 / 9.0 };
-        (middle + half * x, half * weight)
-    })
 }
 
 /// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.

@@ -334,7 +334,7 @@ impl<'p> Simulation<'p> {
             }
             self.next[n + i] = rates[i];
         }
-        self.commit("rest", true, rest, before)
+        self.commit("rest", false, rest, before)
     }
 
     /// Sets signals, their rates and held coordinates to the present instant.

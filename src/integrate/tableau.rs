@@ -135,7 +135,7 @@ mod tests {
         close(terms, -tableau.error_constant, "error constant");
         // R(z) − e^z = C z^2S + …: the coefficient of z^2S in R = 1 + z bᵀ(I − zA)⁻¹1 is bᵀA^(2S−1)1.
         let mut x = [1.0; S];
-        for _ in 0..2 * S - 1 {
+        for _ in 0..2 * S {
             x = std::array::from_fn(|i| (0..S).map(|j| tableau.a[i][j] * x[j]).sum());
         }
         let factorial: f64 = (1..=2 * S).map(|k| k as f64).product();

@@ -4,6 +4,10 @@ use std::fmt::{self, Display, Formatter};
 
 use super::description::{Description, Guard, Held, Mode, Parameter};
 use crate::cli::table::Table;
+use crate::record::rounded;
+
+/// Digits of bounds, which may be multiples of π; the exact ones are in the JSON.
+const DIGITS: usize = 6;
 
 /// Shows a description.
 pub struct Text<'a>(pub &'a Description);
@@ -120,8 +124,10 @@ fn indented(text: &dyn Display) -> String {
 fn bounds(p: &Parameter) -> String {
     let sign = if p.minimum_exclusive { ">" } else { ">=" };
     let bounds = [
-        p.minimum.map(|minimum| format!("{sign} {minimum}")),
-        p.maximum.map(|maximum| format!("<= {maximum}")),
+        p.minimum
+            .map(|minimum| format!("{sign} {}", rounded(minimum, DIGITS))),
+        p.maximum
+            .map(|maximum| format!("<= {}", rounded(maximum, DIGITS))),
         p.at_most.map(|limit| format!("<= {limit}")),
     ];
     bounds.into_iter().flatten().collect::<Vec<_>>().join(", ")

@@ -1,0 +1,204 @@
+//! Ctrl-C, and runs that are continued.
+
+use super::*;
+
+/// The rows of a table, numbers where they are numbers.
+fn table(path: &Path) -> Vec<Vec<String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let record = |r: csv::Result<csv::StringRecord>| r.unwrap().iter().map(str::to_owned).collect();
+    reader.records().map(record).collect()
+}
+
+/// Compares two tables: texts exactly, numbers to a tolerance.
+fn agree(one: &Path, other: &Path, tolerance: f64) {
+    let (one, other) = (table(one), table(other));
+    assert_eq!(one.len(), other.len());
+    for (i, (a, b)) in one.iter().zip(&other).enumerate() {
+        assert_eq!(a.len(), b.len());
+        for (a, b) in a.iter().zip(b) {
+            match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(a), Ok(b)) => assert!((a - b).abs() <= tolerance, "row {i}: {a} and {b}"),
+                _ => assert_eq!(a, b, "row {i}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_run_in_two_parts_is_that_in_one() {
+    let home = tempfile::tempdir().unwrap();
+    let path = |name: &str| home.path().join(name);
+    let scene = scene("tank_full_plate");
+    let run = |more: &[&str]| ends_with(0, home.path(), &[&["run", &scene][..], more].concat());
+    run(&["--out", "whole"]);
+    // Off the grid of the samples, so that the row of the end must not stay.
+    run(&["--set", "end=0.7503", "--out", "first"]);
+    run(&["--resume", "first", "--out", "both"]);
+    for file in ["trajectory.csv", "events.csv"] {
+        // Positions to 1e-8 of their size; reactions, up to 600 N, amplify that by the stiffness.
+        agree(&path("whole").join(file), &path("both").join(file), 1e-6);
+    }
+    let [whole, both] = ["whole", "both"].map(|name| json(&path(name).join("summary.json")));
+    assert_eq!(whole["events"], both["events"]);
+    assert_eq!(
+        json(&path("first").join("summary.json"))["end"]["t"],
+        0.7503
+    );
+    let work = |summary: &serde_json::Value| summary["energy"]["input_work"].as_f64().unwrap();
+    assert!((work(&whole) - work(&both)).abs() < 1e-6 * work(&whole));
+    let steps = |summary: &serde_json::Value| summary["solver"]["steps"].as_u64().unwrap();
+    assert!(steps(&both) * 10 > steps(&whole) * 9, "the counters go on");
+}
+
+#[test]
+fn a_finished_run_that_is_continued_stays_the_same() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = scene("bouncing_ball");
+    ends_with(0, home.path(), &["run", &scene, "--out", "out"]);
+    let files = ["trajectory.csv", "events.csv", "overview.svg"];
+    let before = files.map(|file| fs::read(home.path().join("out").join(file)).unwrap());
+    ends_with(0, home.path(), &["run", &scene, "--resume", "out"]);
+    let after = files.map(|file| fs::read(home.path().join("out").join(file)).unwrap());
+    assert!(before == after, "every number is read back to the bit");
+}
+
+#[test]
+fn a_run_is_not_continued_with_another_scene() {
+    let home = tempfile::tempdir().unwrap();
+    let tank = scene("tank_full_plate");
+    ends_with(
+        0,
+        home.path(),
+        &["run", &tank, "--set", "end=0.1", "--out", "out"],
+    );
+    let before = fs::read(home.path().join("out/summary.json")).unwrap();
+    for (scene, setting, words) in [
+        (
+            &tank,
+            "parameters.mu_s=0.3",
+            "`mu_s` is 0.3 now and was 0.2",
+        ),
+        (
+            &tank,
+            "rules=paper",
+            "`rules` was reactions and is paper now",
+        ),
+        (&tank, "record.every=0.002", "row 2 of the trajectory"),
+        (&tank, "record.inputs=false", "other columns"),
+        (
+            &scene("bouncing_ball"),
+            "end=1",
+            "a run of the model `walking_tank`",
+        ),
+    ] {
+        let arguments = ["run", scene, "--resume", "out", "--set", setting];
+        let output = ends_with(2, home.path(), &arguments);
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+    assert_eq!(
+        fs::read(home.path().join("out/summary.json")).unwrap(),
+        before
+    );
+    let output = ends_with(2, home.path(), &["run", &tank, "--resume", "nowhere"]);
+    assert!(stderr(&output).contains("cannot read the run"));
+}
+
+/// A signal needs a process that listens to it, which Linux tells.
+#[cfg(target_os = "linux")]
+mod signals {
+    use super::*;
+    use std::process::{Child, Command, Stdio};
+    use std::thread;
+    use std::time::{Duration, Instant};
+
+    /// SIGINT in the masks of /proc.
+    const SIGINT: u64 = 1 << (2 - 1);
+
+    /// Waits until the process catches SIGINT.
+    fn wait_until_it_listens(child: &Child) {
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(60) {
+            let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+            let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+            let caught = u64::from_str_radix(caught.unwrap_or("0").trim(), 16).unwrap();
+            if caught & SIGINT != 0 {
+                return;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+        panic!("the process does not listen to SIGINT");
+    }
+
+    fn interrupted(folder: &Path, arguments: &[&str]) -> Output {
+        let child = Command::new(env!("CARGO_BIN_EXE_dalembert"))
+            .args(arguments)
+            .current_dir(folder)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        wait_until_it_listens(&child);
+        let id = child.id().to_string();
+        assert!(
+            Command::new("kill")
+                .args(["-INT", &id])
+                .status()
+                .unwrap()
+                .success()
+        );
+        child.wait_with_output().unwrap()
+    }
+
+    #[test]
+    fn an_interrupted_run_is_written_and_can_be_continued() {
+        let home = tempfile::tempdir().unwrap();
+        let scene = scene("belt_oscillator");
+        // Far more cycles than there is time for.
+        let endless = [
+            "run",
+            &scene,
+            "--set",
+            "end=1e9",
+            "--set",
+            "record.every=1e6",
+            "--out",
+            "out",
+        ];
+        let output = interrupted(home.path(), &endless);
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert!(stderr(&output).contains("interrupted"));
+        assert!(stderr(&output).contains("continue with --resume out"));
+        let summary = json(&home.path().join("out/summary.json"));
+        assert_eq!(summary["failure"]["reason"], "interrupted");
+        let t = summary["end"]["t"].as_f64().unwrap();
+        let until = format!("end={}", t + 1.0);
+        let more = [
+            "run",
+            &scene,
+            "--set",
+            &until,
+            "--set",
+            "record.every=1e6",
+            "--resume",
+            "out",
+        ];
+        ends_with(0, home.path(), &more);
+        let summary = json(&home.path().join("out/summary.json"));
+        assert_eq!(summary["end"]["t"].as_f64(), Some(t + 1.0));
+        assert!(summary["failure"].is_null());
+    }
+
+    #[test]
+    fn an_interrupted_comparison_says_so() {
+        let home = tempfile::tempdir().unwrap();
+        let compare = ["compare", &scene("tank_full_plate"), "--set", "end=1e6"];
+        let compare = [
+            &compare[..],
+            &["--set", "record.every=1e3", "--vary", "landing"],
+        ]
+        .concat();
+        let output = interrupted(home.path(), &compare);
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert!(stdout(&output).contains("stopped early"));
+    }
+}

@@ -1,0 +1,163 @@
+//! `run`: scenes that ship, output folders, overrides, early stops.
+
+use super::*;
+
+/// What every run leaves; `phase.svg` is there where something moves.
+const FILES: [&str; 6] = [
+    ".dalembert-output",
+    "csv-metadata.json",
+    "events.csv",
+    "overview.svg",
+    "summary.json",
+    "trajectory.csv",
+];
+
+#[test]
+fn every_scene_that_ships_runs() {
+    let home = tempfile::tempdir().unwrap();
+    let scenes = names(&project().join("scenes"));
+    let scenes = scenes.iter().filter_map(|name| name.strip_suffix(".json"));
+    let mut models = Vec::new();
+    for name in scenes {
+        let output = ends_with(0, home.path(), &["run", &scene(name), "--out", name]);
+        assert_eq!(stderr(&output), "", "{name}");
+        let out = home.path().join(name);
+        for file in FILES {
+            let path = out.join(file);
+            let size = fs::metadata(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+            assert!(size.len() > 0, "{}", path.display());
+        }
+        let summary = json(&out.join("summary.json"));
+        assert!(summary["failure"].is_null(), "{name}");
+        let energy = |key: &str| summary["energy"][key].as_f64().unwrap();
+        assert!(energy("imbalance").is_finite(), "{name}");
+        models.push(summary["model"].as_str().unwrap().to_owned());
+    }
+    for model in [
+        "belt_oscillator",
+        "bouncing_ball",
+        "coulomb_oscillator",
+        "double_pendulum",
+    ] {
+        assert!(models.iter().any(|m| m == model), "no scene of {model}");
+    }
+    for model in ["rocking_block", "vibrating_table_ball", "walking_tank"] {
+        assert!(models.iter().any(|m| m == model), "no scene of {model}");
+    }
+}
+
+#[test]
+fn without_a_folder_nothing_is_written() {
+    let home = tempfile::tempdir().unwrap();
+    let output = ends_with(0, home.path(), &["run", &scene("bouncing_ball")]);
+    assert!(stdout(&output).contains("reached t = 5 s, mode rests"));
+    assert!(names(home.path()).is_empty());
+}
+
+#[test]
+fn overrides_reach_the_simulation() {
+    let home = tempfile::tempdir().unwrap();
+    let run = ["run", &scene("bouncing_ball"), "--out", "out"];
+    let settings = [
+        "--set",
+        "parameters.e=0.5",
+        "--set",
+        "initial.h=2",
+        "--set",
+        "end=1.5",
+    ];
+    ends_with(0, home.path(), &[&run[..], &settings].concat());
+    let summary = json(&home.path().join("out/summary.json"));
+    assert_eq!(summary["parameters"]["e"], 0.5);
+    assert_eq!(summary["end"]["t"], 1.5);
+    assert_eq!(summary["peaks"]["h"]["max"], 2.0);
+    // Free fall from 2 m.
+    let events = fs::read_to_string(home.path().join("out/events.csv")).unwrap();
+    let first: f64 = events
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((first - (4.0_f64 / 9.81).sqrt()).abs() < 1e-14);
+}
+
+#[test]
+fn an_early_stop_is_written_with_its_reason() {
+    // A block that is thrown over is lifted off the ground by its own rotation.
+    let home = tempfile::tempdir().unwrap();
+    let run = ["run", &scene("rocking_block"), "--out", "out"];
+    let thrown = [
+        "--set",
+        "initial.theta=0",
+        "--set",
+        "initial.theta.rate=2.5",
+    ];
+    let output = ends_with(3, home.path(), &[&run[..], &thrown].concat());
+    assert!(stderr(&output).starts_with("stopped early at t = "));
+    assert!(stdout(&output).contains("the block would leave the ground"));
+    let out = home.path().join("out");
+    assert!(FILES.iter().all(|file| out.join(file).is_file()));
+    let summary = json(&out.join("summary.json"));
+    let failure = &summary["failure"];
+    assert!(
+        failure["reason"]
+            .as_str()
+            .unwrap()
+            .contains("the block would leave the ground")
+    );
+    assert_eq!(failure["mode"], "rocks");
+    let t = failure["t"].as_f64().unwrap();
+    assert!(t > 0.0 && t < 12.0);
+    let rows = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+    let last = rows.lines().last().unwrap().split(',').next().unwrap();
+    assert_eq!(
+        last.parse::<f64>().unwrap(),
+        t,
+        "the rows go up to the stop"
+    );
+}
+
+#[test]
+fn a_foreign_folder_is_refused_and_untouched() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("out");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("thesis.tex"), "years of work").unwrap();
+    let output = ends_with(
+        2,
+        home.path(),
+        &["run", &scene("bouncing_ball"), "--out", "out"],
+    );
+    assert!(stderr(&output).contains("was not written by dalembert"));
+    assert_eq!(stdout(&output), "");
+    assert_eq!(names(&out), ["thesis.tex"]);
+    assert_eq!(
+        fs::read_to_string(out.join("thesis.tex")).unwrap(),
+        "years of work"
+    );
+    assert_eq!(names(home.path()), ["out"]);
+}
+
+#[test]
+fn a_second_run_replaces_the_first() {
+    let home = tempfile::tempdir().unwrap();
+    let run = ["run", &scene("bouncing_ball"), "--out", "out"];
+    ends_with(0, home.path(), &run);
+    ends_with(0, home.path(), &[&run[..], &["--set", "end=1"]].concat());
+    let summary = json(&home.path().join("out/summary.json"));
+    assert_eq!(summary["end"]["t"], 1.0);
+    assert_eq!(names(home.path()), ["out"]);
+}
+
+#[test]
+fn a_refused_run_leaves_the_last_one() {
+    let home = tempfile::tempdir().unwrap();
+    let run = ["run", &scene("bouncing_ball"), "--out", "out"];
+    ends_with(0, home.path(), &run);
+    ends_with(2, home.path(), &[&run[..], &["--set", "end=-1"]].concat());
+    assert_eq!(json(&home.path().join("out/summary.json"))["end"]["t"], 5.0);
+}

@@ -1,0 +1,47 @@
+//! `verify`: how Python is run. What it finds is tested beside it, in codegen/verify/tests.
+
+use super::*;
+
+const EXAMPLE: &str = "codegen/verify/examples/double_pendulum";
+
+#[test]
+fn equations_are_judged_and_a_page_is_written_where_the_command_was_given() {
+    let home = tempfile::tempdir().unwrap();
+    let example = project().join(EXAMPLE).display().to_string();
+    let arguments = ["verify", &example, "--quick", "--html", "report.html"];
+    // A foreign environment must not reach the interpreter of the build.
+    let assert = dalembert(home.path())
+        .env("PYTHONPATH", "/nowhere")
+        .env("PYTHONHOME", "/nowhere")
+        .args(arguments)
+        .assert()
+        .code(0);
+    assert!(!assert.get_output().stdout.is_empty());
+    assert_eq!(names(home.path()), ["report.html"]);
+}
+
+#[test]
+fn a_model_without_printed_equations_is_wrong_input() {
+    let output = ends_with(2, &project(), &["verify", "bouncing_ball"]);
+    assert!(
+        stderr(&output).contains("bouncing_ball"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn an_interpreter_that_is_gone_is_named_with_what_to_do() {
+    let home = tempfile::tempdir().unwrap();
+    let assert = dalembert(home.path())
+        .env("DALEMBERT_PYTHON", "/nowhere/python3")
+        .args(["verify", "walking_tank"])
+        .assert()
+        .code(1);
+    let message = stderr(assert.get_output());
+    assert!(
+        message.contains("/nowhere/python3 does not run"),
+        "{message}"
+    );
+    assert!(message.contains("DALEMBERT_PYTHON"), "{message}");
+}
