@@ -189,6 +189,8 @@ def _mode(variant, i, equations):
         series = functions[(what,)]
         yield f"{pad}        {what}: {_option(series.symbol and series, _series)},"
     yield f"{pad}        guards: {len(equations.guards)},"
+    constant = _mass_is_constant(model, equations, functions[("system",)])
+    yield f"{pad}        mass_is_constant: {_bool(constant)},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
     yield f"{pad}    }}),"
     counts = ", ".join(
@@ -216,39 +218,68 @@ def _shape(model, equations, expression):
     linear = _linear(model, equations, placed)
     if linear is not None:
         return linear
-    depends = lambda symbols: any(
-        s.element_hash() in present for s in ca.vertsplit(symbols)) if symbols.numel() else False
-    present = {s.element_hash() for s in ca.symvar(placed)}
-    signals = ca.vertcat(*[s for i in model.inputs for s in i.signals])
+    depends = lambda *columns: bool(_present(ca.symvar(placed), *columns))
     return (f"GuardShape::General {{ accelerations: {_bool(depends(equations.a))}, "
-            f"signals: {_bool(depends(signals))} }}")
+            f"signals: {_bool(depends(ca.vertcat(*_signals(model))))} }}")
+
+
+def _mass_is_constant(model, equations, function):
+    """Whether the mass matrix, of which `function` gives the entries first, stays the same while the
+    mode lasts."""
+    mass = function.output[: len(equations.free) ** 2]
+    return not _present(ca.symvar(mass), *_moving(model, equations))
 
 
 def _linear(model, equations, expression):
-    """`GuardShape::Linear` if the guard is a constant or discrete factor times a state, else None."""
-    factor, discrete = 1.0, None
+    """`GuardShape::Linear` if the guard is a constant or discrete factor times one coordinate or rate,
+    plus what does not move, else None."""
+    moving = _present(ca.symvar(expression), equations.a, *_moving(model, equations))
+    if len(moving) != 1:
+        return None
+    [symbol] = moving
+    slope = _factor(model, ca.simplify(ca.jacobian(expression, symbol)))
+    if slope is None:
+        return None
+    factor, discrete = slope
+    offset = not ca.simplify(ca.substitute(expression, symbol, 0)).is_zero()
+    for rate, column in ((False, equations.q), (True, equations.v)):
+        for index in range(column.numel()):
+            if column[index].element_hash() == symbol.element_hash():
+                return (f"GuardShape::Linear {{ index: {index}, rate: {_bool(rate)}, "
+                        f"factor: {_number(factor)}, discrete: {_option(discrete, str)}, offset: {_bool(offset)} }}")
+    return None
+
+
+def _moving(model, equations):
+    """Columns of the symbols that change while the mode lasts, accelerations left out."""
+    drifting = [equations.held[i] for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
+    return equations.q, equations.v, ca.vertcat(*_signals(model)), ca.vertcat(*drifting)
+
+
+def _signals(model):
+    return [s for i in model.inputs for s in i.signals]
+
+
+def _present(symbols, *columns):
+    """Those of the symbols that some column contains."""
+    wanted = {column[i].element_hash() for column in columns for i in range(column.numel())}
+    return [s for s in symbols if s.element_hash() in wanted]
+
+
+def _factor(model, expression):
+    """(number, index of a discrete state or None) whose product an expression is, else None."""
     discretes = {d.symbol.element_hash(): k for k, d in enumerate(model.discretes)}
-    while not expression.is_symbolic():
-        if expression.is_constant():
-            return None
+    factor, discrete = 1.0, None
+    while not expression.is_constant():
+        if expression.element_hash() in discretes:
+            return (factor, discretes[expression.element_hash()]) if discrete is None else None
         op = expression.op()
         if op == ca.OP_NEG:
             factor, expression = -factor, expression.dep(0)
-        elif op == ca.OP_MUL:
-            left, right = expression.dep(0), expression.dep(1)
-            if left.is_constant():
-                factor, expression = factor * float(left), right
-            elif discrete is None and left.element_hash() in discretes:
-                discrete, expression = discretes[left.element_hash()], right
-            elif discrete is None and right.element_hash() in discretes:
-                discrete, expression = discretes[right.element_hash()], left
-            else:
-                return None
+        elif op == ca.OP_MUL and expression.dep(0).is_constant():
+            factor, expression = factor * float(expression.dep(0)), expression.dep(1)
+        elif op == ca.OP_MUL and expression.dep(0).element_hash() in discretes and discrete is None:
+            discrete, expression = discretes[expression.dep(0).element_hash()], expression.dep(1)
         else:
             return None
-    for rate, column in ((False, equations.q), (True, equations.v)):
-        for index, symbol in enumerate(ca.vertsplit(column)) if column.numel() else []:
-            if symbol.element_hash() == expression.element_hash():
-                return (f"GuardShape::Linear {{ index: {index}, rate: {_bool(rate)}, "
-                        f"factor: {_number(factor)}, discrete: {_option(discrete, str)} }}")
-    return None
+    return factor * float(expression), discrete

@@ -233,6 +233,7 @@ pub struct ModeKernel<const F: usize> {
     series: Option<SeriesKernel>,
     guard_series: Option<SeriesKernel>,
     guards: usize,
+    mass_is_constant: bool,
     held_rates: Raw,
 }
 
@@ -274,6 +275,11 @@ impl<const F: usize> ModeKernel<F> {
                 out.as_mut_ptr().cast(),
             )
         }
+    }
+
+    /// Whether the mass matrix stays the same while the mode lasts.
+    pub fn mass_is_constant(&self) -> bool {
+        self.mass_is_constant
     }
 
     /// Mass matrix and load at (q, v).

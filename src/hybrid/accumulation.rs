@@ -16,19 +16,37 @@ const LONGEST_PATTERN: usize = 8;
 /// one than this are regular, and rounding decides on which side of one it falls.
 const LARGEST_RATIO: f64 = 1.0 - 1.5e-8;
 
+/// What makes two events the same, besides the discrete states after them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Signature {
+    /// Index of the guard in its mode.
+    pub guard: usize,
+    /// Index of the transition of the guard.
+    pub transition: usize,
+    /// Index of the mode entered.
+    pub mode: usize,
+}
+
 /// What is remembered of an event.
 #[derive(Debug, Clone, Default)]
 struct Hop {
-    /// What makes two events the same: guard, transition, mode and discrete states after it.
-    signature: u64,
+    signature: Signature,
+    /// Discrete states after the event.
+    discrete: Vec<f64>,
     /// Whether it was an impact.
     impact: bool,
     /// When it happened.
     at: Instant,
     /// State after the event: all coordinates, then all velocities.
     state: Vec<f64>,
-    /// Whether something moved since the event before, but nothing by more than rounding.
-    still: bool,
+}
+
+impl Hop {
+    fn is_like(&self, other: &Hop) -> bool {
+        let bits = |x: &f64| x.to_bits();
+        self.signature == other.signature
+            && (self.discrete.iter().map(bits)).eq(other.discrete.iter().map(bits))
+    }
 }
 
 /// Limit of an accumulation.
@@ -44,11 +62,33 @@ pub struct Limit {
     pub ratio: f64,
 }
 
+/// A geometric series of patterns.
+struct Series {
+    /// Number of events of the pattern.
+    pattern: usize,
+    /// Ratio of the durations of the last two patterns, and of the two before.
+    ratio: f64,
+    ratio_before: f64,
+    /// Duration of what is left, s.
+    remaining: f64,
+    /// Where it ends.
+    limit: Instant,
+}
+
+impl Series {
+    /// Sum of what is left, in units of the last term.
+    fn factor(&self) -> f64 {
+        self.ratio / (1.0 - self.ratio)
+    }
+}
+
 /// The last events of a run.
 #[derive(Debug)]
 pub struct Accumulation {
     hops: Vec<Hop>,
     count: usize,
+    /// Number of last events since each of which something moved, but nothing by more than rounding.
+    still: usize,
 }
 
 impl Accumulation {
@@ -56,36 +96,45 @@ impl Accumulation {
     pub const MEMORY: usize = 3 * LONGEST_PATTERN + 1;
 
     /// No events yet; `width` is the number of coordinates and velocities.
-    pub fn new(width: usize) -> Self {
+    pub fn new(width: usize, discretes: usize) -> Self {
         let hop = Hop {
             state: vec![0.0; width],
+            discrete: vec![0.0; discretes],
             ..Hop::default()
         };
         Accumulation {
             hops: vec![hop; Self::MEMORY],
             count: 0,
+            still: 0,
         }
+    }
+
+    /// Forgets all events.
+    pub fn clear(&mut self) {
+        (self.count, self.still) = (0, 0);
     }
 
     /// Remembers an event, with the states before and after it.
     pub fn push(
         &mut self,
-        signature: u64,
+        signature: Signature,
         impact: bool,
         at: Instant,
         before: impl Iterator<Item = f64>,
         state: impl Iterator<Item = f64>,
+        discrete: &[f64],
     ) {
         let still = self.count > 0 && hardly_moved(before.zip(self.hop(0).state.iter().copied()));
+        self.still = if still { self.still + 1 } else { 0 };
         let slot = self.count % Self::MEMORY;
         let hop = &mut self.hops[slot];
-        hop.still = still;
         hop.signature = signature;
         hop.impact = impact;
         hop.at = at;
         for (to, from) in hop.state.iter_mut().zip(state) {
             *to = from;
         }
+        hop.discrete.copy_from_slice(discrete);
         self.count += 1;
     }
 
@@ -97,71 +146,87 @@ impl Accumulation {
     /// of the state by more than `tolerance(index, value)`; `relative` is the accuracy asked of
     /// the limit's time.
     pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
-        (1..=LONGEST_PATTERN).find_map(|p| self.limit_of_pattern(p, relative, &tolerance))
+        let longest = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
+        let mut p = 1;
+        while p <= longest {
+            if let Some(series) = self.series(p, relative) {
+                // What repeats after p events repeats after a multiple of p, and leaves as much.
+                return self
+                    .is_negligible(&series, tolerance)
+                    .then(|| self.end_of(&series));
+            }
+            p += 1;
+        }
+        None
     }
 
-    fn limit_of_pattern(
-        &self,
-        p: usize,
-        relative: f64,
-        tolerance: &impl Fn(usize, f64) -> f64,
-    ) -> Option<Limit> {
-        if self.count < 3 * p + 1 {
-            return None;
-        }
-        let repeats = (0..2 * p).all(|i| self.hop(i).signature == self.hop(i + p).signature);
-        // Only impacts come to rest; stick and slip alone have modes of their own.
-        if !repeats || !(0..p).any(|i| self.hop(i).impact) {
-            return None;
-        }
-        let [last, middle, first] =
-            [0, 1, 2].map(|k| self.hop(k * p).at.since(self.hop((k + 1) * p).at));
+    /// The geometric series of a pattern of `p` events, if its ratio has converged.
+    fn series(&self, p: usize, relative: f64) -> Option<Series> {
+        let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
+        let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
         let (ratio, ratio_before) = (last / middle, middle / first);
         if !(ratio > 0.0 && ratio < LARGEST_RATIO && ratio_before < LARGEST_RATIO) {
             return None;
         }
-        let series = ratio / (1.0 - ratio);
-        let now = self.hop(0);
-        let remaining = last * series;
-        let limit = now.at.plus(remaining);
-        let predicted_before = self
-            .hop(p)
-            .at
-            .plus(middle * ratio_before / (1.0 - ratio_before));
-        let uncertainty = limit.since(predicted_before).abs();
-        let one_place = limit.seconds().abs() * f64::EPSILON;
-        if uncertainty > (relative * limit.seconds().abs()).max(one_place) {
+        let repeats = (0..2 * p).all(|i| self.hop(i).is_like(self.hop(i + p)));
+        // Only impacts come to rest; stick and slip alone have modes of their own.
+        if !repeats || !(0..p).any(|i| self.hop(i).impact) {
             return None;
         }
-        let before = self.hop(p);
-        let mut state = now.state.clone();
-        let mut negligible = true;
-        for (i, value) in state.iter_mut().enumerate() {
-            let change = (now.state[i] - before.state[i]) * series;
+        let remaining = last * (ratio / (1.0 - ratio));
+        let limit = at[0].plus(remaining);
+        let predicted_before = at[1].plus(middle * ratio_before / (1.0 - ratio_before));
+        let uncertainty = limit.since(predicted_before).abs();
+        let one_place = limit.seconds().abs() * f64::EPSILON;
+        (uncertainty <= (relative * limit.seconds().abs()).max(one_place)).then_some(Series {
+            pattern: p,
+            ratio,
+            ratio_before,
+            remaining,
+            limit,
+        })
+    }
+
+    /// Whether what is left of a series moves nothing by more than the tolerances.
+    fn is_negligible(&self, series: &Series, tolerance: impl Fn(usize, f64) -> f64) -> bool {
+        // Below one unit in the last place of t the series cannot advance the time any more.
+        if series.remaining < series.limit.seconds().abs() * f64::EPSILON {
+            return true;
+        }
+        let p = series.pattern;
+        let (now, before) = (&self.hop(0).state, &self.hop(p).state);
+        (0..now.len()).all(|i| {
+            let change = (now[i] - before[i]) * series.factor();
             // The largest departure within the pattern is seen between its events: bound it by
             // what the events of the last pattern differ by.
-            let spread = (0..p).map(|k| (self.hop(k).state[i] - now.state[i]).abs());
-            let movement = spread.fold(change.abs(), f64::max);
-            negligible &= movement <= tolerance(i, now.state[i]);
-            let limit_before = before.state[i]
-                + (before.state[i] - self.hop(2 * p).state[i]) * ratio_before
-                    / (1.0 - ratio_before);
-            *value += change;
+            let spread = (0..p).map(|k| (self.hop(k).state[i] - now[i]).abs());
+            spread.fold(change.abs(), f64::max) <= tolerance(i, now[i])
+        })
+    }
+
+    /// Where a series ends.
+    fn end_of(&self, series: &Series) -> Limit {
+        let p = series.pattern;
+        let [now, before, earlier] = [0, p, 2 * p].map(|back| &self.hop(back).state);
+        let mut state = now.clone();
+        for (i, value) in state.iter_mut().enumerate() {
+            let factor_before = series.ratio_before / (1.0 - series.ratio_before);
+            let limit_before = before[i] + (before[i] - earlier[i]) * factor_before;
+            *value += (now[i] - before[i]) * series.factor();
             // A component whose limit is not told from zero, by two successive predictions and the
             // rounding of the extrapolation, dies with the pattern.
-            let size = now.state[i].abs() + before.state[i].abs();
-            let rounding = f64::EPSILON * size * (1.0 + series);
+            let size = now[i].abs() + before[i].abs();
+            let rounding = f64::EPSILON * size * (1.0 + series.factor());
             if value.abs() <= (*value - limit_before).abs() + rounding {
                 *value = 0.0;
             }
         }
-        // Below one unit in the last place of t the series cannot advance the time any more.
-        (negligible || remaining < one_place).then_some(Limit {
-            at: limit,
+        Limit {
+            at: series.limit,
             state,
             pattern: p,
-            ratio,
-        })
+            ratio: series.ratio,
+        }
     }
 
     /// Whether the memory is full of events that together do not advance the time by one unit in
@@ -169,8 +234,7 @@ impl Accumulation {
     pub fn stands_still(&self) -> bool {
         self.count >= Self::MEMORY && {
             let (new, old) = (self.hop(0).at, self.hop(Self::MEMORY - 1).at);
-            new.since(old) < new.seconds().abs() * f64::EPSILON
-                || self.hops.iter().all(|hop| hop.still)
+            new.since(old) < new.seconds().abs() * f64::EPSILON || self.still >= Self::MEMORY
         }
     }
 }
@@ -190,13 +254,29 @@ fn hardly_moved(mut pairs: impl Iterator<Item = (f64, f64)>) -> bool {
 mod tests {
     use super::*;
 
+    fn push(
+        accumulation: &mut Accumulation,
+        guard: usize,
+        impact: bool,
+        at: Instant,
+        before: &[f64],
+        after: &[f64],
+    ) {
+        let signature = Signature {
+            guard,
+            ..Signature::default()
+        };
+        let [before, after] = [before, after].map(|state| state.iter().copied());
+        accumulation.push(signature, impact, at, before, after, &[]);
+    }
+
     fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {
         let g = 9.81;
-        let mut accumulation = Accumulation::new(2);
+        let mut accumulation = Accumulation::new(2, 0);
         let mut t = Instant::new((2.0f64 / g).sqrt());
         let mut v = e * (2.0 * g).sqrt();
         for k in 0.. {
-            accumulation.push(1, true, t, [0.0, -v].into_iter(), [0.0, v].into_iter());
+            push(&mut accumulation, 1, true, t, &[0.0, -v], &[0.0, v]);
             if let Some(limit) = accumulation.limit(tolerance, |_, _| tolerance) {
                 return (k, limit);
             }
@@ -231,12 +311,12 @@ mod tests {
 
     #[test]
     fn alternating_hops_are_recognised_over_two() {
-        let mut accumulation = Accumulation::new(1);
+        let mut accumulation = Accumulation::new(1, 0);
         let mut t = Instant::new(0.0);
         let (mut long, mut short) = (1.0, 0.3);
         let mut found = None;
-        for k in 0..400u64 {
-            accumulation.push(k % 2, true, t, [0.0].into_iter(), [long].into_iter());
+        for k in 0..400 {
+            push(&mut accumulation, k % 2, true, t, &[0.0], &[long]);
             found = accumulation.limit(1e-12, |_, _| 1e-9);
             if found.is_some() {
                 break;
@@ -256,10 +336,10 @@ mod tests {
 
     #[test]
     fn regular_events_do_not_accumulate() {
-        let mut accumulation = Accumulation::new(1);
+        let mut accumulation = Accumulation::new(1, 0);
         for k in 0..100 {
             let (at, v) = (Instant::new(k as f64 * 1e-6), 1.0);
-            accumulation.push(0, true, at, [-v].into_iter(), [v].into_iter());
+            push(&mut accumulation, 0, true, at, &[-v], &[v]);
             assert!(accumulation.limit(1e-12, |_, _| 1.0).is_none());
             assert!(!accumulation.stands_still());
         }
@@ -268,10 +348,10 @@ mod tests {
     #[test]
     fn events_between_which_nothing_moves_stand_still() {
         for (moved, stands) in [(2.0 * f64::EPSILON, true), (1e-12, false), (0.0, false)] {
-            let mut accumulation = Accumulation::new(1);
+            let mut accumulation = Accumulation::new(1, 0);
             for k in 0..Accumulation::MEMORY + 1 {
                 let (at, x) = (Instant::new(1.0 + k as f64 * 1e-15), 1.0 + k as f64 * moved);
-                accumulation.push(0, false, at, [x].into_iter(), [x].into_iter());
+                push(&mut accumulation, 0, false, at, &[x], &[x]);
             }
             assert_eq!(accumulation.stands_still(), stands);
         }

@@ -40,19 +40,12 @@ impl Simulation<'_> {
         let mut a = solve(&system.mass, &-system.load, &scale)
             .map_err(|s| Reason::singular(mode, self.problem.model, s))?;
 
-        let inverse = inverse(&system.mass, &scale);
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
+        let start = Start {
+            kernel,
+            mass: &system.mass,
+            scale: &scale,
+            at: [&q, &v],
         };
-        let size = kernel.magnitude(&self.context, at);
-        let noise = SVector::<f64, F>::from_fn(|i, _| {
-            (0..F)
-                .map(|j| inverse[(i, j)].abs() * size[j] * ROUNDOFF)
-                .sum()
-        });
-        let jerk = -inverse * kernel.jerk_load(&self.context, at);
 
         self.signs.clear();
         let mut violation = None;
@@ -88,16 +81,10 @@ impl Simulation<'_> {
             };
             let mut at_once = false;
             if watch == Watch::Dormant && !conditional {
-                let departure = departure(
-                    kernel,
-                    &self.context,
-                    guard,
-                    [&q, &v],
-                    &mut a,
-                    &noise,
-                    &jerk,
-                );
-                at_once = departure < 0.0;
+                let t = self.here.now.seconds();
+                let signals = &self.problem.signals;
+                signals.rate(t, &mut self.context.signal_rates);
+                at_once = start.departure(&self.context, guard, &mut a) < 0.0;
             }
             if at_once {
                 watch = Watch::Violated;
@@ -154,40 +141,54 @@ impl Simulation<'_> {
     }
 }
 
-/// Sign with which a guard that is exactly zero leaves zero: that of its first derivative that is
-/// not zero; 0 where that is not decided here and the motion must tell.
-///
-/// An acceleration below its own rounding error is no evidence: at a smooth lift-off θ = θ̇ = θ̈ = 0
-/// and the jerk decides. It is then set to zero, so that the motion starts with the sign of the
-/// jerk.
-fn departure<const F: usize>(
-    kernel: &ModeKernel<F>,
-    context: &Context,
-    guard: &Guard,
-    [q, v]: [&SVector<f64, F>; 2],
-    a: &mut SVector<f64, F>,
-    noise: &SVector<f64, F>,
-    jerk: &SVector<f64, F>,
-) -> f64 {
-    match guard.shape {
-        GuardShape::Linear {
-            index,
-            rate,
-            factor,
-            discrete,
-        } => {
-            let factor = factor * discrete.map_or(1.0, |d| context.discrete[d]);
-            if !rate && v[index] != 0.0 {
-                return factor * v[index];
+/// The state at the start of a segment, for guards that are exactly zero there.
+struct Start<'a, const F: usize> {
+    kernel: &'static ModeKernel<F>,
+    mass: &'a SMatrix<f64, F, F>,
+    scale: &'a SVector<f64, F>,
+    /// Free coordinates and velocities.
+    at: [&'a SVector<f64, F>; 2],
+}
+
+impl<const F: usize> Start<'_, F> {
+    /// Sign with which a guard that is exactly zero leaves zero: that of its first derivative that is
+    /// not zero; 0 where that is not decided here and the motion must tell.
+    ///
+    /// An acceleration below its own rounding error is no evidence: at a smooth lift-off θ = θ̇ = θ̈ = 0
+    /// and the jerk decides. It is then set to zero, so that the motion starts with the sign of the
+    /// jerk.
+    fn departure(&self, context: &Context, guard: &Guard, a: &mut SVector<f64, F>) -> f64 {
+        let [q, v] = self.at;
+        match guard.shape {
+            GuardShape::Linear {
+                index,
+                rate,
+                factor,
+                discrete,
+                ..
+            } => {
+                let factor = factor * discrete.map_or(1.0, |d| context.discrete[d]);
+                if !rate && v[index] != 0.0 {
+                    return factor * v[index];
+                }
+                let inverse = inverse(self.mass, self.scale);
+                let at = Free { q, v, a: &*a };
+                let size = self.kernel.magnitude(context, at);
+                let noise: f64 = (0..F)
+                    .map(|j| inverse[(index, j)].abs() * size[j] * ROUNDOFF)
+                    .sum();
+                if a[index].abs() > noise {
+                    return factor * a[index];
+                }
+                let jerk = -inverse * self.kernel.jerk_load(context, at);
+                a[index] = 0.0;
+                factor * jerk[index]
             }
-            if a[index].abs() > noise[index] {
-                return factor * a[index];
+            GuardShape::General { .. } => {
+                let at = Free { q, v, a: &*a };
+                let jerk = -inverse(self.mass, self.scale) * self.kernel.jerk_load(context, at);
+                self.kernel.guard_rate(context, &guard.kernel, at, &jerk)
             }
-            a[index] = 0.0;
-            factor * jerk[index]
-        }
-        GuardShape::General { .. } => {
-            kernel.guard_rate(context, &guard.kernel, Free { q, v, a }, jerk)
         }
     }
 }

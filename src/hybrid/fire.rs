@@ -1,14 +1,13 @@
 //! Transitions: which one is taken, what it does to state and energy, and what is remembered.
 
+use super::accumulation::Signature;
 use super::failure::Reason;
 use super::guards::Conditions;
 use super::plan::is_impact;
-use super::simulation::{Here, Simulation};
+use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::record::{EnergyJump, Event};
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -17,7 +16,6 @@ impl Simulation<'_> {
     /// Takes the first transition of a guard whose condition holds.
     pub fn fire(&mut self, guard: usize) -> Result<(), Reason> {
         let mode = self.mode();
-        let before = self.here.clone();
         let chosen = with_kernel!(&mode.kernels, k => self.choose(k, guard));
         let Some(t) = chosen else {
             // Every condition fails at the very state where the guard is crossed.
@@ -33,12 +31,7 @@ impl Simulation<'_> {
         {
             self.counted += 1;
         }
-        self.commit(
-            transition.name,
-            transition.impact,
-            transition.target,
-            before,
-        )?;
+        self.commit(transition.name, transition.impact, transition.target)?;
         self.remember(guard, t, is_impact(&mode.guards[guard]))
     }
 
@@ -73,11 +66,15 @@ impl Simulation<'_> {
         name: &'static str,
         impact: bool,
         target: usize,
-        before: Here,
     ) -> Result<(), Reason> {
         let n = self.here.q.len();
-        let state_before = self.snapshot();
-        let (energy_before, momenta_before) = (self.stored_energy(), self.ground_momenta());
+        let from = self.here.mode;
+        let states = self.problem.record.event_states;
+        let before = states.then(|| self.snapshot()).unwrap_or_default();
+        let energies_before = (self.ledger.is_some() || states)
+            .then(|| (self.stored_energy(), self.ground_momenta()));
+        self.before[..n].copy_from_slice(&self.here.q);
+        self.before[n..].copy_from_slice(&self.here.v);
 
         self.here.q.copy_from_slice(&self.next[..n]);
         self.here.v.copy_from_slice(&self.next[n..2 * n]);
@@ -85,35 +82,50 @@ impl Simulation<'_> {
         self.here.mode = target;
         self.here.j += 1;
         self.set_context();
-        let mode = self.mode();
-        with_kernel!(&mode.kernels, k => self.set_accelerations(k))?;
+        if states {
+            let mode = self.mode();
+            with_kernel!(&mode.kernels, k => self.set_accelerations(k))?;
+        }
 
-        // The impulse of the ground on the system works on the velocity of the ground.
+        let energy = energies_before.map(|before| self.energy_jump(before));
+        if let (Some(ledger), Some(jump)) = (&mut self.ledger, energy) {
+            ledger.add_jump(jump);
+        }
+        let after = states.then(|| self.snapshot()).unwrap_or_default();
+        self.events.push(Event {
+            t: self.here.now.seconds(),
+            j: self.here.j,
+            transition: name,
+            from,
+            to: target,
+            before,
+            after,
+            energy: energy.filter(|_| impact),
+        });
+        let state = self.here.q.iter().chain(&self.here.v);
+        let state = state.chain(&self.context.discrete).copied();
+        let modes = self.problem.variant.modes;
+        match self.visited.add((name, from, target), state, modes) {
+            Some(cycle) => Err(Reason::Cycle { cycle }),
+            None => Ok(()),
+        }
+    }
+
+    /// The jump of the energy from what it was before. The impulse of the ground on the system works
+    /// on the velocity of the ground.
+    fn energy_jump(&self, (before, momenta_before): (f64, Vec<(f64, f64)>)) -> EnergyJump {
         let impulses = self.ground_momenta().into_iter().zip(momenta_before);
         let ground_work: f64 = impulses
             .map(|((after, rate), (before, _))| (after - before) * rate)
             .sum();
-        let energy_after = self.stored_energy();
-        let lost = energy_before - energy_after + ground_work;
+        let after = self.stored_energy();
+        let lost = before - after + ground_work;
         // A difference of three numbers is told from zero only above their rounding.
-        let rounding = ROUNDING * (energy_before.abs() + energy_after.abs() + ground_work.abs());
-        let energy = EnergyJump {
+        let rounding = ROUNDING * (before.abs() + after.abs() + ground_work.abs());
+        EnergyJump {
             lost: if lost.abs() <= rounding { 0.0 } else { lost },
             ground_work,
-        };
-        self.ledger.add_jump(energy);
-        let event = Event {
-            t: self.here.now.seconds(),
-            j: self.here.j,
-            transition: name,
-            from: before.mode,
-            to: target,
-            before: state_before,
-            after: self.snapshot(),
-            energy: impact.then_some(energy),
-        };
-        self.events.push(event);
-        self.check_cycle(name, before.mode)
+        }
     }
 
     fn set_accelerations<const F: usize>(
@@ -147,43 +159,20 @@ impl Simulation<'_> {
 
     /// Remembers the event, and goes to the limit of an accumulation if there is one.
     fn remember(&mut self, guard: usize, transition: usize, impact: bool) -> Result<(), Reason> {
-        let mut hasher = DefaultHasher::new();
-        (guard, transition, self.here.mode).hash(&mut hasher);
-        self.context
-            .discrete
-            .iter()
-            .for_each(|d| d.to_bits().hash(&mut hasher));
-        let event = self.events.last().expect("the event was recorded");
-        let before = event.before.q.iter().chain(&event.before.v).copied();
-        let after = event.after.q.iter().chain(&event.after.v).copied();
-        self.accumulation
-            .push(hasher.finish(), impact, self.here.now, before, after);
+        let signature = Signature {
+            guard,
+            transition,
+            mode: self.here.mode,
+        };
+        let after = self.here.q.iter().chain(&self.here.v).copied();
+        self.accumulation.push(
+            signature,
+            impact,
+            self.here.now,
+            self.before.iter().copied(),
+            after,
+            &self.context.discrete,
+        );
         self.look_for_accumulation()
-    }
-
-    /// Settling that comes back to a mode and state it has left at this instant never ends.
-    fn check_cycle(&mut self, name: &'static str, from: usize) -> Result<(), Reason> {
-        let modes = self.problem.variant.modes;
-        let mut hasher = DefaultHasher::new();
-        self.here.mode.hash(&mut hasher);
-        let state = self
-            .here
-            .q
-            .iter()
-            .chain(&self.here.v)
-            .chain(&self.context.discrete);
-        state.for_each(|x| x.to_bits().hash(&mut hasher));
-        let key = hasher.finish();
-        let step = (name, from, self.here.mode);
-        if let Some(first) = self.visited.iter().position(|(seen, _)| *seen == key) {
-            let steps = self.visited[first + 1..].iter().map(|(_, step)| *step);
-            let text = steps.chain([step]).map(|(name, from, to)| {
-                format!("{name} ({} → {})", modes[from].name, modes[to].name)
-            });
-            let cycle = text.collect::<Vec<_>>().join(", ");
-            return Err(Reason::Cycle { cycle });
-        }
-        self.visited.push((key, step));
-        Ok(())
     }
 }

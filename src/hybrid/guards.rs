@@ -165,14 +165,8 @@ pub(super) fn search<const F: usize>(
     watch: Watch,
 ) -> Search {
     match guard.shape {
-        GuardShape::Linear {
-            index,
-            rate,
-            factor,
-            discrete,
-        } if watched.condition.is_none() => {
-            let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
-            search_linear(dense, index, rate, factor, window, watch)
+        GuardShape::Linear { .. } if watched.condition.is_none() => {
+            search_linear(equations, dense, guard, window, watch)
         }
         _ => {
             if watched.condition.is_none()
@@ -210,19 +204,41 @@ pub(super) fn search<const F: usize>(
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
 fn search_linear<const F: usize>(
+    equations: &mut Equations<F>,
     dense: &impl Motion<F>,
-    index: usize,
-    rate: bool,
-    factor: f64,
-    (from, to): (f64, f64),
+    guard: &Guard,
+    window: (f64, f64),
     watch: Watch,
 ) -> Search {
+    let GuardShape::Linear {
+        index,
+        rate,
+        factor,
+        discrete,
+        offset,
+    } = guard.shape
+    else {
+        unreachable!("the caller has asked for its shape")
+    };
+    let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
     let mut coefficients = [0.0; ORDERS];
     let count = dense.polynomial(index, rate, &mut coefficients);
-    for coefficient in &mut coefficients[..count] {
-        *coefficient *= factor;
+    if factor != 1.0 {
+        for coefficient in &mut coefficients[..count] {
+            *coefficient *= factor;
+        }
     }
-    search_polynomial(&coefficients[..count], dense, (from, to), watch)
+    if offset {
+        // What is added is what the guard is at the zero state.
+        let zero = SVector::<f64, F>::zeros();
+        let at = Free {
+            q: &zero,
+            v: &zero,
+            a: &zero,
+        };
+        coefficients[0] += equations.kernel.guard(equations.context, &guard.kernel, at);
+    }
+    search_polynomial(&coefficients[..count], dense, window, watch)
 }
 
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.

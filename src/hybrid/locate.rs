@@ -194,6 +194,7 @@ fn rate_at<const F: usize>(equations: &mut Equations<F>, guard: &Guard, state: &
         rate,
         factor,
         discrete,
+        ..
     } = guard.shape
     {
         let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);

@@ -22,9 +22,12 @@ pub mod roots;
 mod samples;
 mod segment;
 mod simulation;
+mod simulator;
+mod visited;
 mod work;
 
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Method, Problem, Record, Unknown};
 pub use resume::resume;
 pub use simulation::simulate;
+pub use simulator::Simulator;

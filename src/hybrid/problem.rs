@@ -82,6 +82,10 @@ pub struct Record {
     pub every: Option<f64>,
     /// Which columns besides coordinates, velocities and discrete states.
     pub columns: Recorded,
+    /// Whether the energy ledger is kept; the columns of the energies need it.
+    pub ledger: bool,
+    /// Whether the states before and after an event are kept, and not its time alone.
+    pub event_states: bool,
 }
 
 /// A name that the model does not have.
@@ -98,7 +102,7 @@ pub struct Unknown {
 
 impl Problem {
     /// A model with its default parameters and choices, at rest at zero without inputs, for 1 s at
-    /// a relative tolerance of 1e-8, recording nothing but the events and the end.
+    /// a relative tolerance of 1e-8, recording the events, the ledger and the end.
     pub fn new(model: &'static Model) -> Self {
         let variant = model
             .variants
@@ -138,6 +142,8 @@ impl Problem {
                     energies: false,
                     inputs: false,
                 },
+                ledger: true,
+                event_states: true,
             },
         };
         problem.set_tolerance(1e-8);

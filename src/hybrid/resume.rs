@@ -23,9 +23,9 @@ pub fn resume(problem: &Problem, run: Run, progress: &mut dyn Progress) -> Resul
     let clock = WallClock::now();
     check(problem, &run)?;
     let wall = run.wall;
-    let mut simulation = Simulation::new(problem, progress)?;
+    let mut simulation = Simulation::new(problem)?;
     simulation.restore(run);
-    let outcome = simulation.run();
+    let outcome = simulation.run(progress);
     let mut run = simulation.finish(outcome.err(), clock);
     run.wall += wall;
     Ok(run)
@@ -75,7 +75,7 @@ impl Simulation<'_> {
         self.here.q.copy_from_slice(&end.state.q);
         self.here.v.copy_from_slice(&end.state.v);
         self.context.discrete.copy_from_slice(&end.state.discrete);
-        self.ledger = RunningLedger::continuing(&energy);
+        self.ledger = energy.as_ref().map(RunningLedger::continuing);
         self.solver = solver;
         if let Some((name, _)) = self.problem.end.after {
             self.counted = events.iter().filter(|e| e.transition == name).count() as u64;

@@ -1,5 +1,6 @@
 //! Samples of the trajectory.
 
+use super::ledger::RunningLedger;
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
@@ -42,6 +43,11 @@ impl Row<'_> {
             row[inputs].copy_from_slice(&context.signals);
         }
     }
+}
+
+/// The ledger's entries of a row, without the stored energy; zero where no ledger is kept.
+pub(super) fn row_of(ledger: Option<&RunningLedger>) -> [f64; 4] {
+    ledger.map_or([0.0; 4], |ledger| ledger.row(0.0))
 }
 
 /// Time of a sample of the grid, s; infinite without a grid.
@@ -90,7 +96,7 @@ impl Simulation<'_> {
             layout,
             q: &here.q,
             v: &here.v,
-            ledger: ledger.row(0.0),
+            ledger: row_of(ledger.as_ref()),
         };
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = here.free(mode.free);

@@ -6,12 +6,13 @@ use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::Method;
-use super::samples::{Row, sample_time};
+use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
 use crate::integrate::{Counters, Node, OneStep, Radau, Taylor, Tolerances};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
+use crate::record::Progress;
 use nalgebra::{SMatrix, SVector};
 
 impl Simulation<'_> {
@@ -19,13 +20,14 @@ impl Simulation<'_> {
     pub fn advance<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
+        progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
         let tolerances = self.tolerances();
         match self.problem.method {
             Method::Taylor if kernel.is_analytic() => {
-                self.integrate(kernel, Taylor::new(&tolerances))
+                self.integrate(kernel, Taylor::new(&tolerances), progress)
             }
-            _ => self.integrate(kernel, Radau::<3, F>::new(&tolerances)),
+            _ => self.integrate(kernel, Radau::<3, F>::new(&tolerances), progress),
         }
     }
 
@@ -33,8 +35,9 @@ impl Simulation<'_> {
         &mut self,
         kernel: &'static ModeKernel<F>,
         mut method: impl for<'a> OneStep<F, Equations<'a, F>>,
+        progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
-        let stop = self.follow(kernel, &mut method);
+        let stop = self.follow(kernel, &mut method, progress);
         self.count(OneStep::<F, Equations<F>>::counters(&method));
         let name = OneStep::<F, Equations<F>>::name(&method);
         if !self.methods.contains(&name) {
@@ -47,6 +50,7 @@ impl Simulation<'_> {
         &mut self,
         kernel: &'static ModeKernel<F>,
         method: &mut impl for<'a> OneStep<F, Equations<'a, F>>,
+        progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
         let problem = self.problem;
         let mode = self.mode();
@@ -57,18 +61,14 @@ impl Simulation<'_> {
         let until = Instant::new(last).since(start);
         let [q, v, a] = self.here.free::<F>(mode.free);
         method.restart(0.0, &q, &v, &a);
-        let held = self.here.q.clone();
-        let drift = if mode.drifts.contains(&true) {
-            self.drift.clone()
-        } else {
-            [].into()
-        };
+        self.at_start.copy_from_slice(&self.here.q);
+        let drifts = mode.drifts.contains(&true);
         let clock = Clock {
             start,
             signals: &problem.signals,
             until: (until, last),
-            held: &held,
-            drift: &drift,
+            held: &self.at_start,
+            drift: if drifts { &self.drift } else { &[] },
         };
         let mut equations = Equations::new(
             kernel,
@@ -83,8 +83,12 @@ impl Simulation<'_> {
             plan: &self.plan,
             next: &mut self.next,
         };
-        let mut determinant = determinant_sign(&kernel.system(equations.context, &q, &v).mass);
+        let mut determinant = match kernel.mass_is_constant() {
+            true => 1,
+            false => determinant_sign(&kernel.system(equations.context, &q, &v).mass),
+        };
         let mut ledger_from = 0.0;
+        let relative = problem.accuracy.relative;
 
         loop {
             method.step(&mut equations, until)?;
@@ -114,18 +118,12 @@ impl Simulation<'_> {
             let (state, beyond) = event.map_or((end, 0.0), |(_, state, beyond)| (state, beyond));
 
             // Samples before the ledger moves on to the end of the step.
-            loop {
-                let t = sample_time(problem.record.every, self.next_sample);
-                let tau = Instant::new(t).since(start);
-                if !tau.is_finite() || tau > end.t + beyond {
-                    break;
-                }
-                let mut ledger = self.ledger.clone();
+            let mut row_at = |t: f64, tau: f64| {
                 let energies = problem.record.columns.energies;
-                if energies {
-                    let tolerance = problem.accuracy.relative;
-                    let work = work(&mut equations, dense, (ledger_from, tau), tolerance);
-                    ledger.add_powers(work, 1.0);
+                let mut ledger = if energies { self.ledger.clone() } else { None };
+                if let Some(ledger) = &mut ledger {
+                    let part = (ledger_from, tau);
+                    ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
                 }
                 let needed = energies || problem.record.columns.reactions;
                 let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
@@ -136,48 +134,53 @@ impl Simulation<'_> {
                     layout: &self.layout,
                     q: &here.q,
                     v: &here.v,
-                    ledger: ledger.row(0.0),
+                    ledger: row_of(ledger.as_ref()),
+                };
+                let at = Free {
+                    q: &q,
+                    v: &v,
+                    a: &a,
                 };
                 self.recorder.push_row(t, here.mode, |values| {
-                    row.fill(
-                        kernel,
-                        equations.context,
-                        Free {
-                            q: &q,
-                            v: &v,
-                            a: &a,
-                        },
-                        values,
-                    )
+                    row.fill(kernel, equations.context, at, values)
                 });
+            };
+            loop {
+                let t = sample_time(problem.record.every, self.next_sample);
+                let tau = Instant::new(t).since(start);
+                if !tau.is_finite() || tau > end.t + beyond {
+                    break;
+                }
+                row_at(t, tau);
                 self.next_sample += 1;
             }
 
-            if F == 0 {
-                let tolerance = problem.accuracy.relative;
-                let work = work(&mut equations, dense, (ledger_from, end.t), tolerance);
-                self.ledger.add_powers(work, 1.0);
-            }
-            for Node { weight, state } in method.nodes().take(if F == 0 { 0 } else { usize::MAX }) {
-                equations.at(state.t);
-                let at = Free {
-                    q: &state.q,
-                    v: &state.v,
-                    a: &state.a,
-                };
-                self.ledger
-                    .add_powers(kernel.powers(equations.context, at), weight);
-            }
-            ledger_from = end.t;
             equations.at(state.t);
             let at = Free {
                 q: &state.q,
                 v: &state.v,
                 a: &state.a,
             };
-            if beyond != 0.0 {
-                self.ledger
-                    .add_powers(kernel.powers(equations.context, at), beyond);
+            if let Some(ledger) = &mut self.ledger {
+                if F == 0 {
+                    let part = (ledger_from, end.t);
+                    ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
+                } else {
+                    for Node { weight, state } in method.nodes() {
+                        equations.at(state.t);
+                        let at = Free {
+                            q: &state.q,
+                            v: &state.v,
+                            a: &state.a,
+                        };
+                        ledger.add_powers(kernel.powers(equations.context, at), weight);
+                    }
+                }
+                equations.at(state.t);
+                if beyond != 0.0 {
+                    ledger.add_powers(kernel.powers(equations.context, at), beyond);
+                }
+                ledger_from = end.t;
             }
 
             self.here.now = start.plus(state.t);
@@ -185,29 +188,29 @@ impl Simulation<'_> {
                 .set_free(mode.free, [&state.q, &state.v, &state.a]);
             copy_drifting(&mut self.here.q, mode.drifts, &equations.context.held);
 
-            let mass = kernel.system(equations.context, &state.q, &state.v).mass;
-            let sign = determinant_sign(&mass);
-            if sign != determinant {
-                return Err(Reason::DeterminantChangesSign { mode: mode.name });
+            if !kernel.mass_is_constant() {
+                let mass = kernel.system(equations.context, &state.q, &state.v).mass;
+                let sign = determinant_sign(&mass);
+                if sign != determinant {
+                    return Err(Reason::DeterminantChangesSign { mode: mode.name });
+                }
+                determinant = sign;
             }
-            determinant = sign;
             check_requirements(kernel, equations.context, mode, at)?;
             if problem.record.every.is_none() {
-                let ledger = self.ledger.row(0.0);
                 let Here { q, v, .. } = &self.here;
                 let row = Row {
                     layout: &self.layout,
                     q,
                     v,
-                    ledger,
+                    ledger: row_of(self.ledger.as_ref()),
                 };
                 self.recorder
                     .push_row(self.here.now.seconds(), self.here.mode, |values| {
                         row.fill(kernel, equations.context, at, values)
                     });
             }
-            if self
-                .progress
+            if progress
                 .advance(self.here.now.seconds(), self.here.j)
                 .is_break()
             {
@@ -261,6 +264,9 @@ pub(super) fn check_requirements<const F: usize>(
     mode: &Mode,
     at: Free<F>,
 ) -> Result<(), Reason> {
+    if mode.requirements.is_empty() {
+        return Ok(());
+    }
     let mut values = [0.0; MOST_REQUIREMENTS];
     let values = &mut values[..mode.requirements.len()];
     kernel.requirements(context, at, values);

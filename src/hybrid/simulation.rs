@@ -7,6 +7,7 @@ use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
 use super::problem::Problem;
+use super::visited::Visited;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
@@ -23,14 +24,14 @@ use std::time::Instant as WallClock;
 /// froze what every mode needs.
 pub fn simulate(problem: &Problem, progress: &mut dyn Progress) -> Result<Run, Reason> {
     let clock = WallClock::now();
-    let mut simulation = Simulation::new(problem, progress)?;
+    let mut simulation = Simulation::new(problem)?;
     simulation.begin()?;
-    let outcome = simulation.run();
+    let outcome = simulation.run(progress);
     Ok(simulation.finish(outcome.err(), clock))
 }
 
 /// Where the run is: everything but the discrete states, which live in the context.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Here {
     pub now: Instant,
     pub j: u64,
@@ -70,6 +71,10 @@ pub(super) struct Simulation<'p> {
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
+    /// All coordinates, then all velocities, just before the last event.
+    pub before: Box<[f64]>,
+    /// All coordinates at the start of the segment.
+    pub at_start: Box<[f64]>,
     /// Rates of the frozen coordinates in the present mode.
     pub drift: Box<[f64]>,
     /// Remembered signs of what is watched in the present mode.
@@ -77,9 +82,9 @@ pub(super) struct Simulation<'p> {
     /// Room for a reset: q, v, discrete states.
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
-    /// Modes and states seen since the time last advanced, with the transition that led there.
-    pub visited: Vec<(u64, (&'static str, usize, usize))>,
-    pub ledger: RunningLedger,
+    pub visited: Visited,
+    /// The energy ledger, where it is kept.
+    pub ledger: Option<RunningLedger>,
     pub recorder: Recorder,
     pub layout: Layout,
     pub events: Vec<Event>,
@@ -90,12 +95,11 @@ pub(super) struct Simulation<'p> {
     pub next_sample: u64,
     /// How often the transition that ends the run has happened.
     pub counted: u64,
-    pub progress: &'p mut dyn Progress,
 }
 
 impl<'p> Simulation<'p> {
     /// A simulation before its first instant.
-    pub fn new(problem: &'p Problem, progress: &'p mut dyn Progress) -> Result<Self, Reason> {
+    pub fn new(problem: &'p Problem) -> Result<Self, Reason> {
         let model = problem.model;
         let plan = Plan::new(problem)?;
         let mut context = Context::new(model, &problem.parameters);
@@ -106,6 +110,8 @@ impl<'p> Simulation<'p> {
             .record
             .every
             .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
+        let record = &problem.record;
+        let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
         Ok(Simulation {
             problem,
             plan,
@@ -116,14 +122,16 @@ impl<'p> Simulation<'p> {
                 mode: 0,
                 q: problem.initial.q.clone().into(),
                 v: problem.initial.v.clone().into(),
-                a: vec![0.0; n].into(),
+                a: zeros(n),
             },
-            drift: vec![0.0; n].into(),
+            before: zeros(2 * n),
+            at_start: zeros(n),
+            drift: zeros(n),
             signs: Signs::default(),
-            next: vec![0.0; 2 * n + model.discretes.len()].into(),
-            accumulation: Accumulation::new(2 * n),
-            visited: Vec::new(),
-            ledger: RunningLedger::default(),
+            next: zeros(2 * n + model.discretes.len()),
+            accumulation: Accumulation::new(2 * n, model.discretes.len()),
+            visited: Visited::default(),
+            ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             recorder: Recorder::new(&layout, rows + 1),
             layout,
             events: Vec::new(),
@@ -131,16 +139,42 @@ impl<'p> Simulation<'p> {
             methods: Vec::new(),
             next_sample: 0,
             counted: 0,
-            progress,
         })
     }
 
     /// Finds the mode of the initial state, and opens the ledger.
-    fn begin(&mut self) -> Result<(), Reason> {
+    pub fn begin(&mut self) -> Result<(), Reason> {
         self.choose_initial_mode()?;
         self.set_context();
-        self.ledger = RunningLedger::starting_with(self.stored_energy());
+        if self.ledger.is_some() {
+            self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
+        }
         Ok(())
+    }
+
+    /// Goes back to the start, in the mode that was found for it.
+    pub fn rewind(&mut self, mode: usize) {
+        let initial = &self.problem.initial;
+        self.here.now = Instant::default();
+        self.here.j = 0;
+        self.here.mode = mode;
+        self.here.q.copy_from_slice(&initial.q);
+        self.here.v.copy_from_slice(&initial.v);
+        self.here.a.fill(0.0);
+        self.context.discrete.copy_from_slice(&initial.discrete);
+        if initial.mode.is_some() {
+            self.apply_drift();
+        }
+        self.accumulation.clear();
+        self.visited.clear();
+        self.recorder.clear();
+        self.events.clear();
+        self.solver = Solver::default();
+        (self.next_sample, self.counted) = (0, 0);
+        self.set_context();
+        if self.ledger.is_some() {
+            self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
+        }
     }
 
     pub fn mode(&self) -> &'static Mode {
@@ -229,7 +263,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Simulates from here to the end.
-    pub fn run(&mut self) -> Result<(), Reason> {
+    pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
         loop {
             self.settle()?;
             self.flush_samples();
@@ -237,7 +271,7 @@ impl<'p> Simulation<'p> {
                 return Ok(());
             }
             let mode = self.mode();
-            let stop = with_kernel!(&mode.kernels, k => self.advance(k))?;
+            let stop = with_kernel!(&mode.kernels, k => self.advance(k, progress))?;
             match stop {
                 Stop::End => {
                     self.set_context();
@@ -322,26 +356,23 @@ impl<'p> Simulation<'p> {
             self.here.v.copy_from_slice(&limit.state[n..]);
         }
         let mode = &self.problem.variant.modes[rest];
-        let before = self.here.clone();
         self.next[..n].copy_from_slice(&self.here.q);
         self.next[n..2 * n].copy_from_slice(&self.here.v);
         self.next[2 * n..].copy_from_slice(&self.context.discrete);
-        let mut rates = vec![0.0; n];
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
         for i in (0..n).filter(|i| !mode.free.contains(i)) {
             if let Some(value) = mode.held_at[i] {
                 self.next[i] = value;
             }
-            self.next[n + i] = rates[i];
+            self.next[n + i] = self.drift[i];
         }
-        self.commit("rest", false, rest, before)
+        self.commit("rest", false, rest)
     }
 
-    /// Sets signals, their rates and held coordinates to the present instant.
+    /// Sets signals and held coordinates to the present instant.
     pub fn set_context(&mut self) {
         let t = self.here.now.seconds();
         self.problem.signals.evaluate(t, &mut self.context.signals);
-        self.problem.signals.rate(t, &mut self.context.signal_rates);
         self.context.held.copy_from_slice(&self.here.q);
     }
 
@@ -404,7 +435,7 @@ impl<'p> Simulation<'p> {
         }
         let problem = self.problem;
         let end = self.place();
-        let stored = self.stored_energy();
+        let energy = self.ledger.as_ref().map(|l| l.close(self.stored_energy()));
         self.name_methods();
         Run {
             subject: Subject {
@@ -426,7 +457,7 @@ impl<'p> Simulation<'p> {
             }),
             end,
             solver: self.solver,
-            energy: self.ledger.close(stored),
+            energy,
             wall: clock.elapsed(),
         }
     }

@@ -203,7 +203,8 @@ pub struct Guard {
 /// How a guard depends on the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GuardShape {
-    /// A free coordinate or its rate, times a factor: a polynomial on a step's dense output.
+    /// A free coordinate or its rate, times a factor, plus what does not move: a polynomial on a
+    /// step's dense output.
     Linear {
         /// Index among the mode's free coordinates.
         index: usize,
@@ -213,6 +214,9 @@ pub enum GuardShape {
         factor: f64,
         /// Index of a discrete state that is a further factor.
         discrete: Option<usize>,
+        /// Whether something is added: what the guard is at the zero state, which parameters and
+        /// discrete states decide.
+        offset: bool,
     },
     /// A function of state, accelerations, signals and parameters.
     General {

@@ -36,7 +36,7 @@ struct Written {
     parameters: BTreeMap<String, f64>,
     end: End,
     impacts: BTreeMap<String, IgnoredAny>,
-    energy: Energy,
+    energy: Option<Energy>,
     solver: Solver,
     wall_seconds: f64,
 }
@@ -83,14 +83,6 @@ impl Run {
             .map_err(|e| error(format!("not the summary of a run: {e}")))?;
         let subject = subject(&written, model, variant).map_err(error)?;
         let end = end(&written.end, &layout).map_err(error)?;
-        let Energy {
-            initial,
-            final_,
-            dissipated,
-            input_work,
-            lost_at_impacts,
-            frame,
-        } = written.energy;
         Ok(Run {
             subject,
             trajectory: trajectory(&folder.join(TRAJECTORY), &layout)?,
@@ -98,14 +90,14 @@ impl Run {
             layout,
             end,
             solver: written.solver,
-            energy: Ledger {
-                initial,
-                final_,
-                dissipated,
-                input_work,
-                lost_at_impacts,
-                frame,
-            },
+            energy: written.energy.map(|energy| Ledger {
+                initial: energy.initial,
+                final_: energy.final_,
+                dissipated: energy.dissipated,
+                input_work: energy.input_work,
+                lost_at_impacts: energy.lost_at_impacts,
+                frame: energy.frame,
+            }),
             wall: Duration::try_from_secs_f64(written.wall_seconds).unwrap_or_default(),
             failure: None,
         })

@@ -32,6 +32,11 @@ impl Recorder {
         Recorder { trajectory }
     }
 
+    /// Forgets all rows, and keeps the room.
+    pub fn clear(&mut self) {
+        self.trajectory.truncate(0);
+    }
+
     /// Number of rows on the grid `0, every, 2 every, … ≤ end`, and one for an end off the grid.
     pub fn grid_rows(end: f64, every: f64) -> usize {
         (end / every).floor() as usize + 2

@@ -130,7 +130,9 @@ fn table<const N: usize>(f: &mut Formatter, rows: &[[String; N]]) -> fmt::Result
 }
 
 fn energies(f: &mut Formatter, summary: &Summary) -> fmt::Result {
-    let energy = &summary.energy;
+    let Some(energy) = &summary.energy else {
+        return Ok(());
+    };
     writeln!(
         f,
         "energy / J  initial {} + input work {} − dissipated {} − lost at impacts {} = final {}\n            \

@@ -19,8 +19,8 @@ pub struct Run {
     pub end: Place,
     /// Work done by the integrator.
     pub solver: Solver,
-    /// Balance of energies.
-    pub energy: Ledger,
+    /// Balance of energies; `None` where it was not kept.
+    pub energy: Option<Ledger>,
     /// Time the simulation took on the wall clock (without reading and writing files).
     pub wall: Duration,
     /// Why the run stopped before its end; `None` when it reached it.

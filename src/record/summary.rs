@@ -38,7 +38,8 @@ pub struct Summary {
     /// What the impacts did to the energy, by transition.
     pub impacts: Named<Impacts>,
     /// The balance of energies.
-    pub energy: Energy,
+    /// `None` where the ledger was not kept.
+    pub energy: Option<Energy>,
     /// Work done by the integrator.
     pub solver: super::Solver,
     /// Time the simulation took on the wall clock (s).
@@ -183,15 +184,15 @@ impl Summary {
                 by_transition,
             },
             impacts: impacts(run),
-            energy: Energy {
-                initial: run.energy.initial,
-                final_: run.energy.final_,
-                dissipated: run.energy.dissipated,
-                input_work: run.energy.input_work,
-                lost_at_impacts: run.energy.lost_at_impacts,
-                imbalance: run.energy.imbalance(),
-                frame: run.energy.frame.clone(),
-            },
+            energy: run.energy.as_ref().map(|energy| Energy {
+                initial: energy.initial,
+                final_: energy.final_,
+                dissipated: energy.dissipated,
+                input_work: energy.input_work,
+                lost_at_impacts: energy.lost_at_impacts,
+                imbalance: energy.imbalance(),
+                frame: energy.frame.clone(),
+            }),
             solver: run.solver.clone(),
             wall_seconds: run.wall.as_secs_f64(),
         }

@@ -267,6 +267,8 @@ fn record(scene: &Checked) -> Record {
             energies: flag("energies"),
             inputs: flag("inputs"),
         },
+        ledger: flag("energies"),
+        event_states: true,
     }
 }
 

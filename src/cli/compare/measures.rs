@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Case, Comparison};
-use crate::record::{Group, Run, peaks};
+use crate::record::{Group, Ledger, Run, peaks};
 
 /// A number of each case.
 #[derive(Debug)]
@@ -56,16 +56,17 @@ impl Comparison {
                 |run: &Run| Some(run.events.iter().filter(|e| e.transition == name).count() as f64);
             measures.push(self.measure(&format!("{name} count"), "1", count));
         }
-        type Energy = fn(&Run) -> f64;
+        type Energy = fn(&Ledger) -> f64;
         let energies: [(&str, Energy); 5] = [
-            ("energy initial", |run| run.energy.initial),
-            ("input work", |run| run.energy.input_work),
-            ("dissipated", |run| run.energy.dissipated),
-            ("lost at impacts", |run| run.energy.lost_at_impacts),
-            ("energy final", |run| run.energy.final_),
+            ("energy initial", |l| l.initial),
+            ("input work", |l| l.input_work),
+            ("dissipated", |l| l.dissipated),
+            ("lost at impacts", |l| l.lost_at_impacts),
+            ("energy final", |l| l.final_),
         ];
         for (name, energy) in energies {
-            measures.push(self.measure(name, "J", |run| Some(energy(run))));
+            let measure = self.measure(name, "J", |run| run.energy.as_ref().map(energy));
+            measures.push(measure);
         }
         let gaining = |run: &Run| {
             let jumps = run.events.iter().filter_map(|event| event.energy);

@@ -15,7 +15,9 @@ pub(super) fn order(tolerance: f64) -> usize {
         let p = *p as f64;
         2.0 * p * p * p < digits * (OVERHEAD + p * p)
     };
-    (1..).find(|p| !falls(p)).expect("a cubic ends above a parabola")
+    (1..)
+        .find(|p| !falls(p))
+        .expect("a cubic ends above a parabola")
 }
 
 /// ln x to 1 %, by the same bits on every processor.
