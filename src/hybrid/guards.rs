@@ -296,10 +296,11 @@ fn search_polynomial<const F: usize>(
     // Work grows with the square of the room.
     let mut search = match degree {
         0..=3 => search_padded::<4>(coefficients, window, watch),
-        4..=5 => search_padded::<6>(coefficients, window, watch),
-        6..=9 => search_padded::<10>(coefficients, window, watch),
-        10..=15 => search_padded::<16>(coefficients, window, watch),
-        16..=20 => search_padded::<21>(coefficients, window, watch),
+        4..=7 => search_padded::<8>(coefficients, window, watch),
+        8..=11 => search_padded::<12>(coefficients, window, watch),
+        12..=15 => search_padded::<16>(coefficients, window, watch),
+        16..=19 => search_padded::<20>(coefficients, window, watch),
+        20..=23 => search_padded::<24>(coefficients, window, watch),
         _ => search_padded::<ORDERS>(coefficients, window, watch),
     };
     if let Some(crossing) = &mut search.crossing {

@@ -63,6 +63,7 @@ mod chebyshev;
 mod doubles;
 mod earliest;
 mod extrema;
+mod first_fall;
 mod function;
 mod polynomial;
 mod walk;

@@ -2,6 +2,7 @@
 
 use super::bracket::departure;
 use super::extrema::{Count, Expansion, Places, extrema};
+use super::first_fall::first_fall;
 use super::walk::{Pieces, walk};
 use super::{Kind, Search, Watch};
 
@@ -28,16 +29,31 @@ impl<const N: usize> Polynomial<N> {
     };
 
     /// Relative error of a sum of N terms whose factors carry as many roundings: γ ≈ 2Nu.
-    const ROUNDING: f64 = N as f64 * f64::EPSILON;
+    pub(super) const ROUNDING: f64 = N as f64 * f64::EPSILON;
 
-    /// The value at s, by Horner's rule. These values decide about events.
+    /// The value at s, by Horner's rule, from six coefficients on in powers of s⁴ for every fourth
+    /// coefficient (Estrin 1960: a processor works on the four sums side by side). These values
+    /// decide about events.
     #[inline]
     pub fn value(&self, s: f64) -> f64 {
-        let mut value = 0.0;
-        for &coefficient in self.coefficients.iter().rev() {
-            value = value * s + coefficient;
+        if N < 6 {
+            let mut value = 0.0;
+            for &coefficient in self.coefficients.iter().rev() {
+                value = value * s + coefficient;
+            }
+            return value;
         }
-        value
+        let (fours, rest) = self.coefficients.as_chunks::<4>();
+        let mut sums = [0.0; 4];
+        sums[..rest.len()].copy_from_slice(rest);
+        let s2 = s * s;
+        let s4 = s2 * s2;
+        for four in fours.iter().rev() {
+            for (sum, coefficient) in sums.iter_mut().zip(four) {
+                *sum = *sum * s4 + coefficient;
+            }
+        }
+        (sums[0] + s * sums[1]) + s2 * (sums[2] + s * sums[3])
     }
 
     /// The earliest event in `from` < s ≤ `to`, where 0 ≤ `from` ≤ `to` ≤ 1.
@@ -59,6 +75,16 @@ impl<const N: usize> Polynomial<N> {
                 return Search::quiet(Watch::Armed);
             }
         }
+        // As c₀ + Σ max(cₖ, 0) does from above.
+        if watch == Watch::Violated {
+            let mut rises = 0.0;
+            for &coefficient in &self.coefficients[1..] {
+                rises += coefficient.max(0.0);
+            }
+            if -self.coefficients[0] > rises * (1.0 + Self::ROUNDING) {
+                return Search::quiet(Watch::Violated);
+            }
+        }
         self.search_beyond_bound(from, to, watch, noise)
     }
 
@@ -73,6 +99,11 @@ impl<const N: usize> Polynomial<N> {
     }
 
     fn search_pieces(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
+        if watch == Watch::Armed
+            && let Some(search) = first_fall(self, from, to)
+        {
+            return search;
+        }
         let bernstein = self.bernstein();
         let margin = Self::ROUNDING * self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
         if watch == Watch::Armed && bernstein.iter().all(|&b| b > margin)

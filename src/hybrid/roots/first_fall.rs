@@ -1,0 +1,175 @@
+//! The first simple fall of a polynomial, by certified steps: the common case, fast.
+//!
+//! Bounds of the curvature on the whole window make every step safe. From a place s with g(s) > 0
+//! the parabola with the least possible curvature bounds g from below, so that there is no root
+//! before its own. As far as the greatest possible curvature cannot turn a negative slope, g falls:
+//! the sign at the end of that piece decides, and a Newton iteration of third order leads to the
+//! only root in it. Whatever does not fit is left to the general search.
+
+use super::bracket::{Point, close};
+use super::doubles::{above, below};
+use super::polynomial::Polynomial;
+use super::{Kind, Search, Watch};
+
+/// Certified steps before the general search is cheaper; most windows need two or three.
+const MOST_STEPS: usize = 12;
+
+/// Steps to a root on a falling piece; the third order needs three from half a window away.
+const MOST_ITERATIONS: usize = 8;
+
+/// Value, slope and curvature of a polynomial.
+struct Derivatives<const N: usize> {
+    value: Polynomial<N>,
+    slope: Polynomial<N>,
+    curvature: Polynomial<N>,
+    /// Bounds of the curvature on [0, 1].
+    least: f64,
+    greatest: f64,
+    /// Bounds of the rounding errors of value and slope on [0, 1].
+    error: f64,
+    slope_error: f64,
+}
+
+impl<const N: usize> Derivatives<N> {
+    fn new(polynomial: &Polynomial<N>) -> Self {
+        let c = &polynomial.coefficients;
+        let (mut slope, mut curvature) = ([0.0; N], [0.0; N]);
+        let (mut size, mut slope_size, mut curvature_size) = (c[0].abs(), 0.0, 0.0);
+        let (mut least, mut greatest) = (0.0, 0.0);
+        for k in 1..N {
+            let first = k as f64 * c[k];
+            slope[k - 1] = first;
+            size += c[k].abs();
+            slope_size += first.abs();
+            if k >= 2 {
+                let second = (k - 1) as f64 * first;
+                curvature[k - 2] = second;
+                curvature_size += second.abs();
+                if k == 2 {
+                    (least, greatest) = (second, second);
+                } else {
+                    least += second.min(0.0);
+                    greatest += second.max(0.0);
+                }
+            }
+        }
+        let rounding = Polynomial::<N>::ROUNDING;
+        Derivatives {
+            value: *polynomial,
+            slope: Polynomial {
+                coefficients: slope,
+            },
+            curvature: Polynomial {
+                coefficients: curvature,
+            },
+            least: least - rounding * curvature_size,
+            greatest: greatest + rounding * curvature_size,
+            error: rounding * size,
+            slope_error: rounding * slope_size,
+        }
+    }
+}
+
+/// The first event of an armed guard in `from` < s ≤ `to`, or that there is none; `None` where this
+/// search cannot tell.
+pub(super) fn first_fall<const N: usize>(
+    polynomial: &Polynomial<N>,
+    from: f64,
+    to: f64,
+) -> Option<Search> {
+    let g = Derivatives::new(polynomial);
+    let mut s = from;
+    for _ in 0..MOST_STEPS {
+        let (value, slope) = (g.value.value(s), g.slope.value(s));
+        let positive = value - g.error;
+        if positive.is_nan() || positive <= 0.0 {
+            return None;
+        }
+        // How far there is no root for certain …
+        let slope_below = slope - g.slope_error;
+        let discriminant = slope_below * slope_below - 2.0 * g.least * positive;
+        if discriminant < 0.0 || g.least >= 0.0 && slope_below >= 0.0 {
+            return Some(Search::quiet(Watch::Armed));
+        }
+        let denominator = discriminant.sqrt() - slope_below;
+        if denominator <= 0.0 {
+            return Some(Search::quiet(Watch::Armed));
+        }
+        // (four roundings of the quotient: shortened by as much)
+        let safe = 2.0 * positive / denominator * (1.0 - 4.0 * f64::EPSILON);
+        if s + safe >= to {
+            return Some(Search::quiet(Watch::Armed));
+        }
+        // … and how far it falls for certain.
+        let steepest = slope + g.slope_error;
+        let falls = match g.greatest > 0.0 {
+            true => -steepest / g.greatest * (1.0 - 2.0 * f64::EPSILON),
+            false => f64::INFINITY,
+        };
+        if steepest < 0.0 && falls > safe {
+            let end = to.min(s + falls);
+            let at_end = g.value.value(end);
+            if at_end < 0.0 {
+                return root(&g, (s, value), (end, at_end));
+            }
+            if end == to {
+                return Some(Search::quiet(Watch::Armed));
+            }
+            s = end;
+        } else {
+            s += safe;
+        }
+    }
+    None
+}
+
+/// The root between two places between which the polynomial falls.
+fn root<const N: usize>(g: &Derivatives<N>, left: Point, right: Point) -> Option<Search> {
+    let (mut l, mut r) = (left, right);
+    let (mut s, mut value) = left;
+    for _ in 0..MOST_ITERATIONS {
+        let (slope, curvature) = (g.slope.value(s), g.curvature.value(s));
+        let discriminant = slope * slope - 2.0 * curvature * value;
+        // The root of the parabola at s that a falling piece leads to, or Newton's.
+        let step = match discriminant > 0.0 {
+            true => 2.0 * value / (discriminant.sqrt() - slope),
+            false => -value / slope,
+        };
+        let next = s + step;
+        if !(l.0 < next && next < r.0) {
+            break;
+        }
+        let moved = (next - s).abs();
+        (s, value) = (next, g.value.value(next));
+        if value < 0.0 {
+            r = (s, value)
+        } else {
+            l = (s, value)
+        }
+        // The third order leaves the cube of the last step.
+        if moved <= f64::EPSILON.cbrt() * s {
+            break;
+        }
+    }
+    // Rounding may have left one end of the bracket far away: look beside the other one first.
+    let mut own = |s: f64| g.value.value(s);
+    if value < 0.0 {
+        let s = below(r.0);
+        let value = own(s);
+        if value >= 0.0 {
+            l = (s, value)
+        } else {
+            r = (s, value)
+        }
+    } else {
+        let s = above(l.0);
+        let value = own(s);
+        if value < 0.0 {
+            r = (s, value)
+        } else {
+            l = (s, value)
+        }
+    }
+    let (l, r) = close(&mut own, l, r);
+    Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated))
+}
