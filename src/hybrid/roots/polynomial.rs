@@ -31,11 +31,21 @@ impl<const N: usize> Polynomial<N> {
     /// Relative error of a sum of N terms whose factors carry as many roundings: γ ≈ 2Nu.
     pub(super) const ROUNDING: f64 = N as f64 * f64::EPSILON;
 
-    /// The value at s, by Horner's rule, from six coefficients on in powers of s⁴ for every fourth
-    /// coefficient (Estrin 1960: a processor works on the four sums side by side). These values
-    /// decide about events.
+    /// The value at s. These values decide about events.
+    ///
+    /// By Horner's rule, from six coefficients on in powers of s⁴ for every fourth coefficient
+    /// (Estrin 1960: a processor works on the four sums side by side). Leading zeros are factors s
+    /// of their own, so that dividing them out changes no sign.
     #[inline]
     pub fn value(&self, s: f64) -> f64 {
+        if N > 0 && self.coefficients[0] == 0.0 {
+            return self.value_of_multiple(s);
+        }
+        self.sum(s)
+    }
+
+    #[inline]
+    fn sum(&self, s: f64) -> f64 {
         if N < 6 {
             let mut value = 0.0;
             for &coefficient in self.coefficients.iter().rev() {
@@ -54,6 +64,21 @@ impl<const N: usize> Polynomial<N> {
             }
         }
         (sums[0] + s * sums[1]) + s2 * (sums[2] + s * sums[3])
+    }
+
+    /// The value where the polynomial is a multiple of s.
+    fn value_of_multiple(&self, s: f64) -> f64 {
+        let (quotient, order) = self.without_zeros();
+        (0..order).fold(quotient.sum(s), |value, _| value * s)
+    }
+
+    /// Divides the highest power of s out that is a factor, and gives it.
+    fn without_zeros(&self) -> (Self, usize) {
+        let order = self.coefficients.iter().position(|&c| c != 0.0);
+        let order = order.unwrap_or(0);
+        let mut coefficients = [0.0; N];
+        coefficients[..N - order].copy_from_slice(&self.coefficients[order..]);
+        (Self { coefficients }, order)
     }
 
     /// The earliest event in `from` < s ≤ `to`, where 0 ≤ `from` ≤ `to` ≤ 1.
@@ -117,12 +142,11 @@ impl<const N: usize> Polynomial<N> {
 
     /// Divides the zero at s = 0 out; the sign beside it is that of the first coefficient left.
     fn leave_zero(&self, to: f64) -> Search {
-        let Some(order) = self.coefficients.iter().position(|&c| c != 0.0) else {
+        let (quotient, _) = self.without_zeros();
+        let coefficients = &quotient.coefficients;
+        if coefficients[0] == 0.0 {
             return Search::quiet(Watch::Dormant);
-        };
-        let mut coefficients = [0.0; N];
-        coefficients[..N - order].copy_from_slice(&self.coefficients[order..]);
-        let quotient = Self { coefficients };
+        }
         if coefficients[0] > 0.0 {
             return quotient.search(0.0, to, Watch::Armed, 0.0);
         }
