@@ -17,6 +17,13 @@ CONTEXT_FIELDS = ("u", "u_dot", "d", "h", "c", "j")
 HEADER = """\
 #include <math.h>
 #include <stddef.h>
+#if defined(__GNUC__) || defined(__clang__)
+#define DALEMBERT_INLINE static inline __attribute__((always_inline))
+#define DALEMBERT_UNROLL _Pragma("GCC unroll 16")
+#else
+#define DALEMBERT_INLINE static inline
+#define DALEMBERT_UNROLL
+#endif
 struct dalembert_context { const double %s; };
 """ % ", ".join(f"*{name}" for name in CONTEXT_FIELDS)
 
@@ -117,12 +124,13 @@ class Source:
         self.operations[name] = operations
         return self.add_text(name, _SIGNATURE, unused + arrays + text)
 
-    def add_text(self, name, signature, text):
+    def add_text(self, name, signature, text, inline=False):
         """Adds a function with the given C parameters and body; returns its name, or that of an
         identical one."""
         known = self.by_body.setdefault((signature, text), name)
         if known == name:
-            self.functions.append(f"void {name}({signature}) {{\n{text}\n}}\n")
+            kind = "DALEMBERT_INLINE " if inline else ""
+            self.functions.append(f"{kind}void {name}({signature}) {{\n{text}\n}}\n")
         return known
 
     def text(self, title):

@@ -15,7 +15,7 @@ MOST_FREE = 6
 _MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions",
                    "energies", "powers", "momenta")
 
-SERIES = ("series", "guard_series")
+SERIES = ("series", "quiet_series", "guard_series")
 """What is emitted as a Taylor series."""
 
 
@@ -31,9 +31,9 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
         f"    fn {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
         for e in externs
     ]
-    arrays = "q: *const f64, v: *const f64, a: *const f64, u: *const f64, x: *const RawContext, w: *mut f64, out: *mut f64"
+    arrays = "q: *mut f64, v: *mut f64, a: *mut f64, u: *const f64, x: *const RawContext, w: *mut f64, out: *mut f64"
     lines += [f"    fn {e}({arrays});" for e in sorted({start for start, _ in series})]
-    lines += [f"    fn {e}(k: usize, {arrays});" for e in sorted({next for _, next in series})]
+    lines += [f"    fn {e}(n: usize, {arrays});" for e in sorted({run for _, run in series})]
     lines += ["}", "", "static DIMENSIONS: Dimensions = Dimensions {",
               f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
               f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
@@ -201,8 +201,8 @@ def _mode(variant, i, equations):
 
 
 def _series(function):
-    (start, next), (lead, row) = function.symbol, function.workspace
-    return f"SeriesKernel {{ start: {start}, next: {next}, lead: {lead}, row: {row} }}"
+    (start, run), (lead, row) = function.symbol, function.workspace
+    return f"SeriesKernel {{ start: {start}, run: {run}, lead: {lead}, row: {row} }}"
 
 
 def _guard_name(transitions):
@@ -215,7 +215,7 @@ def _unit(model, expression):
 
 def _shape(model, equations, expression):
     placed = equations.place(expression)
-    linear = _linear(model, equations, placed)
+    linear = linear_shape(model, equations, placed)
     if linear is not None:
         return linear
     depends = lambda *columns: bool(_present(ca.symvar(placed), *columns))
@@ -230,7 +230,7 @@ def _mass_is_constant(model, equations, function):
     return not _present(ca.symvar(mass), *_moving(model, equations))
 
 
-def _linear(model, equations, expression):
+def linear_shape(model, equations, expression):
     """`GuardShape::Linear` if the guard is a constant or discrete factor times one coordinate or rate,
     plus what does not move, else None."""
     moving = _present(ca.symvar(expression), equations.a, *_moving(model, equations))

@@ -1,15 +1,18 @@
 """Emission of C that computes Taylor coefficients: automatic differentiation of the time series.
 
 A column of expressions becomes two C functions. The first gives the coefficients of order 0 of all
-nodes of the expression graph; the second appends those of order k ≥ 1, given what it has left in
-its workspace at the orders before. Each is one pass over the graph (Moore 1966; Jorba and Zou 2005,
-Experiment. Math. 14, section 2).
+nodes of the expression graph; the second appends those of the orders k = 1, 2, … in turn. Each order
+is one pass over the graph (Moore 1966; Jorba and Zou 2005, Experiment. Math. 14, section 2).
 
 A product z = x y has z_k = x_0 y_k + x_k y_0 + Σ_{j=1}^{k-1} x_j y_{k-j}. The sum, the interior of
 the convolution, is known before order k is begun. So is that of every other node that is not
-linear, since each obeys a product rule: the function first computes all interiors in one loop over
-j, side by side in vector lanes, and then walks the graph once in straight-line code. The left and
-right factors of the interiors are two tables in the workspace, one row an order.
+linear, since each obeys a product rule: an order first computes all interiors in one loop over j,
+side by side in vector lanes, and then walks the graph once in straight-line code. The left and
+right factors of the interiors are two tables in the workspace, one row an order. The sums go from
+the middle outwards, so that the coefficients that were computed last enter last: what an order has
+to wait for is one product and one sum.
+
+Few interiors are unrolled: an order with its number known is straight-line code without loops.
 
 Nodes that are constant in time are recognised: a constant times a series is one product an order.
 """
@@ -326,8 +329,9 @@ class Series:
         graph, count = self.graph, len(self.graph.interiors)
         self.lead, self.row = graph.slots, 2 * count
         self.operations = len(graph.next)
+        self.order = ["  const double order = (double)k, inverse_k = 1.0 / order;", "  (void)inverse_k;"]
         if not count:
-            self.next = graph.next
+            self.order += graph.next
             return
         late = [f"  row[{self.row} * (k - 1) + {count + n}] = {text};" for n, text in graph.late.items()]
         now = []
@@ -335,23 +339,45 @@ class Series:
             now.append(f"  now[{n}] = {left};")
             if n not in graph.late:
                 now.append(f"  now[{count + n}] = {right};")
-        self.next = [
+        product = f"row[{self.row} * %s + n] * row[{self.row} * %s + {count} + n]"
+        self.order += [
             f"  double *const row = w + {self.lead}, *const now = row + {self.row} * k;",
-            "  const double order = (double)k, inverse_k = 1.0 / order;",
-            "  (void)inverse_k;",
             *late,
-            f"  double y[{count}] = {{0.0}};",
-            "  for (size_t j = 1; j < k; ++j) {",
-            f"    const double *const left = row + {self.row} * j, *const right = row + {self.row} * (k - j) + {count};",
-            f"    for (size_t n = 0; n < {count}; ++n) y[n] += left[n] * right[n];",
+            f"  double y[{count}], z[{count}];",
+            f"  for (size_t n = 0; n < {count}; ++n) {{",
+            f"    y[n] = k % 2 == 0 ? {product % ('(k / 2)', '(k / 2)')} : 0.0;",
+            "    z[n] = 0.0;",
             "  }",
+            "  DALEMBERT_UNROLL",
+            "  for (size_t j = (k - 1) / 2; j >= 1; --j) {",
+            f"    for (size_t n = 0; n < {count}; ++n) {{",
+            f"      y[n] += {product % ('j', '(k - j)')};",
+            f"      z[n] += {product % ('(k - j)', 'j')};",
+            "    }",
+            "  }",
+            f"  for (size_t n = 0; n < {count}; ++n) y[n] += z[n];",
             *graph.next, *now,
         ]
 
     def add_to(self, source, name):
         """Adds both functions to a `Source`; returns the names under which they can be called."""
-        return (source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start)),
-                source.add_text(f"{name}_next", "size_t k, " + _SIGNATURE, _text(self.next)))
+        start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start))
+        order = source.add_text(f"{name}_order", f"const size_t k, {_SIGNATURE}", _text(self.order), inline=True)
+        call = f"{order}(%s, q, v, a, u, x, w, out);"
+        if len(self.graph.interiors) <= MOST_UNROLLED:
+            orders = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
+        else:
+            orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
+        run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders))
+        return start, run
+
+
+MOST_ORDERS = 32
+"""Coefficients of a series, the one of order 0 included: `ORDERS` in src/integrate/taylor/series.rs."""
+
+MOST_UNROLLED = 4
+"""Interiors up to which the orders are unrolled: each takes about 32²/2 products, 10 kB of code, and
+the whole should hardly exceed the instruction cache of 32 kB or more."""
 
 
 class Outputs(Series):
@@ -360,23 +386,34 @@ class Outputs(Series):
     def __init__(self, output, **arguments):
         super().__init__(output, **arguments)
         for i, node in enumerate(self.nodes):
-            self.graph.next.append(f"  out[{i}] = {node.next or '0.0'};")
+            self.graph.next.append(f"  out[{len(self.nodes)} * k + {i}] = {node.next or '0.0'};")
         self.finish()
 
 
 class Equations(Series):
-    """Series of M (column-major) and b of r = M a + b: of order 0 both, of order k
-    b_k + Σ_{j=1}^{k} M_j a_{k-j}, which the accelerations up to order k − 1 give."""
+    """The motion of r = M a + b = 0.
+
+    Of order 0 the first function gives M (column-major) and b. Of order k,
+    M_0 a_k = −(b_k + Σ_{j=1}^{k} M_j a_{k-j}), which the accelerations up to order k − 1 give: the
+    second function takes the inverse of M_0 for `out`, and appends a_k, v_{k+1} and q_{k+2}.
+    """
 
     def __init__(self, free, output, **arguments):
         super().__init__(output, **arguments)
+        lines = self.graph.next
         for i in range(free):
             load = self.nodes[free * free + i]
             terms = [] if load.constant else [load.next]
             for j, mass in enumerate(self.nodes[i: free * free: free]):
                 if not mass.constant:
                     terms.append(f"({self._late(mass, j, free)} + {mass.next} * a[{j}])")
-            self.graph.next.append(f"  out[{i}] = {' + '.join(terms) or '0.0'};")
+            lines.append(f"  const double r{i} = {' + '.join(terms) or '0.0'};")
+        for i in range(free):
+            row = " + ".join(f"out[{free * j + i}] * r{j}" for j in range(free))
+            lines.append(f"  const double a{i} = -({row}), v{i} = a{i} * (1.0 / (order + 1.0));")
+            lines.append(f"  a[{free} * k + {i}] = a{i};")
+            lines.append(f"  v[{free} * (k + 1) + {i}] = v{i};")
+            lines.append(f"  q[{free} * (k + 2) + {i}] = v{i} * (1.0 / (order + 2.0));")
         self.finish()
 
     def _late(self, mass, j, free):
@@ -387,8 +424,8 @@ class Equations(Series):
         return inner
 
 
-_SIGNATURE = ("const double *q, const double *v, const double *a, const double *u,\n"
-              "    const struct dalembert_context *x, double *w, double *out")
+_SIGNATURE = ("double *restrict q, double *restrict v, double *restrict a, const double *u,\n"
+              "    const struct dalembert_context *x, double *restrict w, double *restrict out")
 
 
 def _text(lines):
@@ -397,5 +434,5 @@ def _text(lines):
         f"  const double *const {field} = x->{field};\n"
         for field in ("d", "h", "c") if f" {field}[" in text or f"({field}[" in text
     )
-    unused = "".join(f"  (void){name};\n" for name in ("q", "v", "a", "u", "x", "w"))
+    unused = "".join(f"  (void){name};\n" for name in ("q", "v", "a", "u", "x", "w", "out"))
     return unused + arrays + text

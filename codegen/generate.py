@@ -106,7 +106,7 @@ def _emit_series(source, prefix, variant, slot, function, constants):
         held=equations.held,
         drift={i: function.output[count + n] for n, i in enumerate(drifting)})
     try:
-        if slot == "series":
+        if slot != "guard_series":
             series = emit_series.Equations(len(equations.free), **arguments)
         else:
             arguments["moving"].append(("a", equations.a))
@@ -168,7 +168,9 @@ def _variant(model):
             placed = equations.place(expression)
             _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
             _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
-            values.append(placed)
+            # A linear guard is as good a polynomial as the motion itself.
+            linear = emit_rust.linear_shape(model, equations, placed)
+            values.append(placed if linear is None else ca.SX(0))
             rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
             _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
             for t, transition in enumerate(transitions):
@@ -210,6 +212,7 @@ def _mode_functions(variant, equations, slot, prefix):
         ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
         ("system", system),
         ("series", ca.vertcat(system, _drift_rates(model, equations))),
+        ("quiet_series", _quiet(model, ca.vertcat(system, _drift_rates(model, equations)))),
         ("inertia", ca.vec(equations.inertia())),
         ("jerk_load", equations.jerk_load(signals, rates)),
         ("magnitude", equations.magnitude()),
@@ -221,6 +224,12 @@ def _mode_functions(variant, equations, slot, prefix):
         ("held_rates", equations.freeze(equations.rates_of_held)),
     ):
         _add(variant, prefix + what, output, equations, slot + (what,))
+
+
+def _quiet(model, expression):
+    """An expression where no input acts."""
+    signals = _signals(model)
+    return ca.substitute(expression, signals, ca.SX.zeros(signals.numel())) if signals.numel() else expression
 
 
 def _drift_rates(model, equations):

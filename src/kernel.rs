@@ -23,22 +23,22 @@ struct RawContext {
 /// A generated C function.
 type Raw = unsafe extern "C" fn(*const f64, *const f64, *const f64, *const RawContext, *mut f64);
 
-/// Generated C functions that expand the motion in time: coefficients of order 0, and of order k.
-/// The arrays q, v, a and u hold one row an order.
+/// Generated C functions that expand the motion in time: coefficients of order 0, and of the orders
+/// 1 … n − 1. The arrays q, v, a and u hold one row an order.
 type RawStart = unsafe extern "C" fn(
-    *const f64,
-    *const f64,
-    *const f64,
+    *mut f64,
+    *mut f64,
+    *mut f64,
     *const f64,
     *const RawContext,
     *mut f64,
     *mut f64,
 );
-type RawNext = unsafe extern "C" fn(
+type RawRun = unsafe extern "C" fn(
     usize,
-    *const f64,
-    *const f64,
-    *const f64,
+    *mut f64,
+    *mut f64,
+    *mut f64,
     *const f64,
     *const RawContext,
     *mut f64,
@@ -68,6 +68,8 @@ pub struct Context {
     dimensions: &'static Dimensions,
     /// Signals of the inputs at the present time.
     pub signals: Box<[f64]>,
+    /// Whether no input ever acts: all signals are zero and stay so.
+    pub quiet: bool,
     /// Time derivatives of the signals.
     pub signal_rates: Box<[f64]>,
     /// Discrete states.
@@ -98,6 +100,7 @@ impl Context {
         Context {
             dimensions,
             signals: vec![0.0; dimensions.signals].into(),
+            quiet: false,
             signal_rates: vec![0.0; dimensions.signals].into(),
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
@@ -231,6 +234,8 @@ pub struct ModeKernel<const F: usize> {
     momenta: Raw,
     requirements: (Raw, usize),
     series: Option<SeriesKernel>,
+    /// The same where no input acts.
+    quiet_series: Option<SeriesKernel>,
     guard_series: Option<SeriesKernel>,
     guards: usize,
     mass_is_constant: bool,
@@ -241,7 +246,7 @@ pub struct ModeKernel<const F: usize> {
 #[derive(Debug)]
 struct SeriesKernel {
     start: RawStart,
-    next: RawNext,
+    run: RawRun,
     /// Doubles of the workspace that do not grow with the order.
     lead: usize,
     /// Doubles of the workspace for each order.
@@ -301,9 +306,24 @@ impl<const F: usize> ModeKernel<F> {
         self.series.is_some()
     }
 
+    /// Convolutions of an order of the Taylor series of the motion.
+    pub fn convolutions(&self, x: &Context) -> usize {
+        // Each has a left and a right factor in the workspace.
+        self.motion_series(x).map_or(0, |series| series.row / 2)
+    }
+
+    #[inline]
+    fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
+        match x.quiet {
+            true => self.quiet_series.as_ref(),
+            false => self.series.as_ref(),
+        }
+    }
+
     /// Doubles of workspace that the series of this mode need.
     fn workspace(&self) -> usize {
-        let all = [&self.series, &self.guard_series].into_iter().flatten();
+        let all = [&self.series, &self.quiet_series, &self.guard_series];
+        let all = all.into_iter().flatten();
         all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
     }
 
@@ -320,18 +340,14 @@ impl<const F: usize> ModeKernel<F> {
         assert!(orders <= ORDERS && x.guard_series.len() >= ORDERS * self.guards);
         let raw = x.raw(self.dimensions, std::ptr::null());
         assert!(x.workspace.len() >= self.workspace());
-        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
-        for k in 0..orders {
-            let row = x.guard_series[k * self.guards..(k + 1) * self.guards].as_mut_ptr();
-            // SAFETY: F entries a row of q, v and a, and all rows are there; one output a guard; the
-            // workspace is as long as the generated tables say.
-            unsafe {
-                match k {
-                    0 => (series.start)(q.cast(), v.cast(), a.cast(), u, &raw, w, row),
-                    _ => (series.next)(k, q.cast(), v.cast(), a.cast(), u, &raw, w, row),
-                }
-            }
+        let out = x.guard_series.as_mut_ptr();
+        // SAFETY: F entries a row of q, v and a, which are only read, and all rows are there; one
+        // output a guard and order; the workspace is as long as the generated tables say.
+        unsafe {
+            (series.start)(q, v, a, u, &raw, w, out);
+            (series.run)(orders, q, v, a, u, &raw, w, out);
         }
         true
     }
@@ -354,61 +370,45 @@ impl<const F: usize> ModeKernel<F> {
     /// If the mode is not analytic.
     #[inline]
     pub fn series_start(&self, x: &mut Context, at: &Series<F>) -> LinearSystem<F> {
-        let series = self.series.as_ref().expect("the mode is analytic");
+        let series = self.motion_series(x).expect("the mode is analytic");
         let mut out = LinearSystem {
             mass: SMatrix::zeros(),
             load: SVector::zeros(),
         };
         let raw = x.raw(self.dimensions, std::ptr::null());
         assert!(x.workspace.len() >= self.workspace());
-        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
-        // SAFETY: F entries a row, all rows are there; F × F and F outputs, contiguous in a repr(C)
+        // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
         // struct; the workspace is as long as the generated tables say.
-        unsafe {
-            (series.start)(
-                q.cast(),
-                v.cast(),
-                a.cast(),
-                u,
-                &raw,
-                w,
-                (&raw mut out).cast(),
-            )
-        }
+        unsafe { (series.start)(q, v, a, u, &raw, w, (&raw mut out).cast()) }
         out
     }
 
-    /// Goes on to order `k` of the series begun by [`Self::series_start`], for the same context and
-    /// the orders 1 … k − 1 in turn: with q and v known to order k, and a to order k − 1, gives
-    /// b_k + Σ_{j=1}^{k} M_j a_{k−j}, so that M_0 a_k is its negative.
+    /// Goes on to the first `n` accelerations of the series begun by [`Self::series_start`], for the
+    /// same context: a_k with v_{k+1} and q_{k+2} for k < n. The inverse of M_0 is given, and a_0, v_1,
+    /// q_1 and q_2 are.
     ///
     /// # Panics
-    /// If the mode is not analytic, or `k` is not in 1 … [`ORDERS`] − 1.
+    /// If the mode is not analytic, or `n` is more than [`ORDERS`] − 2.
     #[inline]
-    pub fn series_next(&self, x: &mut Context, k: usize, at: &Series<F>) -> SVector<f64, F> {
-        let series = self.series.as_ref().expect("the mode is analytic");
-        assert!((1..ORDERS).contains(&k));
-        let mut out = SVector::<f64, F>::zeros();
+    pub fn series_run(
+        &self,
+        x: &mut Context,
+        n: usize,
+        inverse: &SMatrix<f64, F, F>,
+        at: &mut Series<F>,
+    ) {
+        let series = self.motion_series(x).expect("the mode is analytic");
+        assert!(n <= ORDERS - 2);
         let raw = x.raw(self.dimensions, std::ptr::null());
         assert!(x.workspace.len() >= self.workspace());
-        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
-        // SAFETY: F entries a row, and rows 0 … k are there; F outputs; the workspace is as long as
-        // the generated tables say.
-        unsafe {
-            (series.next)(
-                k,
-                q.cast(),
-                v.cast(),
-                a.cast(),
-                u,
-                &raw,
-                w,
-                out.as_mut_ptr(),
-            )
-        }
-        out
+        let inverse = inverse.as_ptr().cast_mut();
+        // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the
+        // inverse are only read; the workspace is as long as the generated tables say.
+        unsafe { (series.run)(n, q, v, a, u, &raw, w, inverse) }
     }
 
     /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.

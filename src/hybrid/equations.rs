@@ -25,7 +25,9 @@ pub(super) struct Clock<'a> {
 impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
     fn set(&self, tau: f64, context: &mut Context) {
-        if tau < self.until.0 {
+        if context.quiet {
+            // Nothing changes the signals, which are zero.
+        } else if tau < self.until.0 {
             self.signals
                 .evaluate(self.start.plus(tau).seconds(), &mut context.signals);
         } else {
@@ -60,11 +62,14 @@ impl Clock<'_> {
     /// Sets the Taylor coefficients of the signals about local time `tau`, and everything else as
     /// `set` does.
     fn expand(&self, tau: f64, orders: usize, context: &mut Context) {
+        self.set_held(tau, context);
+        if context.quiet {
+            return;
+        }
         let width = context.signals.len();
         let rows = &mut context.signal_series[..orders * width];
         self.signals.series(self.piece(tau).0, rows);
         context.signals.copy_from_slice(&rows[..width]);
-        self.set_held(tau, context);
     }
 }
 
@@ -202,18 +207,31 @@ impl<const F: usize> System<F> for Equations<'_, F> {
 
 impl<const F: usize> Analytic<F> for Equations<'_, F> {
     #[inline]
-    fn start(&mut self, t: f64, order: usize, series: &Series<F>) -> SMatrix<f64, F, F> {
+    fn start(
+        &mut self,
+        t: f64,
+        order: usize,
+        series: &Series<F>,
+    ) -> (SMatrix<f64, F, F>, SVector<f64, F>) {
         self.clock.expand(t, order + 1, self.context);
         self.set_for = t;
-        self.kernel.series_start(self.context, series).mass
+        let system = self.kernel.series_start(self.context, series);
+        (system.mass, system.load)
     }
 
     #[inline]
-    fn next(&mut self, k: usize, series: &Series<F>) -> SVector<f64, F> {
-        self.kernel.series_next(self.context, k, series)
+    fn run(&mut self, n: usize, inverse: &SMatrix<f64, F, F>, series: &mut Series<F>) {
+        self.kernel.series_run(self.context, n, inverse, series)
+    }
+
+    fn mass_is_constant(&self) -> bool {
+        self.kernel.mass_is_constant()
     }
 
     fn horizon(&self, t: f64) -> f64 {
-        self.clock.piece(t).1
+        match self.context.quiet {
+            true => f64::INFINITY,
+            false => self.clock.piece(t).1,
+        }
     }
 }

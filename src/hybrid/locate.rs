@@ -32,8 +32,8 @@ pub(super) enum Landing<const F: usize> {
 const TAYLOR: f64 = 3.8e-6;
 
 /// Retakes the last step so that it ends at `crossing` of `guard`.
-pub(super) fn land<'a, const F: usize>(
-    method: &mut impl OneStep<F, Equations<'a, F>>,
+pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: &Guard,
@@ -47,7 +47,10 @@ pub(super) fn land<'a, const F: usize>(
         if tau != method.state().t {
             method.step_exactly(equations, tau - start)?;
         }
-        let end = *method.state();
+        let mut end = *method.state();
+        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(conditions, guard) {
+            accelerate(equations, &mut end);
+        }
         let value = value_at(equations, conditions, guard, &end);
         if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
             // There is no slope to follow: the place is as good as the dense output.
@@ -125,14 +128,7 @@ fn beyond_the_crossing<const F: usize>(
     correction: f64,
     smooth: f64,
 ) -> Landing<F> {
-    let accelerated = matches!(
-        guard.shape,
-        GuardShape::General {
-            accelerations: true,
-            ..
-        }
-    );
-    let of_accelerations = accelerated || conditions.are_part_of(guard);
+    let of_accelerations = depends_on_accelerations(conditions, guard);
     let least = (f64::EPSILON * smooth).max(f64::MIN_POSITIVE);
     let mut place = (f64::EPSILON * correction.abs()).max(least);
     let mut beyond = correction;
@@ -154,6 +150,18 @@ fn beyond_the_crossing<const F: usize>(
         beyond += place;
         place *= 2.0;
     }
+}
+
+/// Whether the value of a guard, or of a condition that it is watched with, depends on accelerations.
+fn depends_on_accelerations(conditions: &Conditions, guard: &Guard) -> bool {
+    conditions.are_part_of(guard)
+        || matches!(
+            guard.shape,
+            GuardShape::General {
+                accelerations: true,
+                ..
+            }
+        )
 }
 
 /// Sets the accelerations of a state by the equations, where they determine them.

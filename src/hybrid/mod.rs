@@ -23,6 +23,7 @@ mod samples;
 mod segment;
 mod simulation;
 mod simulator;
+mod solvers;
 mod visited;
 mod work;
 

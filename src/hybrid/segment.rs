@@ -5,7 +5,7 @@ use super::equations::{Clock, Equations};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
-use super::problem::Method;
+use super::problem::{Method, Problem};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
@@ -22,27 +22,40 @@ impl Simulation<'_> {
         kernel: &'static ModeKernel<F>,
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
-        let tolerances = self.tolerances();
+        let mode = self.here.mode;
         match self.problem.method {
             Method::Taylor if kernel.is_analytic() => {
-                self.integrate(kernel, Taylor::new(&tolerances), progress)
+                let tolerances = tolerances(self.problem, self.mode());
+                let convolutions = kernel.convolutions(&self.context);
+                let make = || Taylor::new(&tolerances, convolutions);
+                let method = self.solvers.take(mode, make);
+                self.integrate(kernel, method, progress)
             }
-            _ => self.integrate(kernel, Radau::<3, F>::new(&tolerances), progress),
+            _ => {
+                let tolerances = tolerances(self.problem, self.mode());
+                let make = || Radau::<3, F>::new(&tolerances);
+                let method = self.solvers.take(mode, make);
+                self.integrate(kernel, method, progress)
+            }
         }
     }
 
-    fn integrate<const F: usize>(
+    fn integrate<const F: usize, M>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-        mut method: impl for<'a> OneStep<F, Equations<'a, F>>,
+        mut method: Box<M>,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason> {
-        let stop = self.follow(kernel, &mut method, progress);
-        self.count(OneStep::<F, Equations<F>>::counters(&method));
-        let name = OneStep::<F, Equations<F>>::name(&method);
+    ) -> Result<Stop, Reason>
+    where
+        M: for<'a> OneStep<F, Equations<'a, F>> + 'static,
+    {
+        let stop = self.follow(kernel, &mut *method, progress);
+        self.count(&OneStep::<F, Equations<F>>::take_counters(&mut *method));
+        let name = OneStep::<F, Equations<F>>::name(&*method);
         if !self.methods.contains(&name) {
             self.methods.push(name);
         }
+        self.solvers.keep(self.here.mode, method);
         stop
     }
 
@@ -232,18 +245,6 @@ impl Simulation<'_> {
         }
     }
 
-    fn tolerances<const F: usize>(&self) -> Tolerances<F> {
-        let accuracy = &self.problem.accuracy;
-        let free = self.mode().free;
-        let pick = |full: &[f64]| SVector::from_fn(|i, _| full[free[i]]);
-        Tolerances::new(
-            accuracy.relative,
-            pick(&accuracy.q_absolute),
-            pick(&accuracy.v_absolute),
-        )
-        .expect("a problem's tolerances are positive")
-    }
-
     fn count(&mut self, counters: &Counters) {
         let solver = &mut self.solver;
         solver.steps += counters.steps;
@@ -252,6 +253,18 @@ impl Simulation<'_> {
         solver.jacobian_evaluations += counters.jacobian_evaluations;
         solver.factorizations += counters.factorizations;
     }
+}
+
+/// Tolerances of the free coordinates of a mode.
+fn tolerances<const F: usize>(problem: &Problem, mode: &Mode) -> Tolerances<F> {
+    let accuracy = &problem.accuracy;
+    let pick = |full: &[f64]| SVector::from_fn(|i, _| full[mode.free[i]]);
+    Tolerances::new(
+        accuracy.relative,
+        pick(&accuracy.q_absolute),
+        pick(&accuracy.v_absolute),
+    )
+    .expect("a problem's tolerances are positive")
 }
 
 /// Most requirements that a mode may have.

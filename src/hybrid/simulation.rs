@@ -7,6 +7,7 @@ use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
 use super::problem::Problem;
+use super::solvers::Solvers;
 use super::visited::Visited;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
@@ -89,6 +90,7 @@ pub(super) struct Simulation<'p> {
     pub layout: Layout,
     pub events: Vec<Event>,
     pub solver: Solver,
+    pub solvers: Solvers,
     /// Name and order of every method that was used.
     pub methods: Vec<(&'static str, usize)>,
     /// Index of the next sample of the grid.
@@ -104,6 +106,7 @@ impl<'p> Simulation<'p> {
         let plan = Plan::new(problem)?;
         let mut context = Context::new(model, &problem.parameters);
         context.discrete.copy_from_slice(&problem.initial.discrete);
+        context.quiet = problem.signals.is_zero();
         let n = model.coordinates.len();
         let layout = Layout::new(model, problem.variant, problem.record.columns);
         let rows = problem
@@ -136,6 +139,7 @@ impl<'p> Simulation<'p> {
             layout,
             events: Vec::new(),
             solver: Solver::default(),
+            solvers: Solvers::default(),
             methods: Vec::new(),
             next_sample: 0,
             counted: 0,
@@ -371,8 +375,10 @@ impl<'p> Simulation<'p> {
 
     /// Sets signals and held coordinates to the present instant.
     pub fn set_context(&mut self) {
-        let t = self.here.now.seconds();
-        self.problem.signals.evaluate(t, &mut self.context.signals);
+        if !self.context.quiet {
+            let t = self.here.now.seconds();
+            self.problem.signals.evaluate(t, &mut self.context.signals);
+        }
         self.context.held.copy_from_slice(&self.here.q);
     }
 

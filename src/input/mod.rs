@@ -60,6 +60,12 @@ impl Signals {
         self.channels.iter().map(|c| &c.function)
     }
 
+    /// Whether no function ever differs from zero.
+    pub fn is_zero(&self) -> bool {
+        let zero = Function::zero();
+        self.channels.iter().all(|c| c.function == zero)
+    }
+
     /// Fills `u`, of length [`crate::model::Model::signal_count`], with the signals at time `t`
     /// (s); at a breakpoint with their right-hand limits.
     pub fn evaluate(&self, t: f64, u: &mut [f64]) {

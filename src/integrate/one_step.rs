@@ -44,8 +44,12 @@ pub trait OneStep<const F: usize, Y> {
     /// Nodes of a quadrature over the last step, as accurate as the step.
     fn nodes(&self) -> impl Iterator<Item = Node<F>>;
 
-    /// Work done since construction.
-    fn counters(&self) -> &Counters;
+    /// Whether the accelerations of [`Self::state`] satisfy the equations to rounding, and not to the
+    /// tolerance alone.
+    const EXACT_ACCELERATIONS: bool;
+
+    /// Work done since it was last asked for.
+    fn take_counters(&mut self) -> Counters;
 }
 
 /// The motion within a step: each coordinate is a polynomial.
@@ -75,6 +79,8 @@ where
     RadauIia<S>: Coefficients<S>,
 {
     type Motion = Dense<S, F>;
+
+    const EXACT_ACCELERATIONS: bool = true;
 
     fn name(&self) -> (&'static str, usize) {
         ("Radau IIA", 2 * S - 1)
@@ -109,13 +115,15 @@ where
         self.stages()
     }
 
-    fn counters(&self) -> &Counters {
-        self.counters()
+    fn take_counters(&mut self) -> Counters {
+        self.take_counters()
     }
 }
 
 impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     type Motion = TaylorDense<F>;
+
+    const EXACT_ACCELERATIONS: bool = false;
 
     fn name(&self) -> (&'static str, usize) {
         ("Taylor", self.order())
@@ -149,8 +157,8 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
         self.nodes()
     }
 
-    fn counters(&self) -> &Counters {
-        self.counters()
+    fn take_counters(&mut self) -> Counters {
+        self.take_counters()
     }
 }
 

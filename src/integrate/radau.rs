@@ -155,9 +155,14 @@ where
         })
     }
 
-    /// Work done since construction.
+    /// Work done since construction, or since it was last taken.
     pub fn counters(&self) -> &Counters {
         &self.counters
+    }
+
+    /// Work done since it was last taken.
+    pub fn take_counters(&mut self) -> Counters {
+        std::mem::take(&mut self.counters)
     }
 
     /// Makes one step with error control, not beyond `t_end` and not longer than `h_max` (∞ where

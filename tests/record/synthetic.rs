@@ -118,12 +118,12 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             method: "by formula".into(),
             ..Solver::default()
         },
-        energy: Ledger {
+        energy: Some(Ledger {
             initial: G * height,
             lost_at_impacts: G * height,
             frame: "The ground does not move.".into(),
             ..Ledger::default()
-        },
+        }),
         wall: Duration::ZERO,
         failure: None,
     }
@@ -306,7 +306,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             jacobian_evaluations: 4_321,
             factorizations: 8_642,
         },
-        energy: Ledger {
+        energy: Some(Ledger {
             initial: 0.3,
             final_: 0.7,
             dissipated: 7.2,
@@ -316,7 +316,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
                 "The ledger is kept in the inertial frame, where a landing on the moving ground \
                     does work."
                     .into(),
-        },
+        }),
         wall: Duration::from_millis(123),
         failure: None,
     }

@@ -58,7 +58,7 @@ fn the_energy_ledger_closes_in_every_scene() {
                 ];
                 let problem = scene(name, &[&overrides[0], &overrides[1]]);
                 let run = run(&problem);
-                let energy = &run.energy;
+                let energy = run.energy.as_ref().unwrap();
                 let turnover = energy.initial.abs() + energy.input_work.abs() + energy.dissipated;
                 let imbalance = energy.imbalance().abs() / turnover;
                 assert!(

@@ -54,8 +54,14 @@ impl<const F: usize> TaylorDense<F> {
     #[inline]
     pub fn at_offset(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
         let (dq, dv) = self.change(tau);
-        let a = horner(&self.series.a[..self.order], tau);
+        let a = self.acceleration(tau);
         (self.series.q[0] + dq, self.series.v[0] + dv, a)
+    }
+
+    /// Accelerations at τ.
+    #[inline]
+    pub(super) fn acceleration(&self, tau: f64) -> SVector<f64, F> {
+        horner(&self.series.a[..self.order], tau)
     }
 
     /// By how much coordinates and velocities change in τ.

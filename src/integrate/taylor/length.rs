@@ -1,23 +1,44 @@
 //! Order and length of a step.
 
-/// What a step costs besides its series (search for events, ledger, …), in units of the work of one
-/// order squared; as measured on the rocking block.
-const OVERHEAD: f64 = 100.0;
+use super::series::ORDERS;
+
+/// What a step costs besides its series (search for events and the engine's loop), what an order
+/// costs for each coordinate, and what a product in a convolution costs, in ns: measured on the
+/// benchmark problems. Their ratios decide, and these hardly depend on the processor.
+const STEP: f64 = 150.0;
+const ORDER: f64 = 7.0;
+const PRODUCT: f64 = 0.5;
 
 /// Order at which a unit of time is cheapest for a relative tolerance ε.
 ///
-/// A series of order p with radius of convergence ρ meets ε with h = ρ ε^(1/p). Its work grows like
-/// p², so that (overhead + p²)/h is least where 2p³ = −ln ε (overhead + p²). Without overhead that
-/// is p = −½ ln ε (Jorba and Zou 2005, section 3.2).
-pub(super) fn order(tolerance: f64) -> usize {
-    let digits = -natural_logarithm(tolerance);
-    let falls = |p: &usize| {
-        let p = *p as f64;
-        2.0 * p * p * p < digits * (OVERHEAD + p * p)
-    };
-    (1..)
-        .find(|p| !falls(p))
-        .expect("a cubic ends above a parabola")
+/// A step of order p costs a + b p + c p²/2 with c in proportion to the number of convolutions. A
+/// series with radius of convergence ρ meets ε with h = ρ ε^(1/p) (Jorba and Zou 2005, section 3.2).
+/// Where there is no convolution the motion is a sum of exponentials, whose terms are (λh)^p/p!, so
+/// that h = (p! ε)^(1/p)/λ grows with p nearly at no cost. Half a period, λh = π, is enough: within
+/// longer steps guards swing to and fro, and their roots take longer to find than a further step.
+pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> usize {
+    let digits = natural_logarithm(tolerance);
+    let half_period = natural_logarithm(std::f64::consts::PI);
+    let mut factorial = 0.0; // its logarithm
+    let mut best = (1, f64::INFINITY);
+    for order in 1..=ORDERS - 2 {
+        let p = order as f64;
+        factorial += natural_logarithm(p);
+        if convolutions == 0 {
+            best.0 = order;
+            if factorial + digits >= p * half_period {
+                break;
+            }
+            continue;
+        }
+        let products = 0.5 * p * p * convolutions as f64;
+        let cost = STEP + ORDER * p * coordinates as f64 + PRODUCT * products;
+        let cost = natural_logarithm(cost) - digits / p;
+        if cost < best.1 {
+            best = (order, cost);
+        }
+    }
+    best.0
 }
 
 /// ln x to 1 %, by the same bits on every processor.
@@ -69,9 +90,14 @@ mod tests {
     }
 
     #[test]
-    fn the_order_follows_the_tolerance() {
-        for (tolerance, expected) in [(1e-3, 9), (1e-6, 12), (1e-9, 15), (1e-12, 19), (1e-14, 21)] {
-            assert_eq!(order(tolerance), expected, "{tolerance:e}");
+    fn the_order_follows_tolerance_and_costs() {
+        let orders = |convolutions| [1e-3, 1e-6, 1e-9, 1e-12].map(|e| order(e, convolutions, 1));
+        for convolutions in [0, 2, 100] {
+            let orders = orders(convolutions);
+            assert!(orders.is_sorted() && orders[3] <= ORDERS - 2, "{orders:?}");
         }
+        // Where convolutions are all that costs, p = 1 − ½ ln ε (Jorba and Zou).
+        assert!(orders(10_000)[3].abs_diff(14) <= 1, "{:?}", orders(10_000));
+        assert!(orders(2)[3] > orders(100)[3]);
     }
 }

@@ -20,7 +20,7 @@ use super::linear::Lu;
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::tolerances::Tolerances;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// The Taylor method for an [`Analytic`] system of `F` coordinates. It is used as
 /// [`super::Radau`] is.
@@ -35,12 +35,15 @@ pub struct Taylor<const F: usize> {
     dense: TaylorDense<F>,
     /// Whether `dense` is the last step.
     stepped: bool,
+    /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
+    inverse: Option<SMatrix<f64, F, F>>,
     counters: Counters,
 }
 
 impl<const F: usize> Taylor<F> {
-    /// An integrator at rest at zero; call [`Taylor::restart`] before the first step.
-    pub fn new(tolerances: &Tolerances<F>) -> Self {
+    /// An integrator at rest at zero; call [`Taylor::restart`] before the first step. An order of the
+    /// expansion takes so many convolutions; 0: the equations are linear.
+    pub fn new(tolerances: &Tolerances<F>, convolutions: usize) -> Self {
         let zero = SVector::zeros();
         let origin = State {
             t: 0.0,
@@ -48,7 +51,7 @@ impl<const F: usize> Taylor<F> {
             v: zero,
             a: zero,
         };
-        let order = length::order(tolerances.relative()).min(ORDERS - 2);
+        let order = length::order(tolerances.relative(), convolutions, F);
         Taylor {
             tolerances: *tolerances,
             order,
@@ -64,6 +67,7 @@ impl<const F: usize> Taylor<F> {
                 series: Series::zero(),
             },
             stepped: false,
+            inverse: None,
             counters: Counters::default(),
         }
     }
@@ -86,6 +90,7 @@ impl<const F: usize> Taylor<F> {
         self.lost = Lost::nothing();
         self.lost_at_start = self.lost;
         self.stepped = false;
+        self.inverse = None;
     }
 
     /// Order of the method: that of the last coefficient of the velocities.
@@ -108,9 +113,9 @@ impl<const F: usize> Taylor<F> {
         self.stepped.then_some(&self.dense)
     }
 
-    /// Work done since construction. An order of a series counts as an evaluation of the residual.
-    pub fn counters(&self) -> &Counters {
-        &self.counters
+    /// Work done since it was last taken. An order of a series counts as an evaluation of the residual.
+    pub fn take_counters(&mut self) -> Counters {
+        std::mem::take(&mut self.counters)
     }
 
     /// Makes one step, not beyond `t_end`, not longer than `h_max` (∞ where nothing limits it) and
@@ -147,7 +152,7 @@ impl<const F: usize> Taylor<F> {
             });
         }
         let t = (h == remaining).then_some(t_end);
-        self.finish(system, &origin, self.lost, h, t)?;
+        self.finish(&origin, self.lost, h, t);
         self.dense.h = h;
         self.counters.steps += 1;
         Ok(self.report(self.error(h)))
@@ -172,7 +177,7 @@ impl<const F: usize> Taylor<F> {
             self.expand(system, &origin)?;
             self.dense.h = h;
         }
-        self.finish(system, &origin, self.lost_at_start, h, None)?;
+        self.finish(&origin, self.lost_at_start, h, None);
         self.counters.retaken += 1;
         Ok(self.report(f64::NAN))
     }
@@ -189,10 +194,33 @@ impl<const F: usize> Taylor<F> {
             return Err(StepError::NonFinite { t, h: 0.0, what });
         }
         self.dense.t0 = t;
-        let Series { q, v, a } = &mut self.dense.series;
-        (q[0], v[0], a[0]) = (origin.q, origin.v, origin.a);
-        (q[1], v[1], q[2]) = (origin.v, origin.a, origin.a * 0.5);
-        let mass = system.start(t, self.order, &self.dense.series);
+        let series = &mut self.dense.series;
+        (series.q[0], series.v[0]) = (origin.q, origin.v);
+        let (mass, load) = system.start(t, self.order, series);
+        let inverse = match self.inverse.filter(|_| system.mass_is_constant()) {
+            Some(inverse) => inverse,
+            None => self.invert(&mass)?,
+        };
+        let series = &mut self.dense.series;
+        series.a[0] = -(inverse * load);
+        (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
+        system.run(self.order, &inverse, series);
+        self.counters.residual_evaluations += self.order as u64;
+        // What is not finite stays so in all higher orders.
+        let last = &self.dense.series.a[self.order - 1];
+        match last.iter().all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => Err(StepError::NonFinite {
+                t,
+                h: 0.0,
+                what: "the Taylor series of the motion",
+            }),
+        }
+    }
+
+    /// Inverts the mass matrix.
+    fn invert(&mut self, mass: &SMatrix<f64, F, F>) -> Result<SMatrix<f64, F, F>, StepError> {
+        let t = self.dense.t0;
         let scale = self.tolerances.v_absolute();
         let lu = Lu::factorize(|i, j| mass[(i, j)], scale).map_err(|singular| {
             let coordinate = singular.coordinate;
@@ -202,26 +230,14 @@ impl<const F: usize> Taylor<F> {
                 coordinate,
             }
         })?;
-        for k in 1..self.order {
-            let rest = system.next(k, &self.dense.series);
-            let Series { q, v, a } = &mut self.dense.series;
-            a[k] = SVector::from(lu.solve(|i| -rest[i]));
-            v[k + 1] = a[k] * (1.0 / (k + 1) as f64);
-            q[k + 2] = v[k + 1] * (1.0 / (k + 2) as f64);
+        let mut inverse = SMatrix::<f64, F, F>::zeros();
+        for j in 0..F {
+            let column = lu.solve(|i| if i == j { 1.0 } else { 0.0 });
+            inverse.set_column(j, &SVector::from(column));
         }
         self.counters.factorizations += 1;
-        self.counters.residual_evaluations += self.order as u64;
-        let finite = self.dense.series.a[..self.order]
-            .iter()
-            .all(|a| a.iter().all(|x| x.is_finite()));
-        match finite {
-            true => Ok(()),
-            false => Err(StepError::NonFinite {
-                t,
-                h: 0.0,
-                what: "the Taylor series of the motion",
-            }),
-        }
+        self.inverse = Some(inverse);
+        Ok(inverse)
     }
 
     /// Sizes of the last terms in units of the tolerance, as (power, coefficient). Two orders are
@@ -262,15 +278,9 @@ impl<const F: usize> Taylor<F> {
         })
     }
 
-    /// Ends the step from `origin` after `h`, at `t` if that is given.
-    fn finish<Y: Analytic<F>>(
-        &mut self,
-        system: &mut Y,
-        origin: &State<F>,
-        lost: Lost<F>,
-        h: f64,
-        t: Option<f64>,
-    ) -> Result<(), StepError> {
+    /// Ends the step from `origin` after `h`, at `t` if that is given. The acceleration is that of
+    /// the polynomial: as good as the tolerance.
+    fn finish(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, t: Option<f64>) {
         let mut end = *origin;
         let mut now_lost = Lost::nothing();
         match t {
@@ -282,21 +292,13 @@ impl<const F: usize> Taylor<F> {
             (end.q[i], now_lost.q[i]) = add(origin.q[i], dq[i], lost.q[i]);
             (end.v[i], now_lost.v[i]) = add(origin.v[i], dv[i], lost.v[i]);
         }
-        if let Err(singular) = system.acceleration(end.t, &end.q, &end.v, &mut end.a) {
-            let coordinate = singular.coordinate;
-            return Err(StepError::Singular {
-                t: origin.t,
-                h,
-                coordinate,
-            });
-        }
+        end.a = self.dense.acceleration(h);
         self.start = *origin;
         self.end = end;
         self.lost_at_start = lost;
         self.lost = now_lost;
         self.dense.t_end = end.t;
         self.stepped = true;
-        Ok(())
     }
 
     /// Nodes of Gauss's quadrature over the last step; none after a restart.

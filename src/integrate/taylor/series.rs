@@ -3,9 +3,9 @@
 use crate::integrate::System;
 use nalgebra::{SMatrix, SVector};
 
-/// Most coefficients of a series, the one of order 0 included. Order 24 serves the smallest relative
+/// Most coefficients of a series, the one of order 0 included. Order 30 serves the smallest relative
 /// tolerance (see `length`); accelerations have one order less than velocities, coordinates one more.
-pub const ORDERS: usize = 26;
+pub const ORDERS: usize = 32;
 
 /// Taylor coefficients of the motion about some time: x(t + τ) = Σ x_k τᵏ.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,16 +30,25 @@ impl<const F: usize> Series<F> {
     }
 }
 
-/// A [`System`] whose motion can be expanded in powers of time, order by order.
+/// A [`System`] whose motion can be expanded in powers of time.
 ///
 /// With M and b of r = M a + b as series along the motion, M_0 a_k = −(b_k + Σ_{j=1}^{k} M_j a_{k−j}).
 pub trait Analytic<const F: usize>: System<F> {
     /// Begins an expansion about time `t` to order `order`, with the coefficients of order 0 of q
-    /// and v; gives M_0.
-    fn start(&mut self, t: f64, order: usize, series: &Series<F>) -> SMatrix<f64, F, F>;
+    /// and v; gives M_0 and b_0.
+    fn start(
+        &mut self,
+        t: f64,
+        order: usize,
+        series: &Series<F>,
+    ) -> (SMatrix<f64, F, F>, SVector<f64, F>);
 
-    /// b_k + Σ_{j=1}^{k} M_j a_{k−j}, given q_k, v_k and a_{k−1}; called for k = 1, 2, … in turn.
-    fn next(&mut self, k: usize, series: &Series<F>) -> SVector<f64, F>;
+    /// Appends a_k, v_{k+1} and q_{k+2} for 1 ≤ k < `n`, given the inverse of M_0 and everything of
+    /// lower order.
+    fn run(&mut self, n: usize, inverse: &SMatrix<f64, F, F>, series: &mut Series<F>);
+
+    /// Whether M is the same at all times.
+    fn mass_is_constant(&self) -> bool;
 
     /// Time until which the equations are the analytic functions of time that they are just after
     /// `t`; infinite if there is no limit.
