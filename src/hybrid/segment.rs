@@ -22,19 +22,17 @@ impl Simulation<'_> {
         kernel: &'static ModeKernel<F>,
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
-        let mode = self.here.mode;
-        match self.problem.method {
+        let (problem, mode) = (self.problem, self.mode());
+        match problem.method {
             Method::Taylor if kernel.is_analytic() => {
-                let tolerances = tolerances(self.problem, self.mode());
                 let convolutions = kernel.convolutions(&self.context);
-                let make = || Taylor::new(&tolerances, convolutions);
-                let method = self.solvers.take(mode, make);
+                let make = || Taylor::new(&tolerances(problem, mode), convolutions);
+                let method = self.solvers.take(self.here.mode, make);
                 self.integrate(kernel, method, progress)
             }
             _ => {
-                let tolerances = tolerances(self.problem, self.mode());
-                let make = || Radau::<3, F>::new(&tolerances);
-                let method = self.solvers.take(mode, make);
+                let make = || Radau::<3, F>::new(&tolerances(problem, mode));
+                let method = self.solvers.take(self.here.mode, make);
                 self.integrate(kernel, method, progress)
             }
         }

@@ -204,7 +204,7 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
     }
 
     fn series(&self) -> Option<(&Series<F>, usize)> {
-        Some((self.series(), self.degree() - 1))
+        Some((self.series(), self.orders()))
     }
 
     fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {

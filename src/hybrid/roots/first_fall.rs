@@ -1,10 +1,13 @@
-//! The first simple fall of a polynomial, by certified steps: the common case, fast.
+//! The first simple fall of a polynomial: the common case, fast.
 //!
-//! Bounds of the curvature on the whole window make every step safe. From a place s with g(s) > 0
+//! The Bernstein coefficients have no sign change where there is no root, and one where there is one
+//! root (Descartes' rule): then a Newton iteration of third order leads to it.
+//!
+//! Where they have more, certified steps go on. Bounds of the curvature on the whole window make every step safe. From a place s with g(s) > 0
 //! the parabola with the least possible curvature bounds g from below, so that there is no root
 //! before its own. As far as the greatest possible curvature cannot turn a negative slope, g falls:
-//! the sign at the end of that piece decides, and a Newton iteration of third order leads to the
-//! only root in it. Whatever does not fit is left to the general search.
+//! the sign at the end of that piece decides, and the only root in it is found as before. Whatever
+//! does not fit is left to the general search.
 
 use super::bracket::{Point, close};
 use super::doubles::{above, below};
@@ -17,11 +20,14 @@ const MOST_STEPS: usize = 12;
 /// Steps to a root on a falling piece; the third order needs three from half a window away.
 const MOST_ITERATIONS: usize = 8;
 
-/// Value, slope and curvature of a polynomial.
+/// A relative step after which the iteration has ended, since it leaves the cube of its last step: the
+/// cube root of the unit roundoff.
+const LAST_STEP: f64 = 4.8e-6;
+
+/// A polynomial with its slope, and bounds of its curvature.
 struct Derivatives<const N: usize> {
     value: Polynomial<N>,
     slope: Polynomial<N>,
-    curvature: Polynomial<N>,
     /// Bounds of the curvature on [0, 1].
     least: f64,
     greatest: f64,
@@ -33,7 +39,7 @@ struct Derivatives<const N: usize> {
 impl<const N: usize> Derivatives<N> {
     fn new(polynomial: &Polynomial<N>) -> Self {
         let c = &polynomial.coefficients;
-        let (mut slope, mut curvature) = ([0.0; N], [0.0; N]);
+        let mut slope = [0.0; N];
         let (mut size, mut slope_size, mut curvature_size) = (c[0].abs(), 0.0, 0.0);
         let (mut least, mut greatest) = (0.0, 0.0);
         for k in 1..N {
@@ -43,7 +49,6 @@ impl<const N: usize> Derivatives<N> {
             slope_size += first.abs();
             if k >= 2 {
                 let second = (k - 1) as f64 * first;
-                curvature[k - 2] = second;
                 curvature_size += second.abs();
                 if k == 2 {
                     (least, greatest) = (second, second);
@@ -59,9 +64,6 @@ impl<const N: usize> Derivatives<N> {
             slope: Polynomial {
                 coefficients: slope,
             },
-            curvature: Polynomial {
-                coefficients: curvature,
-            },
             least: least - rounding * curvature_size,
             greatest: greatest + rounding * curvature_size,
             error: rounding * size,
@@ -73,6 +75,39 @@ impl<const N: usize> Derivatives<N> {
 /// The first event of an armed guard in `from` < s ≤ `to`, or that there is none; `None` where this
 /// search cannot tell.
 pub(super) fn first_fall<const N: usize>(
+    polynomial: &Polynomial<N>,
+    from: f64,
+    to: f64,
+) -> Option<Search> {
+    let bernstein = polynomial.bernstein();
+    let size: f64 = polynomial.coefficients.iter().map(|c| c.abs()).sum();
+    let margin = Polynomial::<N>::ROUNDING * size;
+    // The first coefficient that is not certainly positive, and whether all are negative from it on.
+    let falls = bernstein.iter().position(|b| !(*b > margin));
+    let Some(falls) = falls else {
+        return Some(Search::quiet(Watch::Armed));
+    };
+    if falls > 0 && bernstein[falls..].iter().all(|b| *b < -margin) {
+        let at_end = polynomial.value(to);
+        if at_end >= 0.0 {
+            return Some(Search::quiet(Watch::Armed));
+        }
+        // Where the polygon of the coefficients falls through zero.
+        let (before, after) = (bernstein[falls - 1], bernstein[falls]);
+        let place = (falls - 1) as f64 + before / (before - after);
+        let near = place / (N - 1) as f64;
+        let s = if from < near && near < to { near } else { from };
+        let (left, right) = ((from, polynomial.value(from)), (to, at_end));
+        return match left.1 > 0.0 {
+            true => root(polynomial, left, right, s),
+            false => None,
+        };
+    }
+    by_certified_steps(polynomial, from, to)
+}
+
+/// The same where more than one root is possible.
+fn by_certified_steps<const N: usize>(
     polynomial: &Polynomial<N>,
     from: f64,
     to: f64,
@@ -110,7 +145,7 @@ pub(super) fn first_fall<const N: usize>(
             let end = to.min(s + falls);
             let at_end = g.value.value(end);
             if at_end < 0.0 {
-                return root(&g, (s, value), (end, at_end));
+                return root(polynomial, (s, value), (end, at_end), s);
             }
             if end == to {
                 return Some(Search::quiet(Watch::Armed));
@@ -123,15 +158,25 @@ pub(super) fn first_fall<const N: usize>(
     None
 }
 
-/// The root between two places between which the polynomial falls.
-fn root<const N: usize>(g: &Derivatives<N>, left: Point, right: Point) -> Option<Search> {
+/// The only root between two places at which the polynomial has different signs, sought from `s` on.
+fn root<const N: usize>(
+    polynomial: &Polynomial<N>,
+    left: Point,
+    right: Point,
+    mut s: f64,
+) -> Option<Search> {
     let (mut l, mut r) = (left, right);
-    let (mut s, mut value) = left;
+    let mut value = polynomial.value(s);
     for _ in 0..MOST_ITERATIONS {
-        let (slope, curvature) = (g.slope.value(s), g.curvature.value(s));
+        if value < 0.0 {
+            r = (s, value)
+        } else {
+            l = (s, value)
+        }
+        let (slope, curvature) = polynomial.slope_and_curvature(s);
         let discriminant = slope * slope - 2.0 * curvature * value;
         // The root of the parabola at s that a falling piece leads to, or Newton's.
-        let step = match discriminant > 0.0 {
+        let step = match discriminant > 0.0 && slope < 0.0 {
             true => 2.0 * value / (discriminant.sqrt() - slope),
             false => -value / slope,
         };
@@ -140,19 +185,18 @@ fn root<const N: usize>(g: &Derivatives<N>, left: Point, right: Point) -> Option
             break;
         }
         let moved = (next - s).abs();
-        (s, value) = (next, g.value.value(next));
-        if value < 0.0 {
-            r = (s, value)
-        } else {
-            l = (s, value)
-        }
-        // The third order leaves the cube of the last step.
-        if moved <= f64::EPSILON.cbrt() * s {
+        (s, value) = (next, polynomial.value(next));
+        if moved <= LAST_STEP * s {
             break;
         }
     }
+    if value < 0.0 {
+        r = (s, value)
+    } else {
+        l = (s, value)
+    }
     // Rounding may have left one end of the bracket far away: look beside the other one first.
-    let mut own = |s: f64| g.value.value(s);
+    let mut own = |s: f64| polynomial.value(s);
     if value < 0.0 {
         let s = below(r.0);
         let value = own(s);

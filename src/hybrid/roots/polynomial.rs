@@ -14,18 +14,23 @@ pub struct Polynomial<const N: usize> {
 }
 
 impl<const N: usize> Polynomial<N> {
-    /// 1 / (N − 1 over k): from scaled powers to Bernstein coefficients.
-    const INVERSE_BINOMIALS: [f64; N] = {
-        let mut inverse = [1.0; N];
-        let mut binomial = 1.0;
-        let mut k = 1;
+    /// (j over k) / (N − 1 over k) in column k, row j: from powers to Bernstein coefficients.
+    const TO_BERNSTEIN: [[f64; N]; N] = {
+        let mut table = [[0.0; N]; N];
+        let mut k = 0;
+        // Exact: a product of a binomial coefficient and N − k is below 2⁵³ for N ≤ 50.
+        let mut last = 1.0;
         while k < N {
-            // Exact: a product of a binomial coefficient and N − k is below 2⁵³ for N ≤ 50.
-            binomial = binomial * (N - k) as f64 / k as f64;
-            inverse[k] = 1.0 / binomial;
+            let (mut j, mut binomial) = (k, 1.0);
+            while j < N {
+                table[k][j] = binomial / last;
+                j += 1;
+                binomial = binomial * j as f64 / (j - k) as f64;
+            }
             k += 1;
+            last = last * (N - k) as f64 / k as f64;
         }
-        inverse
+        table
     };
 
     /// Relative error of a sum of N terms whose factors carry as many roundings: γ ≈ 2Nu.
@@ -64,6 +69,20 @@ impl<const N: usize> Polynomial<N> {
             }
         }
         (sums[0] + s * sums[1]) + s2 * (sums[2] + s * sums[3])
+    }
+
+    /// First and second derivative at s.
+    #[inline]
+    pub(super) fn slope_and_curvature(&self, s: f64) -> (f64, f64) {
+        let (mut slope, mut curvature) = ([0.0; N], [0.0; N]);
+        for k in 1..N {
+            slope[k - 1] = k as f64 * self.coefficients[k];
+        }
+        for k in 1..N {
+            curvature[k - 1] = k as f64 * slope[k];
+        }
+        let derivatives = [slope, curvature].map(|coefficients| Self { coefficients }.sum(s));
+        (derivatives[0], derivatives[1])
     }
 
     /// The value where the polynomial is a multiple of s.
@@ -129,12 +148,11 @@ impl<const N: usize> Polynomial<N> {
         {
             return search;
         }
-        let bernstein = self.bernstein();
-        let margin = Self::ROUNDING * self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
-        if watch == Watch::Armed && bernstein.iter().all(|&b| b > margin)
-            || watch == Watch::Violated && bernstein.iter().all(|&b| b < -margin)
-        {
-            return Search::quiet(watch);
+        if watch == Watch::Violated {
+            let margin = Self::ROUNDING * self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
+            if self.bernstein().iter().all(|&b| b < -margin) {
+                return Search::quiet(watch);
+            }
         }
         let mut pieces = Monotone::new(self, from, to, noise);
         walk(&mut pieces, watch).expect("a polynomial has a value everywhere")
@@ -171,15 +189,11 @@ impl<const N: usize> Polynomial<N> {
     }
 
     /// Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
-    fn bernstein(&self) -> [f64; N] {
-        let mut b = self.coefficients;
-        for (b, inverse) in b.iter_mut().zip(Self::INVERSE_BINOMIALS) {
-            *b *= inverse;
-        }
-        // bⱼ = Σᵢ (j over i) aᵢ, summed by Pascal's triangle.
-        for level in 1..N {
-            for j in (level..N).rev() {
-                b[j] += b[j - 1];
+    pub(super) fn bernstein(&self) -> [f64; N] {
+        let mut b = [0.0; N];
+        for (coefficient, column) in self.coefficients.iter().zip(&Self::TO_BERNSTEIN) {
+            for (b, entry) in b.iter_mut().zip(column) {
+                *b += coefficient * entry;
             }
         }
         b

@@ -64,6 +64,7 @@ impl<const F: usize> Taylor<F> {
                 h: 0.0,
                 t_end: 0.0,
                 order,
+                known: order,
                 series: Series::zero(),
             },
             stepped: false,
@@ -206,10 +207,14 @@ impl<const F: usize> Taylor<F> {
         (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
         system.run(self.order, &inverse, series);
         self.counters.residual_evaluations += self.order as u64;
+        let a = &self.dense.series.a[..self.order];
         // What is not finite stays so in all higher orders.
-        let last = &self.dense.series.a[self.order - 1];
-        match last.iter().all(|x| x.is_finite()) {
-            true => Ok(()),
+        match a[self.order - 1].iter().all(|x| x.is_finite()) {
+            true => {
+                let last = a.iter().rposition(|a| a.iter().any(|x| *x != 0.0));
+                self.dense.order = last.map_or(1, |last| last + 1);
+                Ok(())
+            }
             false => Err(StepError::NonFinite {
                 t,
                 h: 0.0,
