@@ -1,4 +1,4 @@
-//! From generated C to one static library per model.
+//! From C to static libraries: one for each model, and one for the functions that all of them call.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,11 +12,38 @@ use super::parallel;
 /// Kind of the entries that hold libraries, in the package's own output folder.
 const KIND: &str = "libraries";
 
-/// Compiles what changed and tells cargo to link the library of every model.
+/// C that generated code and the crate call, relative to the project.
+const ELEMENTARY: &str = "codegen/elementary.c";
+
+/// What becomes a library.
+struct Library {
+    name: String,
+    /// Where its C comes from, relative to the project.
+    origin: String,
+    directory: PathBuf,
+    sources: Vec<PathBuf>,
+}
+
+/// Compiles what changed and tells cargo to link all libraries.
 ///
 /// A library is kept under the hash of its C files, the compiler and the flags, so that a model
 /// that generated the same C as before is not compiled again.
-pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
+pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(), Error> {
+    let of_model = |model: &Generated| Library {
+        name: model.name.clone(),
+        origin: model.folder.clone(),
+        directory: model.directory.clone(),
+        sources: model.sources.clone(),
+    };
+    let elementary = Library {
+        // No model has this name: a model's begins with a letter.
+        name: "_elementary".to_owned(),
+        origin: ELEMENTARY.to_owned(),
+        directory: project.join("codegen"),
+        sources: vec![project.join(ELEMENTARY)],
+    };
+    // What others call comes after them on the command line of a linker.
+    let all: Vec<_> = models.iter().map(of_model).chain([elementary]).collect();
     let build = compiler();
     let failed = |what: &str, problem: String| Error::Compiler {
         what: what.to_owned(),
@@ -25,23 +52,26 @@ pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
     let command = command(&build).map_err(|problem| failed("the models", problem))?;
     let command = Fingerprint::default().with(command);
     let libraries = Cache::at(out_dir);
-    let compiled = parallel::map(models, |model| {
+    let compiled = parallel::map(&all, |library| {
         let hash = command
             .clone()
-            .with_files(&model.directory, model.sources.iter().map(PathBuf::as_path))?
+            .with_files(
+                &library.directory,
+                library.sources.iter().map(PathBuf::as_path),
+            )?
             .finish();
-        let key = format!("{}-{hash}", model.name);
+        let key = format!("{}-{hash}", library.name);
         let folder = libraries.entry(KIND, &key, |folder| {
             build
                 .clone()
                 // Linked below, whether it was compiled now or before.
                 .cargo_metadata(false)
-                .files(&model.sources)
+                .files(&library.sources)
                 .out_dir(folder)
-                .try_compile(&library(model))
+                .try_compile(&library.file())
                 .map_err(|error| {
                     failed(
-                        &format!("the C code of {}", model.folder),
+                        &format!("the C code of {}", library.origin),
                         error.to_string(),
                     )
                 })
@@ -49,10 +79,10 @@ pub fn compile(models: &[Generated], out_dir: &Path) -> Result<(), Error> {
         Ok((key, folder))
     });
     let mut keys = Vec::new();
-    for (model, result) in models.iter().zip(compiled) {
+    for (library, result) in all.iter().zip(compiled) {
         let (key, folder) = result?;
         println!("cargo::rustc-link-search=native={}", folder.display());
-        println!("cargo::rustc-link-lib=static={}", library(model));
+        println!("cargo::rustc-link-lib=static={}", library.file());
         keys.push(key);
     }
     libraries.retain(KIND, &keys)
@@ -94,7 +124,9 @@ fn command(build: &cc::Build) -> Result<String, String> {
     Ok(format!("{:?}", tool.to_command()))
 }
 
-/// Name of a model's library.
-fn library(model: &Generated) -> String {
-    format!("dalembert_{}", model.name)
+impl Library {
+    /// Its name for the linker.
+    fn file(&self) -> String {
+        format!("dalembert_{}", self.name)
+    }
 }

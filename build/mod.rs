@@ -52,7 +52,7 @@ pub fn run() -> Result<(), Error> {
 
     let models = generate::discover(&project, with_tests)?;
     let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
-    compile::compile(&generated, &out_dir)?;
+    compile::compile(&project, &generated, &out_dir)?;
     registry::write(&generated, &out_dir.join("models.rs"))
 }
 

@@ -25,16 +25,21 @@ HEADER = """\
 #define DALEMBERT_UNROLL
 #endif
 struct dalembert_context { const double %s; };
+struct dalembert_sin_cos { double sin, cos; };
+struct dalembert_sin_cos dalembert_sin_cos(double);
 """ % ", ".join(f"*{name}" for name in CONTEXT_FIELDS)
 
 _BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
 _CALLS = {
     getattr(ca, "OP_" + name.upper()): name
-    for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "sinh",
+    for name in ("tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "sinh",
                  "cosh", "tanh", "asinh", "acosh", "atanh", "expm1", "log1p", "pow", "atan2", "hypot",
                  "erf")
 }
 _CALLS[ca.OP_CONSTPOW] = "pow"
+
+SIN_COS = {ca.OP_SIN: "sin", ca.OP_COS: "cos"}
+"""Members of a pair; see `sin_cos`."""
 
 
 def body(arguments, output):
@@ -51,7 +56,7 @@ def body(arguments, output):
     if missing:
         raise ValueError(f"expression depends on {', '.join(missing)}, which is not an argument")
     function = ca.Function("emit", symbols, [ca.cse(output)])
-    lines, work, operations, fresh = [], {}, 0, 0
+    lines, work, pairs, operations, fresh = [], {}, {}, 0, 0
     for k in range(function.n_instructions()):
         op = function.instruction_id(k)
         into, source = function.instruction_output(k), function.instruction_input(k)
@@ -63,6 +68,15 @@ def body(arguments, output):
             continue
         if op == ca.OP_INPUT:
             text = place[symbols[source[0]].element_hash()]
+        elif op in SIN_COS:
+            angle = work[source[0]]
+            if angle not in pairs:
+                pairs[angle] = f"t{fresh}"
+                lines.append(sin_cos(pairs[angle], angle))
+                fresh += 1
+            operations += 1
+            work[into[0]] = f"{pairs[angle]}.{SIN_COS[op]}"
+            continue
         else:
             text = operation(op, [work[i] for i in source])
             operations += 1
@@ -76,6 +90,11 @@ def literal(value):
     """A double as C text that reads back to the same bits."""
     return repr(float(value)) if value == value and abs(value) != float("inf") else (
         "NAN" if value != value else ("INFINITY" if value > 0 else "-INFINITY"))
+
+
+def sin_cos(name, angle):
+    """A line of C that computes sine and cosine, both at once: `elementary.c`."""
+    return f"  const struct dalembert_sin_cos {name} = dalembert_sin_cos({angle});"
 
 
 def operation(op, arguments):

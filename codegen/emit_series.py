@@ -19,7 +19,7 @@ Nodes that are constant in time are recognised: a constant times a series is one
 
 import casadi as ca
 
-from .emit_c import literal, operation, parenthesized
+from .emit_c import SIN_COS, literal, operation, parenthesized, sin_cos
 
 
 class NotAnalytic(Exception):
@@ -88,6 +88,8 @@ class Graph:
     def operation(self, op, arguments):
         """The node of an operation."""
         if all(a.constant for a in arguments):
+            if op in SIN_COS:
+                return _Node(f"{self._sin_cos(arguments[0].zeroth)}.{SIN_COS[op]}")
             return self.zeroth(operation(op, [a.zeroth for a in arguments]))
         rule = _RULES.get(op)
         if rule is None:
@@ -166,11 +168,21 @@ class Graph:
         """k x_k: the derivative's coefficient of order k − 1."""
         return f"order * {x.next}"
 
+    def _sin_cos(self, angle):
+        """Name of the pair of sine and cosine of order 0."""
+        name = self._name()
+        self.start.append(sin_cos(name, angle))
+        return name
+
     def _pair(self, x, names, sign, pick):
         """sin and cos, or sinh and cosh: each is the derivative of the other, but for a sign."""
         key = (names[0], x.zeroth)
         if key not in self.pairs:
-            s, c = (self._integral(f"{name}({x.zeroth})") for name in names)
+            if names[0] == "sin":
+                pair = self._sin_cos(x.zeroth)
+                s, c = (_Node(f"{pair}.{name}", self._name()) for name in names)
+            else:
+                s, c = (self._integral(f"{name}({x.zeroth})") for name in names)
             self._grows(s, x, c)
             self._grows(c, x, s, sign)
             self.pairs[key] = (s, c)

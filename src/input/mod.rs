@@ -130,18 +130,17 @@ impl Signals {
         let mut room = [0.0; Self::MOST_ORDERS];
         for c in &self.channels {
             let coefficients = &mut room[..orders];
-            c.function.series(t, Side::Right, coefficients);
+            let jet = c.function.series(t, Side::Right, coefficients);
             for (row, value) in rows.chunks_exact_mut(width).zip(&*coefficients) {
                 row[c.signal] = *value;
             }
             if c.kind == InputKind::Acceleration {
-                let jet = c.function.at(t, Side::Right);
                 rows[c.signal + 1] = jet.integral;
                 rows[c.signal + 2] = jet.double_integral;
                 for k in 1..orders {
                     for antiderivative in [c.signal + 1, c.signal + 2] {
                         rows[k * width + antiderivative] =
-                            rows[(k - 1) * width + antiderivative - 1] / k as f64;
+                            rows[(k - 1) * width + antiderivative - 1] * INVERSES[k];
                     }
                 }
             }
@@ -179,6 +178,17 @@ impl Signals {
         }
     }
 }
+
+/// 1/k; the first is not used. A few more than [`Signals::MOST_ORDERS`], as a sine looks ahead.
+const INVERSES: [f64; Signals::MOST_ORDERS + 3] = {
+    let mut inverses = [f64::INFINITY; Signals::MOST_ORDERS + 3];
+    let mut k = 1;
+    while k < inverses.len() {
+        inverses[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    inverses
+};
 
 #[cfg(test)]
 mod tests;

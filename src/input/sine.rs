@@ -1,6 +1,7 @@
 //! A sine that may start late and end early.
 
-use super::{Jet, Side};
+use super::{INVERSES, Jet, Side};
+use crate::kernel::sin_cos;
 
 /// A·sin(ω (t − start) + φ) for start ≤ t < end, and zero outside.
 ///
@@ -20,7 +21,7 @@ impl Sine {
     /// A sine that acts from t = 0 on. The amplitude is in the unit of the function, the angular
     /// frequency ω > 0 in rad/s, the phase φ in rad.
     pub fn new(amplitude: f64, angular_frequency: f64, phase: f64) -> Self {
-        let (sin_phase, cos_phase) = phase.sin_cos();
+        let (sin_phase, cos_phase) = sin_cos(phase);
         let (start, end) = (0.0, f64::INFINITY);
         Sine {
             amplitude,
@@ -50,7 +51,7 @@ impl Sine {
         };
         let (amplitude, omega) = (self.amplitude, self.angular_frequency);
         let y = omega * (t.clamp(self.start, self.end) - self.start);
-        let (sin, cos) = (0.5 * y).sin_cos();
+        let (sin, cos) = sin_cos(0.5 * y);
         let sin_shifted = sin * self.cos_phase + cos * self.sin_phase;
         let cos_shifted = cos * self.cos_phase - sin * self.sin_phase;
         let integral = amplitude / omega * 2.0 * sin_shifted * sin;
@@ -75,19 +76,18 @@ impl Sine {
         }
     }
 
-    /// Adds the Taylor coefficients about `t`, of which each is −ω²/(k (k − 1)) times the last but
-    /// one.
-    pub(super) fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
-        let Jet { rate, value, .. } = self.at(t, side);
-        let omega = self.angular_frequency;
-        let (mut even, mut odd) = (value, rate);
+    /// Adds the Taylor coefficients about the time of `jet`, which [`Sine::at`] gave; each is
+    /// −ω²/(k (k − 1)) times the last but one.
+    pub(super) fn add_series(&self, jet: &Jet, out: &mut [f64]) {
+        let factor = -(self.angular_frequency * self.angular_frequency);
+        let (mut even, mut odd) = (jet.value, jet.rate);
         for (k, pair) in out.chunks_mut(2).enumerate() {
-            let k = 2.0 * k as f64;
+            let inverse = |n: usize| INVERSES[2 * k + n];
             pair[0] += even;
-            even *= -(omega * omega) / ((k + 1.0) * (k + 2.0));
+            even *= factor * (inverse(1) * inverse(2));
             if let Some(out) = pair.get_mut(1) {
                 *out += odd;
-                odd *= -(omega * omega) / ((k + 2.0) * (k + 3.0));
+                odd *= factor * (inverse(2) * inverse(3));
             }
         }
     }

@@ -47,6 +47,10 @@ impl Fixture {
         };
         fixture.write("project/build.rs", "");
         fixture.write("project/codegen/__main__.py", include_str!("generator.py"));
+        fixture.write(
+            "project/codegen/elementary.c",
+            include_str!("../../codegen/elementary.c"),
+        );
         fixture.model("alpha", "1.0");
         fixture.model("beta", "2.0");
         fs::create_dir_all(fixture.path("wheels")).unwrap();

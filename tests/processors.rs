@@ -1,0 +1,103 @@
+//! Generated C gives the same bits whichever instructions the compiler may use.
+#![cfg(all(target_arch = "x86_64", unix))]
+
+use std::path::Path;
+use std::process::Command;
+
+/// Runs a command and returns what it printed.
+fn output(command: &mut Command) -> String {
+    let output = command.output().expect("the command can be started");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}\n{errors}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// Prints the bits of the Taylor series of the rocking block's motion, and of sines and cosines.
+const MAIN: &str = r#"
+#include <inttypes.h>
+#include <stdio.h>
+static void print(const char *what, const double *x, int n) {
+  for (int i = 0; i < n; ++i) {
+    uint64_t bits;
+    memcpy(&bits, x + i, sizeof bits);
+    printf("%s %d %016" PRIx64 "\n", what, i, bits);
+  }
+}
+int main(void) {
+  enum { ORDER = 24 };
+  for (int i = 0; i < 50; ++i) {
+    double q[32] = {0.17 - 0.003 * i}, v[32] = {0.3 + 0.01 * i}, a[32] = {0.0}, u[3 * 32], w[1024], out[2];
+    double p[8] = {0.25, 1.5, 1.0, 0.9, 9.81, 1.0, 1.0, 1.0}, c[256], d[1] = {1.0}, h[8] = {0.0};
+    for (int k = 0; k < 3 * 32; ++k) u[k] = 1.0 / (3.0 + k + i);
+    const struct dalembert_context x = {u, u, d, h, c, a};
+    dalembert_rocking_block_constants(p, p, p, &x, c);
+    dalembert_rocking_block_rocks_series_start(q, v, a, u, &x, w, out);
+    double inverse = 1.0 / out[0];
+    a[0] = v[1] = -inverse * out[1];
+    q[1] = v[0];
+    q[2] = 0.5 * a[0];
+    dalembert_rocking_block_rocks_series_run(ORDER, q, v, a, u, &x, w, &inverse);
+    print("q", q, ORDER + 2);
+    print("a", a, ORDER);
+  }
+  for (double x = 1e-4; x < 1e100; x *= 1.7) {
+    const struct dalembert_sin_cos y = dalembert_sin_cos(x);
+    print("sin", &y.sin, 1);
+    print("cos", &y.cos, 1);
+  }
+  return 0;
+}
+"#;
+
+#[test]
+fn the_bits_do_not_depend_on_the_instructions() {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().unwrap();
+    let mut generate = Command::new(env!("DALEMBERT_PYTHON_EXE"));
+    if !env!("DALEMBERT_PYTHON_PATH").is_empty() {
+        generate.env("PYTHONPATH", env!("DALEMBERT_PYTHON_PATH"));
+    }
+    generate
+        .current_dir(project)
+        .args(["-B", "-m", "codegen", "generate", "--model-dir"])
+        .arg("models/rocking_block")
+        .arg("--out")
+        .arg(folder.path());
+    output(&mut generate);
+    let elementary = project.join("codegen/elementary.c");
+    let model = folder.path().join("rocking_block/rocking_block.c");
+    let main = folder.path().join("main.c");
+    let text = format!("#include {elementary:?}\n#include {model:?}\n{MAIN}");
+    // Two definitions of one structure in one file are one too many.
+    let declared = "struct dalembert_sin_cos { double sin, cos; };\n";
+    let once = std::fs::read_to_string(&model)
+        .unwrap()
+        .replace(declared, "");
+    std::fs::write(&model, once).unwrap();
+    std::fs::write(&main, text).unwrap();
+
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let processors = [
+        ("x86-64", true),
+        ("x86-64-v3", is_x86_feature_detected!("avx2")),
+        ("x86-64-v4", is_x86_feature_detected!("avx512f")),
+    ];
+    let mut all = Vec::new();
+    for (name, _) in processors.iter().filter(|(_, present)| *present) {
+        for level in ["-O0", "-O3"] {
+            let program = folder.path().join(format!("{name}{level}"));
+            let mut compile = Command::new(&compiler);
+            // As in build/compile.rs.
+            compile
+                .args([level, "-ffp-contract=off", &format!("-march={name}"), "-o"])
+                .args([&program, &main])
+                .arg("-lm");
+            output(&mut compile);
+            all.push(output(&mut Command::new(program)));
+        }
+    }
+    assert!(all[0].lines().count() > 2000);
+    for other in &all[1..] {
+        assert!(all[0] == *other, "the bits differ");
+    }
+}
