@@ -307,13 +307,9 @@ impl<const F: usize> Taylor<F> {
     }
 
     /// Nodes of Gauss's quadrature over the last step; none after a restart.
-    ///
-    /// On a window of length h in a series of radius ρ the error of n nodes falls like
-    /// (h/4ρ)^(2n), that of the series like (h/ρ)^p: with n = p/4 + 2 nodes that of the quadrature is
-    /// the smaller one.
     pub fn nodes(&self) -> impl Iterator<Item = Node<F>> {
         let rule = match self.stepped {
-            true => quadrature::gauss(self.order / 4 + 2),
+            true => quadrature::gauss(quadrature::nodes(self.order)),
             false => &[],
         };
         let (t, h) = (self.start.t, self.end.t - self.start.t);
