@@ -134,7 +134,13 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     }
 
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
-        self.step(system, t_end, f64::INFINITY)
+        // The terms of the motion tell what the inputs do, unless nothing moves: guards on reactions
+        // then swing with the inputs alone.
+        let h_max = match F {
+            0 => system.resolution(self.state().t),
+            _ => f64::INFINITY,
+        };
+        self.step(system, t_end, h_max)
     }
 
     fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
