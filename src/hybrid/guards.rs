@@ -301,6 +301,7 @@ fn search_polynomial<const F: usize>(
         12..=15 => search_padded::<16>(coefficients, window, watch),
         16..=19 => search_padded::<20>(coefficients, window, watch),
         20..=23 => search_padded::<24>(coefficients, window, watch),
+        24..=27 => search_padded::<28>(coefficients, window, watch),
         _ => search_padded::<ORDERS>(coefficients, window, watch),
     };
     if let Some(crossing) = &mut search.crossing {

@@ -5,9 +5,9 @@ use super::series::ORDERS;
 /// What a step costs besides its series (search for events and the engine's loop), what an order
 /// costs for each coordinate, and what a product in a convolution costs, in ns: measured on the
 /// benchmark problems. Their ratios decide, and these hardly depend on the processor.
-const STEP: f64 = 150.0;
-const ORDER: f64 = 7.0;
-const PRODUCT: f64 = 0.5;
+const STEP: f64 = 120.0;
+const ORDER: f64 = 10.0;
+const PRODUCT: f64 = 0.6;
 
 /// Order at which a unit of time is cheapest for a relative tolerance ε.
 ///
