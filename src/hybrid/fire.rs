@@ -70,7 +70,11 @@ impl Simulation<'_> {
         let n = self.here.q.len();
         let from = self.here.mode;
         let states = self.problem.record.event_states;
-        let before = states.then(|| self.snapshot()).unwrap_or_default();
+        let before = if states {
+            self.snapshot()
+        } else {
+            Default::default()
+        };
         let energies_before = (self.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
         self.before[..n].copy_from_slice(&self.here.q);
@@ -91,7 +95,11 @@ impl Simulation<'_> {
         if let (Some(ledger), Some(jump)) = (&mut self.ledger, energy) {
             ledger.add_jump(jump);
         }
-        let after = states.then(|| self.snapshot()).unwrap_or_default();
+        let after = if states {
+            self.snapshot()
+        } else {
+            Default::default()
+        };
         self.events.push(Event {
             t: self.here.now.seconds(),
             j: self.here.j,

@@ -269,7 +269,8 @@ fn search_series<const F: usize>(
     let coefficients = &mut coefficients[..orders];
     let size = |of: &[f64]| of.iter().map(|c| c.abs()).sum::<f64>();
     let allowed = equations.tolerance * (orders * orders) as f64 * size(coefficients);
-    if !(size(&coefficients[orders - 2..]) <= allowed) {
+    let falls_off = size(&coefficients[orders - 2..]) <= allowed;
+    if !falls_off {
         return None;
     }
     // The guard's own value decides on which side of zero it starts.

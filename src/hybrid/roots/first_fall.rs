@@ -83,7 +83,7 @@ pub(super) fn first_fall<const N: usize>(
     let size: f64 = polynomial.coefficients.iter().map(|c| c.abs()).sum();
     let margin = Polynomial::<N>::ROUNDING * size;
     // The first coefficient that is not certainly positive, and whether all are negative from it on.
-    let falls = bernstein.iter().position(|b| !(*b > margin));
+    let falls = bernstein.iter().position(|b| b.is_nan() || *b <= margin);
     let Some(falls) = falls else {
         return Some(Search::quiet(Watch::Armed));
     };
