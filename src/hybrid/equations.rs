@@ -154,6 +154,10 @@ impl<'a, const F: usize> Equations<'a, F> {
 }
 
 impl<const F: usize> System<F> for Equations<'_, F> {
+    fn is_linear(&self) -> bool {
+        self.kernel.is_linear()
+    }
+
     fn resolution(&self, t: f64) -> f64 {
         let clock = &self.clock;
         clock.signals.resolution(clock.start.plus(t).seconds())
