@@ -24,6 +24,7 @@ mod dense;
 mod estimate;
 mod first_step;
 mod linear;
+mod logarithm;
 mod newton;
 mod one_step;
 mod radau;

@@ -17,6 +17,7 @@ pub use dense::TaylorDense;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;
+use super::logarithm::root;
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::tolerances::Tolerances;
@@ -271,9 +272,7 @@ impl<const F: usize> Taylor<F> {
     fn length(&self) -> f64 {
         self.last_terms()
             .iter()
-            .fold(f64::INFINITY, |h, &(power, size)| {
-                h.min(length::root(size, power))
-            })
+            .fold(f64::INFINITY, |h, &(power, size)| h.min(root(size, power)))
     }
 
     /// The largest of the last terms at τ = `h`, in units of the tolerance.
