@@ -9,7 +9,9 @@ use super::problem::{Method, Problem};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
-use crate::integrate::{Counters, Node, OneStep, Radau, Taylor, Tolerances};
+use crate::integrate::{
+    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances,
+};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use crate::record::Progress;
@@ -30,12 +32,26 @@ impl Simulation<'_> {
                 let method = self.solvers.take(self.here.mode, make);
                 self.integrate(kernel, method, progress)
             }
-            _ => {
-                let make = || Radau::<3, F>::new(&tolerances(problem, mode));
-                let method = self.solvers.take(self.here.mode, make);
-                self.integrate(kernel, method, progress)
-            }
+            _ => match std::env::var("S").as_deref() {
+                Ok("5") => self.by_radau::<5, F>(kernel, progress),
+                Ok("7") => self.by_radau::<7, F>(kernel, progress),
+                _ => self.by_radau::<3, F>(kernel, progress),
+            },
         }
+    }
+
+    fn by_radau<const S: usize, const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        progress: &mut dyn Progress,
+    ) -> Result<Stop, Reason>
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let (problem, mode) = (self.problem, self.mode());
+        let make = || Radau::<S, F>::new(&tolerances(problem, mode));
+        let method = self.solvers.take(self.here.mode, make);
+        self.integrate(kernel, method, progress)
     }
 
     fn integrate<const F: usize, M>(
