@@ -10,7 +10,7 @@ use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
 use crate::integrate::{
-    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances,
+    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances, stages,
 };
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
@@ -25,18 +25,20 @@ impl Simulation<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
         let (problem, mode) = (self.problem, self.mode());
-        match problem.method {
-            Method::Taylor if kernel.is_analytic() => {
+        let explicit = match problem.method {
+            Method::Taylor => true,
+            Method::Radau => false,
+            Method::Auto => !self.stiffness[self.here.mode].is_shown(),
+        };
+        match stages(problem.accuracy.relative) {
+            _ if explicit && kernel.is_analytic() => {
                 let convolutions = kernel.convolutions(&self.context);
                 let make = || Taylor::new(&tolerances(problem, mode), convolutions);
                 let method = self.solvers.take(self.here.mode, make);
                 self.integrate(kernel, method, progress)
             }
-            _ => match std::env::var("S").as_deref() {
-                Ok("5") => self.by_radau::<5, F>(kernel, progress),
-                Ok("7") => self.by_radau::<7, F>(kernel, progress),
-                _ => self.by_radau::<3, F>(kernel, progress),
-            },
+            5 => self.by_radau::<5, F>(kernel, progress),
+            _ => self.by_radau::<7, F>(kernel, progress),
         }
     }
 
@@ -248,6 +250,10 @@ impl Simulation<'_> {
                 return Ok(Stop::Event(guard));
             }
             self.signs.go_on();
+            let stiffness = &mut self.stiffness[self.here.mode];
+            if let Some(lag) = method.lag() {
+                stiffness.add(lag);
+            }
             if end.t >= until {
                 self.here.now = Instant::new(last);
                 return Ok(if last >= problem.end.time {
@@ -255,6 +261,9 @@ impl Simulation<'_> {
                 } else {
                     Stop::Breakpoint
                 });
+            }
+            if problem.method == Method::Auto && stiffness.is_shown() && method.lag().is_some() {
+                return Ok(Stop::Stiff);
             }
         }
     }
