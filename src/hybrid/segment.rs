@@ -28,7 +28,7 @@ impl Simulation<'_> {
         let explicit = match problem.method {
             Method::Taylor => true,
             Method::Radau => false,
-            Method::Auto => !self.stiffness[self.here.mode].is_shown(),
+            Method::Auto => !self.stiffness[self.here.mode].prefers_implicit(),
         };
         match stages(problem.accuracy.relative) {
             _ if explicit && kernel.is_analytic() => {
@@ -116,6 +116,9 @@ impl Simulation<'_> {
             true => 1,
             false => determinant_sign(&kernel.system(equations.context, &q, &v).mass),
         };
+        let chooses = problem.method == Method::Auto && kernel.is_analytic();
+        let stiffness = &mut self.stiffness[self.here.mode];
+        stiffness.begin();
         let mut ledger_from = 0.0;
         let relative = problem.accuracy.relative;
 
@@ -250,9 +253,11 @@ impl Simulation<'_> {
                 return Ok(Stop::Event(guard));
             }
             self.signs.go_on();
-            let stiffness = &mut self.stiffness[self.here.mode];
-            if let Some(lag) = method.lag() {
-                stiffness.add(lag);
+            let h = end.t - method.start().t;
+            match method.lag() {
+                _ if !chooses => {}
+                Some(lag) => stiffness.explicit_step(h, lag, || equations.decay_rate(at)),
+                None => stiffness.implicit_step(h),
             }
             if end.t >= until {
                 self.here.now = Instant::new(last);
@@ -262,8 +267,8 @@ impl Simulation<'_> {
                     Stop::Breakpoint
                 });
             }
-            if problem.method == Method::Auto && stiffness.is_shown() && method.lag().is_some() {
-                return Ok(Stop::Stiff);
+            if chooses && stiffness.prefers_implicit() != method.lag().is_none() {
+                return Ok(Stop::Method);
             }
         }
     }

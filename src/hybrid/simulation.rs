@@ -62,8 +62,8 @@ pub(super) enum Stop {
     End,
     /// An input is not smooth here.
     Breakpoint,
-    /// The mode has turned out to be stiff: another method goes on.
-    Stiff,
+    /// Another method is to go on.
+    Method,
     /// A guard, by its index in the mode, fell through zero.
     Event(usize),
     /// A guard that was zero at the segment's start leaves it downwards.
@@ -288,7 +288,7 @@ impl<'p> Simulation<'p> {
                     self.set_context();
                     return Ok(());
                 }
-                Stop::Breakpoint | Stop::Stiff => self.visited.clear(),
+                Stop::Breakpoint | Stop::Method => self.visited.clear(),
                 Stop::Event(guard) => {
                     self.visited.clear();
                     self.fire(guard)?;
