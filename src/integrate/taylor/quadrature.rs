@@ -1,6 +1,6 @@
 //! Gauss's quadrature on [0, 1].
 
-/// Nodes and weights of Gauss's rule with `n` points, 3 ≤ n ≤ 8: exact for polynomials of degree
+/// Nodes and weights of Gauss's rule with `n` points, 3 ≤ n ≤ 9: exact for polynomials of degree
 /// 2n − 1.
 ///
 /// # Panics
@@ -52,6 +52,17 @@ pub(super) fn gauss(n: usize) -> &'static [(f64, f64)] {
             (0.8983332387068134, 0.11119051722668724),
             (0.9801449282487681, 0.05061426814518813),
         ],
+        9 => &[
+            (0.1933142836497048, 0.13030534820146772),
+            (0.1933142836497048, 0.13030534820146772),
+            (0.1933142836497048, 0.13030534820146772),
+            (0.33787328829809554, 0.15617353852000143),
+            (0.5, 0.1651196775006299),
+            (0.6621267117019045, 0.15617353852000143),
+            (0.8066857163502952, 0.13030534820146772),
+            (0.9180155536633179, 0.0903240803474287),
+            (0.984080119753813, 0.040637194180787206),
+        ],
         _ => panic!("no rule with {n} points"),
     }
 }
@@ -62,7 +73,7 @@ mod tests {
 
     #[test]
     fn polynomials_are_integrated_exactly() {
-        for n in 3..=8 {
+        for n in 3..=9 {
             for degree in 0..2 * n as i32 {
                 let integral: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(degree)).sum();
                 let exact = 1.0 / f64::from(degree + 1);

@@ -57,7 +57,9 @@ fn smallest_scene_takes_every_default() {
                 reactions: true,
                 energies: true,
                 inputs: true
-            }
+            },
+            ledger: true,
+            event_states: true,
         }
     );
     let mut u = [f64::NAN; 3];
@@ -106,7 +108,9 @@ fn every_key_is_read() {
                 reactions: true,
                 energies: false,
                 inputs: true
-            }
+            },
+            ledger: true,
+            event_states: true,
         }
     );
 }
