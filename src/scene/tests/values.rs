@@ -109,7 +109,7 @@ fn every_key_is_read() {
                 energies: false,
                 inputs: true
             },
-            ledger: true,
+            ledger: false,
             event_states: true,
         }
     );
