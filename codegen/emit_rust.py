@@ -189,8 +189,10 @@ def _mode(variant, i, equations):
         series = functions[(what,)]
         yield f"{pad}        {what}: {_option(series.symbol and series, _series)},"
     yield f"{pad}        guards: {len(equations.guards)},"
-    constant = _mass_is_constant(model, equations, functions[("system",)])
-    yield f"{pad}        mass_is_constant: {_bool(constant)},"
+    mass = functions[("system",)].output[: free**2]
+    jacobian = functions[("jacobian",)].output
+    yield f"{pad}        mass_is_constant: {_bool(_is_constant(model, equations, mass))},"
+    yield f"{pad}        is_linear: {_bool(_is_constant(model, equations, jacobian))},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
     yield f"{pad}    }}),"
     counts = ", ".join(
@@ -223,11 +225,9 @@ def _shape(model, equations, expression):
             f"signals: {_bool(depends(ca.vertcat(*_signals(model))))} }}")
 
 
-def _mass_is_constant(model, equations, function):
-    """Whether the mass matrix, of which `function` gives the entries first, stays the same while the
-    mode lasts."""
-    mass = function.output[: len(equations.free) ** 2]
-    return not _present(ca.symvar(mass), *_moving(model, equations))
+def _is_constant(model, equations, entries):
+    """Whether entries of a matrix stay the same while the mode lasts."""
+    return not _present(ca.symvar(entries), equations.a, *_moving(model, equations))
 
 
 def linear_shape(model, equations, expression):

@@ -259,6 +259,7 @@ pub struct ModeKernel<const F: usize> {
     guard_series: Option<SeriesKernel>,
     guards: usize,
     mass_is_constant: bool,
+    is_linear: bool,
     held_rates: Raw,
 }
 
@@ -305,6 +306,11 @@ impl<const F: usize> ModeKernel<F> {
     /// Whether the mass matrix stays the same while the mode lasts.
     pub fn mass_is_constant(&self) -> bool {
         self.mass_is_constant
+    }
+
+    /// Whether the equations are linear: all of [`Self::jacobian`] stays the same while the mode lasts.
+    pub fn is_linear(&self) -> bool {
+        self.is_linear
     }
 
     /// Mass matrix and load at (q, v).

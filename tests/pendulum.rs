@@ -43,13 +43,13 @@ fn check(name: &str, last: f64, allowed_drift: f64) {
             error < allowed,
             "{name}, t = {t}: {error:e}, allowed {allowed:e}"
         );
-        let energy = run.energy.as_ref().unwrap();
-        let drift = energy.imbalance() / energy.initial;
+        let ledger = run.energy.as_ref().unwrap();
+        let drift = ledger.imbalance() / ledger.initial;
         assert!(
             drift.abs() < allowed_drift,
             "{name}, t = {t}: energy off by {drift:e}"
         );
-        assert!((energy.initial / number(&case["energy"]) - 1.0).abs() < 1e-15);
+        assert!((ledger.initial / number(&case["energy"]) - 1.0).abs() < 1e-15);
     }
 }
 

@@ -140,6 +140,23 @@ impl<'a, const F: usize> Equations<'a, F> {
         )
     }
 
+    /// A bound of the fastest decay at a point whose time the context is set for, 1/s: the norm of M⁻¹C,
+    /// rates measured by typical sizes. 0 where M is singular.
+    pub fn decay_rate(&self, at: Free<F>) -> f64 {
+        let mut jacobian = [SMatrix::zeros(); 3];
+        self.kernel.jacobian(self.context, at, &mut jacobian);
+        let [mass, damping, _] = jacobian;
+        let mut sums = SVector::<f64, F>::zeros();
+        for j in 0..F {
+            let column = damping.column(j).into_owned();
+            let Ok(column) = solve(&mass, &column, &self.scale) else {
+                return 0.0;
+            };
+            sums += column.abs() * self.scale[j];
+        }
+        (0..F).fold(0.0, |most, i| f64::max(most, sums[i] / self.scale[i]))
+    }
+
     /// Sets the time derivatives of the signals at local time `tau`, for jerks and guard rates.
     pub fn rates_at(&mut self, tau: f64) {
         let rates = &mut self.context.signal_rates;
@@ -154,6 +171,10 @@ impl<'a, const F: usize> Equations<'a, F> {
 }
 
 impl<const F: usize> System<F> for Equations<'_, F> {
+    fn is_linear(&self) -> bool {
+        self.kernel.is_linear()
+    }
+
     fn resolution(&self, t: f64) -> f64 {
         let clock = &self.clock;
         clock.signals.resolution(clock.start.plus(t).seconds())

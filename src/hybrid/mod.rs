@@ -24,6 +24,7 @@ mod segment;
 mod simulation;
 mod simulator;
 mod solvers;
+mod stiffness;
 mod visited;
 mod work;
 

@@ -47,8 +47,12 @@ pub struct Initial {
 /// A method of integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Radau IIA: implicit, for stiff and non-stiff equations.
+    /// Taylor where a mode is analytic and not stiff, else Radau. Which one is found out on the way:
+    /// see [`Method::Taylor`] and [`Method::Radau`].
     #[default]
+    Auto,
+    /// Radau IIA: implicit, for stiff and non-stiff equations, with 5 or 7 stages: see
+    /// [`crate::integrate::stages`].
     Radau,
     /// Taylor series of the motion: the fastest for equations that are not stiff. Modes whose
     /// equations cannot be expanded are left to Radau.

@@ -9,7 +9,9 @@ use super::problem::{Method, Problem};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
-use crate::integrate::{Counters, Node, OneStep, Radau, Taylor, Tolerances};
+use crate::integrate::{
+    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances, stages,
+};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use crate::record::Progress;
@@ -23,19 +25,35 @@ impl Simulation<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
         let (problem, mode) = (self.problem, self.mode());
-        match problem.method {
-            Method::Taylor if kernel.is_analytic() => {
+        let explicit = match problem.method {
+            Method::Taylor => true,
+            Method::Radau => false,
+            Method::Auto => !self.stiffness[self.here.mode].prefers_implicit(),
+        };
+        match stages(problem.accuracy.relative) {
+            _ if explicit && kernel.is_analytic() => {
                 let convolutions = kernel.convolutions(&self.context);
                 let make = || Taylor::new(&tolerances(problem, mode), convolutions);
                 let method = self.solvers.take(self.here.mode, make);
                 self.integrate(kernel, method, progress)
             }
-            _ => {
-                let make = || Radau::<3, F>::new(&tolerances(problem, mode));
-                let method = self.solvers.take(self.here.mode, make);
-                self.integrate(kernel, method, progress)
-            }
+            5 => self.by_radau::<5, F>(kernel, progress),
+            _ => self.by_radau::<7, F>(kernel, progress),
         }
+    }
+
+    fn by_radau<const S: usize, const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        progress: &mut dyn Progress,
+    ) -> Result<Stop, Reason>
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let (problem, mode) = (self.problem, self.mode());
+        let make = || Radau::<S, F>::new(&tolerances(problem, mode));
+        let method = self.solvers.take(self.here.mode, make);
+        self.integrate(kernel, method, progress)
     }
 
     fn integrate<const F: usize, M>(
@@ -98,6 +116,9 @@ impl Simulation<'_> {
             true => 1,
             false => determinant_sign(&kernel.system(equations.context, &q, &v).mass),
         };
+        let chooses = problem.method == Method::Auto && kernel.is_analytic();
+        let stiffness = &mut self.stiffness[self.here.mode];
+        stiffness.begin();
         let mut ledger_from = 0.0;
         let relative = problem.accuracy.relative;
 
@@ -232,6 +253,12 @@ impl Simulation<'_> {
                 return Ok(Stop::Event(guard));
             }
             self.signs.go_on();
+            let h = end.t - method.start().t;
+            match method.lag() {
+                _ if !chooses => {}
+                Some(lag) => stiffness.explicit_step(h, lag, || equations.decay_rate(at)),
+                None => stiffness.implicit_step(h),
+            }
             if end.t >= until {
                 self.here.now = Instant::new(last);
                 return Ok(if last >= problem.end.time {
@@ -239,6 +266,9 @@ impl Simulation<'_> {
                 } else {
                     Stop::Breakpoint
                 });
+            }
+            if chooses && stiffness.prefers_implicit() != method.lag().is_none() {
+                return Ok(Stop::Method);
             }
         }
     }

@@ -8,6 +8,7 @@ use super::ledger::RunningLedger;
 use super::plan::Plan;
 use super::problem::Problem;
 use super::solvers::Solvers;
+use super::stiffness::Stiffness;
 use super::visited::Visited;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
@@ -61,6 +62,8 @@ pub(super) enum Stop {
     End,
     /// An input is not smooth here.
     Breakpoint,
+    /// Another method is to go on.
+    Method,
     /// A guard, by its index in the mode, fell through zero.
     Event(usize),
     /// A guard that was zero at the segment's start leaves it downwards.
@@ -91,6 +94,8 @@ pub(super) struct Simulation<'p> {
     pub events: Vec<Event>,
     pub solver: Solver,
     pub solvers: Solvers,
+    /// What was seen of the stiffness of each mode.
+    pub stiffness: Box<[Stiffness]>,
     /// Name and order of every method that was used.
     pub methods: Vec<(&'static str, usize)>,
     /// Index of the next sample of the grid.
@@ -140,6 +145,7 @@ impl<'p> Simulation<'p> {
             events: Vec::new(),
             solver: Solver::default(),
             solvers: Solvers::default(),
+            stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
             methods: Vec::new(),
             next_sample: 0,
             counted: 0,
@@ -169,6 +175,7 @@ impl<'p> Simulation<'p> {
         if initial.mode.is_some() {
             self.apply_drift();
         }
+        self.stiffness.fill(Stiffness::default());
         self.accumulation.clear();
         self.visited.clear();
         self.recorder.clear();
@@ -281,7 +288,7 @@ impl<'p> Simulation<'p> {
                     self.set_context();
                     return Ok(());
                 }
-                Stop::Breakpoint => self.visited.clear(),
+                Stop::Breakpoint | Stop::Method => self.visited.clear(),
                 Stop::Event(guard) => {
                     self.visited.clear();
                     self.fire(guard)?;

@@ -15,6 +15,8 @@ pub struct Sine {
     end: f64,
     sin_phase: f64,
     cos_phase: f64,
+    /// Amplitudes of the antiderivatives, A/ω and A/ω².
+    of_integrals: [f64; 2],
 }
 
 impl Sine {
@@ -30,6 +32,10 @@ impl Sine {
             end,
             sin_phase,
             cos_phase,
+            of_integrals: [
+                amplitude / angular_frequency,
+                amplitude / (angular_frequency * angular_frequency),
+            ],
         }
     }
 
@@ -54,8 +60,9 @@ impl Sine {
         let (sin, cos) = sin_cos(0.5 * y);
         let sin_shifted = sin * self.cos_phase + cos * self.sin_phase;
         let cos_shifted = cos * self.cos_phase - sin * self.sin_phase;
-        let integral = amplitude / omega * 2.0 * sin_shifted * sin;
-        let double_integral = amplitude / (omega * omega)
+        let [first, second] = self.of_integrals;
+        let integral = first * 2.0 * sin_shifted * sin;
+        let double_integral = second
             * (self.cos_phase * less_its_sine(y, 2.0 * sin * cos)
                 + 2.0 * self.sin_phase * sin * sin);
         let (rate, value) = if acts {

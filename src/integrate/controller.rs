@@ -1,8 +1,8 @@
 //! Step sizes: the predictive controller of Gustafsson (1994) as in RADAU5 (Hairer & Wanner 1996,
 //! IV.8), with its constants.
 
+use super::logarithm::root;
 use super::report::StepError;
-use super::tolerances::{nth_root, power};
 
 /// Aim below the tolerance by this factor in h, so that few steps are rejected (RADAU5).
 const SAFETY: f64 = 0.9;
@@ -47,7 +47,7 @@ impl Controller {
     pub fn after_failure<const S: usize>(&self, failure: &StepError) -> f64 {
         match failure {
             StepError::Tolerance { error, .. } => {
-                (SAFETY / root::<S>(*error)).clamp(SHRINKAGE, SAFETY)
+                (SAFETY * root(*error, S + 1)).clamp(SHRINKAGE, SAFETY)
             }
             StepError::Newton { rate, .. } => (CONTRACTION / rate).clamp(SHRINKAGE, 0.5),
             _ => 0.5,
@@ -68,10 +68,11 @@ impl Controller {
             effort,
             rate,
         } = *pace;
-        let mut factor = SAFETY / (1.0 + effort) / root::<S>(error);
+        // The estimate is of order h^(S + 1).
+        let mut factor = SAFETY / (1.0 + effort) * root(error, S + 1);
         if let Some((last_h, last_error)) = self.last {
             // The error behaves as it did from the last step to this one.
-            let trend = SAFETY * (h / last_h) / root::<S>(error * error / last_error);
+            let trend = SAFETY * (h / last_h) * root(error * error / last_error, S + 1);
             factor = factor.min(trend);
         }
         self.last = Some((h, error.max(SMALLEST_ERROR)));
@@ -84,19 +85,5 @@ impl Controller {
         } else {
             h * factor
         }
-    }
-}
-
-/// error^(1/(S+1)): the estimate is of order h^(S+1). Errors so small that the step would grow by
-/// more than allowed need not be told apart.
-#[inline]
-fn root<const S: usize>(error: f64) -> f64 {
-    let error = error.max(power(SAFETY / GROWTH, S + 1));
-    match S {
-        1 => error.sqrt(),
-        3 => error.sqrt().sqrt(),
-        5 => nth_root(error.sqrt(), 3),
-        7 => error.sqrt().sqrt().sqrt(),
-        _ => nth_root(error, S + 1),
     }
 }

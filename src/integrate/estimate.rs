@@ -1,10 +1,11 @@
 //! Estimate of the local error: an embedded formula of order S, filtered so that stiff components
 //! do not count (Hairer & Wanner 1996, IV.8, eqs. 8.17–8.20), with q̇ = v eliminated.
 
+use super::logarithm::root;
 use super::newton::{Linearization, Newton, Stages};
 use super::state::State;
 use super::tableau::{Coefficients, RadauIia};
-use super::tolerances::{Weights, nth_root, power};
+use super::tolerances::{Weights, power};
 use nalgebra::SVector;
 
 /// Difference of the embedded formula and the step, in q and v.
@@ -105,7 +106,7 @@ impl<const F: usize> Estimate<F> {
         // For the controller, which takes the (S + 1)-th root: this one grows with h^2S where it is
         // small.
         norm.max(if error < 1.0 {
-            power(nth_root(error, 2 * S), S + 1)
+            power(root(error, 2 * S), S + 1).recip()
         } else {
             error
         })

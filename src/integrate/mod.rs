@@ -13,7 +13,8 @@
 //!
 //! Files: `tableau` (coefficients), `linear` (LU), `newton` (stage equations), `estimate` (local
 //! error), `controller` (step sizes), `first_step`, `dense`, `radau` (the step), `state`, `tolerances`,
-//! `system` (the interface to the equations), `report` (counters and errors).
+//! `stages` (how many are the fastest), `logarithm` (cheap roots), `system` (the interface to the
+//! equations), `report` (counters and errors).
 
 // Formulas over several indexed arrays read as in the literature when all of them are indexed.
 #![allow(clippy::needless_range_loop)]
@@ -24,10 +25,12 @@ mod dense;
 mod estimate;
 mod first_step;
 mod linear;
+mod logarithm;
 mod newton;
 mod one_step;
 mod radau;
 mod report;
+mod stages;
 mod state;
 mod system;
 mod tableau;
@@ -39,6 +42,7 @@ pub use linear::{Singular, solve};
 pub use one_step::{Motion, OneStep};
 pub use radau::Radau;
 pub use report::{Counters, StepError, StepReport};
+pub use stages::stages;
 pub use state::{Node, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};

@@ -158,8 +158,8 @@ where
         Ok(())
     }
 
-    /// Solves the stage equations of a step of length `h` from `start`, for which the matrices must be
-    /// factorized; `stages` holds starting values. Stops when the error is below `tolerance`, in
+    /// Solves the stage equations of a step of length `h` from `start` to time `t_end`, for which the
+    /// matrices must be factorized; `stages` holds starting values. Stops when the error is below `tolerance`, in
     /// the norm of `weights`, or after `limit` iterations.
     #[inline]
     #[allow(clippy::too_many_arguments)] // a step, and how well to solve it
@@ -167,7 +167,7 @@ where
         &mut self,
         system: &mut Y,
         start: &State<F>,
-        h: f64,
+        (h, t_end): (f64, f64),
         stages: &mut Stages<S, F>,
         weights: &Weights<F>,
         tolerance: f64,
@@ -189,7 +189,7 @@ where
 
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
         for iteration in 1..=limit {
-            let residual = stages.residual(system, start.t, h);
+            let residual = stages.residual(system, start.t, h, t_end);
             counters.residual_evaluations += S as u64;
             counters.newton_iterations += 1;
             let norm = self.correct(&residual, stages, &weight);
@@ -344,11 +344,21 @@ where
     }
 
     #[inline(always)]
-    fn residual<Y: System<F>>(&self, system: &mut Y, t0: f64, h: f64) -> [SVector<f64, F>; S] {
+    fn residual<Y: System<F>>(
+        &self,
+        system: &mut Y,
+        t0: f64,
+        h: f64,
+        t_end: f64,
+    ) -> [SVector<f64, F>; S] {
         let tableau = RadauIia::<S>::TABLEAU;
         let mut r = [SVector::zeros(); S];
         for i in 0..S {
-            let t = t0 + tableau.c[i] * h;
+            let t = if i == S - 1 {
+                t_end
+            } else {
+                t0 + tableau.c[i] * h
+            };
             system.residual(t, &self.q[i], &self.v[i], &self.a[i], &mut r[i]);
         }
         r

@@ -48,6 +48,12 @@ pub trait OneStep<const F: usize, Y> {
     /// tolerance alone.
     const EXACT_ACCELERATIONS: bool;
 
+    /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both: large
+    /// where stiffness holds an explicit method back. `None` for a method that it does not hold back.
+    fn lag(&self) -> Option<f64> {
+        None
+    }
+
     /// Work done since it was last asked for.
     fn take_counters(&mut self) -> Counters;
 }
@@ -124,6 +130,10 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     type Motion = TaylorDense<F>;
 
     const EXACT_ACCELERATIONS: bool = false;
+
+    fn lag(&self) -> Option<f64> {
+        Some(self.lag())
+    }
 
     fn name(&self) -> (&'static str, usize) {
         ("Taylor", self.order())

@@ -227,10 +227,13 @@ where
         let mut discarded = 0;
         loop {
             h = fit(h, remaining, h_max);
-            match self.trial(system, &origin, h, &weights) {
+            let end = match h == remaining {
+                true => (t_end, 0.0),
+                false => add(origin.t, h, self.lost.t),
+            };
+            match self.trial(system, &origin, (h, end.0), &weights) {
                 Ok(Trial { error, iterations }) => {
-                    let t = (h == remaining).then_some(t_end);
-                    self.accept(&origin, self.lost, h, t);
+                    self.accept(&origin, self.lost, h, end);
                     let rate = if iterations > 1 {
                         self.newton.rate
                     } else {
@@ -262,17 +265,18 @@ where
         }
     }
 
-    /// One attempt of length `h` with its error estimate; an error above the tolerance is a failure.
+    /// One attempt of length `h` to time `t_end` with its error estimate; an error above the tolerance is a failure.
     #[inline]
     fn trial<Y: System<F>>(
         &mut self,
         system: &mut Y,
         origin: &State<F>,
-        h: f64,
+        (h, t_end): (f64, f64),
         weights: &Weights<F>,
     ) -> Result<Trial, StepError> {
         let t = origin.t;
-        let iterations = self.attempt(system, origin, h, weights, Newton::<S, F>::LIMIT)?;
+        let limit = Newton::<S, F>::LIMIT;
+        let iterations = self.attempt(system, origin, (h, t_end), weights, limit)?;
         let raw = Estimate::raw(h, origin, &self.stages);
         let filtered = raw.filtered(h, &self.newton);
         let error = filtered.method_error(&raw, h, &self.newton, weights, self.control.loosening);
@@ -331,13 +335,15 @@ where
         assert!(h > 0.0, "h = {h} is not positive");
         let origin = self.start;
         let weights = self.control.weights(&origin.q, &origin.v);
-        let mut solved = self.attempt(system, &origin, h, &weights, Newton::<S, F>::PATIENCE);
+        let end = add(origin.t, h, self.lost_at_start.t);
+        let (step, limit) = ((h, end.0), Newton::<S, F>::PATIENCE);
+        let mut solved = self.attempt(system, &origin, step, &weights, limit);
         if solved.is_err() && !system.is_linear() {
             self.linearize(system, &origin);
-            solved = self.attempt(system, &origin, h, &weights, Newton::<S, F>::PATIENCE);
+            solved = self.attempt(system, &origin, step, &weights, limit);
         }
         let iterations = solved?;
-        self.accept(&origin, self.lost_at_start, h, None);
+        self.accept(&origin, self.lost_at_start, h, end);
         self.counters.retaken += 1;
         Ok(self.report(f64::NAN, iterations, 0))
     }
@@ -349,14 +355,14 @@ where
         self.linearization = Some(Linearized::Now);
     }
 
-    /// Solves the stage equations of a step of length `h` in at most `limit` iterations; gives their
-    /// number.
+    /// Solves the stage equations of a step of length `h` to time `t_end` in at most `limit`
+    /// iterations; gives their number.
     #[inline]
     fn attempt<Y: System<F>>(
         &mut self,
         system: &mut Y,
         origin: &State<F>,
-        h: f64,
+        (h, t_end): (f64, f64),
         weights: &Weights<F>,
         limit: u32,
     ) -> Result<u32, StepError> {
@@ -404,7 +410,14 @@ where
         } = self;
         let tolerance = control.newton;
         match newton.solve(
-            system, origin, h, stages, weights, tolerance, limit, counters,
+            system,
+            origin,
+            (h, t_end),
+            stages,
+            weights,
+            tolerance,
+            limit,
+            counters,
         ) {
             Outcome::Converged { iterations } => Ok(iterations),
             Outcome::Slow { rate } => Err(StepError::Newton { t, h, rate }),
@@ -416,18 +429,15 @@ where
         }
     }
 
-    /// Makes the solved stages the step from `origin`; it ends at `t` if that is given.
+    /// Makes the solved stages the step from `origin`, which ends at `t`, rounded by `t_lost`.
     #[inline]
-    fn accept(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, t: Option<f64>) {
+    fn accept(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, (t, t_lost): (f64, f64)) {
         let mut end = State {
             a: self.stages.a[S - 1],
             ..*origin
         };
         let mut now_lost = Lost::nothing();
-        match t {
-            Some(t) => end.t = t,
-            None => (end.t, now_lost.t) = add(origin.t, h, lost.t),
-        }
+        (end.t, now_lost.t) = (t, t_lost);
         for l in 0..F {
             (end.q[l], now_lost.q[l]) = add(origin.q[l], self.stages.q_change[l], lost.q[l]);
             (end.v[l], now_lost.v[l]) = add(origin.v[l], self.stages.v_change[l], lost.v[l]);

@@ -11,8 +11,11 @@ use crate::model::{Coordinate, Input, Model, Variant};
 pub(crate) const DEFAULT_RELATIVE: f64 = 1e-8;
 
 /// The methods of integration by name, the default first.
-pub(crate) const METHODS: [(&str, Method); 2] =
-    [("radau", Method::Radau), ("taylor", Method::Taylor)];
+pub(crate) const METHODS: [(&str, Method); 3] = [
+    ("auto", Method::Auto),
+    ("radau", Method::Radau),
+    ("taylor", Method::Taylor),
+];
 
 /// The shape of a scene of a model; of any model, with less detail, for `None`.
 pub(crate) fn scene(model: Option<&Model>) -> Object {
@@ -51,7 +54,7 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
         Key::new(
             "method",
             "method of integration: `radau` for all equations; `taylor`, the faster one, for equations \
-             that are not stiff",
+             that are not stiff; `auto` starts with `taylor` and goes over to `radau` where that is faster",
             Shape::Choice("method", METHODS.map(|(name, _)| name).to_vec()),
         ),
         Key::new("record", "what is written", record()),

@@ -17,10 +17,35 @@ pub use dense::TaylorDense;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;
+use super::logarithm::root;
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
-use super::tolerances::Tolerances;
+use super::tableau::{Coefficients, RadauIia};
+use super::tolerances::{Control, Tolerances};
 use nalgebra::{SMatrix, SVector};
+
+/// Error estimate of Radau IIA: that of a velocity with the term c·τ^`power` is `error`·c·h^`power`, in
+/// units of the tolerance.
+#[derive(Debug, Clone, Copy)]
+struct Implicit {
+    power: usize,
+    error: f64,
+}
+
+impl Implicit {
+    fn new<const S: usize, const F: usize>(tolerances: &Tolerances<F>) -> Self
+    where
+        RadauIia<S>: Coefficients<S>,
+    {
+        let power = S + 1;
+        let factorial: f64 = (1..=power).map(|k| k as f64).product();
+        let loosening = Control::new::<S>(tolerances).loosening;
+        Implicit {
+            power,
+            error: RadauIia::<S>::TABLEAU.error_constant * factorial / loosening,
+        }
+    }
+}
 
 /// The Taylor method for an [`Analytic`] system of `F` coordinates. It is used as
 /// [`super::Radau`] is.
@@ -37,6 +62,9 @@ pub struct Taylor<const F: usize> {
     stepped: bool,
     /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
     inverse: Option<SMatrix<f64, F, F>>,
+    implicit: Implicit,
+    /// See [`super::OneStep::lag`].
+    lag: f64,
     counters: Counters,
 }
 
@@ -51,8 +79,14 @@ impl<const F: usize> Taylor<F> {
             v: zero,
             a: zero,
         };
-        let order = length::order(tolerances.relative(), convolutions, F);
+        let relative = tolerances.relative();
+        let order = length::order(relative, convolutions, F);
         Taylor {
+            implicit: match super::stages(relative) {
+                5 => Implicit::new::<5, F>(tolerances),
+                _ => Implicit::new::<7, F>(tolerances),
+            },
+            lag: 0.0,
             tolerances: *tolerances,
             order,
             start: origin,
@@ -144,7 +178,14 @@ impl<const F: usize> Taylor<F> {
         self.expand(system, &origin)?;
         let remaining = (t_end - origin.t) - self.lost.t;
         let horizon = system.horizon(origin.t) - origin.t;
-        let h = fit(self.length(), remaining, h_max.min(horizon));
+        let length = self.length();
+        let implicit = self.implicit_length().min(system.resolution(origin.t));
+        self.lag = if length.is_finite() {
+            implicit / length
+        } else {
+            0.0
+        };
+        let h = fit(length, remaining, h_max.min(horizon));
         if origin.t + h == origin.t {
             return Err(StepError::Tolerance {
                 t: origin.t,
@@ -271,9 +312,25 @@ impl<const F: usize> Taylor<F> {
     fn length(&self) -> f64 {
         self.last_terms()
             .iter()
-            .fold(f64::INFINITY, |h, &(power, size)| {
-                h.min(length::root(size, power))
-            })
+            .fold(f64::INFINITY, |h, &(power, size)| h.min(root(size, power)))
+    }
+
+    /// The length of a step of Radau IIA, as the term of its error estimate allows.
+    fn implicit_length(&self) -> f64 {
+        let Series { v, .. } = &self.dense.series;
+        let Implicit { power, error } = self.implicit;
+        let mut size = 0.0_f64;
+        for i in 0..F {
+            let relative = self.tolerances.relative();
+            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
+            size = size.max(v[power][i].abs() * of_v);
+        }
+        root(size * error, power)
+    }
+
+    /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
+    pub fn lag(&self) -> f64 {
+        self.lag
     }
 
     /// The largest of the last terms at τ = `h`, in units of the tolerance.

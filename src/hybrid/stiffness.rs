@@ -1,0 +1,150 @@
+//! Which method is the faster one in a mode: the explicit one, unless stiffness holds it back.
+//!
+//! An explicit method is stiff where its steps follow a rate that the motion no longer shows. Two
+//! signs of that start a trial of the implicit method, and the lengths of its steps decide.
+
+/// Cost of a step of Radau IIA in steps of the Taylor method, as measured on the benchmark problems:
+/// 1.3 (linear equations) to 3 (the walking tank).
+const COST: f64 = 2.0;
+
+/// Steps that may be lost before a trial: fewer than a stiff segment loses.
+const PATIENCE: f64 = 8.0;
+
+/// Time constants of the fastest decay after which nothing of it is left that matters: e⁻²⁴ = 4e-11.
+const DECAYED: f64 = 24.0;
+
+/// Steps of a trial: enough for steps that may grow eightfold each time from a transient's to those
+/// of the motion behind it.
+const TRIAL: u32 = 16;
+
+/// Steps of a segment between two looks at the rate of its fastest decay.
+const LOOK: u32 = 8;
+
+/// What was found out about a mode so far, and the signs of stiffness in the present segment.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Stiffness {
+    verdict: Verdict,
+    /// Steps that the explicit method has lost by its shorter lengths.
+    lost: f64,
+    /// Fastest decay, 1/s; 0 before the first look.
+    rate: f64,
+    /// Time constants of it that have passed in a row of steps that are longer than it.
+    decayed: f64,
+    /// Steps of the explicit method.
+    steps: u32,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+enum Verdict {
+    /// The explicit method, as long as nothing speaks against it.
+    #[default]
+    Open,
+    /// The implicit method, on trial for some steps that are left; it is the faster one with steps
+    /// longer than `length`.
+    Trial { length: f64, left: u32 },
+    /// The explicit method.
+    NotStiff,
+    /// The implicit method.
+    Stiff,
+}
+
+impl Stiffness {
+    /// A segment begins, with new transients.
+    pub fn begin(&mut self) {
+        *self = Stiffness {
+            verdict: self.verdict,
+            ..Stiffness::default()
+        };
+    }
+
+    /// Whether the implicit method is to go on.
+    pub fn prefers_implicit(&self) -> bool {
+        matches!(self.verdict, Verdict::Stiff | Verdict::Trial { .. })
+    }
+
+    /// Takes note of a step of the explicit method of length `h`, for which the implicit one might make
+    /// a step `lag` times as long; `rate` is that of the fastest decay, 1/s.
+    pub fn explicit_step(&mut self, h: f64, lag: f64, rate: impl FnOnce() -> f64) {
+        if self.verdict != Verdict::Open {
+            return;
+        }
+        self.steps += 1;
+        if self.steps % LOOK == LOOK / 2 {
+            self.rate = rate();
+        }
+        self.lost = (self.lost + 1.0 - COST / lag).max(0.0);
+        self.decayed = match self.rate * h >= 1.0 {
+            true => self.decayed + self.rate * h,
+            false => 0.0,
+        };
+        if self.lost >= PATIENCE || self.decayed >= DECAYED {
+            let (length, left) = (COST * h, TRIAL);
+            self.verdict = Verdict::Trial { length, left };
+        }
+    }
+
+    /// Takes note of a step of the implicit method of length `h`.
+    pub fn implicit_step(&mut self, h: f64) {
+        self.verdict = match self.verdict {
+            Verdict::Trial { length, .. } if h > length => Verdict::Stiff,
+            Verdict::Trial { left: 0, .. } => Verdict::NotStiff,
+            Verdict::Trial { length, left } => Verdict::Trial {
+                length,
+                left: left - 1,
+            },
+            verdict => verdict,
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn explicit(stiffness: &mut Stiffness, steps: u32, lag: f64, rate: f64) {
+        (0..steps).for_each(|_| stiffness.explicit_step(1.0, lag, || rate));
+    }
+
+    #[test]
+    fn a_few_short_steps_are_no_stiffness_and_a_row_of_them_is() {
+        let mut stiffness = Stiffness::default();
+        for _ in 0..100 {
+            explicit(&mut stiffness, 5, 20.0, 0.0);
+            explicit(&mut stiffness, 5, 0.5, 0.0);
+        }
+        assert!(!stiffness.prefers_implicit());
+        explicit(&mut stiffness, 10, 20.0, 0.0);
+        assert!(stiffness.prefers_implicit());
+    }
+
+    #[test]
+    fn steps_of_the_length_of_a_decay_that_is_over_are_stiffness() {
+        let mut stiffness = Stiffness::default();
+        explicit(&mut stiffness, 1000, 0.5, 0.9);
+        assert!(!stiffness.prefers_implicit());
+        for _ in 0..100 {
+            stiffness.begin();
+            explicit(&mut stiffness, 8, 0.5, 4.0);
+        }
+        assert!(!stiffness.prefers_implicit());
+        stiffness.begin();
+        explicit(&mut stiffness, 9, 0.5, 4.0);
+        assert!(stiffness.prefers_implicit());
+    }
+
+    #[test]
+    fn the_lengths_of_implicit_steps_decide() {
+        let mut tried = Stiffness::default();
+        explicit(&mut tried, 10, 20.0, 0.0);
+        let mut stiff = tried;
+        (0..10).for_each(|_| stiff.implicit_step(1.0));
+        stiff.implicit_step(2.5);
+        (0..100).for_each(|_| stiff.implicit_step(0.1));
+        assert!(stiff.prefers_implicit());
+        let mut not = tried;
+        (0..17).for_each(|_| not.implicit_step(1.9));
+        assert!(!not.prefers_implicit());
+        explicit(&mut not, 100, 20.0, 0.0);
+        assert!(!not.prefers_implicit());
+    }
+}

@@ -1,0 +1,93 @@
+//! The choice of the method: explicit where that is faster, implicit where a mode is stiff.
+
+mod common;
+use common::*;
+use dalembert::hybrid::{Method, Problem};
+use dalembert::input::{Function, Sine};
+use std::f64::consts::PI;
+
+/// The names of the methods that `auto` used, after a check of its result against each fixed method.
+fn chosen(problem: &Problem, allowed: f64) -> String {
+    let mut problem = problem.clone();
+    problem.method = Method::Auto;
+    let auto = run(&problem);
+    for method in [Method::Radau, Method::Taylor] {
+        problem.method = method;
+        let other = run(&problem);
+        assert_eq!(transitions(&auto), transitions(&other), "{method:?}");
+        let accuracy = &problem.accuracy;
+        let ends = [&auto.end.state, &other.end.state];
+        for i in 0..accuracy.q_absolute.len() {
+            let q = (ends[0].q[i] - ends[1].q[i]).abs() / accuracy.q_absolute[i];
+            let v = (ends[0].v[i] - ends[1].v[i]).abs() / accuracy.v_absolute[i];
+            assert!(
+                q.max(v) < allowed,
+                "{method:?}, {i}: {q:.1} and {v:.1} tolerances"
+            );
+        }
+    }
+    auto.solver.method
+}
+
+/// An oscillator that slips on shaken ground; `factor` stiffens spring and damper.
+fn sliding_oscillator(factor: f64, relative: f64) -> Problem {
+    let parameters = [("k", 1.05e6 * factor), ("c", 642.0 * factor)];
+    let mut problem = problem("sliding_oscillator", &parameters);
+    let sine = Sine::new(20.0, 2.0 * PI * 7.0, 0.0);
+    problem
+        .set_input("ground_acceleration", Function::from(sine))
+        .unwrap();
+    problem.set_tolerance(relative);
+    let d = problem.model.coordinate("d").unwrap();
+    problem.accuracy.q_absolute[d] /= factor;
+    problem.accuracy.v_absolute[d] /= factor;
+    problem.end.time = 0.3;
+    problem
+}
+
+#[test]
+fn an_oscillation_that_is_resolved_is_left_to_the_explicit_method() {
+    for relative in [1e-3, 1e-6, 1e-10] {
+        let method = chosen(&sliding_oscillator(1.0, relative), 100.0);
+        assert!(!method.contains("Radau"), "{relative:e}: {method}");
+    }
+}
+
+#[test]
+fn a_fast_decay_that_is_over_calls_for_the_implicit_method() {
+    for relative in [1e-3, 1e-6, 1e-10] {
+        let method = chosen(&sliding_oscillator(1e4, relative), 100.0);
+        assert!(method.contains("Radau"), "{relative:e}: {method}");
+    }
+}
+
+#[test]
+fn a_rocking_block_is_not_stiff() {
+    let mut problem = problem("rocking_block", &[("alpha", 0.25), ("R", 1.5)]);
+    problem.set_initial("theta", 0.15).unwrap();
+    problem.end.time = 3.0;
+    let method = chosen(&problem, 100.0);
+    assert!(!method.contains("Radau"), "{method}");
+}
+
+#[test]
+fn a_damped_stiff_spring_calls_for_the_implicit_method() {
+    for k in [1e8_f64, 1e10, 1e12] {
+        let c = 3.0 * (0.1 * k).sqrt();
+        let mut problem = problem("stiff_block", &[("k", k), ("c", c)]);
+        problem.set_initial("x.rate", 2.0).unwrap();
+        let r = problem.model.coordinate("r").unwrap();
+        problem.accuracy.q_absolute[r] = 1e-8 * 3.0 / k;
+        problem.end.time = 0.7;
+        problem.method = Method::Auto;
+        let run = run(&problem);
+        assert_eq!(transitions(&run), ["stick"]);
+        assert!(
+            run.solver.method.contains("Radau"),
+            "{k:e}: {}",
+            run.solver.method
+        );
+        // Without stiffness it takes a few steps; the explicit method would take thousands.
+        assert!(run.solver.steps < 200, "{k:e}: {} steps", run.solver.steps);
+    }
+}
