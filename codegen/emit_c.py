@@ -30,6 +30,8 @@ struct dalembert_sin_cos dalembert_sin_cos(double);
 """ % ", ".join(f"*{name}" for name in CONTEXT_FIELDS)
 
 _BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
+# Functions of the C library, whose last bits may differ between systems; sine and cosine are not
+# among them (see `sin_cos`), and sqrt and fabs are exact by IEEE 754.
 _CALLS = {
     getattr(ca, "OP_" + name.upper()): name
     for name in ("tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "sinh",
