@@ -109,8 +109,7 @@ template <class P> void radau5(double tolerance) {
     // The first step after an event as the code's documentation advises for stiff equations.
     const double first = std::string_view(P::NAME) == "P4S" ? 1e-7 : 1e-4;
     double absolute[P::N], relative[P::N], y[P::N], work[400], unused = 0;
-    int integers[64], n = P::N, vectors = 1, given = 1, full = P::N, none = 0, output = 1, size = 400, integer_size = 64, unused_int = 0, flag = 0;
-    for (int i = 0; i < P::N; ++i) { absolute[i] = tolerance * P::SCALES[i]; relative[i] = tolerance; }
+    int integers[64], n = P::N, vectors = 1, given = 1, output = 1, size = 400, integer_size = 64, unused_int = 0, flag = 0;
     G::rhs = G::jacobians = G::steps = 0;
     G::problem.start(y);
     for (;;) {
@@ -118,8 +117,11 @@ template <class P> void radau5(double tolerance) {
       std::fill(integers, integers + 20, 0);
       integers[1] = STEPS;
       G::found = false;
+      // The code writes to its tolerances and bandwidths.
+      for (int i = 0; i < P::N; ++i) { absolute[i] = tolerance * P::SCALES[i]; relative[i] = tolerance; }
+      int lower = P::N, upper = 0, no_mass = 0, mass_lower = P::N, mass_upper = 0;
       double end = P::END, step = first;
-      radau5_(&n, G::radau_f, &run.time, y, &end, &step, relative, absolute, &vectors, G::radau_j, &given, &full, &none, G::mass, &none, &full, &none, G::after_step, &output, work, &size,
+      radau5_(&n, G::radau_f, &run.time, y, &end, &step, relative, absolute, &vectors, G::radau_j, &given, &lower, &upper, G::mass, &no_mass, &mass_lower, &mass_upper, G::after_step, &output, work, &size,
               integers, &integer_size, &unused, &unused_int, &flag);
       if (flag < 0) run.status = flag;
       if (flag < 0 || !G::found) break;
