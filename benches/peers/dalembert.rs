@@ -46,8 +46,8 @@ fn measure(name: &str, method: Method, tolerance: f64) {
         let start = Instant::now();
         failed = simulator.run(&mut Silent).is_err();
         times.push(start.elapsed().as_secs_f64());
-        // A run of seconds is long enough to need no repeats.
-        if times[0] > 2.0 {
+        // A long run needs no repeats.
+        if times[0] > 0.2 {
             break;
         }
     }
