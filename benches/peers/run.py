@@ -8,7 +8,6 @@ import argparse
 import csv
 import json
 import math
-import os
 import pathlib
 import subprocess
 import sys
@@ -152,17 +151,12 @@ class Peers:
         self.venv()
         return [self.python, "-B", HERE / "heyoka_rows.py"]
 
-    def rust(self):
-        target = self.scratch / "rust"
-        call(["cargo", "build", "--release", "--manifest-path", HERE / "rust" / "Cargo.toml", "--target-dir", target], env={**os.environ, "RUSTFLAGS": "-C target-cpu=native"})
-        return [target / "release" / "peers"]
-
     def dalembert(self):
         call(["cargo", "bench", "--no-run", "--bench", "peers"], cwd=ROOT)
         return ["cargo", "bench", "--quiet", "--bench", "peers", "--"]
 
 
-RUNNABLE = ["sundials", "fortran", "heyoka", "rust", "dalembert"]
+RUNNABLE = ["sundials", "fortran", "heyoka", "dalembert"]
 
 
 def main():
