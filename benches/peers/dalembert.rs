@@ -1,0 +1,171 @@
+//! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`.
+//!
+//! One row a problem, method and tolerance, in the format of `benches/peers/README.md`. Preparation
+//! is outside the timed part, as it is for the peers; events are recorded with their times only.
+
+use dalembert::hybrid::{End, Method, Problem, Simulator};
+use dalembert::input::{Function, Sine};
+use dalembert::kernel::MODELS;
+use dalembert::record::Silent;
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+const PROBLEMS: [&str; 6] = ["P1", "P2", "P3b", "P4", "P4S", "P5"];
+const METHODS: [Method; 2] = [Method::Taylor, Method::Radau];
+
+/// Repeats end when both are reached: minima of fewer scatter by more than a few percent.
+const REPEATS: usize = 20;
+const BUDGET: Duration = Duration::from_millis(100);
+
+fn main() {
+    let named: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
+    for name in PROBLEMS {
+        if !named.is_empty() && !named.iter().any(|n| n == name) {
+            continue;
+        }
+        for method in METHODS {
+            for digits in 3..=13 {
+                measure(name, method, 10f64.powi(-digits));
+            }
+        }
+    }
+}
+
+fn measure(name: &str, method: Method, tolerance: f64) {
+    let mut problem = problem(name, tolerance);
+    problem.method = method;
+    problem.record.ledger = false;
+    problem.record.event_states = false;
+    let mut simulator = Simulator::new(&problem).expect("the initial state fits a mode");
+    let (mut times, start) = (Vec::new(), Instant::now());
+    let mut failed = false;
+    while !failed && (times.len() < REPEATS || start.elapsed() < BUDGET) {
+        let start = Instant::now();
+        failed = simulator.run(&mut Silent).is_err();
+        times.push(start.elapsed().as_secs_f64());
+        // A long run needs no repeats.
+        if times[0] > 0.2 {
+            break;
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    let solver = simulator.solver();
+    let events = simulator.events().iter();
+    let events = events
+        .filter(|e| e.transition != "rest")
+        .map(|e| e.t.to_string());
+    println!(
+        "dalembert|{method:?}|{name}|{tolerance:e}|{:e}|{:e}|{}|{}|{}|{}|{}|{}|{}|{}",
+        times[0],
+        times[times.len() / 2],
+        times.len(),
+        solver.residual_evaluations,
+        solver.jacobian_evaluations,
+        solver.steps,
+        i32::from(failed),
+        simulator.time(),
+        join(state(name, &simulator).iter().map(f64::to_string)),
+        join(events),
+    );
+}
+
+fn join(values: impl Iterator<Item = String>) -> String {
+    values.collect::<Vec<_>>().join(";")
+}
+
+/// The state in the order of the references.
+fn state(name: &str, simulator: &Simulator) -> Vec<f64> {
+    let (q, v) = (simulator.q(), simulator.v());
+    match name {
+        // The model's angle is measured from the edge on which the block stands.
+        "P1" | "P2" => {
+            let side = simulator.discrete()[0];
+            vec![side * q[0], side * v[0]]
+        }
+        "P4" | "P4S" => vec![q[0], q[1], v[0], v[1]],
+        _ => vec![q[0], v[0]],
+    }
+}
+
+/// The problem in our models; the definition is that of `problems.hpp`.
+fn problem(name: &str, tolerance: f64) -> Problem {
+    match name {
+        "P1" => {
+            let mut p = model("rocking_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.9)]);
+            start(&mut p, "theta", 0.6 * 0.25);
+            p.end.time = 6.0;
+            accuracy(p, tolerance, &[0.2], &[0.5])
+        }
+        "P2" => {
+            let mut p = model("rocking_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.85)]);
+            start(&mut p, "theta", 0.3 * 0.25);
+            shake(&mut p, Sine::new(-0.35 * 9.81, TAU * 1.5, 0.3));
+            p.end.time = 10.0;
+            accuracy(p, tolerance, &[0.2], &[0.5])
+        }
+        "P3b" => {
+            let mut p = model(
+                "belt_oscillator",
+                &[("k", 400.0), ("c", 0.1), ("belt", 0.2)],
+            );
+            start(&mut p, "x", 0.05);
+            p.end.time = 20.0;
+            accuracy(p, tolerance, &[0.05], &[0.9])
+        }
+        "P4" | "P4S" => {
+            let stiff = name == "P4S";
+            let factor = if stiff { 1e4 } else { 1.0 };
+            let spring = [("k", 1.05e6 * factor), ("c", 642.0 * factor)];
+            let mut p = model("sliding_oscillator", &spring);
+            shake(&mut p, Sine::new(20.0, TAU * 7.0, 0.0));
+            p.end.time = 2.0;
+            let (d, rate) = if stiff { (8e-8, 3.5e-6) } else { (1e-3, 0.1) };
+            accuracy(p, tolerance, &[0.02, d], &[0.9, rate])
+        }
+        "P5" => {
+            let mut p = model("bouncing_ball", &[]);
+            start(&mut p, "h", 1.0);
+            p.end = End {
+                time: 100.0,
+                after: Some(("impact", 30)),
+            };
+            accuracy(p, tolerance, &[1.0], &[4.4])
+        }
+        _ => unreachable!("problems are those of PROBLEMS"),
+    }
+}
+
+fn model(name: &str, parameters: &[(&str, f64)]) -> Problem {
+    let model = MODELS.iter().find(|m| m.name == name);
+    let mut problem = Problem::new(model.expect("the model is linked"));
+    for &(name, value) in parameters {
+        problem
+            .set_parameter(name, value)
+            .expect("the model has it");
+    }
+    problem
+}
+
+fn start(problem: &mut Problem, coordinate: &str, value: f64) {
+    problem
+        .set_initial(coordinate, value)
+        .expect("the model has it");
+}
+
+fn shake(problem: &mut Problem, sine: Sine) {
+    let set = problem.set_input("ground_acceleration", Function::from(sine));
+    set.expect("the model has it");
+}
+
+/// Relative tolerance, and absolute ones of the tolerance times the scales of the problem.
+fn accuracy(mut problem: Problem, tolerance: f64, q: &[f64], v: &[f64]) -> Problem {
+    problem.set_tolerance(tolerance);
+    for i in 0..q.len() {
+        problem.accuracy.q_absolute[i] = tolerance * q[i];
+        problem.accuracy.v_absolute[i] = tolerance * v[i];
+    }
+    problem
+}
