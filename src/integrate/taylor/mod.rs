@@ -60,6 +60,8 @@ pub struct Taylor<const F: usize> {
     dense: TaylorDense<F>,
     /// Whether `dense` is the last step.
     stepped: bool,
+    /// Whether the step starts where the last restart did.
+    restarted: bool,
     /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
     inverse: Option<SMatrix<f64, F, F>>,
     implicit: Implicit,
@@ -102,6 +104,7 @@ impl<const F: usize> Taylor<F> {
                 series: Series::zero(),
             },
             stepped: false,
+            restarted: true,
             inverse: None,
             counters: Counters::default(),
         }
@@ -125,6 +128,7 @@ impl<const F: usize> Taylor<F> {
         self.lost = Lost::nothing();
         self.lost_at_start = self.lost;
         self.stepped = false;
+        self.restarted = true;
         self.inverse = None;
     }
 
@@ -175,6 +179,7 @@ impl<const F: usize> Taylor<F> {
         );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
         let origin = self.end;
+        self.restarted &= !self.stepped;
         self.expand(system, &origin)?;
         let remaining = (t_end - origin.t) - self.lost.t;
         let horizon = system.horizon(origin.t) - origin.t;
@@ -244,7 +249,12 @@ impl<const F: usize> Taylor<F> {
             None => self.invert(&mass)?,
         };
         let series = &mut self.dense.series;
-        series.a[0] = -(inverse * load);
+        // A restart gives the accelerations: zero where they are not told from it, so that the motion
+        // leaves with the sign of the jerk.
+        series.a[0] = match self.restarted {
+            true => origin.a,
+            false => -(inverse * load),
+        };
         (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
         system.run(self.order, &inverse, series);
         self.counters.residual_evaluations += self.order as u64;
