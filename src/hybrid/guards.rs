@@ -169,7 +169,9 @@ pub(super) fn search<const F: usize>(
             search_linear(equations, dense, guard, window, watch)
         }
         _ => {
-            if watched.condition.is_none()
+            // A guard that acts together with conditions is judged by its own values where one of
+            // them changes its sign; its series has its roots elsewhere, by the tolerance.
+            if !conditions.are_part_of(guard)
                 && let Some(found) = search_series(equations, dense, guard, watched, window, watch)
             {
                 return found;
