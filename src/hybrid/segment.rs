@@ -150,12 +150,14 @@ impl Simulation<'_> {
             let (state, beyond) = event.map_or((end, 0.0), |(_, state, beyond)| (state, beyond));
 
             // Samples before the ledger moves on to the end of the step.
+            let energies = problem.record.columns.energies;
+            let mut ledger = if energies { self.ledger.clone() } else { None };
+            let mut recorded = ledger_from;
             let mut row_at = |t: f64, tau: f64| {
-                let energies = problem.record.columns.energies;
-                let mut ledger = if energies { self.ledger.clone() } else { None };
                 if let Some(ledger) = &mut ledger {
-                    let part = (ledger_from, tau);
+                    let part = (recorded, tau);
                     ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
+                    recorded = tau;
                 }
                 let needed = energies || problem.record.columns.reactions;
                 let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);

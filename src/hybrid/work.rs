@@ -12,9 +12,8 @@ const MOST_PANELS: u32 = 1 << 10;
 
 /// [dissipated, input] energy, J, between two local times of a step.
 ///
-/// By Gauss's three-point rule (order 6, above that of the dense output of a step whose error is
-/// controlled). With no free coordinate nothing has controlled the step: panels are doubled until
-/// the energies change by less than `tolerance` of what flows.
+/// By Gauss's three-point rule on panels that are doubled until the energies change by less than
+/// `tolerance` of what flows: a step of high order is long, and a rule of lower order no match for it.
 pub(super) fn work<const F: usize, M: Motion<F>>(
     equations: &mut Equations<F>,
     motion: &M,
@@ -23,7 +22,7 @@ pub(super) fn work<const F: usize, M: Motion<F>>(
 ) -> [f64; 2] {
     let mut panels = 1;
     let (mut work, _) = composite(equations, motion, from, to, panels);
-    while F == 0 && panels < MOST_PANELS {
+    while panels < MOST_PANELS {
         panels *= 2;
         let (finer, flow) = composite(equations, motion, from, to, panels);
         let change = [0, 1].map(|i| (finer[i] - work[i]).abs());
