@@ -239,6 +239,10 @@ fn search_linear<const F: usize>(
             a: &zero,
         };
         coefficients[0] += equations.kernel.guard(equations.context, &guard.kernel, at);
+        if watch == Watch::Dormant && window.0 == dense.start() {
+            // Its own value was zero; the first coefficient of the dense output may be off by a rounding.
+            coefficients[0] = 0.0;
+        }
     }
     search_polynomial(&coefficients[..count], dense, window, watch)
 }

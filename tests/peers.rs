@@ -1,0 +1,58 @@
+//! The problems of the comparison with other solvers, against their references of 30 digits.
+
+use dalembert::hybrid::{Method, Simulator};
+use dalembert::record::Silent;
+use serde_json::Value;
+
+#[allow(dead_code)] // `main` measures
+#[path = "../benches/peers/dalembert.rs"]
+mod rows;
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let number = |x: &Value| x.as_str().unwrap().parse().unwrap();
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+/// At every tolerance no event is missed or doubled, and end state and times of events are as accurate
+/// as asked for: the errors of the steps, some hundred, add up and are amplified from event to event.
+#[test]
+fn no_event_is_missed_or_doubled_at_any_tolerance() {
+    let text = include_str!("../benches/peers/reference.json");
+    let reference: Value = serde_json::from_str(text).unwrap();
+    for name in rows::PROBLEMS {
+        let events = numbers(&reference[name]["events"]);
+        let end = numbers(&reference[name]["y_end"]);
+        let scales: Vec<f64> = (reference[name]["scales"].as_array().unwrap().iter())
+            .map(|x| x.as_f64().unwrap())
+            .collect();
+        // The spring of P4S is slaved: nanometres.
+        let components: &[usize] = if name == "P4S" { &[0, 2] } else { &[0, 1] };
+        for method in [Method::Auto, Method::Radau] {
+            for digits in 3..=13 {
+                let tolerance = 10f64.powi(-digits);
+                let mut problem = rows::problem(name, tolerance);
+                problem.method = method;
+                let mut simulator = Simulator::new(&problem).unwrap();
+                let at = format!("{name} {method:?} {tolerance:e}");
+                simulator
+                    .run(&mut Silent)
+                    .unwrap_or_else(|e| panic!("{at}: {e}"));
+                let found = simulator.events().iter().filter(|e| e.transition != "rest");
+                let found: Vec<f64> = found.map(|e| e.t).collect();
+                assert_eq!(found.len(), events.len(), "{at}");
+                let allowed = (100.0 * tolerance).max(1e-11);
+                for (found, exact) in found.iter().zip(&events) {
+                    assert!(
+                        (found - exact).abs() < allowed * exact,
+                        "{at}: {found} {exact}"
+                    );
+                }
+                let state = rows::state(name, &simulator);
+                for &i in components {
+                    let error = (state[i] - end[i]).abs() / scales[i];
+                    assert!(error < allowed, "{at}: {i} {error:e}");
+                }
+            }
+        }
+    }
+}
