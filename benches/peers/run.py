@@ -7,6 +7,7 @@ and docs/peers.svg.
 import argparse
 import csv
 import json
+import os
 import math
 import pathlib
 import subprocess
@@ -152,6 +153,8 @@ class Peers:
         return [self.python, "-B", HERE / "heyoka_rows.py"]
 
     def dalembert(self):
+        # For the processor it runs on, as the peers.
+        os.environ |= {"RUSTFLAGS": "-C target-cpu=native", "CFLAGS": "-march=native", "CARGO_TARGET_DIR": str(self.scratch / "target")}
         call(["cargo", "bench", "--no-run", "--bench", "peers"], cwd=ROOT)
         return ["cargo", "bench", "--quiet", "--bench", "peers", "--"]
 
