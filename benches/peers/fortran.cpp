@@ -58,8 +58,13 @@ template <class P> struct Global {
       event_time = std::numeric_limits<double>::infinity();
       for (int i = 0; i < P::GUARDS; ++i) {
         auto value = [&](double t) { all(t); return values[i]; };
-        double t = event_time;
-        if (at_start[i] > 0 && in_middle[i] < 0) t = fall(value, *from, at_start[i], middle, in_middle[i]);
+        double t = event_time, left = *from, at_left = at_start[i];
+        // A guard that starts at zero rises first: at some fraction of the step, unless rounding hides it.
+        for (double length = middle - *from; at_start[i] == 0 && in_middle[i] < 0 && at_left <= 0 && *from + length > *from;) {
+          left = *from + (length /= 2);
+          at_left = value(left);
+        }
+        if (at_left > 0 && in_middle[i] < 0) t = fall(value, left, at_left, middle, in_middle[i]);
         else if (in_middle[i] > 0 && here[i] < 0) t = fall(value, middle, in_middle[i], *to, here[i]);
         if (t < event_time) { event_time = t; which = i; }
       }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <utility>
 
 // What a generated function sees besides the free coordinates: signals, their rates, discrete states, all
@@ -40,7 +41,7 @@ template <bool FREE> struct Tank {
   static constexpr double END = FREE ? 0.5 : 2.0;
   static constexpr std::array<double, N> SCALES{0.01, 1e-3, 0.01, 0.1, 0.1, 0.1};
   int mode;
-  double least_rate, discrete[DISCRETES], constants[CONSTANTS];
+  double least_rate, last_rate, discrete[DISCRETES], constants[CONSTANTS];
 
   Tank() { CONSTANTS_OF(PARAMETERS, nullptr, nullptr, nullptr, constants); }
 
@@ -50,6 +51,7 @@ template <bool FREE> struct Tank {
     mode = FREE ? ROCKS_STICKS : STANDS_STICKS;
     discrete[0] = discrete[1] = 1;
     least_rate = tolerance * SCALES[COUNT];
+    last_rate = std::numeric_limits<double>::infinity();
   }
   void rhs(double t, const double *y, double *f) const {
     const State s(*this, MODES[mode], t, y);
@@ -169,11 +171,13 @@ template <bool FREE> struct Tank {
       std::copy(y_after.begin(), y_after.end(), y);
       std::copy(target.discrete, target.discrete + DISCRETES, discrete);
       mode = transition.target;
-      // Landings accumulate: an uplift rate within its absolute tolerance is rest.
-      if (transition.impact && y[COUNT] <= least_rate) {
+      // Landings accumulate. They end at an uplift rate within its absolute tolerance, and where the solver
+      // does not resolve the hops any more: the rate does not shrink.
+      if (transition.impact && !(y[COUNT] > least_rate && y[COUNT] < last_rate)) {
         mode = MODES[mode].rest;
         y[0] = y[COUNT] = 0;
       }
+      if (transition.impact) last_rate = y[COUNT];
       return;
     }
   }
