@@ -4,6 +4,7 @@
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
+use crate::input::{Side, Signals};
 use crate::integrate::{ORDERS, Series};
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
@@ -87,17 +88,19 @@ pub struct Dimensions {
 pub struct Context {
     dimensions: &'static Dimensions,
     /// Signals of the inputs at the present time.
-    pub signals: Box<[f64]>,
+    signals: Box<[f64]>,
+    /// Time derivatives of the signals.
+    signal_rates: Box<[f64]>,
+    /// Time and side that the signals and their rates are set for, s; NaN: none.
+    signals_at: (f64, Side),
     /// Whether no input ever acts: all signals are zero and stay so.
     pub quiet: bool,
-    /// Time derivatives of the signals.
-    pub signal_rates: Box<[f64]>,
     /// Discrete states.
     pub discrete: Box<[f64]>,
     /// All coordinates; the generated functions read those that the mode holds.
     pub held: Box<[f64]>,
     /// Taylor coefficients of the signals, one row an order.
-    pub signal_series: Box<[f64]>,
+    signal_series: Box<[f64]>,
     constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub guard_series: Box<[f64]>,
@@ -120,14 +123,39 @@ impl Context {
         Context {
             dimensions,
             signals: vec![0.0; dimensions.signals].into(),
-            quiet: false,
             signal_rates: vec![0.0; dimensions.signals].into(),
+            signals_at: (f64::NAN, Side::Right),
+            quiet: false,
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             constants: model.constants.evaluate(parameters),
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
+        }
+    }
+
+    /// Signals of the inputs at the present time.
+    pub fn signals(&self) -> &[f64] {
+        &self.signals
+    }
+
+    /// Sets signals and their rates to those at time `t` (s), as they are on that side.
+    #[inline]
+    pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
+        if !self.quiet && self.signals_at != (t, side) {
+            signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
+            self.signals_at = (t, side);
+        }
+    }
+
+    /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
+    #[inline]
+    pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
+        if !self.quiet {
+            self.set_signals(signals, t, Side::Right);
+            let rows = &mut self.signal_series[..orders * self.signals.len()];
+            signals.series(t, &self.signals, &self.signal_rates, rows);
         }
     }
 
@@ -451,7 +479,7 @@ impl<const F: usize> ModeKernel<F> {
         out
     }
 
-    /// b with M j + b = 0 for the jerk j; needs `Context::signal_rates`.
+    /// b with M j + b = 0 for the jerk j; needs the signals to be set.
     pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
         let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
@@ -596,7 +624,7 @@ impl<const F: usize> ModeKernel<F> {
         out
     }
 
-    /// Derivative of a guard along the flow with jerk `j`; needs `Context::signal_rates`.
+    /// Derivative of a guard along the flow with jerk `j`; needs the signals to be set.
     pub fn guard_rate(
         &self,
         x: &Context,

@@ -161,7 +161,7 @@ impl Simulation<'_> {
             k.momenta(&self.context, Free { q: &q, v: &v, a: &a }, &mut momenta);
         });
         let rates = model.inputs.iter().filter(|i| i.kind.signals() == 3);
-        let rates = rates.map(|i| self.context.signals[i.signal + 1]);
+        let rates = rates.map(|i| self.context.signals()[i.signal + 1]);
         momenta[n..].iter().copied().zip(rates).collect()
     }
 

@@ -10,6 +10,7 @@ use super::problem::Problem;
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
 use super::visited::Visited;
+use crate::input::Side;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
@@ -382,10 +383,9 @@ impl<'p> Simulation<'p> {
 
     /// Sets signals and held coordinates to the present instant.
     pub fn set_context(&mut self) {
-        if !self.context.quiet {
-            let t = self.here.now.seconds();
-            self.problem.signals.evaluate(t, &mut self.context.signals);
-        }
+        let t = self.here.now.seconds();
+        let signals = &self.problem.signals;
+        self.context.set_signals(signals, t, Side::Right);
         self.context.held.copy_from_slice(&self.here.q);
     }
 

@@ -79,12 +79,16 @@ impl Function {
 
     /// Fills `out` with the coefficients of f(t + τ) in powers of τ, of the function that acts just
     /// before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in `out[k]`. They are those of
-    /// one analytic function up to [`Function::next_knot`]. Gives what [`Function::at`] does.
-    pub fn series(&self, t: f64, side: Side, out: &mut [f64]) -> Jet {
+    /// one analytic function up to [`Function::next_knot`]. `known` are value and rate, which
+    /// [`Function::at`] gave.
+    pub fn series(&self, t: f64, side: Side, known: [f64; 2], out: &mut [f64]) {
         out.fill(0.0);
-        self.terms.iter().fold(Jet::default(), |sum, term| {
-            sum + term.add_series(t, side, out)
-        })
+        if let [Term::Sine(sine)] = &self.terms[..] {
+            return sine.add_series(known, out);
+        }
+        for term in &self.terms {
+            term.add_series(t, side, out);
+        }
     }
 
     /// The first time after `t` at which the function is not analytic, in s: a breakpoint or any
@@ -147,18 +151,19 @@ impl Term {
         }
     }
 
-    fn add_series(&self, t: f64, side: Side, out: &mut [f64]) -> Jet {
-        let jet = self.at(t, side);
+    fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
         match self {
             Term::Constant(c) => {
                 if let Some(first) = out.first_mut() {
                     *first += c;
                 }
             }
-            Term::Sine(sine) => sine.add_series(&jet, out),
+            Term::Sine(sine) => {
+                let jet = sine.at(t, side);
+                sine.add_series([jet.value, jet.rate], out);
+            }
             Term::Table(table) => table.add_series(t, side, out),
         }
-        jet
     }
 
     fn next_knot(&self, t: f64) -> f64 {

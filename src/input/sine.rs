@@ -83,11 +83,11 @@ impl Sine {
         }
     }
 
-    /// Adds the Taylor coefficients about the time of `jet`, which [`Sine::at`] gave; each is
+    /// Adds the Taylor coefficients about the time at which value and rate are those given; each is
     /// −ω²/(k (k − 1)) times the last but one.
-    pub(super) fn add_series(&self, jet: &Jet, out: &mut [f64]) {
+    pub(super) fn add_series(&self, [value, rate]: [f64; 2], out: &mut [f64]) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (jet.value, jet.rate);
+        let (mut even, mut odd) = (value, rate);
         for (k, pair) in out.chunks_mut(2).enumerate() {
             let inverse = |n: usize| INVERSES[2 * k + n];
             pair[0] += even;
