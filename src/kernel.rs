@@ -5,7 +5,7 @@
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
 use crate::input::{Side, Signals};
-use crate::integrate::{ORDERS, Series};
+use crate::integrate::{Lanes, ORDERS, Series};
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
 
@@ -56,6 +56,42 @@ struct SinCos {
 unsafe extern "C" {
     /// Takes every number.
     safe fn dalembert_sin_cos(x: f64) -> SinCos;
+}
+
+/// [`sin_cos`] of lanes.
+type RawSinCosOfLanes = unsafe extern "C" fn(*const f64, *mut f64, *mut f64);
+unsafe extern "C" {
+    fn dalembert_sin_cos_of_lanes_v1(x: *const f64, sin: *mut f64, cos: *mut f64);
+    #[cfg(target_arch = "x86_64")]
+    fn dalembert_sin_cos_of_lanes_v3(x: *const f64, sin: *mut f64, cos: *mut f64);
+    #[cfg(target_arch = "x86_64")]
+    fn dalembert_sin_cos_of_lanes_v4(x: *const f64, sin: *mut f64, cos: *mut f64);
+}
+const SIN_COS_OF_LANES: &[RawSinCosOfLanes] = &[
+    dalembert_sin_cos_of_lanes_v1,
+    #[cfg(target_arch = "x86_64")]
+    dalembert_sin_cos_of_lanes_v3,
+    #[cfg(target_arch = "x86_64")]
+    dalembert_sin_cos_of_lanes_v4,
+];
+
+/// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
+///
+/// # Panics
+/// If `W` is not the number of lanes of the level.
+#[inline]
+pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
+    assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
+    let (mut sin, mut cos) = (x, x);
+    // SAFETY: the level was compiled for `W` lanes.
+    unsafe {
+        SIN_COS_OF_LANES[level](
+            (&raw const x).cast(),
+            (&raw mut sin).cast(),
+            (&raw mut cos).cast(),
+        )
+    };
+    (sin, cos)
 }
 
 /// Sine and cosine of `x` (rad), by the same function as in generated code: by the same bits on every
@@ -129,10 +165,23 @@ impl Context {
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
-            constants: model.constants.evaluate(parameters),
+            constants: {
+                let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
+                model.constants.evaluate(parameters, &mut constants);
+                constants
+            },
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
         }
+    }
+
+    /// Goes over to other parameters.
+    ///
+    /// # Panics
+    /// As [`Context::new`], and if it is another model.
+    pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
+        assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
+        model.constants.evaluate(parameters, &mut self.constants);
     }
 
     /// Signals of the inputs at the present time.
@@ -211,13 +260,13 @@ pub struct ConstantsKernel {
 }
 
 impl ConstantsKernel {
-    fn evaluate(&self, parameters: &[f64]) -> Box<[f64]> {
+    fn evaluate(&self, parameters: &[f64], out: &mut [f64]) {
         assert_eq!(
             parameters.len(),
             self.dimensions.parameters,
             "number of parameters"
         );
-        let mut out = vec![0.0; self.dimensions.constants].into_boxed_slice();
+        assert_eq!(out.len(), self.dimensions.constants);
         let raw = RawContext {
             u: std::ptr::null(),
             u_dot: std::ptr::null(),
@@ -229,7 +278,6 @@ impl ConstantsKernel {
         let none = std::ptr::null();
         // SAFETY: the function reads `parameters` only and writes `constants` outputs.
         unsafe { (self.function)(parameters.as_ptr(), none, none, &raw, out.as_mut_ptr()) }
-        out
     }
 }
 
@@ -289,6 +337,17 @@ pub struct ModeKernel<const F: usize> {
     mass_is_constant: bool,
     is_linear: bool,
     held_rates: Raw,
+    lanes: &'static [LaneKernel],
+}
+
+/// The generated functions of a mode for trajectories side by side, at a level of the processor.
+#[derive(Debug)]
+struct LaneKernel {
+    series: SeriesKernel,
+    /// The same where no input acts.
+    quiet_series: SeriesKernel,
+    requirements: Raw,
+    guards: &'static [Raw],
 }
 
 /// The generated Taylor series of a mode.
@@ -681,6 +740,230 @@ impl<const F: usize> ModeKernel<F> {
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
         unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
         &out[..count]
+    }
+}
+
+/// Number of lanes at each level of the processor that generated code is compiled for; the same in
+/// build/compile.rs.
+pub const LANES_OF_LEVELS: &[usize] = &[
+    2,
+    #[cfg(target_arch = "x86_64")]
+    4,
+    #[cfg(target_arch = "x86_64")]
+    8,
+];
+
+/// The best level of this processor, an index into [`LANES_OF_LEVELS`].
+pub fn processor_level() -> usize {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let best = ["avx512f", "avx512dq", "avx512vl"];
+        let has = |name| match name {
+            "avx512f" => std::arch::is_x86_feature_detected!("avx512f"),
+            "avx512dq" => std::arch::is_x86_feature_detected!("avx512dq"),
+            _ => std::arch::is_x86_feature_detected!("avx512vl"),
+        };
+        if best.into_iter().all(has) {
+            return 2;
+        }
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return 1;
+        }
+    }
+    0
+}
+
+/// What generated functions need besides the free coordinates, for `W` trajectories side by side: as
+/// [`Context`], each entry a number a lane.
+#[derive(Debug, Clone)]
+pub struct LaneContext<const W: usize> {
+    dimensions: &'static Dimensions,
+    /// Signals of the inputs.
+    pub signals: Box<[Lanes<W>]>,
+    /// Taylor coefficients of the signals, one row an order.
+    pub signal_series: Box<[Lanes<W>]>,
+    discrete: Box<[Lanes<W>]>,
+    held: Box<[Lanes<W>]>,
+    constants: Box<[Lanes<W>]>,
+    workspace: Box<[Lanes<W>]>,
+}
+
+impl<const W: usize> LaneContext<W> {
+    /// A context for a mode, with the discrete states, held coordinates and constants of `like` in all
+    /// lanes.
+    pub fn new<const F: usize>(kernel: &ModeKernel<F>, like: &Context) -> Self {
+        let zeros = |count: usize| vec![Lanes::of(0.0); count].into_boxed_slice();
+        let mut context = LaneContext {
+            dimensions: like.dimensions,
+            signals: zeros(like.signals.len()),
+            signal_series: zeros(like.signal_series.len()),
+            discrete: zeros(like.discrete.len()),
+            held: zeros(like.held.len()),
+            constants: zeros(like.constants.len()),
+            workspace: zeros(kernel.workspace()),
+        };
+        for lane in 0..W {
+            context.load(lane, like);
+        }
+        context
+    }
+
+    /// Takes over discrete states, held coordinates and constants of a trajectory.
+    ///
+    /// # Panics
+    /// If it is one of another model.
+    pub fn load(&mut self, lane: usize, from: &Context) {
+        assert!(std::ptr::eq(self.dimensions, from.dimensions));
+        let of = [&from.discrete, &from.held, &from.constants];
+        let into = [&mut self.discrete, &mut self.held, &mut self.constants];
+        for (into, of) in into.into_iter().zip(of) {
+            for (into, of) in into.iter_mut().zip(of) {
+                into.0[lane] = *of;
+            }
+        }
+    }
+
+    /// The context as C sees it.
+    fn raw(&self, dimensions: &'static Dimensions) -> RawContext {
+        assert!(
+            std::ptr::eq(self.dimensions, dimensions)
+                && self.signals.len() == dimensions.signals
+                && self.signal_series.len() == ORDERS * dimensions.signals,
+            "a context is used with the functions of the model it was made for"
+        );
+        RawContext {
+            u: self.signals.as_ptr().cast(),
+            // Rates and jerks are not read by what is compiled for lanes.
+            u_dot: std::ptr::null(),
+            d: self.discrete.as_ptr().cast(),
+            h: self.held.as_ptr().cast(),
+            c: self.constants.as_ptr().cast(),
+            j: std::ptr::null(),
+        }
+    }
+}
+
+/// Mass matrix M, by columns, and load b of r = M a + b, in lanes.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct LaneSystem<const F: usize, const W: usize> {
+    /// M = ∂r/∂a.
+    pub mass: [[Lanes<W>; F]; F],
+    /// r at a = 0.
+    pub load: [Lanes<W>; F],
+}
+
+/// [`Series`] in lanes.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+pub struct LaneSeries<const F: usize, const W: usize> {
+    /// Of the coordinates.
+    pub q: [[Lanes<W>; F]; ORDERS],
+    /// Of the velocities.
+    pub v: [[Lanes<W>; F]; ORDERS],
+    /// Of the accelerations.
+    pub a: [[Lanes<W>; F]; ORDERS],
+}
+
+impl<const F: usize> ModeKernel<F> {
+    /// Whether trajectories of this mode can go side by side.
+    pub fn goes_in_lanes(&self) -> bool {
+        !self.lanes.is_empty()
+    }
+
+    fn lane_kernel<const W: usize>(&self, level: usize) -> &'static LaneKernel {
+        assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
+        &self.lanes[level]
+    }
+
+    /// As [`Self::series_start`]; `quiet`: no input acts.
+    ///
+    /// # Panics
+    /// If the mode does not go in lanes, or `W` is not the number of lanes of the level; so do the
+    /// other functions for lanes.
+    pub fn lane_series_start<const W: usize>(
+        &self,
+        level: usize,
+        quiet: bool,
+        x: &mut LaneContext<W>,
+        at: &mut LaneSeries<F, W>,
+    ) -> LaneSystem<F, W> {
+        let kernel = self.lane_kernel::<W>(level);
+        let series = if quiet {
+            &kernel.quiet_series
+        } else {
+            &kernel.series
+        };
+        let zero = Lanes::of(0.0);
+        let mut out = LaneSystem {
+            mass: [[zero; F]; F],
+            load: [zero; F],
+        };
+        let raw = x.raw(self.dimensions);
+        assert!(x.workspace.len() >= self.workspace());
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
+        // SAFETY: as in `series_start`, with `W` numbers for each, which the level was compiled for.
+        unsafe { (series.start)(q, v, a, u, &raw, w.cast(), (&raw mut out).cast()) }
+        out
+    }
+
+    /// As [`Self::series_run`].
+    pub fn lane_series_run<const W: usize>(
+        &self,
+        (level, quiet): (usize, bool),
+        x: &mut LaneContext<W>,
+        n: usize,
+        inverse: &[[Lanes<W>; F]; F],
+        at: &mut LaneSeries<F, W>,
+    ) {
+        let kernel = self.lane_kernel::<W>(level);
+        let series = if quiet {
+            &kernel.quiet_series
+        } else {
+            &kernel.series
+        };
+        assert!(n <= ORDERS - 2);
+        let raw = x.raw(self.dimensions);
+        assert!(x.workspace.len() >= self.workspace());
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
+        let inverse = inverse.as_ptr().cast::<f64>().cast_mut();
+        // SAFETY: as in `series_run`, with `W` numbers for each, which the level was compiled for.
+        unsafe { (series.run)(n, q, v, a, u, &raw, w.cast(), inverse) }
+    }
+
+    /// As [`Self::requirements`], one lane entry a requirement.
+    pub fn lane_requirements<const W: usize>(
+        &self,
+        level: usize,
+        x: &LaneContext<W>,
+        [q, v, a]: [&[Lanes<W>; F]; 3],
+        out: &mut [Lanes<W>],
+    ) {
+        assert_eq!(out.len(), self.requirements.1);
+        let function = self.lane_kernel::<W>(level).requirements;
+        let raw = x.raw(self.dimensions);
+        let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
+        // SAFETY: the length was checked; the level was compiled for `W` lanes.
+        unsafe { function(q, v, a, &raw, out.as_mut_ptr().cast()) }
+    }
+
+    /// As [`Self::guard`], by the index of the guard in the mode.
+    pub fn lane_guard<const W: usize>(
+        &self,
+        level: usize,
+        x: &LaneContext<W>,
+        guard: usize,
+        [q, v, a]: [&[Lanes<W>; F]; 3],
+    ) -> Lanes<W> {
+        let function = self.lane_kernel::<W>(level).guards[guard];
+        let raw = x.raw(self.dimensions);
+        let mut out = Lanes::of(0.0);
+        let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
+        // SAFETY: one output; the level was compiled for `W` lanes.
+        unsafe { function(q, v, a, &raw, (&raw mut out).cast()) }
+        out
     }
 }
 

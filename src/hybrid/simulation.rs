@@ -2,11 +2,12 @@
 
 use super::accumulation::{Accumulation, Limit};
 use super::crossing::Signs;
+use super::ensemble::Member;
 use super::failure::Reason;
 use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
-use super::problem::Problem;
+use super::problem::{Initial, Problem};
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
 use super::visited::Visited;
@@ -73,6 +74,8 @@ pub(super) enum Stop {
 
 pub(super) struct Simulation<'p> {
     pub problem: &'p Problem,
+    /// Its initial state, or that of the member of an ensemble.
+    pub initial: &'p Initial,
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
@@ -123,6 +126,7 @@ impl<'p> Simulation<'p> {
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
         Ok(Simulation {
             problem,
+            initial: &problem.initial,
             plan,
             context,
             here: Here {
@@ -163,9 +167,20 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
+    /// Takes the place of a member of an ensemble, at its start.
+    pub fn become_member(&mut self, member: &Member<'p>) -> Result<(), Reason> {
+        self.initial = member.initial;
+        let model = self.problem.model;
+        self.context.set_parameters(model, member.parameters);
+        self.rewind(0);
+        self.choose_initial_mode()?;
+        self.set_context();
+        Ok(())
+    }
+
     /// Goes back to the start, in the mode that was found for it.
     pub fn rewind(&mut self, mode: usize) {
-        let initial = &self.problem.initial;
+        let initial = self.initial;
         self.here.now = Instant::default();
         self.here.j = 0;
         self.here.mode = mode;
@@ -196,7 +211,7 @@ impl<'p> Simulation<'p> {
     /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
     fn choose_initial_mode(&mut self) -> Result<(), Reason> {
         let modes = self.problem.variant.modes;
-        if let Some(chosen) = self.problem.initial.mode {
+        if let Some(chosen) = self.initial.mode {
             self.here.mode = chosen;
             self.apply_drift();
             return match self.misfit(&modes[chosen]) {
@@ -276,39 +291,51 @@ impl<'p> Simulation<'p> {
 
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
-        loop {
-            self.settle()?;
-            self.flush_samples();
-            if self.is_over() {
-                return Ok(());
-            }
-            let mode = self.mode();
-            let stop = with_kernel!(&mode.kernels, k => self.advance(k, progress))?;
-            match stop {
-                Stop::End => {
-                    self.set_context();
-                    return Ok(());
-                }
-                Stop::Breakpoint | Stop::Method => self.visited.clear(),
-                Stop::Event(guard) => {
-                    self.visited.clear();
-                    self.fire(guard)?;
-                }
-                Stop::Violated(violation) => self.resolve(violation)?,
+        while self.settle()? {
+            if !self.advance_to_event(progress)? {
+                break;
             }
         }
+        Ok(())
     }
 
-    /// Finds the admissible mode at the present instant: every violated guard is one transition.
-    fn settle(&mut self) -> Result<(), Reason> {
+    /// From an admissible mode through the next event; false at the end of the run.
+    pub fn advance_to_event(&mut self, progress: &mut dyn Progress) -> Result<bool, Reason> {
+        let mode = self.mode();
+        let stop = with_kernel!(&mode.kernels, k => self.advance(k, progress))?;
+        self.pass(stop)
+    }
+
+    /// Does what the end of a segment asks for; false at the end of the run.
+    pub fn pass(&mut self, stop: Stop) -> Result<bool, Reason> {
+        match stop {
+            Stop::End => {
+                self.set_context();
+                return Ok(false);
+            }
+            Stop::Breakpoint | Stop::Method => self.visited.clear(),
+            Stop::Event(guard) => {
+                self.visited.clear();
+                self.fire(guard)?;
+            }
+            Stop::Violated(violation) => self.resolve(violation)?,
+        }
+        Ok(true)
+    }
+
+    /// Finds the admissible mode at the present instant: every violated guard is one transition. False
+    /// if the run is over.
+    pub fn settle(&mut self) -> Result<bool, Reason> {
         loop {
             let mode = self.mode();
             match with_kernel!(&mode.kernels, k => self.enter(k))? {
-                None => return Ok(()),
-                Some(_) if self.is_over() => return Ok(()),
+                None => break,
+                Some(_) if self.is_over() => break,
                 Some(violation) => self.resolve(violation)?,
             }
         }
+        self.flush_samples();
+        Ok(!self.is_over())
     }
 
     /// A violated guard: the limit of its accumulation if it is an impact from rest, else its

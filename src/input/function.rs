@@ -1,6 +1,7 @@
 //! A function of time as a sum of simple terms.
 
-use super::{Sine, Table};
+use super::{Signals, Sine, Table};
+use crate::integrate::Lanes;
 
 /// Which one-sided limit is meant at a breakpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,6 +89,39 @@ impl Function {
         }
         for term in &self.terms {
             term.add_series(t, side, out);
+        }
+    }
+
+    /// [`Function::at`] for each of several times.
+    pub(super) fn at_lanes<const W: usize>(
+        &self,
+        level: usize,
+        t: &[f64; W],
+        side: Side,
+    ) -> [Jet; W] {
+        match &self.terms[..] {
+            [Term::Sine(sine)] => sine.at_lanes(level, t, side),
+            _ => t.map(|t| self.at(t, side)),
+        }
+    }
+
+    /// [`Function::series`] for each of several times.
+    pub(super) fn series_of_lanes<const W: usize>(
+        &self,
+        t: &[f64; W],
+        known: [Lanes<W>; 2],
+        out: &mut [Lanes<W>],
+    ) {
+        if let [Term::Sine(sine)] = &self.terms[..] {
+            return sine.fill_series(known, out);
+        }
+        let mut room = [0.0; Signals::MOST_ORDERS];
+        let room = &mut room[..out.len()];
+        for lane in 0..W {
+            self.series(t[lane], Side::Right, known.map(|x| x.0[lane]), room);
+            for (out, value) in out.iter_mut().zip(&*room) {
+                out.0[lane] = *value;
+            }
         }
     }
 

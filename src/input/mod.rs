@@ -10,11 +10,13 @@
 //! after it give the values of one smooth function.
 
 mod function;
+mod lanes;
 mod sine;
 mod spline;
 mod table;
 
 pub use function::{Function, Jet, Side};
+pub use lanes::LaneSignals;
 pub use sine::Sine;
 pub use table::{Interpolation, Outside, Table, TableError};
 

@@ -65,6 +65,7 @@ mod earliest;
 mod extrema;
 mod first_fall;
 mod function;
+pub(super) mod lanes;
 mod polynomial;
 mod walk;
 
