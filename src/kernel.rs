@@ -4,8 +4,8 @@
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
-use crate::input::{Side, Signals};
-use crate::integrate::{Lanes, ORDERS, Series};
+use crate::input::{LaneSignals, Side, Signals};
+use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
 
@@ -58,40 +58,197 @@ unsafe extern "C" {
     safe fn dalembert_sin_cos(x: f64) -> SinCos;
 }
 
-/// [`sin_cos`] of lanes.
-type RawSinCosOfLanes = unsafe extern "C" fn(*const f64, *mut f64, *mut f64);
-unsafe extern "C" {
-    fn dalembert_sin_cos_of_lanes_v1(x: *const f64, sin: *mut f64, cos: *mut f64);
-    #[cfg(target_arch = "x86_64")]
-    fn dalembert_sin_cos_of_lanes_v3(x: *const f64, sin: *mut f64, cos: *mut f64);
-    #[cfg(target_arch = "x86_64")]
-    fn dalembert_sin_cos_of_lanes_v4(x: *const f64, sin: *mut f64, cos: *mut f64);
+/// What codegen/lanes.c has for every mode, at a level of the processor.
+struct LaneFunctions {
+    sin_cos: unsafe extern "C" fn(*const f64, *mut f64, *mut f64),
+    sum: unsafe extern "C" fn(usize, usize, *const f64, *const f64, *mut f64),
+    length: unsafe extern "C" fn(
+        usize,
+        usize,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const f64,
+        *mut f64,
+    ),
+    first_fall: unsafe extern "C" fn(
+        usize,
+        usize,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const u64,
+        *mut f64,
+        *mut f64,
+    ),
 }
-const SIN_COS_OF_LANES: &[RawSinCosOfLanes] = &[
-    dalembert_sin_cos_of_lanes_v1,
+
+macro_rules! lane_functions {
+    ($sin_cos:ident, $sum:ident, $length:ident, $first_fall:ident) => {{
+        unsafe extern "C" {
+            fn $sin_cos(x: *const f64, sin: *mut f64, cos: *mut f64);
+            fn $sum(count: usize, stride: usize, row: *const f64, tau: *const f64, out: *mut f64);
+            fn $length(
+                free: usize,
+                p: usize,
+                q: *const f64,
+                v: *const f64,
+                tolerances: *const f64,
+                remaining: *const f64,
+                horizon: *const f64,
+                out: *mut f64,
+            );
+            fn $first_fall(
+                count: usize,
+                stride: usize,
+                row: *const f64,
+                h: *const f64,
+                factor: *const f64,
+                offset: *const f64,
+                starts_at_zero: *const u64,
+                c: *mut f64,
+                out: *mut f64,
+            );
+        }
+        LaneFunctions {
+            sin_cos: $sin_cos,
+            sum: $sum,
+            length: $length,
+            first_fall: $first_fall,
+        }
+    }};
+}
+
+/// By level.
+static LANE_FUNCTIONS: &[LaneFunctions] = &[
+    lane_functions!(
+        dalembert_lane_sin_cos_v1,
+        dalembert_lane_sum_v1,
+        dalembert_lane_length_v1,
+        dalembert_lane_first_fall_v1
+    ),
     #[cfg(target_arch = "x86_64")]
-    dalembert_sin_cos_of_lanes_v3,
+    lane_functions!(
+        dalembert_lane_sin_cos_v3,
+        dalembert_lane_sum_v3,
+        dalembert_lane_length_v3,
+        dalembert_lane_first_fall_v3
+    ),
     #[cfg(target_arch = "x86_64")]
-    dalembert_sin_cos_of_lanes_v4,
+    lane_functions!(
+        dalembert_lane_sin_cos_v4,
+        dalembert_lane_sum_v4,
+        dalembert_lane_length_v4,
+        dalembert_lane_first_fall_v4
+    ),
 ];
+
+/// The functions of a level.
+///
+/// # Panics
+/// If it does not have `W` lanes, which all calls rely on.
+#[inline]
+fn lane_functions<const W: usize>(level: usize) -> &'static LaneFunctions {
+    assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
+    &LANE_FUNCTIONS[level]
+}
 
 /// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
 ///
 /// # Panics
-/// If `W` is not the number of lanes of the level.
+/// If `W` is not the number of lanes of the level; so do the other functions for lanes.
 #[inline]
 pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
-    assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
     let (mut sin, mut cos) = (x, x);
-    // SAFETY: the level was compiled for `W` lanes.
+    let (to_sin, to_cos) = ((&raw mut sin).cast(), (&raw mut cos).cast());
+    // SAFETY: one number a lane each.
+    unsafe { (lane_functions::<W>(level).sin_cos)((&raw const x).cast(), to_sin, to_cos) };
+    (sin, cos)
+}
+
+/// Σ `rows[k][i]` τᵏ.
+#[inline]
+pub fn lane_sum<const F: usize, const W: usize>(
+    level: usize,
+    rows: &[[Lanes<W>; F]],
+    i: usize,
+    tau: &Lanes<W>,
+) -> Lanes<W> {
+    assert!(i < F);
+    let mut out = Lanes::of(0.0);
+    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let (tau, to) = ((&raw const *tau).cast(), (&raw mut out).cast());
+    // SAFETY: as many rows of F entries are there, of which entry i is read.
+    unsafe { (lane_functions::<W>(level).sum)(rows.len(), F, row, tau, to) };
+    out
+}
+
+/// The length at which the last terms of a series of order `p` equal the tolerance, as it fits into what
+/// is `remaining` and not more than `horizon`. `tolerances` are the relative one and the absolute ones
+/// of coordinates and velocities.
+#[inline]
+pub fn lane_length<const F: usize, const W: usize>(
+    level: usize,
+    p: usize,
+    series: &LaneSeries<F, W>,
+    tolerances: &[f64],
+    [remaining, horizon]: [&Lanes<W>; 2],
+) -> Lanes<W> {
+    assert!(p >= 2 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
+    let mut out = Lanes::of(0.0);
+    let [q, v] = [&series.q, &series.v].map(|rows| rows.as_ptr().cast());
+    let [remaining, horizon] = [remaining, horizon].map(|x| (&raw const *x).cast());
+    let length = lane_functions::<W>(level).length;
+    // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
     unsafe {
-        SIN_COS_OF_LANES[level](
-            (&raw const x).cast(),
-            (&raw mut sin).cast(),
-            (&raw mut cos).cast(),
+        length(
+            F,
+            p,
+            q,
+            v,
+            tolerances.as_ptr(),
+            remaining,
+            horizon,
+            (&raw mut out).cast(),
         )
     };
-    (sin, cos)
+    out
+}
+
+/// The first fall of factor · Σ `rows[k][i]` τᵏ + offset on 0 < τ ≤ h, as a part of h: infinite where
+/// there is none, not a number where that takes a closer look. Of those that start at zero (a word of
+/// ones in their lane) the factor τ is divided out. `coefficients` get those in powers of τ/h.
+#[inline]
+pub fn lane_first_fall<const F: usize, const W: usize>(
+    level: usize,
+    (rows, i): (&[[Lanes<W>; F]], usize),
+    [h, factor, offset]: [&Lanes<W>; 3],
+    starts_at_zero: &LaneMask<W>,
+    coefficients: &mut [Lanes<W>; ORDERS],
+) -> Lanes<W> {
+    assert!(i < F && (1..=ORDERS).contains(&rows.len()));
+    let mut out = Lanes::of(0.0);
+    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let [h, factor, offset] = [h, factor, offset].map(|x| (&raw const *x).cast());
+    let first_fall = lane_functions::<W>(level).first_fall;
+    // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
+    // coefficients; the rest is one number a lane each.
+    unsafe {
+        first_fall(
+            rows.len(),
+            F,
+            row,
+            h,
+            factor,
+            offset,
+            starts_at_zero.0.as_ptr(),
+            coefficients.as_mut_ptr().cast(),
+            (&raw mut out).cast(),
+        )
+    };
+    out
 }
 
 /// Sine and cosine of `x` (rad), by the same function as in generated code: by the same bits on every
@@ -196,6 +353,26 @@ impl Context {
             signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
             self.signals_at = (t, side);
         }
+    }
+
+    /// Sets signals and their rates to those of a lane at time `t` (s), as they are right after it;
+    /// `from` are its signals.
+    pub fn set_signals_of_lane<const W: usize>(
+        &mut self,
+        of: &LaneSignals<W>,
+        lane: usize,
+        signals: &Signals,
+        t: f64,
+        from: &[Lanes<W>],
+    ) {
+        of.of_lane(
+            lane,
+            signals,
+            from,
+            &mut self.signals,
+            &mut self.signal_rates,
+        );
+        self.signals_at = (t, Side::Right);
     }
 
     /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
@@ -820,6 +997,15 @@ impl<const W: usize> LaneContext<W> {
             for (into, of) in into.iter_mut().zip(of) {
                 into.0[lane] = *of;
             }
+        }
+    }
+
+    /// The same for a trajectory whose constants were loaded before.
+    pub fn load_state(&mut self, lane: usize, from: &Context) {
+        let of = from.discrete.iter().chain(&from.held);
+        let into = self.discrete.iter_mut().chain(&mut self.held);
+        for (into, of) in into.zip(of) {
+            into.0[lane] = *of;
         }
     }
 

@@ -164,8 +164,12 @@ impl Accumulation {
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
         let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
+        // Before any division: most patterns of most runs do not shrink.
+        if !(0.0 < last && last < middle && middle < first) {
+            return None;
+        }
         let (ratio, ratio_before) = (last / middle, middle / first);
-        if !(ratio > 0.0 && ratio < LARGEST_RATIO && ratio_before < LARGEST_RATIO) {
+        if ratio >= LARGEST_RATIO || ratio_before >= LARGEST_RATIO {
             return None;
         }
         let repeats = (0..2 * p).all(|i| self.hop(i).is_like(self.hop(i + p)));

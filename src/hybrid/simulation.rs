@@ -349,7 +349,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    fn is_over(&self) -> bool {
+    pub fn is_over(&self) -> bool {
         let after = self.problem.end.after;
         self.here.now.seconds() >= self.problem.end.time
             || after.is_some_and(|(_, count)| self.counted >= count)

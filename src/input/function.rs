@@ -93,6 +93,7 @@ impl Function {
     }
 
     /// [`Function::at`] for each of several times.
+    #[inline(always)]
     pub(super) fn at_lanes<const W: usize>(
         &self,
         level: usize,
@@ -106,6 +107,7 @@ impl Function {
     }
 
     /// [`Function::series`] for each of several times.
+    #[inline(always)]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,
         t: &[f64; W],

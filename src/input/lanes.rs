@@ -27,6 +27,7 @@ impl<const W: usize> LaneSignals<W> {
 
     /// Fills `u` with the signals right after the times `t` (s), unless it was for the same times
     /// before.
+    #[inline(always)]
     pub fn set(&mut self, signals: &Signals, t: &[f64; W], u: &mut [Lanes<W>]) {
         if self.t == *t {
             return;
@@ -34,17 +35,44 @@ impl<const W: usize> LaneSignals<W> {
         self.t = *t;
         for (c, rate) in signals.channels.iter().zip(&mut self.rates) {
             let jets = c.function.at_lanes(self.level, t, Side::Right);
-            *rate = Lanes(jets.map(|jet| jet.rate));
-            u[c.signal] = Lanes(jets.map(|jet| jet.value));
+            *rate = Lanes::from_fn(|i| jets[i].rate);
+            u[c.signal] = Lanes::from_fn(|i| jets[i].value);
             if c.kind == InputKind::Acceleration {
-                u[c.signal + 1] = Lanes(jets.map(|jet| jet.integral));
-                u[c.signal + 2] = Lanes(jets.map(|jet| jet.double_integral));
+                u[c.signal + 1] = Lanes::from_fn(|i| jets[i].integral);
+                u[c.signal + 2] = Lanes::from_fn(|i| jets[i].double_integral);
             }
         }
     }
 
+    /// What [`Signals::jets`] gives for the time of a lane; `u` was set with it.
+    pub fn of_lane(
+        &self,
+        lane: usize,
+        signals: &Signals,
+        from: &[Lanes<W>],
+        u: &mut [f64],
+        u_dot: &mut [f64],
+    ) {
+        for (u, from) in u.iter_mut().zip(from) {
+            *u = from.0[lane];
+        }
+        for (c, rate) in signals.channels.iter().zip(&self.rates) {
+            u_dot[c.signal] = rate.0[lane];
+            if c.kind == InputKind::Acceleration {
+                u_dot[c.signal + 1] = u[c.signal];
+                u_dot[c.signal + 2] = u[c.signal + 1];
+            }
+        }
+    }
+
+    /// Time that the signals of a lane are set for, s; NaN: none.
+    pub fn time(&self, lane: usize) -> f64 {
+        self.t[lane]
+    }
+
     /// Fills `rows` with the Taylor coefficients of the signals about the times that `u` was set for.
     /// As [`Signals::series`].
+    #[inline(always)]
     pub fn series(&self, signals: &Signals, u: &[Lanes<W>], rows: &mut [Lanes<W>]) {
         let width = u.len();
         if width == 0 {

@@ -57,15 +57,20 @@ impl Sine {
     }
 
     /// [`Sine::at`] for each of several times.
+    #[inline(always)]
     pub(super) fn at_lanes<const W: usize>(
         &self,
         level: usize,
         t: &[f64; W],
         side: Side,
     ) -> [Jet; W] {
-        let y = Lanes(t.map(|t| self.angle(t)));
+        let y: Lanes<W> = Lanes::from_fn(|i| self.angle(t[i]));
         let (sin, cos) = lane_sin_cos(level, y * 0.5);
-        std::array::from_fn(|i| self.jet(t[i], side, y.0[i], (sin.0[i], cos.0[i])))
+        let mut jets = [Jet::default(); W];
+        for i in 0..W {
+            jets[i] = self.jet(t[i], side, y.0[i], (sin.0[i], cos.0[i]));
+        }
+        jets
     }
 
     /// y = ω s while the sine acts.
@@ -124,6 +129,7 @@ impl Sine {
     }
 
     /// [`Sine::add_series`] for each of several times, to rows of zeros.
+    #[inline(always)]
     pub(super) fn fill_series<const W: usize>(
         &self,
         [value, rate]: [Lanes<W>; 2],

@@ -1,12 +1,35 @@
 //! Numbers of several trajectories side by side.
+//!
+//! What is worth vector instructions is C (codegen/lanes.c): here are the few operations between.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Sub};
 
-/// A number a lane. The operations are those of each lane by itself, rounding included; the compiler
-/// makes vector instructions of them where the calling function is compiled for some.
+/// A number a lane. The operations are those of each lane by itself, rounding included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(16))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
+
+/// Yes (a word of ones) or no (zero) for each lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C, align(16))]
+pub struct LaneMask<const W: usize>(pub [u64; W]);
+
+impl<const W: usize> LaneMask<W> {
+    /// No for all lanes.
+    pub fn none() -> Self {
+        LaneMask([0; W])
+    }
+
+    /// Sets the answer of a lane.
+    pub fn set(&mut self, lane: usize, yes: bool) {
+        self.0[lane] = if yes { u64::MAX } else { 0 };
+    }
+
+    /// Whether it is yes for a lane.
+    pub fn is(&self, lane: usize) -> bool {
+        self.0[lane] != 0
+    }
+}
 
 impl<const W: usize> Lanes<W> {
     /// The same number in all lanes.
@@ -40,24 +63,6 @@ impl<const W: usize> Lanes<W> {
         }
         out
     }
-
-    /// Magnitudes.
-    #[inline(always)]
-    pub fn abs(self) -> Self {
-        self.map(f64::abs)
-    }
-
-    /// The greater of each pair; the other one if this one is not a number.
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        self.with(other, |x, y| if x > y { x } else { y })
-    }
-
-    /// The smaller of each pair; the other one if this one is not a number.
-    #[inline(always)]
-    pub fn min(self, other: Self) -> Self {
-        self.with(other, |x, y| if x < y { x } else { y })
-    }
 }
 
 macro_rules! by_lane {
@@ -83,11 +88,3 @@ by_lane!(Add, add, +);
 by_lane!(Sub, sub, -);
 by_lane!(Mul, mul, *);
 by_lane!(Div, div, /);
-
-impl<const W: usize> Neg for Lanes<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.map(|x| -x)
-    }
-}

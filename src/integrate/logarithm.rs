@@ -7,8 +7,7 @@ pub(super) fn natural_logarithm(x: f64) -> f64 {
 }
 
 /// log₂ x to 0.01, for normal x > 0.
-#[inline(always)]
-pub(super) fn binary_logarithm(x: f64) -> f64 {
+fn binary_logarithm(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = (bits >> 52) as f64 - 1023.0;
     let fraction = f64::from_bits(bits & ((1 << 52) - 1) | 1f64.to_bits()) - 1.0;
@@ -17,8 +16,7 @@ pub(super) fn binary_logarithm(x: f64) -> f64 {
 }
 
 /// 2^x to 1 %, for |x| < 1000.
-#[inline(always)]
-pub(super) fn binary_power(x: f64) -> f64 {
+fn binary_power(x: f64) -> f64 {
     let exponent = x + 1023.0;
     let whole = exponent as i64;
     let fraction = exponent - whole as f64;

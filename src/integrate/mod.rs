@@ -39,7 +39,7 @@ mod taylor;
 mod tolerances;
 
 pub use dense::Dense;
-pub use lanes::Lanes;
+pub use lanes::{LaneMask, Lanes};
 pub use linear::{Singular, solve};
 pub use one_step::{Motion, OneStep};
 pub use radau::Radau;

@@ -3,15 +3,13 @@
 use super::super::crossing::Signs;
 use super::super::guards;
 use super::super::instant::Instant;
-use super::super::roots::lanes::{Fall, first_falls};
 use super::super::roots::{Kind, Watch};
 use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
-use crate::integrate::{LaneTaylor, Lanes, ORDERS};
+use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
 use crate::kernel::{Free, LaneContext, ModeKernel};
 use crate::model::{GuardShape, Mode};
-use multiversion::multiversion;
 use nalgebra::SVector;
 
 /// What became of a lane in a step.
@@ -36,7 +34,7 @@ struct LaneGuard<const W: usize> {
     factor: Lanes<W>,
     offset: Lanes<W>,
     /// Whether it is zero at the start of the step.
-    starts_at_zero: [bool; W],
+    starts_at_zero: LaneMask<W>,
 }
 
 /// Up to `W` trajectories in one mode.
@@ -61,6 +59,8 @@ pub(super) struct Group<const F: usize, const W: usize> {
     /// Where inputs are not smooth, or the end, s.
     last: [f64; W],
     requirements: Vec<Lanes<W>>,
+    /// Whether a lane has just been set: what the mode requires has not been looked at.
+    unchecked: bool,
     /// What became of each lane in the last step.
     pub outcomes: [Outcome; W],
     /// Steps made in each lane since it was loaded.
@@ -89,7 +89,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 rate,
                 factor: Lanes::of(1.0),
                 offset: Lanes::of(0.0),
-                starts_at_zero: [false; W],
+                starts_at_zero: LaneMask::none(),
             }
         });
         let convolutions = kernel.convolutions(&like.context);
@@ -98,7 +98,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             mode,
             level,
             quiet,
-            taylor: LaneTaylor::new(&tolerances(problem, mode), convolutions),
+            taylor: LaneTaylor::new(level, &tolerances(problem, mode), convolutions),
             context: LaneContext::new(kernel, &like.context),
             signals: LaneSignals::new(level, &problem.signals),
             guards: guards.collect(),
@@ -109,6 +109,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             now: [Instant::default(); W],
             last: [f64::INFINITY; W],
             requirements: vec![Lanes::of(0.0); mode.requirements.len()],
+            unchecked: true,
             outcomes: [Outcome::GoesOn; W],
             steps: [0; W],
             occupied: [false; W],
@@ -127,6 +128,39 @@ impl<const F: usize, const W: usize> Group<F, W> {
 
     /// Puts a trajectory, which has just entered the mode, into a lane.
     pub fn load(&mut self, lane: usize, from: &Simulation) {
+        self.context.load(lane, &from.context);
+        self.set(lane, from);
+        for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
+            guard.starts_at_zero.set(lane, *watch == Watch::Dormant);
+        }
+        self.at_start[lane] = true;
+        self.unchecked = true;
+        self.steps[lane] = 0;
+        self.occupied[lane] = true;
+    }
+
+    /// Goes on in the lane that a trajectory is in, after an event whose reset has led to the same mode
+    /// again; false where it must enter the mode as any other.
+    ///
+    /// The accelerations, the mass matrix and what the mode requires are looked at in the next step.
+    pub fn go_on(&mut self, lane: usize, from: &Simulation) -> bool {
+        self.context.load_state(lane, &from.context);
+        self.set(lane, from);
+        for guard in &mut self.guards {
+            let of = |state: &[Lanes<W>; F]| guard.factor.0[lane] * state[guard.index].0[lane];
+            let value = of(&self.state[guard.rate as usize]) + guard.offset.0[lane];
+            guard.starts_at_zero.set(lane, value == 0.0);
+            let leaves_upwards = !guard.rate && of(&self.state[1]) > 0.0;
+            if !(value > 0.0 || value == 0.0 && leaves_upwards) {
+                return false;
+            }
+        }
+        self.at_start[lane] = false;
+        self.unchecked = true;
+        true
+    }
+
+    fn set(&mut self, lane: usize, from: &Simulation) {
         let [q, v, a] = from.here.free::<F>(self.mode.free);
         for i in 0..F {
             self.state[0][i].0[lane] = q[i];
@@ -135,8 +169,6 @@ impl<const F: usize, const W: usize> Group<F, W> {
             self.lost[0][i].0[lane] = 0.0;
             self.lost[1][i].0[lane] = 0.0;
         }
-        self.context.load(lane, &from.context);
-        self.at_start[lane] = true;
         self.now[lane] = from.here.now;
         let breakpoint = from
             .problem
@@ -149,7 +181,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             v: &zero,
             a: &zero,
         };
-        for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
+        for guard in &mut self.guards {
             let model = &self.mode.guards[guard.guard];
             let GuardShape::Linear {
                 factor,
@@ -166,14 +198,11 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 true => self.kernel.guard(&from.context, &model.kernel, origin),
                 false => 0.0,
             };
-            guard.starts_at_zero[lane] = *watch == Watch::Dormant;
         }
-        self.steps[lane] = 0;
         self.outcomes[lane] = Outcome::GoesOn;
-        self.occupied[lane] = true;
     }
 
-    /// Takes a trajectory out of its lane.
+    /// Takes a trajectory out of its lane, where it may be left for [`Group::go_on`].
     pub fn unload(&mut self, lane: usize, into: &mut Simulation) {
         let column = |rows: &[Lanes<W>; F]| SVector::<f64, F>::from_fn(|i, _| rows[i].0[lane]);
         let [q, v, a] = [
@@ -186,8 +215,24 @@ impl<const F: usize, const W: usize> Group<F, W> {
             Outcome::Until => Instant::new(self.last[lane]),
             _ => self.now[lane],
         };
+        let t = into.here.now.seconds();
+        if !self.quiet && self.outcomes[lane] != Outcome::Until && t == self.signals.time(lane) {
+            let signals = &into.problem.signals;
+            into.context.set_signals_of_lane(
+                &self.signals,
+                lane,
+                signals,
+                t,
+                &self.context.signals,
+            );
+        }
         into.solver.steps += self.steps[lane];
         into.solver.residual_evaluations += self.steps[lane] * self.taylor.order() as u64;
+        self.steps[lane] = 0;
+    }
+
+    /// Leaves a lane empty.
+    pub fn vacate(&mut self, lane: usize) {
         self.occupied[lane] = false;
     }
 
@@ -201,26 +246,27 @@ impl<const F: usize, const W: usize> Group<F, W> {
             }
         }
     }
+}
 
-    /// Looks for the first fall in a lane in full; `None` where that is no plain fall either.
-    #[cold]
-    fn search(&self, coefficients: &[Lanes<W>], lane: usize, dormant: bool) -> Option<Fall> {
-        let mut own = [0.0; ORDERS];
-        for (own, of) in own.iter_mut().zip(coefficients) {
-            *own = of.0[lane];
-        }
-        let watch = if dormant {
-            own[0] = 0.0;
-            Watch::Dormant
-        } else {
-            Watch::Armed
-        };
-        let search = guards::search_window(&own[..coefficients.len()], (0.0, 1.0), watch);
-        match search.crossing {
-            None if search.watch == Watch::Armed => Some(Fall::None),
-            Some(crossing) if crossing.kind == Kind::Fall => Some(Fall::At(crossing.outside)),
-            _ => None,
-        }
+/// Looks for the first fall in a lane in full: infinite if there is none, `None` if there is something
+/// else.
+#[cold]
+fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool) -> Option<f64> {
+    let mut own = [0.0; ORDERS];
+    for (own, of) in own.iter_mut().zip(coefficients) {
+        *own = of.0[lane];
+    }
+    let watch = if dormant {
+        own[0] = 0.0;
+        Watch::Dormant
+    } else {
+        Watch::Armed
+    };
+    let search = guards::search_window(&own[..coefficients.len()], (0.0, 1.0), watch);
+    match search.crossing {
+        None if search.watch == Watch::Armed => Some(f64::INFINITY),
+        Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),
+        _ => None,
     }
 }
 
@@ -263,14 +309,28 @@ fn inverse<const F: usize, const W: usize>(
     inverse
 }
 
+/// Marks the lanes in which not all that is required is positive.
+#[inline(always)]
+fn unmet<const W: usize>(requirements: &[Lanes<W>], marked: &mut [bool; W]) {
+    for value in requirements {
+        for lane in 0..W {
+            let met = value.0[lane] > 0.0;
+            marked[lane] |= !met;
+        }
+    }
+}
+
 /// Absolute time of the analytic piece that acts just after an instant, and its duration, s. As in
 /// [`super::super::equations::Clock`].
 fn piece(signals: &Signals, now: Instant) -> (f64, f64) {
     let mut t = now.seconds();
     loop {
         let knot = signals.next_knot(t);
+        if knot == f64::INFINITY {
+            return (t, knot);
+        }
         let limit = Instant::new(knot).since(now);
-        if limit > 0.0 || !knot.is_finite() {
+        if limit > 0.0 {
             return (t, limit);
         }
         t = knot;
@@ -278,7 +338,6 @@ fn piece(signals: &Signals, now: Instant) -> (f64, f64) {
 }
 
 /// A step of each lane. What the lanes hold does not depend on each other, nor on their number.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signals) {
     let mut unclear = [false; W];
     let mut t = [0.0; W];
@@ -320,6 +379,12 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
         series.v[1][i] = series.a[0][i];
         series.q[2][i] = series.a[0][i] * 0.5;
     }
+    if std::mem::take(&mut group.unchecked) && !group.requirements.is_empty() {
+        let at = [&series.q[0], &series.v[0], &series.a[0]];
+        let requirements = &mut group.requirements;
+        kernel.lane_requirements(group.level, context, at, requirements);
+        unmet(requirements, &mut unclear);
+    }
     let which = (group.level, group.quiet);
     kernel.lane_series_run(which, context, order, &inverse, series);
     let h = group.taylor.length(&remaining, &horizon);
@@ -332,26 +397,21 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
     let mut place = Lanes::of(1.0);
     for (number, guard) in group.guards.iter().enumerate() {
         let mut coefficients = [Lanes::of(0.0); ORDERS];
-        let count = group
+        let of = (guard.index, guard.rate);
+        let numbers = [&h, &guard.factor, &guard.offset];
+        let zero = &guard.starts_at_zero;
+        let (falls, count) = group
             .taylor
-            .scaled(guard.index, guard.rate, h, &mut coefficients);
-        for coefficient in &mut coefficients[..count] {
-            *coefficient = *coefficient * guard.factor;
-        }
-        coefficients[0] = coefficients[0] + guard.offset;
-        let coefficients = &coefficients[..count];
-        let falls = first_falls(coefficients, &guard.starts_at_zero);
+            .first_fall(of, numbers, zero, &mut coefficients);
         for lane in 0..W {
-            let mut fall = falls[lane];
-            if fall == Fall::Unclear && group.occupied[lane] && !unclear[lane] {
-                match group.search(coefficients, lane, guard.starts_at_zero[lane]) {
-                    Some(found) => fall = found,
+            let mut s = falls.0[lane];
+            if s.is_nan() && group.occupied[lane] && !unclear[lane] {
+                match search(&coefficients[..count], lane, zero.is(lane)) {
+                    Some(found) => s = found,
                     None => unclear[lane] = true,
                 }
             }
-            if let Fall::At(s) = fall
-                && (fallen[lane] == usize::MAX || s < place.0[lane])
-            {
+            if s <= 1.0 && (fallen[lane] == usize::MAX || s < place.0[lane]) {
                 (fallen[lane], place.0[lane]) = (number, s);
             }
         }
@@ -362,8 +422,8 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
     // A guard that all but fell at the end of the step before does so within the rounding of the start.
     tau = tau.map(|tau| if tau > 0.0 { tau } else { f64::MIN_POSITIVE });
     let mut last_place = tau * f64::EPSILON;
-    let (mut state, mut lost) = group.taylor.state(tau, &group.lost);
-    let acceleration = group.taylor.acceleration(tau);
+    let (mut state, mut lost) = group.taylor.state(&tau, &group.lost);
+    let acceleration = group.taylor.acceleration(&tau);
     loop {
         let mut short = [false; W];
         for (number, guard) in group.guards.iter().enumerate() {
@@ -389,26 +449,30 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
                     last_place.0[lane] > FARTHEST * h.0[lane] || tau.0[lane] > h.0[lane];
             }
         }
-        (state, lost) = group.taylor.state(tau, &group.lost);
+        (state, lost) = group.taylor.state(&tau, &group.lost);
     }
-    let end: [Instant; W] = std::array::from_fn(|lane| group.now[lane].plus(tau.0[lane]));
-    let until: [bool; W] =
-        std::array::from_fn(|lane| fallen[lane] == usize::MAX && h.0[lane] == remaining.0[lane]);
+    let (mut end, mut until) = (group.now, [false; W]);
+    for lane in 0..W {
+        end[lane] = group.now[lane].plus(tau.0[lane]);
+        until[lane] = fallen[lane] == usize::MAX && h.0[lane] == remaining.0[lane];
+    }
 
     // What the mode requires must hold there; at the end of the segment the caller looks.
     if !group.requirements.is_empty() {
         let context = &mut group.context;
         if !group.quiet {
-            let t = std::array::from_fn(|lane| end[lane].seconds());
+            for lane in 0..W {
+                t[lane] = end[lane].seconds();
+            }
             group.signals.set(signals, &t, &mut context.signals);
         }
         let at = [&state[0], &state[1], &acceleration];
         let requirements = &mut group.requirements;
         kernel.lane_requirements(group.level, context, at, requirements);
-        for value in requirements {
-            for lane in 0..W {
-                unclear[lane] |= !until[lane] && !(value.0[lane] > 0.0);
-            }
+        let mut here = [false; W];
+        unmet(requirements, &mut here);
+        for lane in 0..W {
+            unclear[lane] |= here[lane] && !until[lane];
         }
     }
 
@@ -432,7 +496,7 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
         group.at_start[lane] = false;
         group.now[lane] = end[lane];
         for guard in &mut group.guards {
-            guard.starts_at_zero[lane] = false;
+            guard.starts_at_zero.set(lane, false);
         }
         group.outcomes[lane] = match fallen[lane] {
             usize::MAX if until[lane] => Outcome::Until,

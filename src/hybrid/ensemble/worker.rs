@@ -11,6 +11,8 @@ use crate::record::Silent;
 /// A group, whatever its number of free coordinates.
 trait AnyGroup<const W: usize> {
     fn load(&mut self, lane: usize, from: &Simulation);
+    fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
+    fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
     fn step(&mut self, signals: &Signals);
     fn outcomes(&self) -> [Outcome; W];
@@ -19,6 +21,12 @@ trait AnyGroup<const W: usize> {
 impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
     fn load(&mut self, lane: usize, from: &Simulation) {
         Group::load(self, lane, from)
+    }
+    fn go_on(&mut self, lane: usize, from: &Simulation) -> bool {
+        Group::go_on(self, lane, from)
+    }
+    fn vacate(&mut self, lane: usize) {
+        Group::vacate(self, lane)
     }
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
@@ -156,7 +164,6 @@ impl<'a, const W: usize> Worker<'a, W> {
             }
             let simulation = &mut self.slots[slot].simulation;
             lanes.group.unload(lane, simulation);
-            lanes.slots[lane] = None;
             simulation.set_context();
             let (stop, unclear) = match outcome {
                 Outcome::Event(guard) => (Stop::Event(guard), false),
@@ -169,6 +176,15 @@ impl<'a, const W: usize> Worker<'a, W> {
                 _ => (Stop::Method, true),
             };
             let passed = simulation.pass(stop);
+            let stays = matches!(outcome, Outcome::Event(_))
+                && matches!(passed, Ok(true))
+                && simulation.here.mode == mode
+                && !simulation.is_over();
+            if stays && lanes.group.go_on(lane, simulation) {
+                continue;
+            }
+            lanes.group.vacate(lane);
+            lanes.slots[lane] = None;
             self.go_on(slot, passed, unclear, take);
             if self.slots[slot].state == State::Waiting {
                 self.find_lane(slot);

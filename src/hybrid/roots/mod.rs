@@ -65,7 +65,6 @@ mod earliest;
 mod extrema;
 mod first_fall;
 mod function;
-pub(super) mod lanes;
 mod polynomial;
 mod walk;
 
