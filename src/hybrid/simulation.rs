@@ -16,7 +16,7 @@ use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::record::{
-    Event, Failure, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
+    Event, Failure, Jump, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
 };
 use nalgebra::SVector;
 use std::time::Instant as WallClock;
@@ -95,7 +95,9 @@ pub(super) struct Simulation<'p> {
     pub ledger: Option<RunningLedger>,
     pub recorder: Recorder,
     pub layout: Layout,
-    pub events: Vec<Event>,
+    pub jumps: Vec<Jump>,
+    /// States before and after each of them, where they are kept.
+    pub states_at_jumps: Vec<[Snapshot; 2]>,
     pub solver: Solver,
     pub solvers: Solvers,
     /// What was seen of the stiffness of each mode.
@@ -147,7 +149,8 @@ impl<'p> Simulation<'p> {
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             recorder: Recorder::new(&layout, rows + 1),
             layout,
-            events: Vec::new(),
+            jumps: Vec::new(),
+            states_at_jumps: Vec::new(),
             solver: Solver::default(),
             solvers: Solvers::default(),
             stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
@@ -195,7 +198,8 @@ impl<'p> Simulation<'p> {
         self.accumulation.clear();
         self.visited.clear();
         self.recorder.clear();
-        self.events.clear();
+        self.jumps.clear();
+        self.states_at_jumps.clear();
         self.solver = Solver::default();
         (self.next_sample, self.counted) = (0, 0);
         self.set_context();
@@ -374,7 +378,7 @@ impl<'p> Simulation<'p> {
             return self.come_to_rest(rest, Some(limit));
         }
         if self.accumulation.stands_still() {
-            let recent = self.events.iter().rev().take(Accumulation::MEMORY);
+            let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
             let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
             transitions.sort_unstable();
             transitions.dedup();
@@ -490,7 +494,14 @@ impl<'p> Simulation<'p> {
             },
             layout: self.layout,
             trajectory: self.recorder.finish(),
-            events: self.events,
+            events: {
+                let given = self.states_at_jumps.into_iter();
+                let states = given.chain(std::iter::repeat_with(Default::default));
+                let pairs = self.jumps.iter().zip(states);
+                pairs
+                    .map(|(jump, states)| Event::new(jump, states))
+                    .collect()
+            },
             failure: reason.map(|reason| Failure {
                 reason: reason.to_string(),
                 at: end.clone(),

@@ -86,6 +86,23 @@ pub enum Group {
     Input,
 }
 
+/// One transition, without the states around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// Time (s).
+    pub t: f64,
+    /// Number of transitions up to and including this one: the first has 1.
+    pub j: u64,
+    /// Name of the transition.
+    pub transition: &'static str,
+    /// Mode left, an index into [`Layout::modes`].
+    pub from: usize,
+    /// Mode entered, an index into [`Layout::modes`].
+    pub to: usize,
+    /// Jump of the energy; `None` for a transition that is no impact.
+    pub energy: Option<EnergyJump>,
+}
+
 /// One transition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
@@ -186,6 +203,42 @@ pub struct Ledger {
     pub lost_at_impacts: f64,
     /// A sentence that says in which frame the ledger is kept.
     pub frame: String,
+}
+
+impl Event {
+    /// A transition with the states before and after it.
+    pub fn new(jump: &Jump, [before, after]: [Snapshot; 2]) -> Self {
+        let Jump {
+            t,
+            j,
+            transition,
+            from,
+            to,
+            energy,
+        } = *jump;
+        Event {
+            t,
+            j,
+            transition,
+            from,
+            to,
+            before,
+            after,
+            energy,
+        }
+    }
+
+    /// The transition alone.
+    pub fn jump(&self) -> Jump {
+        Jump {
+            t: self.t,
+            j: self.j,
+            transition: self.transition,
+            from: self.from,
+            to: self.to,
+            energy: self.energy,
+        }
+    }
 }
 
 impl Group {

@@ -58,6 +58,8 @@ pub(super) struct Group<const F: usize, const W: usize> {
     now: [Instant; W],
     /// Where inputs are not smooth, or the end, s.
     last: [f64; W],
+    /// Time after which the inputs are analytic, s.
+    analytic_from: f64,
     requirements: Vec<Lanes<W>>,
     /// Whether a lane has just been set: what the mode requires has not been looked at.
     unchecked: bool,
@@ -108,6 +110,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             at_start: [true; W],
             now: [Instant::default(); W],
             last: [f64::INFINITY; W],
+            analytic_from: analytic_from(&problem.signals),
             requirements: vec![Lanes::of(0.0); mode.requirements.len()],
             unchecked: true,
             outcomes: [Outcome::GoesOn; W],
@@ -320,6 +323,17 @@ fn unmet<const W: usize>(requirements: &[Lanes<W>], marked: &mut [bool; W]) {
     }
 }
 
+/// The last time at which some input is not analytic, s.
+fn analytic_from(signals: &Signals) -> f64 {
+    let mut last = 0.0;
+    loop {
+        match signals.next_knot(last) {
+            f64::INFINITY => return last,
+            knot => last = knot,
+        }
+    }
+}
+
 /// Absolute time of the analytic piece that acts just after an instant, and its duration, s. As in
 /// [`super::super::equations::Clock`].
 fn piece(signals: &Signals, now: Instant) -> (f64, f64) {
@@ -345,7 +359,7 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
     for lane in 0..W {
         let now = group.now[lane];
         remaining.0[lane] = Instant::new(group.last[lane]).since(now);
-        (t[lane], horizon.0[lane]) = match group.quiet {
+        (t[lane], horizon.0[lane]) = match group.analytic_from <= now.seconds() {
             true => (now.seconds(), f64::INFINITY),
             false => piece(signals, now),
         };

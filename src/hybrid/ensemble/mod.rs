@@ -16,7 +16,7 @@ use super::failure::Reason;
 use super::problem::{Initial, Method, Problem};
 use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
-use crate::record::{Event, Recorded, Silent};
+use crate::record::{Jump, Recorded, Silent};
 use rayon::prelude::*;
 use worker::Worker;
 
@@ -148,8 +148,8 @@ impl Finished<'_, '_> {
     }
 
     /// The transitions.
-    pub fn events(&self) -> &[Event] {
-        &self.simulation.events
+    pub fn events(&self) -> &[Jump] {
+        &self.simulation.jumps
     }
 
     /// Steps made, in lanes and alone.
