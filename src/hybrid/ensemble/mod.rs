@@ -29,6 +29,16 @@ pub struct Member<'a> {
     pub initial: &'a Initial,
 }
 
+impl<'a> From<&'a Problem> for Member<'a> {
+    /// Parameters and initial state of a problem.
+    fn from(problem: &'a Problem) -> Self {
+        Member {
+            parameters: &problem.parameters,
+            initial: &problem.initial,
+        }
+    }
+}
+
 /// A scene made ready for many runs.
 pub struct Ensemble {
     problem: Problem,
