@@ -346,6 +346,12 @@ impl Context {
         &self.signals
     }
 
+    /// Signals and their rates, for values of one's own.
+    pub fn signals_mut(&mut self) -> [&mut [f64]; 2] {
+        self.signals_at.0 = f64::NAN;
+        [&mut self.signals, &mut self.signal_rates]
+    }
+
     /// Sets signals and their rates to those at time `t` (s), as they are on that side.
     #[inline]
     pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {

@@ -509,6 +509,7 @@ impl<'p> Simulation<'p> {
             end,
             solver: self.solver,
             energy,
+            error: None,
             wall: clock.elapsed(),
         }
     }

@@ -21,10 +21,31 @@ pub struct Run {
     pub solver: Solver,
     /// Balance of energies; `None` where it was not kept.
     pub energy: Option<Ledger>,
+    /// Estimate of the run's error; `None` where none was asked for.
+    pub error: Option<ErrorEstimate>,
     /// Time the simulation took on the wall clock (without reading and writing files).
     pub wall: Duration,
     /// Why the run stopped before its end; `None` when it reached it.
     pub failure: Option<Failure>,
+}
+
+/// Estimate of the error of a run: its difference to a run by another method at a tighter tolerance.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ErrorEstimate {
+    /// Method of the better run, as scenes name it.
+    pub method: String,
+    /// Relative tolerance of the better run.
+    pub tolerance: f64,
+    /// Of each coordinate at the end, in its unit.
+    pub q: Vec<f64>,
+    /// Of each velocity at the end, in its unit.
+    pub v: Vec<f64>,
+    /// Largest difference of the times of a transition (s).
+    pub event_time: f64,
+    /// Transitions that the better run alone has.
+    pub missed: usize,
+    /// Transitions that the run alone has.
+    pub extra: usize,
 }
 
 /// What was simulated: enough to say which run a file belongs to.
