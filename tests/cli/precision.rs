@@ -171,6 +171,10 @@ fn the_estimate_of_a_run_is_its_error() {
                 let peak = |which: &str| run["peaks"][name][which].as_f64().unwrap().abs();
                 let size = peak("max").max(peak("min"));
                 let error = (of(&run) - of(&exact)).abs();
+                if size == 0.0 {
+                    assert_eq!((value.as_f64(), error), (Some(0.0), 0.0), "{name} is held");
+                    continue;
+                }
                 parts.push((value.as_f64().unwrap() / size, error / size));
             }
         }

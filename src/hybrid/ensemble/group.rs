@@ -448,7 +448,8 @@ fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signa
             let value = kernel.lane_guard(group.level, &group.context, guard.guard, at);
             for lane in 0..W {
                 let here = fallen[lane] == number && group.occupied[lane] && !unclear[lane];
-                short[lane] |= here && !(value.0[lane] < 0.0);
+                let crossed = value.0[lane] < 0.0;
+                short[lane] |= here && !crossed;
             }
         }
         if !short.contains(&true) {
