@@ -174,7 +174,7 @@ impl<'a, const F: usize> Reduced<'a, F> {
 
     fn at(&mut self, t: f64) {
         self.signals
-            .evaluate(self.start + t, &mut self.context.signals);
+            .evaluate(self.start + t, self.context.signals_mut()[0]);
     }
 }
 

@@ -12,12 +12,42 @@ use super::parallel;
 /// Kind of the entries that hold libraries, in the package's own output folder.
 const KIND: &str = "libraries";
 
-/// C that generated code and the crate call, relative to the project.
+/// C that generated code and the crate call, relative to the project, and for lanes; what they include.
 const ELEMENTARY: &str = "codegen/elementary.c";
+const LANES: &str = "codegen/lanes.c";
+const INCLUDED: [&str; 2] = ["codegen/elementary.h", "codegen/lanes.h"];
+
+/// A level of the processor, with the width of its registers: see `codegen/lanes.h`.
+struct Level {
+    name: &'static str,
+    lanes: usize,
+    flags: &'static [&'static str],
+}
+
+/// Levels of any processor, and of x86-64 alone; `LEVELS` in `codegen/emit_rust.py` has their names.
+const ANY: Level = Level {
+    name: "v1",
+    lanes: 2,
+    flags: &[],
+};
+const X86_64: [Level; 2] = [
+    Level {
+        name: "v3",
+        lanes: 4,
+        flags: &["-mavx2"],
+    },
+    Level {
+        name: "v4",
+        lanes: 8,
+        flags: &["-mavx512f", "-mavx512dq", "-mavx512vl"],
+    },
+];
 
 /// What becomes a library.
 struct Library {
     name: String,
+    /// Level of the processor, where it matters.
+    level: Option<&'static Level>,
     /// Where its C comes from, relative to the project.
     origin: String,
     directory: PathBuf,
@@ -31,6 +61,7 @@ struct Library {
 pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(), Error> {
     let of_model = |model: &Generated| Library {
         name: model.name.clone(),
+        level: None,
         origin: model.folder.clone(),
         directory: model.directory.clone(),
         sources: model.sources.clone(),
@@ -38,23 +69,56 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
     let elementary = Library {
         // No model has this name: a model's begins with a letter.
         name: "_elementary".to_owned(),
+        level: None,
         origin: ELEMENTARY.to_owned(),
         directory: project.join("codegen"),
         sources: vec![project.join(ELEMENTARY)],
     };
+    let x86_64 = std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "x86_64");
+    let levels = || std::iter::once(&ANY).chain(X86_64.iter().filter(|_| x86_64));
+    let with_lanes = models.iter().filter(|model| !model.lanes.is_empty());
+    let lanes = with_lanes.map(|model| Library {
+        name: format!("{}_lanes", model.name),
+        sources: model.lanes.clone(),
+        ..of_model(model)
+    });
+    let elementary_lanes = Library {
+        name: "_lanes".to_owned(),
+        level: None,
+        origin: LANES.to_owned(),
+        directory: project.join("codegen"),
+        sources: vec![project.join(LANES)],
+    };
+    let lanes = lanes.chain([elementary_lanes]).flat_map(|library| {
+        levels().map(move |level| Library {
+            name: format!("{}_{}", library.name, level.name),
+            level: Some(level),
+            origin: library.origin.clone(),
+            directory: library.directory.clone(),
+            sources: library.sources.clone(),
+        })
+    });
     // What others call comes after them on the command line of a linker.
-    let all: Vec<_> = models.iter().map(of_model).chain([elementary]).collect();
+    let all: Vec<_> = (models.iter().map(of_model))
+        .chain(lanes)
+        .chain([elementary])
+        .collect();
     let build = compiler();
     let failed = |what: &str, problem: String| Error::Compiler {
         what: what.to_owned(),
         problem,
     };
     let command = command(&build).map_err(|problem| failed("the models", problem))?;
-    let command = Fingerprint::default().with(command);
+    let included = INCLUDED.map(|file| project.join(file));
+    let command = Fingerprint::default()
+        .with(command)
+        .with_files(project, included.iter().map(PathBuf::as_path))?;
     let libraries = Cache::at(out_dir);
     let compiled = parallel::map(&all, |library| {
+        let flags = library.level.map_or(&[][..], |level| level.flags);
         let hash = command
             .clone()
+            .with(flags.join(" "))
             .with_files(
                 &library.directory,
                 library.sources.iter().map(PathBuf::as_path),
@@ -62,8 +126,11 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
             .finish();
         let key = format!("{}-{hash}", library.name);
         let folder = libraries.entry(KIND, &key, |folder| {
+            let mut build = build.clone();
+            if let Some(level) = library.level {
+                level.set(&mut build);
+            }
             build
-                .clone()
                 // Linked below, whether it was compiled now or before.
                 .cargo_metadata(false)
                 .files(&library.sources)
@@ -122,6 +189,21 @@ fn command(build: &cc::Build) -> Result<String, String> {
         .try_get_compiler()
         .map_err(|error| error.to_string())?;
     Ok(format!("{:?}", tool.to_command()))
+}
+
+impl Level {
+    fn set(&self, build: &mut cc::Build) {
+        build
+            .define("DALEMBERT_LEVEL", format!("_{}", self.name).as_str())
+            .define("DALEMBERT_LANES", self.lanes.to_string().as_str())
+            // Both branches of a choice may be computed, of which a lane takes one.
+            .flag_if_supported("-fno-trapping-math")
+            // No vector is passed between functions that are not inlined.
+            .flag_if_supported("-Wno-psabi");
+        for flag in self.flags {
+            build.flag(flag);
+        }
+    }
 }
 
 impl Library {

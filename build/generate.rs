@@ -39,6 +39,8 @@ pub struct Generated {
     pub directory: PathBuf,
     /// The C files in it.
     pub sources: Vec<PathBuf>,
+    /// The C files in it that are compiled once for each level of the processor; may be none.
+    pub lanes: Vec<PathBuf>,
     /// The Rust fragment that describes the model.
     pub fragment: String,
     /// Name of the `static` in the fragment.
@@ -170,16 +172,22 @@ fn read(model: &Model, folder: &Path) -> Result<Generated, Error> {
     let item = manifest["static"]
         .as_str()
         .ok_or_else(|| wrong("a manifest.json without the string `static`"))?;
-    let sources = manifest["sources"]
-        .as_array()
-        .and_then(|names| names.iter().map(Value::as_str).collect::<Option<Vec<_>>>())
+    let files = |list: &str| {
+        let names = manifest[list].as_array();
+        let names = names.and_then(|all| all.iter().map(Value::as_str).collect::<Option<Vec<_>>>());
+        names.map(|all| all.iter().map(|name| folder.join(name)).collect::<Vec<_>>())
+    };
+    let sources = files("sources")
         .filter(|names| !names.is_empty())
         .ok_or_else(|| wrong("a manifest.json without the list of file names `sources`"))?;
+    let lanes = files("lanes")
+        .ok_or_else(|| wrong("a manifest.json without the list of file names `lanes`"))?;
     Ok(Generated {
         name: model.name.clone(),
         folder: model.folder.clone(),
         directory: folder.to_owned(),
-        sources: sources.iter().map(|name| folder.join(name)).collect(),
+        sources,
+        lanes,
         fragment: text("model.rs")?,
         item: item.to_owned(),
     })

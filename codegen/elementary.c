@@ -7,59 +7,9 @@
  * x = n pi/2 + y with |y| <= pi/4 (Muller 2016, Elementary Functions, chapter 11); y is the sum of two
  * doubles. sin y and cos y are polynomials in y^2 (tools/elementary.py).
  */
-#include <stdint.h>
-#include <string.h>
+#include "elementary.h"
 
-struct dalembert_sin_cos { double sin, cos; };
-struct dalembert_sin_cos dalembert_sin_cos(double x);
-
-static uint64_t bits_of(double x) { uint64_t b; memcpy(&b, &x, sizeof b); return b; }
-static double of_bits(uint64_t b) { double x; memcpy(&x, &b, sizeof x); return x; }
-
-/* An angle within a quarter turn about a multiple n of pi/2: near + far, |far| <= ulp(near)/2. */
-struct angle { double near, far; uint64_t n; };
-
-/* pi/2 in parts of 27 bits, and what is left. */
-static const double P1 = 0x1.921fb54p+0, P2 = 0x1.10b461p-30, P3 = 0x1.a62633p-58, P4 = 0x1.45c06ep-86,
-                    P5 = 0x1.cd129024e088ap-115;
-
-/* Up to here n has 26 bits, and its products with the parts of pi/2 are exact. */
-static const double DIRECT = 0x1p26;
-
-/* a + b = sum + what is returned, exactly (Knuth). */
-static double two_sum(double a, double b, double *sum) {
-  const double s = a + b, from_a = s - b, from_b = s - from_a;
-  *sum = s;
-  return (a - from_a) + (b - from_b);
-}
-
-/* For 0 <= x <= DIRECT (Cody and Waite 1980). */
-static struct angle reduced(double x) {
-  if (x <= 0x1.921fb54442d18p-1) { /* pi/4: what follows gives the same, later. */
-    const struct angle itself = {x, 0.0, 0};
-    return itself;
-  }
-  /* To the nearest whole number, which the last bits then show. */
-  const double round = 0x1.8p52, shifted = x * 0x1.45f306dc9c883p-1 + round, n = shifted - round;
-  double sum = x - n * P1; /* exact: Sterbenz */
-  double rest;
-  if (sum > n * 0x1p-28 || -sum > n * 0x1p-28) {
-    /* Nothing cancels: n P2 is smaller than the sum, and what is neglected is 2^-82 of it. */
-    const double before = sum, part = n * P2;
-    sum = before - part;
-    rest = ((before - sum) - part) - n * (P3 + P4);
-  } else {
-    /* No multiple of pi/2 is closer to such a double than about 2^-58; the parts leave out n 2^-168. */
-    rest = two_sum(sum, -(n * P2), &sum);
-    rest += two_sum(sum, -(n * P3), &sum);
-    rest += two_sum(sum, -(n * P4), &sum) - n * P5;
-  }
-  struct angle angle;
-  angle.near = sum + rest;
-  angle.far = (sum - angle.near) + rest;
-  angle.n = bits_of(shifted);
-  return angle;
-}
+struct dalembert_pair dalembert_sin_cos(double x);
 
 /* 2/pi in words of 32 bits: 2^-32 times the first, 2^-64 times the second, ... */
 static const uint32_t TWO_OVER_PI[] = {
@@ -119,26 +69,14 @@ static struct angle reduced_far(double x) {
 }
 
 /* Not a number for x that is none or infinite. */
-struct dalembert_sin_cos dalembert_sin_cos(double x) {
+struct dalembert_pair dalembert_sin_cos(double x) {
   const uint64_t sign = bits_of(x) & ((uint64_t)1 << 63);
   const double size = of_bits(bits_of(x) ^ sign);
-  struct dalembert_sin_cos out;
+  struct dalembert_pair out;
   if (!(size < 0x1p1023 * 2.0)) {
     out.sin = out.cos = x - x;
     return out;
   }
   const struct angle angle = size <= DIRECT ? reduced(size) : reduced_far(size);
-  const double y = angle.near, far = angle.far, z = y * y, cube = z * y, fourth = z * z;
-  const double s = 0x1.1111111110bb2p-7 + z * (-0x1.a01a019e83816p-13 + z * 0x1.71de379654304p-19)
-                   + fourth * z * (-0x1.ae600aca92c64p-26 + z * 0x1.5e0b05bff20f2p-33);
-  const double c = z * (0x1.5555555555555p-5 + z * (-0x1.6c16c16c16967p-10 + z * 0x1.a01a019f4e9b4p-16))
-                   + fourth * fourth * (-0x1.27e4fa17bf139p-22 + z * (0x1.1eeb68cd22f56p-29 + z * -0x1.907d8f29fe831p-37));
-  const double sin_y = y - ((z * (0.5 * far - cube * s) - far) - cube * -0x1.5555555555555p-3);
-  const double half = 0.5 * z, one = 1.0 - half;
-  const double cos_y = one + (((1.0 - one) - half) + (z * c - y * far));
-  /* Odd multiples of a quarter turn exchange the two; the second bit of n is their sign. */
-  const uint64_t odd = -(angle.n & 1), either = (bits_of(sin_y) ^ bits_of(cos_y)) & odd;
-  out.sin = of_bits(bits_of(sin_y) ^ either ^ (angle.n & 2) << 62 ^ sign);
-  out.cos = of_bits(bits_of(cos_y) ^ either ^ ((angle.n + 1) & 2) << 62);
-  return out;
+  return sin_cos_of(angle, sign);
 }

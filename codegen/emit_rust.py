@@ -19,6 +19,25 @@ SERIES = ("series", "quiet_series", "guard_series")
 """What is emitted as a Taylor series."""
 
 
+LANES = ("series", "quiet_series", "requirements", "guard")
+"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names."""
+
+LEVELS = (("v1", ""), ("v3", '#[cfg(target_arch = "x86_64")] '), ("v4", '#[cfg(target_arch = "x86_64")] '))
+"""Levels of the processor for which lanes are compiled, as in build/compile.rs."""
+
+
+def goes_in_lanes(variant, i):
+    """Whether trajectories in a mode can go side by side: it is analytic, nothing drifts, and its guards
+    are coordinates or rates that fall without further conditions."""
+    equations = variant.modes[i]
+    analytic = all(variant.functions[i, what].symbol for what in ("series", "quiet_series"))
+    guards = [
+        linear_shape(variant.model, equations, equations.place(expression)) is not None
+        and all(t.condition is None for t in transitions)
+        for expression, transitions in equations.guards]
+    return bool(equations.free) and analytic and not equations.mode.drift and all(guards)
+
+
 def model_text(name, variants, constants_symbol, constants_count, for_tests):
     """The Rust fragment of a model."""
     model = variants[0].model
@@ -34,6 +53,14 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     arrays = "q: *mut f64, v: *mut f64, a: *mut f64, u: *const f64, x: *const RawContext, w: *mut f64, out: *mut f64"
     lines += [f"    fn {e}({arrays});" for e in sorted({start for start, _ in series})]
     lines += [f"    fn {e}(n: usize, {arrays});" for e in sorted({run for _, run in series})]
+    lanes = [f for v in variants for slot, f in v.functions.items() if slot[1] in LANES and goes_in_lanes(v, slot[0])]
+    for level, only in LEVELS:
+        of = lambda names: sorted({f"{only}fn {e}_{level}" for e in names})
+        lines += [f"    {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
+                  for e in of(f.symbol for f in lanes if isinstance(f.symbol, str))]
+        pairs = [f.symbol for f in lanes if not isinstance(f.symbol, str)]
+        lines += [f"    {e}({arrays});" for e in of(start for start, _ in pairs)]
+        lines += [f"    {e}(n: usize, {arrays});" for e in of(run for _, run in pairs)]
     lines += ["}", "", "static DIMENSIONS: Dimensions = Dimensions {",
               f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
               f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
@@ -194,6 +221,7 @@ def _mode(variant, i, equations):
     yield f"{pad}        mass_is_constant: {_bool(_is_constant(model, equations, mass))},"
     yield f"{pad}        is_linear: {_bool(_is_constant(model, equations, jacobian))},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
+    yield f"{pad}        lanes: {_lanes(variant, i, functions)},"
     yield f"{pad}    }}),"
     counts = ", ".join(
         f"({_text(what[0] if len(what) == 1 else ' '.join(map(str, what)))}, {f.operations})"
@@ -202,9 +230,23 @@ def _mode(variant, i, equations):
     yield f"{pad}}},"
 
 
-def _series(function):
+def _series(function, level=""):
     (start, run), (lead, row) = function.symbol, function.workspace
-    return f"SeriesKernel {{ start: {start}, run: {run}, lead: {lead}, row: {row} }}"
+    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row} }}"
+
+
+def _lanes(variant, i, functions):
+    """The functions for lanes, one set a level."""
+    if not goes_in_lanes(variant, i):
+        return "&[]"
+    sets = []
+    for level, only in LEVELS:
+        guards = ", ".join(f"{functions['guard', g].symbol}_{level}" for g in range(len(variant.modes[i].guards)))
+        sets.append(
+            f"{only}LaneKernel {{ series: {_series(functions[('series',)], '_' + level)}, "
+            f"quiet_series: {_series(functions[('quiet_series',)], '_' + level)}, "
+            f"requirements: {functions[('requirements',)].symbol}_{level}, guards: &[{guards}] }}")
+    return f"&[{', '.join(sets)}]"
 
 
 def _guard_name(transitions):

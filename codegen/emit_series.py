@@ -56,14 +56,14 @@ class Graph:
     def zeroth(self, text):
         """A node that is constant in time."""
         name = self._name()
-        self.start.append(f"  const double {name} = {text};")
+        self.start.append(f"  const real {name} = {text};")
         return _Node(name)
 
     def series(self, zeroth, next):
         """A node with coefficients of all orders."""
         name = self._name()
-        self.start.append(f"  const double {name} = {zeroth};")
-        self.next.append(f"  const double {name} = {next};")
+        self.start.append(f"  const real {name} = {zeroth};")
+        self.next.append(f"  const real {name} = {next};")
         return _Node(name, name)
 
     def first(self, node):
@@ -127,10 +127,10 @@ class Graph:
         reciprocal = self.first(self.zeroth(f"1.0 / {y.zeroth}"))
         z = _Node(self._name())
         z.next = z.zeroth
-        self.start.append(f"  const double {z.zeroth} = {zeroth};")
+        self.start.append(f"  const real {z.zeroth} = {zeroth};")
         rest = f"({self.interior(y.next, z.next)} + {y.next} * {self.first(z)})"
         numerator = f"-{rest}" if x.constant else f"({x.next} - {rest})"
-        self.next.append(f"  const double {z.next} = {numerator} * {reciprocal};")
+        self.next.append(f"  const real {z.next} = {numerator} * {reciprocal};")
         return z
 
     def inverse(self, x):
@@ -140,27 +140,27 @@ class Graph:
         """z with z z = x."""
         z = self._integral(f"sqrt({x.zeroth})")
         half = self.first(self.zeroth(f"0.5 / {z.zeroth}"))
-        self.next.append(f"  const double {z.next} = ({x.next} - {self.interior(z.next, z.next)}) * {half};")
+        self.next.append(f"  const real {z.next} = ({x.next} - {self.interior(z.next, z.next)}) * {half};")
         return z
 
     def _integral(self, zeroth):
         """A node whose `next` is given later, by its own recurrence."""
         name = self._name()
-        self.start.append(f"  const double {name} = {zeroth};")
+        self.start.append(f"  const real {name} = {zeroth};")
         return _Node(name, name)
 
     def _grows(self, z, x, w, sign=""):
         """z with ż = ± w ẋ: k z_k = ± Σ_{j=1}^{k} j x_j w_{k-j}."""
         inner = self.interior(self._scaled(x), w.next)
         text = f"{inner} * inverse_k + {x.next} * {self.first(w)}"
-        self.next.append(f"  const double {z.next} = {sign}({text});")
+        self.next.append(f"  const real {z.next} = {sign}({text});")
 
     def _quotient_grows(self, zeroth, x, w, sign=""):
         """z with w ż = ± ẋ: w_0 k z_k = ± k x_k − Σ_{j=1}^{k-1} j z_j w_{k-j}."""
         z = self._integral(zeroth)
         reciprocal = self.first(self.zeroth(f"1.0 / {w.zeroth}"))
         inner = self.interior(self._scaled(z), w.next)
-        self.next.append(f"  const double {z.next} = ({sign}{x.next} - {inner} * inverse_k) * {reciprocal};")
+        self.next.append(f"  const real {z.next} = ({sign}{x.next} - {inner} * inverse_k) * {reciprocal};")
         return z
 
     @staticmethod
@@ -201,10 +201,10 @@ class Graph:
         z = self._integral(f"{name}({x.zeroth})")
         slope = _Node(self._name())
         slope.next = slope.zeroth
-        self.start.append(f"  const double {slope.zeroth} = 1.0 {sign} {z.zeroth} * {z.zeroth};")
+        self.start.append(f"  const real {slope.zeroth} = 1.0 {sign} {z.zeroth} * {z.zeroth};")
         self._grows(z, x, slope)
         square = f"{self.interior(z.next, z.next)} + 2.0 * {self.first(z)} * {z.next}"
-        self.next.append(f"  const double {slope.next} = {'' if sign == '+' else '-'}({square});")
+        self.next.append(f"  const real {slope.next} = {'' if sign == '+' else '-'}({square});")
         return z
 
     def arc_tangent(self, x):
@@ -231,7 +231,7 @@ class Graph:
         weighted = f"({p} + 1.0) * inverse_k * {self.interior(self._scaled(x), z.next)}"
         plain = self.interior(x.next, z.next)
         self.next.append(
-            f"  const double {z.next} = ({p} * {x.next} * {self.first(z)} + ({weighted} - {plain})) * {reciprocal};")
+            f"  const real {z.next} = ({p} * {x.next} * {self.first(z)} + ({weighted} - {plain})) * {reciprocal};")
         return z
 
     def _whole_power(self, x, exponent):
@@ -329,11 +329,11 @@ class Series:
         if drift:
             rates = _walk(self.graph, place, ca.vertcat(*drift.values()))
             for i, rate in zip(drift, rates):
-                next = f"(k == 1 ? {self.graph.first(rate)} : 0.0)"
+                next = f"(k == 1 ? {self.graph.first(rate)} : REAL(0.0))"
                 place[held[i].element_hash()] = _Node(f"h[{i}]", next)
         self.nodes = _walk(self.graph, place, output)
         for i, node in enumerate(self.nodes):
-            self.graph.start.append(f"  out[{i}] = {node.zeroth};")
+            self.graph.start.append(f"  out[{i}] = REAL({node.zeroth});")
 
     def finish(self):
         """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
@@ -353,12 +353,12 @@ class Series:
                 now.append(f"  now[{count + n}] = {right};")
         product = f"row[{self.row} * %s + n] * row[{self.row} * %s + {count} + n]"
         self.order += [
-            f"  double *const row = w + {self.lead}, *const now = row + {self.row} * k;",
+            f"  real *const row = w + {self.lead}, *const now = row + {self.row} * k;",
             *late,
-            f"  double y[{count}], z[{count}];",
+            f"  real y[{count}], z[{count}];",
             f"  for (size_t n = 0; n < {count}; ++n) {{",
-            f"    y[n] = k % 2 == 0 ? {product % ('(k / 2)', '(k / 2)')} : 0.0;",
-            "    z[n] = 0.0;",
+            f"    y[n] = k % 2 == 0 ? {product % ('(k / 2)', '(k / 2)')} : REAL(0.0);",
+            "    z[n] = REAL(0.0);",
             "  }",
             "  DALEMBERT_UNROLL",
             "  for (size_t j = (k - 1) / 2; j >= 1; --j) {",
@@ -376,10 +376,11 @@ class Series:
         start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start))
         order = source.add_text(f"{name}_order", f"const size_t k, {_SIGNATURE}", _text(self.order), inline=True)
         call = f"{order}(%s, q, v, a, u, x, w, out);"
+        orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
         if len(self.graph.interiors) <= MOST_UNROLLED:
-            orders = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
-        else:
-            orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
+            unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
+            # A vector of eight lanes fills the processor without.
+            orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]
         run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders))
         return start, run
 
@@ -398,7 +399,7 @@ class Outputs(Series):
     def __init__(self, output, **arguments):
         super().__init__(output, **arguments)
         for i, node in enumerate(self.nodes):
-            self.graph.next.append(f"  out[{len(self.nodes)} * k + {i}] = {node.next or '0.0'};")
+            self.graph.next.append(f"  out[{len(self.nodes)} * k + {i}] = REAL({node.next or '0.0'});")
         self.finish()
 
 
@@ -419,10 +420,10 @@ class Equations(Series):
             for j, mass in enumerate(self.nodes[i: free * free: free]):
                 if not mass.constant:
                     terms.append(f"({self._late(mass, j, free)} + {mass.next} * a[{j}])")
-            lines.append(f"  const double r{i} = {' + '.join(terms) or '0.0'};")
+            lines.append(f"  const real r{i} = REAL({' + '.join(terms) or '0.0'});")
         for i in range(free):
             row = " + ".join(f"out[{free * j + i}] * r{j}" for j in range(free))
-            lines.append(f"  const double a{i} = -({row}), v{i} = a{i} * (1.0 / (order + 1.0));")
+            lines.append(f"  const real a{i} = -({row}), v{i} = a{i} * (1.0 / (order + 1.0));")
             lines.append(f"  a[{free} * k + {i}] = a{i};")
             lines.append(f"  v[{free} * (k + 1) + {i}] = v{i};")
             lines.append(f"  q[{free} * (k + 2) + {i}] = v{i} * (1.0 / (order + 2.0));")
@@ -436,14 +437,14 @@ class Equations(Series):
         return inner
 
 
-_SIGNATURE = ("double *restrict q, double *restrict v, double *restrict a, const double *u,\n"
-              "    const struct dalembert_context *x, double *restrict w, double *restrict out")
+_SIGNATURE = ("real *restrict q, real *restrict v, real *restrict a, const real *u,\n"
+              "    const struct dalembert_context *x, real *restrict w, real *restrict out")
 
 
 def _text(lines):
     text = "\n".join(lines)
     arrays = "".join(
-        f"  const double *const {field} = x->{field};\n"
+        f"  const real *const {field} = x->{field};\n"
         for field in ("d", "h", "c") if f" {field}[" in text or f"({field}[" in text
     )
     unused = "".join(f"  (void){name};\n" for name in ("q", "v", "a", "u", "x", "w", "out"))

@@ -79,19 +79,32 @@ def generate(folder, for_tests=False):
             function.symbol = source.add(f"{prefix}_{function.name}", arguments, function.output)
             function.operations = source.operations[f"{prefix}_{function.name}"]
     c_text = source.text(name)
+    lanes_text = source.lanes_text(name, _lane_functions(variants))
     rust_text = emit_rust.model_text(name, variants, constants_symbol, constants.values.numel(), for_tests)
     manifest = {
         "name": name,
         "static": name.upper(),
         "sources": [f"{name}.c"],
+        "lanes": [f"{name}_lanes.c"] if lanes_text else [],
         "casadi": ca.__version__,
-        "content": hashlib.sha256((c_text + rust_text).encode()).hexdigest(),
+        "content": hashlib.sha256((c_text + (lanes_text or "") + rust_text).encode()).hexdigest(),
         "operations": {
             f"{'/'.join(c[3] for c in v.model.choices)}:{f.name}" if v.model.choices else f.name: f.operations
             for v in variants for f in v.functions.values()
         },
     }
-    return {f"{name}.c": c_text, "model.rs": rust_text, "manifest.json": json.dumps(manifest, indent=1) + "\n"}
+    files = {f"{name}.c": c_text, "model.rs": rust_text, "manifest.json": json.dumps(manifest, indent=1) + "\n"}
+    return files | ({f"{name}_lanes.c": lanes_text} if lanes_text else {})
+
+
+def _lane_functions(variants):
+    """Names of the C functions that the modes which go in lanes need there."""
+    names = set()
+    for variant in variants:
+        for slot, function in variant.functions.items():
+            if slot[1] in emit_rust.LANES and emit_rust.goes_in_lanes(variant, slot[0]):
+                names.update([function.symbol] if isinstance(function.symbol, str) else function.symbol)
+    return names
 
 
 def _emit_series(source, prefix, variant, slot, function, constants):

@@ -4,7 +4,8 @@
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
-use crate::integrate::{ORDERS, Series};
+use crate::input::{LaneSignals, Side, Signals};
+use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
 
@@ -57,6 +58,199 @@ unsafe extern "C" {
     safe fn dalembert_sin_cos(x: f64) -> SinCos;
 }
 
+/// What codegen/lanes.c has for every mode, at a level of the processor.
+struct LaneFunctions {
+    sin_cos: unsafe extern "C" fn(*const f64, *mut f64, *mut f64),
+    sum: unsafe extern "C" fn(usize, usize, *const f64, *const f64, *mut f64),
+    length: unsafe extern "C" fn(
+        usize,
+        usize,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const f64,
+        *mut f64,
+    ),
+    first_fall: unsafe extern "C" fn(
+        usize,
+        usize,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const f64,
+        *const u64,
+        *mut f64,
+        *mut f64,
+    ),
+}
+
+macro_rules! lane_functions {
+    ($sin_cos:ident, $sum:ident, $length:ident, $first_fall:ident) => {{
+        unsafe extern "C" {
+            fn $sin_cos(x: *const f64, sin: *mut f64, cos: *mut f64);
+            fn $sum(count: usize, stride: usize, row: *const f64, tau: *const f64, out: *mut f64);
+            fn $length(
+                free: usize,
+                p: usize,
+                q: *const f64,
+                v: *const f64,
+                tolerances: *const f64,
+                remaining: *const f64,
+                horizon: *const f64,
+                out: *mut f64,
+            );
+            fn $first_fall(
+                count: usize,
+                stride: usize,
+                row: *const f64,
+                h: *const f64,
+                factor: *const f64,
+                offset: *const f64,
+                starts_at_zero: *const u64,
+                c: *mut f64,
+                out: *mut f64,
+            );
+        }
+        LaneFunctions {
+            sin_cos: $sin_cos,
+            sum: $sum,
+            length: $length,
+            first_fall: $first_fall,
+        }
+    }};
+}
+
+/// By level.
+static LANE_FUNCTIONS: &[LaneFunctions] = &[
+    lane_functions!(
+        dalembert_lane_sin_cos_v1,
+        dalembert_lane_sum_v1,
+        dalembert_lane_length_v1,
+        dalembert_lane_first_fall_v1
+    ),
+    #[cfg(target_arch = "x86_64")]
+    lane_functions!(
+        dalembert_lane_sin_cos_v3,
+        dalembert_lane_sum_v3,
+        dalembert_lane_length_v3,
+        dalembert_lane_first_fall_v3
+    ),
+    #[cfg(target_arch = "x86_64")]
+    lane_functions!(
+        dalembert_lane_sin_cos_v4,
+        dalembert_lane_sum_v4,
+        dalembert_lane_length_v4,
+        dalembert_lane_first_fall_v4
+    ),
+];
+
+/// The functions of a level.
+///
+/// # Panics
+/// If it does not have `W` lanes, which all calls rely on.
+#[inline]
+fn lane_functions<const W: usize>(level: usize) -> &'static LaneFunctions {
+    assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
+    &LANE_FUNCTIONS[level]
+}
+
+/// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
+///
+/// # Panics
+/// If `W` is not the number of lanes of the level; so do the other functions for lanes.
+#[inline]
+pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
+    let (mut sin, mut cos) = (x, x);
+    let (to_sin, to_cos) = ((&raw mut sin).cast(), (&raw mut cos).cast());
+    // SAFETY: one number a lane each.
+    unsafe { (lane_functions::<W>(level).sin_cos)((&raw const x).cast(), to_sin, to_cos) };
+    (sin, cos)
+}
+
+/// Σ `rows[k][i]` τᵏ.
+#[inline]
+pub fn lane_sum<const F: usize, const W: usize>(
+    level: usize,
+    rows: &[[Lanes<W>; F]],
+    i: usize,
+    tau: &Lanes<W>,
+) -> Lanes<W> {
+    assert!(i < F);
+    let mut out = Lanes::of(0.0);
+    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let (tau, to) = ((&raw const *tau).cast(), (&raw mut out).cast());
+    // SAFETY: as many rows of F entries are there, of which entry i is read.
+    unsafe { (lane_functions::<W>(level).sum)(rows.len(), F, row, tau, to) };
+    out
+}
+
+/// The length at which the last terms of a series of order `p` equal the tolerance, as it fits into what
+/// is `remaining` and not more than `horizon`. `tolerances` are the relative one and the absolute ones
+/// of coordinates and velocities.
+#[inline]
+pub fn lane_length<const F: usize, const W: usize>(
+    level: usize,
+    p: usize,
+    series: &LaneSeries<F, W>,
+    tolerances: &[f64],
+    [remaining, horizon]: [&Lanes<W>; 2],
+) -> Lanes<W> {
+    assert!(p >= 2 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
+    let mut out = Lanes::of(0.0);
+    let [q, v] = [&series.q, &series.v].map(|rows| rows.as_ptr().cast());
+    let [remaining, horizon] = [remaining, horizon].map(|x| (&raw const *x).cast());
+    let length = lane_functions::<W>(level).length;
+    // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
+    unsafe {
+        length(
+            F,
+            p,
+            q,
+            v,
+            tolerances.as_ptr(),
+            remaining,
+            horizon,
+            (&raw mut out).cast(),
+        )
+    };
+    out
+}
+
+/// The first fall of factor · Σ `rows[k][i]` τᵏ + offset on 0 < τ ≤ h, as a part of h: infinite where
+/// there is none, not a number where that takes a closer look. Of those that start at zero (a word of
+/// ones in their lane) the factor τ is divided out. `coefficients` get those in powers of τ/h.
+#[inline]
+pub fn lane_first_fall<const F: usize, const W: usize>(
+    level: usize,
+    (rows, i): (&[[Lanes<W>; F]], usize),
+    [h, factor, offset]: [&Lanes<W>; 3],
+    starts_at_zero: &LaneMask<W>,
+    coefficients: &mut [Lanes<W>; ORDERS],
+) -> Lanes<W> {
+    assert!(i < F && (1..=ORDERS).contains(&rows.len()));
+    let mut out = Lanes::of(0.0);
+    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let [h, factor, offset] = [h, factor, offset].map(|x| (&raw const *x).cast());
+    let first_fall = lane_functions::<W>(level).first_fall;
+    // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
+    // coefficients; the rest is one number a lane each.
+    unsafe {
+        first_fall(
+            rows.len(),
+            F,
+            row,
+            h,
+            factor,
+            offset,
+            starts_at_zero.0.as_ptr(),
+            coefficients.as_mut_ptr().cast(),
+            (&raw mut out).cast(),
+        )
+    };
+    out
+}
+
 /// Sine and cosine of `x` (rad), by the same function as in generated code: by the same bits on every
 /// processor, to less than one unit in the last place. NaN if `x` is not finite.
 #[inline]
@@ -87,17 +281,19 @@ pub struct Dimensions {
 pub struct Context {
     dimensions: &'static Dimensions,
     /// Signals of the inputs at the present time.
-    pub signals: Box<[f64]>,
+    signals: Box<[f64]>,
+    /// Time derivatives of the signals.
+    signal_rates: Box<[f64]>,
+    /// Time and side that the signals and their rates are set for, s; NaN: none.
+    signals_at: (f64, Side),
     /// Whether no input ever acts: all signals are zero and stay so.
     pub quiet: bool,
-    /// Time derivatives of the signals.
-    pub signal_rates: Box<[f64]>,
     /// Discrete states.
     pub discrete: Box<[f64]>,
     /// All coordinates; the generated functions read those that the mode holds.
     pub held: Box<[f64]>,
     /// Taylor coefficients of the signals, one row an order.
-    pub signal_series: Box<[f64]>,
+    signal_series: Box<[f64]>,
     constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub guard_series: Box<[f64]>,
@@ -120,14 +316,78 @@ impl Context {
         Context {
             dimensions,
             signals: vec![0.0; dimensions.signals].into(),
-            quiet: false,
             signal_rates: vec![0.0; dimensions.signals].into(),
+            signals_at: (f64::NAN, Side::Right),
+            quiet: false,
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
-            constants: model.constants.evaluate(parameters),
+            constants: {
+                let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
+                model.constants.evaluate(parameters, &mut constants);
+                constants
+            },
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
+        }
+    }
+
+    /// Goes over to other parameters.
+    ///
+    /// # Panics
+    /// As [`Context::new`], and if it is another model.
+    pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
+        assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
+        model.constants.evaluate(parameters, &mut self.constants);
+    }
+
+    /// Signals of the inputs at the present time.
+    pub fn signals(&self) -> &[f64] {
+        &self.signals
+    }
+
+    /// Signals and their rates, for values of one's own.
+    pub fn signals_mut(&mut self) -> [&mut [f64]; 2] {
+        self.signals_at.0 = f64::NAN;
+        [&mut self.signals, &mut self.signal_rates]
+    }
+
+    /// Sets signals and their rates to those at time `t` (s), as they are on that side.
+    #[inline]
+    pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
+        if !self.quiet && self.signals_at != (t, side) {
+            signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
+            self.signals_at = (t, side);
+        }
+    }
+
+    /// Sets signals and their rates to those of a lane at time `t` (s), as they are right after it;
+    /// `from` are its signals.
+    pub fn set_signals_of_lane<const W: usize>(
+        &mut self,
+        of: &LaneSignals<W>,
+        lane: usize,
+        signals: &Signals,
+        t: f64,
+        from: &[Lanes<W>],
+    ) {
+        of.of_lane(
+            lane,
+            signals,
+            from,
+            &mut self.signals,
+            &mut self.signal_rates,
+        );
+        self.signals_at = (t, Side::Right);
+    }
+
+    /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
+    #[inline]
+    pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
+        if !self.quiet {
+            self.set_signals(signals, t, Side::Right);
+            let rows = &mut self.signal_series[..orders * self.signals.len()];
+            signals.series(t, &self.signals, &self.signal_rates, rows);
         }
     }
 
@@ -183,13 +443,13 @@ pub struct ConstantsKernel {
 }
 
 impl ConstantsKernel {
-    fn evaluate(&self, parameters: &[f64]) -> Box<[f64]> {
+    fn evaluate(&self, parameters: &[f64], out: &mut [f64]) {
         assert_eq!(
             parameters.len(),
             self.dimensions.parameters,
             "number of parameters"
         );
-        let mut out = vec![0.0; self.dimensions.constants].into_boxed_slice();
+        assert_eq!(out.len(), self.dimensions.constants);
         let raw = RawContext {
             u: std::ptr::null(),
             u_dot: std::ptr::null(),
@@ -201,7 +461,6 @@ impl ConstantsKernel {
         let none = std::ptr::null();
         // SAFETY: the function reads `parameters` only and writes `constants` outputs.
         unsafe { (self.function)(parameters.as_ptr(), none, none, &raw, out.as_mut_ptr()) }
-        out
     }
 }
 
@@ -261,6 +520,17 @@ pub struct ModeKernel<const F: usize> {
     mass_is_constant: bool,
     is_linear: bool,
     held_rates: Raw,
+    lanes: &'static [LaneKernel],
+}
+
+/// The generated functions of a mode for trajectories side by side, at a level of the processor.
+#[derive(Debug)]
+struct LaneKernel {
+    series: SeriesKernel,
+    /// The same where no input acts.
+    quiet_series: SeriesKernel,
+    requirements: Raw,
+    guards: &'static [Raw],
 }
 
 /// The generated Taylor series of a mode.
@@ -451,7 +721,7 @@ impl<const F: usize> ModeKernel<F> {
         out
     }
 
-    /// b with M j + b = 0 for the jerk j; needs `Context::signal_rates`.
+    /// b with M j + b = 0 for the jerk j; needs the signals to be set.
     pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
         let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
@@ -596,7 +866,7 @@ impl<const F: usize> ModeKernel<F> {
         out
     }
 
-    /// Derivative of a guard along the flow with jerk `j`; needs `Context::signal_rates`.
+    /// Derivative of a guard along the flow with jerk `j`; needs the signals to be set.
     pub fn guard_rate(
         &self,
         x: &Context,
@@ -653,6 +923,239 @@ impl<const F: usize> ModeKernel<F> {
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
         unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
         &out[..count]
+    }
+}
+
+/// Number of lanes at each level of the processor that generated code is compiled for; the same in
+/// build/compile.rs.
+pub const LANES_OF_LEVELS: &[usize] = &[
+    2,
+    #[cfg(target_arch = "x86_64")]
+    4,
+    #[cfg(target_arch = "x86_64")]
+    8,
+];
+
+/// The best level of this processor, an index into [`LANES_OF_LEVELS`].
+pub fn processor_level() -> usize {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let best = ["avx512f", "avx512dq", "avx512vl"];
+        let has = |name| match name {
+            "avx512f" => std::arch::is_x86_feature_detected!("avx512f"),
+            "avx512dq" => std::arch::is_x86_feature_detected!("avx512dq"),
+            _ => std::arch::is_x86_feature_detected!("avx512vl"),
+        };
+        if best.into_iter().all(has) {
+            return 2;
+        }
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return 1;
+        }
+    }
+    0
+}
+
+/// What generated functions need besides the free coordinates, for `W` trajectories side by side: as
+/// [`Context`], each entry a number a lane.
+#[derive(Debug, Clone)]
+pub struct LaneContext<const W: usize> {
+    dimensions: &'static Dimensions,
+    /// Signals of the inputs.
+    pub signals: Box<[Lanes<W>]>,
+    /// Taylor coefficients of the signals, one row an order.
+    pub signal_series: Box<[Lanes<W>]>,
+    discrete: Box<[Lanes<W>]>,
+    held: Box<[Lanes<W>]>,
+    constants: Box<[Lanes<W>]>,
+    workspace: Box<[Lanes<W>]>,
+}
+
+impl<const W: usize> LaneContext<W> {
+    /// A context for a mode, with the discrete states, held coordinates and constants of `like` in all
+    /// lanes.
+    pub fn new<const F: usize>(kernel: &ModeKernel<F>, like: &Context) -> Self {
+        let zeros = |count: usize| vec![Lanes::of(0.0); count].into_boxed_slice();
+        let mut context = LaneContext {
+            dimensions: like.dimensions,
+            signals: zeros(like.signals.len()),
+            signal_series: zeros(like.signal_series.len()),
+            discrete: zeros(like.discrete.len()),
+            held: zeros(like.held.len()),
+            constants: zeros(like.constants.len()),
+            workspace: zeros(kernel.workspace()),
+        };
+        for lane in 0..W {
+            context.load(lane, like);
+        }
+        context
+    }
+
+    /// Takes over discrete states, held coordinates and constants of a trajectory.
+    ///
+    /// # Panics
+    /// If it is one of another model.
+    pub fn load(&mut self, lane: usize, from: &Context) {
+        assert!(std::ptr::eq(self.dimensions, from.dimensions));
+        let of = [&from.discrete, &from.held, &from.constants];
+        let into = [&mut self.discrete, &mut self.held, &mut self.constants];
+        for (into, of) in into.into_iter().zip(of) {
+            for (into, of) in into.iter_mut().zip(of) {
+                into.0[lane] = *of;
+            }
+        }
+    }
+
+    /// The same for a trajectory whose constants were loaded before.
+    pub fn load_state(&mut self, lane: usize, from: &Context) {
+        let of = from.discrete.iter().chain(&from.held);
+        let into = self.discrete.iter_mut().chain(&mut self.held);
+        for (into, of) in into.zip(of) {
+            into.0[lane] = *of;
+        }
+    }
+
+    /// The context as C sees it.
+    fn raw(&self, dimensions: &'static Dimensions) -> RawContext {
+        assert!(
+            std::ptr::eq(self.dimensions, dimensions)
+                && self.signals.len() == dimensions.signals
+                && self.signal_series.len() == ORDERS * dimensions.signals,
+            "a context is used with the functions of the model it was made for"
+        );
+        RawContext {
+            u: self.signals.as_ptr().cast(),
+            // Rates and jerks are not read by what is compiled for lanes.
+            u_dot: std::ptr::null(),
+            d: self.discrete.as_ptr().cast(),
+            h: self.held.as_ptr().cast(),
+            c: self.constants.as_ptr().cast(),
+            j: std::ptr::null(),
+        }
+    }
+}
+
+/// Mass matrix M, by columns, and load b of r = M a + b, in lanes.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct LaneSystem<const F: usize, const W: usize> {
+    /// M = ∂r/∂a.
+    pub mass: [[Lanes<W>; F]; F],
+    /// r at a = 0.
+    pub load: [Lanes<W>; F],
+}
+
+/// [`Series`] in lanes.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+pub struct LaneSeries<const F: usize, const W: usize> {
+    /// Of the coordinates.
+    pub q: [[Lanes<W>; F]; ORDERS],
+    /// Of the velocities.
+    pub v: [[Lanes<W>; F]; ORDERS],
+    /// Of the accelerations.
+    pub a: [[Lanes<W>; F]; ORDERS],
+}
+
+impl<const F: usize> ModeKernel<F> {
+    /// Whether trajectories of this mode can go side by side.
+    pub fn goes_in_lanes(&self) -> bool {
+        !self.lanes.is_empty()
+    }
+
+    fn lane_kernel<const W: usize>(&self, level: usize) -> &'static LaneKernel {
+        assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
+        &self.lanes[level]
+    }
+
+    /// As [`Self::series_start`]; `quiet`: no input acts.
+    ///
+    /// # Panics
+    /// If the mode does not go in lanes, or `W` is not the number of lanes of the level; so do the
+    /// other functions for lanes.
+    pub fn lane_series_start<const W: usize>(
+        &self,
+        level: usize,
+        quiet: bool,
+        x: &mut LaneContext<W>,
+        at: &mut LaneSeries<F, W>,
+    ) -> LaneSystem<F, W> {
+        let kernel = self.lane_kernel::<W>(level);
+        let series = if quiet {
+            &kernel.quiet_series
+        } else {
+            &kernel.series
+        };
+        let zero = Lanes::of(0.0);
+        let mut out = LaneSystem {
+            mass: [[zero; F]; F],
+            load: [zero; F],
+        };
+        let raw = x.raw(self.dimensions);
+        assert!(x.workspace.len() >= self.workspace());
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
+        // SAFETY: as in `series_start`, with `W` numbers for each, which the level was compiled for.
+        unsafe { (series.start)(q, v, a, u, &raw, w.cast(), (&raw mut out).cast()) }
+        out
+    }
+
+    /// As [`Self::series_run`].
+    pub fn lane_series_run<const W: usize>(
+        &self,
+        (level, quiet): (usize, bool),
+        x: &mut LaneContext<W>,
+        n: usize,
+        inverse: &[[Lanes<W>; F]; F],
+        at: &mut LaneSeries<F, W>,
+    ) {
+        let kernel = self.lane_kernel::<W>(level);
+        let series = if quiet {
+            &kernel.quiet_series
+        } else {
+            &kernel.series
+        };
+        assert!(n <= ORDERS - 2);
+        let raw = x.raw(self.dimensions);
+        assert!(x.workspace.len() >= self.workspace());
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
+        let inverse = inverse.as_ptr().cast::<f64>().cast_mut();
+        // SAFETY: as in `series_run`, with `W` numbers for each, which the level was compiled for.
+        unsafe { (series.run)(n, q, v, a, u, &raw, w.cast(), inverse) }
+    }
+
+    /// As [`Self::requirements`], one lane entry a requirement.
+    pub fn lane_requirements<const W: usize>(
+        &self,
+        level: usize,
+        x: &LaneContext<W>,
+        [q, v, a]: [&[Lanes<W>; F]; 3],
+        out: &mut [Lanes<W>],
+    ) {
+        assert_eq!(out.len(), self.requirements.1);
+        let function = self.lane_kernel::<W>(level).requirements;
+        let raw = x.raw(self.dimensions);
+        let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
+        // SAFETY: the length was checked; the level was compiled for `W` lanes.
+        unsafe { function(q, v, a, &raw, out.as_mut_ptr().cast()) }
+    }
+
+    /// As [`Self::guard`], by the index of the guard in the mode.
+    pub fn lane_guard<const W: usize>(
+        &self,
+        level: usize,
+        x: &LaneContext<W>,
+        guard: usize,
+        [q, v, a]: [&[Lanes<W>; F]; 3],
+    ) -> Lanes<W> {
+        let function = self.lane_kernel::<W>(level).guards[guard];
+        let raw = x.raw(self.dimensions);
+        let mut out = Lanes::of(0.0);
+        let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
+        // SAFETY: one output; the level was compiled for `W` lanes.
+        unsafe { function(q, v, a, &raw, (&raw mut out).cast()) }
+        out
     }
 }
 

@@ -49,8 +49,9 @@ impl<const F: usize> Point<F> {
             let q = c.scale * random.next();
             context.held[i] = mode.held_at[i].unwrap_or(c.minimum.map_or(q, |m| m + q.abs()));
         }
-        context.signals.fill_with(|| random.next());
-        context.signal_rates.fill_with(|| random.next());
+        let [signals, rates] = context.signals_mut();
+        signals.fill_with(|| random.next());
+        rates.fill_with(|| random.next());
         for input in model
             .inputs
             .iter()
@@ -58,7 +59,7 @@ impl<const F: usize> Point<F> {
         {
             // Velocity and displacement of the ground belong to its acceleration.
             for k in 0..2 {
-                context.signal_rates[input.signal + k + 1] = context.signals[input.signal + k];
+                rates[input.signal + k + 1] = signals[input.signal + k];
             }
         }
         let held = context.held.clone();
@@ -86,8 +87,9 @@ impl<const F: usize> Point<F> {
     /// The point a time `t` later on the motion whose jerk and signal rates are constant.
     fn later(&self, t: f64) -> Self {
         let mut context = self.context.clone();
-        for (u, rate) in context.signals.iter_mut().zip(&self.context.signal_rates) {
-            *u += rate * t;
+        let [signals, rates] = context.signals_mut();
+        for (u, rate) in signals.iter_mut().zip(rates) {
+            *u += *rate * t;
         }
         for (held, rate) in context.held.iter_mut().zip(&self.drift) {
             *held += rate * t;

@@ -16,6 +16,7 @@ fn output(command: &mut Command) -> String {
 const MAIN: &str = r#"
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 static void print(const char *what, const double *x, int n) {
   for (int i = 0; i < n; ++i) {
     uint64_t bits;
@@ -67,14 +68,7 @@ fn the_bits_do_not_depend_on_the_instructions() {
     let elementary = project.join("codegen/elementary.c");
     let model = folder.path().join("rocking_block/rocking_block.c");
     let main = folder.path().join("main.c");
-    let text = format!("#include {elementary:?}\n#include {model:?}\n{MAIN}");
-    // Two definitions of one structure in one file are one too many.
-    let declared = "struct dalembert_sin_cos { double sin, cos; };\n";
-    let once = std::fs::read_to_string(&model)
-        .unwrap()
-        .replace(declared, "");
-    std::fs::write(&model, once).unwrap();
-    std::fs::write(&main, text).unwrap();
+    std::fs::write(&main, format!("#include {model:?}\n{MAIN}")).unwrap();
 
     let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     let processors = [
@@ -90,7 +84,7 @@ fn the_bits_do_not_depend_on_the_instructions() {
             // As in build/compile.rs.
             compile
                 .args([level, "-ffp-contract=off", &format!("-march={name}"), "-o"])
-                .args([&program, &main])
+                .args([&program, &main, &elementary])
                 .arg("-lm");
             output(&mut compile);
             all.push(output(&mut Command::new(program)));

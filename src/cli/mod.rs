@@ -14,6 +14,7 @@ mod describe;
 mod interrupt;
 mod models;
 mod outcome;
+mod precision;
 mod print;
 mod run;
 mod schema;
@@ -41,6 +42,8 @@ enum Command {
     Run(run::RunArguments),
     /// Simulate a scene under every variant of its model; show them side by side
     Compare(compare::CompareArguments),
+    /// Run a scene by every method at every tolerance; show time against error
+    Precision(precision::PrecisionArguments),
     /// List the models
     Models(models::ModelsArguments),
     /// Show what a model offers: parameters, modes, guards, transitions, reactions, cost
@@ -56,6 +59,7 @@ pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Precision(arguments) => precision::precision(&arguments),
         Command::Models(arguments) => models::models(&arguments),
         Command::Describe(arguments) => describe::describe(&arguments),
         Command::Schema(arguments) => schema::schema(&arguments),

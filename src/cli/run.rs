@@ -7,6 +7,7 @@ use super::outcome::{Failure, Outcome, Result};
 use super::print;
 use crate::hybrid::{Reason, resume, simulate};
 use crate::kernel::MODELS;
+use crate::precision::estimate;
 use crate::record::{OutputFolder, ProgressLine, Report, Run};
 use crate::scene::Scene;
 
@@ -19,7 +20,11 @@ Ctrl-C ends it at once, and nothing is written.
 the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, columns \
 and the grid of the samples must be those of the run; inputs, accuracy and frozen coordinates are \
 taken from the scene as it is now and are expected to be the same. The integrator starts anew at \
-the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.")]
+the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.
+
+--error-estimate runs the scene a second time, by another method at a tolerance a hundred times \
+tighter, and reports what the two differ by: coordinates and velocities at the end, times of events, \
+events that only one of them has. It is in summary.json, too. `dalembert precision` has more.")]
 pub struct RunArguments {
     /// Scene file (JSON); docs/scene.md describes it
     scene: PathBuf,
@@ -32,6 +37,9 @@ pub struct RunArguments {
     /// Continue the run in this folder, and write the longer run to --out, or back
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
+    /// Estimate the error of the run by a second, better one
+    #[arg(long, conflicts_with = "resume")]
+    error_estimate: bool,
 }
 
 pub fn run(arguments: &RunArguments) -> Result {
@@ -60,13 +68,24 @@ pub fn run(arguments: &RunArguments) -> Result {
         Some(earlier) => resume(problem, earlier, &mut progress),
     };
     drop(progress);
-    let run = run.map_err(|reason| match (&reason, &arguments.resume) {
+    let mut run = run.map_err(|reason| match (&reason, &arguments.resume) {
         (Reason::OtherRun { .. }, Some(folder)) => Failure::wrong_input(format!(
             "{}: {reason}; continue it with the scene it was made with",
             folder.display()
         )),
         _ => refusal(&scene, &reason),
     })?;
+    if arguments.error_estimate && run.failure.is_none() {
+        let mut progress = Interruptible(ProgressLine::new(problem.end.time));
+        let error = estimate(problem, &run, &mut progress);
+        drop(progress);
+        run.error = error.map_err(|reason| refusal(&scene, &reason))?;
+        if run.error.is_none() {
+            print::error(
+                "the error is not known: the run it was to be compared with stopped early",
+            );
+        }
+    }
     if let Some(folder) = &folder {
         run.write(folder)?;
     }

@@ -86,6 +86,8 @@ impl Series {
 #[derive(Debug)]
 pub struct Accumulation {
     hops: Vec<Hop>,
+    /// Times of the last events, the latest first, s.
+    times: [f64; Self::MEMORY],
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
@@ -104,6 +106,7 @@ impl Accumulation {
         };
         Accumulation {
             hops: vec![hop; Self::MEMORY],
+            times: [0.0; Self::MEMORY],
             count: 0,
             still: 0,
         }
@@ -135,6 +138,8 @@ impl Accumulation {
             *to = from;
         }
         hop.discrete.copy_from_slice(discrete);
+        self.times.copy_within(..Self::MEMORY - 1, 1);
+        self.times[0] = at.seconds();
         self.count += 1;
     }
 
@@ -149,7 +154,9 @@ impl Accumulation {
         let longest = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
         let mut p = 1;
         while p <= longest {
-            if let Some(series) = self.series(p, relative) {
+            if self.may_shrink(p)
+                && let Some(series) = self.series(p, relative)
+            {
                 // What repeats after p events repeats after a multiple of p, and leaves as much.
                 return self
                     .is_negligible(&series, tolerance)
@@ -160,12 +167,24 @@ impl Accumulation {
         None
     }
 
+    /// Whether the durations of a pattern of `p` events may shrink, as far as plain doubles tell: most
+    /// patterns of most runs do not.
+    fn may_shrink(&self, p: usize) -> bool {
+        let [a, b, c, d] = [0, p, 2 * p, 3 * p].map(|k| self.times[k]);
+        // Each time is off by half a place, so that a difference of durations is off by two.
+        let slack = 2.0 * f64::EPSILON * a.abs();
+        (a - b) - (b - c) <= slack && (b - c) - (c - d) <= slack
+    }
+
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
         let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
+        if !(0.0 < last && last < middle && middle < first) {
+            return None;
+        }
         let (ratio, ratio_before) = (last / middle, middle / first);
-        if !(ratio > 0.0 && ratio < LARGEST_RATIO && ratio_before < LARGEST_RATIO) {
+        if ratio >= LARGEST_RATIO || ratio_before >= LARGEST_RATIO {
             return None;
         }
         let repeats = (0..2 * p).all(|i| self.hop(i).is_like(self.hop(i + p)));

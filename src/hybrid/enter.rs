@@ -81,9 +81,6 @@ impl Simulation<'_> {
             };
             let mut at_once = false;
             if watch == Watch::Dormant && !conditional {
-                let t = self.here.now.seconds();
-                let signals = &self.problem.signals;
-                signals.rate(t, &mut self.context.signal_rates);
                 at_once = start.departure(&self.context, guard, &mut a) < 0.0;
             }
             if at_once {

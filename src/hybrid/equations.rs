@@ -1,7 +1,7 @@
 //! A mode's generated equations as the integrator sees them, in the local time of a segment.
 
 use super::instant::Instant;
-use crate::input::Signals;
+use crate::input::{Side, Signals};
 use crate::integrate::{Analytic, Series, Singular, System, solve};
 use crate::kernel::{Context, Free, ModeKernel};
 use nalgebra::{SMatrix, SVector};
@@ -25,14 +25,11 @@ pub(super) struct Clock<'a> {
 impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
     fn set(&self, tau: f64, context: &mut Context) {
-        if context.quiet {
-            // Nothing changes the signals, which are zero.
-        } else if tau < self.until.0 {
-            self.signals
-                .evaluate(self.start.plus(tau).seconds(), &mut context.signals);
+        if tau < self.until.0 {
+            let t = self.start.plus(tau).seconds();
+            context.set_signals(self.signals, t, Side::Right);
         } else {
-            self.signals
-                .evaluate_left(self.until.1, &mut context.signals);
+            context.set_signals(self.signals, self.until.1, Side::Left);
         }
         self.set_held(tau, context);
     }
@@ -51,8 +48,11 @@ impl Clock<'_> {
         let mut t = self.start.plus(tau).seconds();
         loop {
             let knot = self.signals.next_knot(t);
+            if knot == f64::INFINITY {
+                return (t, knot);
+            }
             let limit = Instant::new(knot).since(self.start);
-            if limit > tau || !knot.is_finite() {
+            if limit > tau {
                 return (t, limit);
             }
             t = knot;
@@ -63,13 +63,9 @@ impl Clock<'_> {
     /// `set` does.
     fn expand(&self, tau: f64, orders: usize, context: &mut Context) {
         self.set_held(tau, context);
-        if context.quiet {
-            return;
+        if !context.quiet {
+            context.expand_signals(self.signals, self.piece(tau).0, orders);
         }
-        let width = context.signals.len();
-        let rows = &mut context.signal_series[..orders * width];
-        self.signals.series(self.piece(tau).0, rows);
-        context.signals.copy_from_slice(&rows[..width]);
     }
 }
 
@@ -155,18 +151,6 @@ impl<'a, const F: usize> Equations<'a, F> {
             sums += column.abs() * self.scale[j];
         }
         (0..F).fold(0.0, |most, i| f64::max(most, sums[i] / self.scale[i]))
-    }
-
-    /// Sets the time derivatives of the signals at local time `tau`, for jerks and guard rates.
-    pub fn rates_at(&mut self, tau: f64) {
-        let rates = &mut self.context.signal_rates;
-        if tau < self.clock.until.0 {
-            self.clock
-                .signals
-                .rate(self.clock.start.plus(tau).seconds(), rates);
-        } else {
-            self.clock.signals.rate_left(self.clock.until.1, rates);
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use super::plan::is_impact;
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
-use crate::record::{EnergyJump, Event};
+use crate::record::{EnergyJump, Jump};
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -70,11 +70,7 @@ impl Simulation<'_> {
         let n = self.here.q.len();
         let from = self.here.mode;
         let states = self.problem.record.event_states;
-        let before = if states {
-            self.snapshot()
-        } else {
-            Default::default()
-        };
+        let before = states.then(|| self.snapshot());
         let energies_before = (self.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
         self.before[..n].copy_from_slice(&self.here.q);
@@ -95,21 +91,17 @@ impl Simulation<'_> {
         if let (Some(ledger), Some(jump)) = (&mut self.ledger, energy) {
             ledger.add_jump(jump);
         }
-        let after = if states {
-            self.snapshot()
-        } else {
-            Default::default()
-        };
-        self.events.push(Event {
+        self.jumps.push(Jump {
             t: self.here.now.seconds(),
             j: self.here.j,
             transition: name,
             from,
             to: target,
-            before,
-            after,
             energy: energy.filter(|_| impact),
         });
+        if let Some(before) = before {
+            self.states_at_jumps.push([before, self.snapshot()]);
+        }
         let state = self.here.q.iter().chain(&self.here.v);
         let state = state.chain(&self.context.discrete).copied();
         let modes = self.problem.variant.modes;
@@ -161,7 +153,7 @@ impl Simulation<'_> {
             k.momenta(&self.context, Free { q: &q, v: &v, a: &a }, &mut momenta);
         });
         let rates = model.inputs.iter().filter(|i| i.kind.signals() == 3);
-        let rates = rates.map(|i| self.context.signals[i.signal + 1]);
+        let rates = rates.map(|i| self.context.signals()[i.signal + 1]);
         momenta[n..].iter().copied().zip(rates).collect()
     }
 

@@ -298,10 +298,19 @@ fn search_polynomial<const F: usize>(
     watch: Watch,
 ) -> Search {
     let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
-    let window = (local(from), local(to));
+    let mut search = search_window(coefficients, (local(from), local(to)), watch);
+    if let Some(crossing) = &mut search.crossing {
+        crossing.inside = dense.start() + crossing.inside * dense.length();
+        crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
+    }
+    search
+}
+
+/// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
+pub(super) fn search_window(coefficients: &[f64], window: (f64, f64), watch: Watch) -> Search {
     let degree = coefficients.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     // Work grows with the square of the room.
-    let mut search = match degree {
+    match degree {
         0..=3 => search_padded::<4>(coefficients, window, watch),
         4..=7 => search_padded::<8>(coefficients, window, watch),
         8..=11 => search_padded::<12>(coefficients, window, watch),
@@ -310,12 +319,7 @@ fn search_polynomial<const F: usize>(
         20..=23 => search_padded::<24>(coefficients, window, watch),
         24..=27 => search_padded::<28>(coefficients, window, watch),
         _ => search_padded::<ORDERS>(coefficients, window, watch),
-    };
-    if let Some(crossing) = &mut search.crossing {
-        crossing.inside = dense.start() + crossing.inside * dense.length();
-        crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
     }
-    search
 }
 
 /// Searches a polynomial whose coefficients beyond the first `N` vanish.

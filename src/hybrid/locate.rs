@@ -210,7 +210,6 @@ fn rate_at<const F: usize>(equations: &mut Equations<F>, guard: &Guard, state: &
         return factor * if rate { state.a[index] } else { state.v[index] };
     }
     equations.at(state.t);
-    equations.rates_at(state.t);
     let jerk = equations.jerk(at).unwrap_or(SVector::repeat(f64::NAN));
     equations
         .kernel

@@ -7,6 +7,7 @@
 
 mod accumulation;
 mod crossing;
+mod ensemble;
 mod enter;
 mod equations;
 mod failure;
@@ -28,6 +29,7 @@ mod stiffness;
 mod visited;
 mod work;
 
+pub use ensemble::{Ensemble, Finished, Member};
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Method, Problem, Record, Unknown};
 pub use resume::resume;

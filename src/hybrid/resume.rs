@@ -6,7 +6,7 @@ use super::ledger::RunningLedger;
 use super::problem::Problem;
 use super::samples::sample_time;
 use super::simulation::Simulation;
-use crate::record::{Progress, Recorder, Run};
+use crate::record::{Event, Progress, Recorder, Run};
 use std::time::Instant as WallClock;
 
 /// Continues a run from its end to the end of the problem, and gives the whole: tables, counters
@@ -80,7 +80,11 @@ impl Simulation<'_> {
         if let Some((name, _)) = self.problem.end.after {
             self.counted = events.iter().filter(|e| e.transition == name).count() as u64;
         }
-        self.events = events;
+        self.jumps = events.iter().map(Event::jump).collect();
+        if self.problem.record.event_states {
+            let states = events.into_iter().map(|e| [e.before, e.after]);
+            self.states_at_jumps = states.collect();
+        }
         let every = self.problem.record.every;
         let is_on_grid = |i: usize, t: f64| every.is_none() || t == sample_time(every, i as u64);
         if let Some(last) = trajectory.len().checked_sub(1)

@@ -40,7 +40,7 @@ impl Row<'_> {
         }
         let inputs = self.layout.range(Group::Input);
         if !inputs.is_empty() {
-            row[inputs].copy_from_slice(&context.signals);
+            row[inputs].copy_from_slice(context.signals());
         }
     }
 }

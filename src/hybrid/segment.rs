@@ -286,7 +286,7 @@ impl Simulation<'_> {
 }
 
 /// Tolerances of the free coordinates of a mode.
-fn tolerances<const F: usize>(problem: &Problem, mode: &Mode) -> Tolerances<F> {
+pub(super) fn tolerances<const F: usize>(problem: &Problem, mode: &Mode) -> Tolerances<F> {
     let accuracy = &problem.accuracy;
     let pick = |full: &[f64]| SVector::from_fn(|i, _| full[mode.free[i]]);
     Tolerances::new(

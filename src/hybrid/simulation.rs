@@ -2,19 +2,21 @@
 
 use super::accumulation::{Accumulation, Limit};
 use super::crossing::Signs;
+use super::ensemble::Member;
 use super::failure::Reason;
 use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
-use super::problem::Problem;
+use super::problem::{Initial, Problem};
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
 use super::visited::Visited;
+use crate::input::Side;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::record::{
-    Event, Failure, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
+    Event, Failure, Jump, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
 };
 use nalgebra::SVector;
 use std::time::Instant as WallClock;
@@ -72,6 +74,8 @@ pub(super) enum Stop {
 
 pub(super) struct Simulation<'p> {
     pub problem: &'p Problem,
+    /// Its initial state, or that of the member of an ensemble.
+    pub initial: &'p Initial,
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
@@ -91,7 +95,9 @@ pub(super) struct Simulation<'p> {
     pub ledger: Option<RunningLedger>,
     pub recorder: Recorder,
     pub layout: Layout,
-    pub events: Vec<Event>,
+    pub jumps: Vec<Jump>,
+    /// States before and after each of them, where they are kept.
+    pub states_at_jumps: Vec<[Snapshot; 2]>,
     pub solver: Solver,
     pub solvers: Solvers,
     /// What was seen of the stiffness of each mode.
@@ -122,6 +128,7 @@ impl<'p> Simulation<'p> {
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
         Ok(Simulation {
             problem,
+            initial: &problem.initial,
             plan,
             context,
             here: Here {
@@ -142,7 +149,8 @@ impl<'p> Simulation<'p> {
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             recorder: Recorder::new(&layout, rows + 1),
             layout,
-            events: Vec::new(),
+            jumps: Vec::new(),
+            states_at_jumps: Vec::new(),
             solver: Solver::default(),
             solvers: Solvers::default(),
             stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
@@ -162,9 +170,20 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
+    /// Takes the place of a member of an ensemble, at its start.
+    pub fn become_member(&mut self, member: &Member<'p>) -> Result<(), Reason> {
+        self.initial = member.initial;
+        let model = self.problem.model;
+        self.context.set_parameters(model, member.parameters);
+        self.rewind(0);
+        self.choose_initial_mode()?;
+        self.set_context();
+        Ok(())
+    }
+
     /// Goes back to the start, in the mode that was found for it.
     pub fn rewind(&mut self, mode: usize) {
-        let initial = &self.problem.initial;
+        let initial = self.initial;
         self.here.now = Instant::default();
         self.here.j = 0;
         self.here.mode = mode;
@@ -179,7 +198,8 @@ impl<'p> Simulation<'p> {
         self.accumulation.clear();
         self.visited.clear();
         self.recorder.clear();
-        self.events.clear();
+        self.jumps.clear();
+        self.states_at_jumps.clear();
         self.solver = Solver::default();
         (self.next_sample, self.counted) = (0, 0);
         self.set_context();
@@ -195,7 +215,7 @@ impl<'p> Simulation<'p> {
     /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
     fn choose_initial_mode(&mut self) -> Result<(), Reason> {
         let modes = self.problem.variant.modes;
-        if let Some(chosen) = self.problem.initial.mode {
+        if let Some(chosen) = self.initial.mode {
             self.here.mode = chosen;
             self.apply_drift();
             return match self.misfit(&modes[chosen]) {
@@ -275,39 +295,51 @@ impl<'p> Simulation<'p> {
 
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
-        loop {
-            self.settle()?;
-            self.flush_samples();
-            if self.is_over() {
-                return Ok(());
-            }
-            let mode = self.mode();
-            let stop = with_kernel!(&mode.kernels, k => self.advance(k, progress))?;
-            match stop {
-                Stop::End => {
-                    self.set_context();
-                    return Ok(());
-                }
-                Stop::Breakpoint | Stop::Method => self.visited.clear(),
-                Stop::Event(guard) => {
-                    self.visited.clear();
-                    self.fire(guard)?;
-                }
-                Stop::Violated(violation) => self.resolve(violation)?,
+        while self.settle()? {
+            if !self.advance_to_event(progress)? {
+                break;
             }
         }
+        Ok(())
     }
 
-    /// Finds the admissible mode at the present instant: every violated guard is one transition.
-    fn settle(&mut self) -> Result<(), Reason> {
+    /// From an admissible mode through the next event; false at the end of the run.
+    pub fn advance_to_event(&mut self, progress: &mut dyn Progress) -> Result<bool, Reason> {
+        let mode = self.mode();
+        let stop = with_kernel!(&mode.kernels, k => self.advance(k, progress))?;
+        self.pass(stop)
+    }
+
+    /// Does what the end of a segment asks for; false at the end of the run.
+    pub fn pass(&mut self, stop: Stop) -> Result<bool, Reason> {
+        match stop {
+            Stop::End => {
+                self.set_context();
+                return Ok(false);
+            }
+            Stop::Breakpoint | Stop::Method => self.visited.clear(),
+            Stop::Event(guard) => {
+                self.visited.clear();
+                self.fire(guard)?;
+            }
+            Stop::Violated(violation) => self.resolve(violation)?,
+        }
+        Ok(true)
+    }
+
+    /// Finds the admissible mode at the present instant: every violated guard is one transition. False
+    /// if the run is over.
+    pub fn settle(&mut self) -> Result<bool, Reason> {
         loop {
             let mode = self.mode();
             match with_kernel!(&mode.kernels, k => self.enter(k))? {
-                None => return Ok(()),
-                Some(_) if self.is_over() => return Ok(()),
+                None => break,
+                Some(_) if self.is_over() => break,
                 Some(violation) => self.resolve(violation)?,
             }
         }
+        self.flush_samples();
+        Ok(!self.is_over())
     }
 
     /// A violated guard: the limit of its accumulation if it is an impact from rest, else its
@@ -321,7 +353,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    fn is_over(&self) -> bool {
+    pub fn is_over(&self) -> bool {
         let after = self.problem.end.after;
         self.here.now.seconds() >= self.problem.end.time
             || after.is_some_and(|(_, count)| self.counted >= count)
@@ -346,7 +378,7 @@ impl<'p> Simulation<'p> {
             return self.come_to_rest(rest, Some(limit));
         }
         if self.accumulation.stands_still() {
-            let recent = self.events.iter().rev().take(Accumulation::MEMORY);
+            let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
             let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
             transitions.sort_unstable();
             transitions.dedup();
@@ -382,10 +414,9 @@ impl<'p> Simulation<'p> {
 
     /// Sets signals and held coordinates to the present instant.
     pub fn set_context(&mut self) {
-        if !self.context.quiet {
-            let t = self.here.now.seconds();
-            self.problem.signals.evaluate(t, &mut self.context.signals);
-        }
+        let t = self.here.now.seconds();
+        let signals = &self.problem.signals;
+        self.context.set_signals(signals, t, Side::Right);
         self.context.held.copy_from_slice(&self.here.q);
     }
 
@@ -463,7 +494,14 @@ impl<'p> Simulation<'p> {
             },
             layout: self.layout,
             trajectory: self.recorder.finish(),
-            events: self.events,
+            events: {
+                let given = self.states_at_jumps.into_iter();
+                let states = given.chain(std::iter::repeat_with(Default::default));
+                let pairs = self.jumps.iter().zip(states);
+                pairs
+                    .map(|(jump, states)| Event::new(jump, states))
+                    .collect()
+            },
             failure: reason.map(|reason| Failure {
                 reason: reason.to_string(),
                 at: end.clone(),
@@ -471,6 +509,7 @@ impl<'p> Simulation<'p> {
             end,
             solver: self.solver,
             energy,
+            error: None,
             wall: clock.elapsed(),
         }
     }

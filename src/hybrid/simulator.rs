@@ -3,7 +3,7 @@
 use super::failure::Reason;
 use super::problem::Problem;
 use super::simulation::Simulation;
-use crate::record::{Event, Progress, Solver};
+use crate::record::{Jump, Progress, Solver};
 
 /// A problem made ready to run: tables, room and the initial mode. Runs after the first allocate
 /// nothing, as long as the record does not grow.
@@ -65,8 +65,8 @@ impl<'p> Simulator<'p> {
     }
 
     /// The transitions so far.
-    pub fn events(&self) -> &[Event] {
-        &self.simulation.events
+    pub fn events(&self) -> &[Jump] {
+        &self.simulation.jumps
     }
 
     /// Work done by the integrator; the method is not named.

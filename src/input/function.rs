@@ -1,6 +1,7 @@
 //! A function of time as a sum of simple terms.
 
-use super::{Sine, Table};
+use super::{Signals, Sine, Table};
+use crate::integrate::Lanes;
 
 /// Which one-sided limit is meant at a breakpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,12 +80,51 @@ impl Function {
 
     /// Fills `out` with the coefficients of f(t + τ) in powers of τ, of the function that acts just
     /// before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in `out[k]`. They are those of
-    /// one analytic function up to [`Function::next_knot`]. Gives what [`Function::at`] does.
-    pub fn series(&self, t: f64, side: Side, out: &mut [f64]) -> Jet {
+    /// one analytic function up to [`Function::next_knot`]. `known` are value and rate, which
+    /// [`Function::at`] gave.
+    pub fn series(&self, t: f64, side: Side, known: [f64; 2], out: &mut [f64]) {
         out.fill(0.0);
-        self.terms.iter().fold(Jet::default(), |sum, term| {
-            sum + term.add_series(t, side, out)
-        })
+        if let [Term::Sine(sine)] = &self.terms[..] {
+            return sine.add_series(known, out);
+        }
+        for term in &self.terms {
+            term.add_series(t, side, out);
+        }
+    }
+
+    /// [`Function::at`] for each of several times.
+    #[inline(always)]
+    pub(super) fn at_lanes<const W: usize>(
+        &self,
+        level: usize,
+        t: &[f64; W],
+        side: Side,
+    ) -> [Jet; W] {
+        match &self.terms[..] {
+            [Term::Sine(sine)] => sine.at_lanes(level, t, side),
+            _ => t.map(|t| self.at(t, side)),
+        }
+    }
+
+    /// [`Function::series`] for each of several times.
+    #[inline(always)]
+    pub(super) fn series_of_lanes<const W: usize>(
+        &self,
+        t: &[f64; W],
+        known: [Lanes<W>; 2],
+        out: &mut [Lanes<W>],
+    ) {
+        if let [Term::Sine(sine)] = &self.terms[..] {
+            return sine.fill_series(known, out);
+        }
+        let mut room = [0.0; Signals::MOST_ORDERS];
+        let room = &mut room[..out.len()];
+        for lane in 0..W {
+            self.series(t[lane], Side::Right, known.map(|x| x.0[lane]), room);
+            for (out, value) in out.iter_mut().zip(&*room) {
+                out.0[lane] = *value;
+            }
+        }
     }
 
     /// The first time after `t` at which the function is not analytic, in s: a breakpoint or any
@@ -147,18 +187,19 @@ impl Term {
         }
     }
 
-    fn add_series(&self, t: f64, side: Side, out: &mut [f64]) -> Jet {
-        let jet = self.at(t, side);
+    fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
         match self {
             Term::Constant(c) => {
                 if let Some(first) = out.first_mut() {
                     *first += c;
                 }
             }
-            Term::Sine(sine) => sine.add_series(&jet, out),
+            Term::Sine(sine) => {
+                let jet = sine.at(t, side);
+                sine.add_series([jet.value, jet.rate], out);
+            }
             Term::Table(table) => table.add_series(t, side, out),
         }
-        jet
     }
 
     fn next_knot(&self, t: f64) -> f64 {

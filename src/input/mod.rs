@@ -10,11 +10,13 @@
 //! after it give the values of one smooth function.
 
 mod function;
+mod lanes;
 mod sine;
 mod spline;
 mod table;
 
 pub use function::{Function, Jet, Side};
+pub use lanes::LaneSignals;
 pub use sine::Sine;
 pub use table::{Interpolation, Outside, Table, TableError};
 
@@ -88,6 +90,15 @@ impl Signals {
         self.fill_rates(t, Side::Left, u_dot);
     }
 
+    /// Fills `u` and `u_dot` with the signals and their rates at `t` (s), as they are on that side.
+    pub fn jets(&self, t: f64, side: Side, u: &mut [f64], u_dot: &mut [f64]) {
+        for c in &self.channels {
+            let jet = c.function.at(t, side);
+            c.set_values(&jet, u);
+            c.set_rates(&jet, u_dot);
+        }
+    }
+
     /// The first time after `t` at which some input is not smooth (a jump, a kink, the start or
     /// the end of a pulse), in s; infinite if there is none.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
@@ -117,12 +128,12 @@ impl Signals {
 
     /// Fills `rows` with the Taylor coefficients of the signals about `t` (s), as they go on after
     /// it: one row an order, with the layout of [`Signals::evaluate`]. They hold until
-    /// [`Signals::next_knot`].
+    /// [`Signals::next_knot`]. `u` and `u_dot` are what [`Signals::jets`] gives on the right of `t`.
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] rows.
-    pub fn series(&self, t: f64, rows: &mut [f64]) {
-        let width = self.channels.iter().map(|c| c.kind.signals()).sum();
+    pub fn series(&self, t: f64, u: &[f64], u_dot: &[f64], rows: &mut [f64]) {
+        let width = u.len();
         if width == 0 {
             return;
         }
@@ -130,13 +141,15 @@ impl Signals {
         let mut room = [0.0; Self::MOST_ORDERS];
         for c in &self.channels {
             let coefficients = &mut room[..orders];
-            let jet = c.function.series(t, Side::Right, coefficients);
+            let (rate, value) = (u_dot[c.signal], u[c.signal]);
+            c.function
+                .series(t, Side::Right, [value, rate], coefficients);
             for (row, value) in rows.chunks_exact_mut(width).zip(&*coefficients) {
                 row[c.signal] = *value;
             }
             if c.kind == InputKind::Acceleration {
-                rows[c.signal + 1] = jet.integral;
-                rows[c.signal + 2] = jet.double_integral;
+                rows[c.signal + 1] = u[c.signal + 1];
+                rows[c.signal + 2] = u[c.signal + 2];
                 for k in 1..orders {
                     for antiderivative in [c.signal + 1, c.signal + 2] {
                         rows[k * width + antiderivative] =
@@ -152,29 +165,37 @@ impl Signals {
 
     fn fill_values(&self, t: f64, side: Side, u: &mut [f64]) {
         for c in &self.channels {
-            let jet = c.function.at(t, side);
-            match c.kind {
-                InputKind::Acceleration => u[c.signal..c.signal + 3].copy_from_slice(&[
-                    jet.value,
-                    jet.integral,
-                    jet.double_integral,
-                ]),
-                InputKind::Value => u[c.signal] = jet.value,
-            }
+            c.set_values(&c.function.at(t, side), u);
         }
     }
 
     fn fill_rates(&self, t: f64, side: Side, u_dot: &mut [f64]) {
         for c in &self.channels {
-            let jet = c.function.at(t, side);
-            match c.kind {
-                InputKind::Acceleration => u_dot[c.signal..c.signal + 3].copy_from_slice(&[
-                    jet.rate,
-                    jet.value,
-                    jet.integral,
-                ]),
-                InputKind::Value => u_dot[c.signal] = jet.rate,
-            }
+            c.set_rates(&c.function.at(t, side), u_dot);
+        }
+    }
+}
+
+impl Channel {
+    fn set_values(&self, jet: &Jet, u: &mut [f64]) {
+        match self.kind {
+            InputKind::Acceleration => u[self.signal..self.signal + 3].copy_from_slice(&[
+                jet.value,
+                jet.integral,
+                jet.double_integral,
+            ]),
+            InputKind::Value => u[self.signal] = jet.value,
+        }
+    }
+
+    fn set_rates(&self, jet: &Jet, u_dot: &mut [f64]) {
+        match self.kind {
+            InputKind::Acceleration => u_dot[self.signal..self.signal + 3].copy_from_slice(&[
+                jet.rate,
+                jet.value,
+                jet.integral,
+            ]),
+            InputKind::Value => u_dot[self.signal] = jet.rate,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! A sine that may start late and end early.
 
 use super::{INVERSES, Jet, Side};
-use crate::kernel::sin_cos;
+use crate::integrate::Lanes;
+use crate::kernel::{lane_sin_cos, sin_cos};
 
 /// A·sin(ω (t − start) + φ) for start ≤ t < end, and zero outside.
 ///
@@ -51,13 +52,41 @@ impl Sine {
     /// A/ω · 2 sin(y/2 + φ) sin(y/2) and A/ω² (cos φ (y − sin y) + 2 sin φ sin²(y/2)), so that
     /// nothing cancels near the start.
     pub fn at(&self, t: f64, side: Side) -> Jet {
+        let y = self.angle(t);
+        self.jet(t, side, y, sin_cos(0.5 * y))
+    }
+
+    /// [`Sine::at`] for each of several times.
+    #[inline(always)]
+    pub(super) fn at_lanes<const W: usize>(
+        &self,
+        level: usize,
+        t: &[f64; W],
+        side: Side,
+    ) -> [Jet; W] {
+        let y: Lanes<W> = Lanes::from_fn(|i| self.angle(t[i]));
+        let (sin, cos) = lane_sin_cos(level, y * 0.5);
+        let mut jets = [Jet::default(); W];
+        for i in 0..W {
+            jets[i] = self.jet(t[i], side, y.0[i], (sin.0[i], cos.0[i]));
+        }
+        jets
+    }
+
+    /// y = ω s while the sine acts.
+    #[inline(always)]
+    fn angle(&self, t: f64) -> f64 {
+        self.angular_frequency * (t.clamp(self.start, self.end) - self.start)
+    }
+
+    /// What [`Sine::at`] gives, with sin(y/2) and cos(y/2).
+    #[inline(always)]
+    fn jet(&self, t: f64, side: Side, y: f64, (sin, cos): (f64, f64)) -> Jet {
         let acts = match side {
             Side::Right => self.start <= t && t < self.end,
             Side::Left => self.start < t && t <= self.end,
         };
         let (amplitude, omega) = (self.amplitude, self.angular_frequency);
-        let y = omega * (t.clamp(self.start, self.end) - self.start);
-        let (sin, cos) = sin_cos(0.5 * y);
         let sin_shifted = sin * self.cos_phase + cos * self.sin_phase;
         let cos_shifted = cos * self.cos_phase - sin * self.sin_phase;
         let [first, second] = self.of_integrals;
@@ -83,11 +112,11 @@ impl Sine {
         }
     }
 
-    /// Adds the Taylor coefficients about the time of `jet`, which [`Sine::at`] gave; each is
+    /// Adds the Taylor coefficients about the time at which value and rate are those given; each is
     /// −ω²/(k (k − 1)) times the last but one.
-    pub(super) fn add_series(&self, jet: &Jet, out: &mut [f64]) {
+    pub(super) fn add_series(&self, [value, rate]: [f64; 2], out: &mut [f64]) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (jet.value, jet.rate);
+        let (mut even, mut odd) = (value, rate);
         for (k, pair) in out.chunks_mut(2).enumerate() {
             let inverse = |n: usize| INVERSES[2 * k + n];
             pair[0] += even;
@@ -95,6 +124,26 @@ impl Sine {
             if let Some(out) = pair.get_mut(1) {
                 *out += odd;
                 odd *= factor * (inverse(2) * inverse(3));
+            }
+        }
+    }
+
+    /// [`Sine::add_series`] for each of several times, to rows of zeros.
+    #[inline(always)]
+    pub(super) fn fill_series<const W: usize>(
+        &self,
+        [value, rate]: [Lanes<W>; 2],
+        out: &mut [Lanes<W>],
+    ) {
+        let factor = -(self.angular_frequency * self.angular_frequency);
+        let (mut even, mut odd) = (value, rate);
+        for (k, pair) in out.chunks_mut(2).enumerate() {
+            let inverse = |n: usize| INVERSES[2 * k + n];
+            pair[0] = even;
+            even = even * (factor * (inverse(1) * inverse(2)));
+            if let Some(out) = pair.get_mut(1) {
+                *out = odd;
+                odd = odd * (factor * (inverse(2) * inverse(3)));
             }
         }
     }

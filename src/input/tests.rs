@@ -418,7 +418,9 @@ proptest! {
             prop_assert!((left.integral - right.integral).abs() < 1e-13);
             prop_assert!((left.double_integral - right.double_integral).abs() < 1e-12);
             if f.next_breakpoint(t.next_down()) != t {
-                prop_assert!((left.value - right.value).abs() < 1e-12);
+                // The pieces of a spline round what their slopes carry over steps of up to a second.
+                let size = 1.0 + left.rate.abs();
+                prop_assert!((left.value - right.value).abs() < 1e-13 * size);
             }
         }
     }

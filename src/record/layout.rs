@@ -6,7 +6,7 @@ use super::run::{Column, Group};
 use crate::model::{InputKind, Model, Variant};
 
 /// Which columns a scene records besides coordinates, velocities, discrete states and the mode.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Recorded {
     /// The reactions.
     pub reactions: bool,

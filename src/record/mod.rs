@@ -42,7 +42,7 @@ pub use read::ReadError;
 pub use recorder::Recorder;
 pub use report::Report;
 pub use run::{
-    Column, EnergyJump, Event, Failure, Group, Ledger, Place, Run, Snapshot, Solver, Subject,
-    Trajectory,
+    Column, EnergyJump, ErrorEstimate, Event, Failure, Group, Jump, Ledger, Place, Run, Snapshot,
+    Solver, Subject, Trajectory,
 };
 pub use summary::Summary;

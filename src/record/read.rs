@@ -98,6 +98,7 @@ impl Run {
                 lost_at_impacts: energy.lost_at_impacts,
                 frame: energy.frame,
             }),
+            error: None,
             wall: Duration::try_from_secs_f64(written.wall_seconds).unwrap_or_default(),
             failure: None,
         })

@@ -57,6 +57,23 @@ impl Display for Report {
         }
         writeln!(f)?;
         energies(f, summary)?;
+        if let Some(estimate) = &summary.error_estimate {
+            let states = estimate.q.0.iter().chain(&estimate.v.0);
+            let states: Vec<_> = states
+                .map(|(name, x)| format!("{name} {}", rounded(*x, 2)))
+                .collect();
+            writeln!(
+                f,
+                "error       at the end: {}; of an event's time: {} s; events missed {}, extra {}\n            \
+                 (difference to {} at a tolerance of {})",
+                states.join(", "),
+                rounded(estimate.event_time, 2),
+                estimate.missed_events,
+                estimate.extra_events,
+                estimate.method,
+                rounded(estimate.tolerance, 2),
+            )?;
+        }
         let solver = &summary.solver;
         writeln!(
             f,

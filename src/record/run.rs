@@ -21,10 +21,31 @@ pub struct Run {
     pub solver: Solver,
     /// Balance of energies; `None` where it was not kept.
     pub energy: Option<Ledger>,
+    /// Estimate of the run's error; `None` where none was asked for.
+    pub error: Option<ErrorEstimate>,
     /// Time the simulation took on the wall clock (without reading and writing files).
     pub wall: Duration,
     /// Why the run stopped before its end; `None` when it reached it.
     pub failure: Option<Failure>,
+}
+
+/// Estimate of the error of a run: its difference to a run by another method at a tighter tolerance.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ErrorEstimate {
+    /// Method of the better run, as scenes name it.
+    pub method: String,
+    /// Relative tolerance of the better run.
+    pub tolerance: f64,
+    /// Of each coordinate at the end, in its unit.
+    pub q: Vec<f64>,
+    /// Of each velocity at the end, in its unit.
+    pub v: Vec<f64>,
+    /// Largest difference of the times of a transition (s).
+    pub event_time: f64,
+    /// Transitions that the better run alone has.
+    pub missed: usize,
+    /// Transitions that the run alone has.
+    pub extra: usize,
 }
 
 /// What was simulated: enough to say which run a file belongs to.
@@ -84,6 +105,23 @@ pub enum Group {
     Energy,
     /// A prescribed function of time.
     Input,
+}
+
+/// One transition, without the states around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jump {
+    /// Time (s).
+    pub t: f64,
+    /// Number of transitions up to and including this one: the first has 1.
+    pub j: u64,
+    /// Name of the transition.
+    pub transition: &'static str,
+    /// Mode left, an index into [`Layout::modes`].
+    pub from: usize,
+    /// Mode entered, an index into [`Layout::modes`].
+    pub to: usize,
+    /// Jump of the energy; `None` for a transition that is no impact.
+    pub energy: Option<EnergyJump>,
 }
 
 /// One transition.
@@ -186,6 +224,42 @@ pub struct Ledger {
     pub lost_at_impacts: f64,
     /// A sentence that says in which frame the ledger is kept.
     pub frame: String,
+}
+
+impl Event {
+    /// A transition with the states before and after it.
+    pub fn new(jump: &Jump, [before, after]: [Snapshot; 2]) -> Self {
+        let Jump {
+            t,
+            j,
+            transition,
+            from,
+            to,
+            energy,
+        } = *jump;
+        Event {
+            t,
+            j,
+            transition,
+            from,
+            to,
+            before,
+            after,
+            energy,
+        }
+    }
+
+    /// The transition alone.
+    pub fn jump(&self) -> Jump {
+        Jump {
+            t: self.t,
+            j: self.j,
+            transition: self.transition,
+            from: self.from,
+            to: self.to,
+            energy: self.energy,
+        }
+    }
 }
 
 impl Group {

@@ -40,6 +40,9 @@ pub struct Summary {
     /// The balance of energies.
     /// `None` where the ledger was not kept.
     pub energy: Option<Energy>,
+    /// Estimate of the error of the run; only where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_estimate: Option<Estimate>,
     /// Work done by the integrator.
     pub solver: super::Solver,
     /// Time the simulation took on the wall clock (s).
@@ -114,6 +117,25 @@ pub struct Impacts {
     pub largest_loss: f64,
     /// Work of the ground's impulses, in the inertial frame (J).
     pub ground_work: f64,
+}
+
+/// Estimate of the error: the difference to a run by another method at a tighter tolerance.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Estimate {
+    /// Method of the better run.
+    pub method: String,
+    /// Its relative tolerance.
+    pub tolerance: f64,
+    /// Of the coordinates at the end.
+    pub q: Named<f64>,
+    /// Of the velocities at the end.
+    pub v: Named<f64>,
+    /// Largest difference of the times of a transition (s).
+    pub event_time: f64,
+    /// Transitions that the better run alone has.
+    pub missed_events: usize,
+    /// Transitions that the run alone has.
+    pub extra_events: usize,
 }
 
 /// The balance `initial + input_work − dissipated − lost_at_impacts − final = imbalance`.
@@ -193,6 +215,15 @@ impl Summary {
                 imbalance: energy.imbalance(),
                 frame: energy.frame.clone(),
             }),
+            error_estimate: run.error.as_ref().map(|error| Estimate {
+                method: error.method.clone(),
+                tolerance: error.tolerance,
+                q: named(&run.layout.coordinates, &error.q),
+                v: named(&run.layout.velocities, &error.v),
+                event_time: error.event_time,
+                missed_events: error.missed,
+                extra_events: error.extra,
+            }),
             solver: run.solver.clone(),
             wall_seconds: run.wall.as_secs_f64(),
         }
@@ -209,16 +240,12 @@ impl Summary {
     }
 }
 
+fn named(quantities: &[Quantity], values: &[f64]) -> Named<f64> {
+    let names = quantities.iter().map(|q| q.name.clone());
+    Named(names.zip(values.iter().copied()).collect())
+}
+
 fn point(run: &Run, place: &Place) -> Point {
-    let named = |quantities: &[Quantity], values: &[f64]| {
-        Named(
-            quantities
-                .iter()
-                .map(|q| q.name.clone())
-                .zip(values.iter().copied())
-                .collect(),
-        )
-    };
     Point {
         t: place.t,
         j: place.j,

@@ -24,6 +24,8 @@ mod wording;
 use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use format::METHODS;
+
 pub use error::{SceneError, SceneErrorKind, SceneErrors};
 pub use files::{Disk, Files};
 pub use schema::schema;

@@ -47,10 +47,14 @@ impl Fixture {
         };
         fixture.write("project/build.rs", "");
         fixture.write("project/codegen/__main__.py", include_str!("generator.py"));
-        fixture.write(
-            "project/codegen/elementary.c",
-            include_str!("../../codegen/elementary.c"),
-        );
+        for (name, text) in [
+            ("elementary.c", include_str!("../../codegen/elementary.c")),
+            ("elementary.h", include_str!("../../codegen/elementary.h")),
+            ("lanes.c", include_str!("../../codegen/lanes.c")),
+            ("lanes.h", include_str!("../../codegen/lanes.h")),
+        ] {
+            fixture.write(&format!("project/codegen/{name}"), text);
+        }
         fixture.model("alpha", "1.0");
         fixture.model("beta", "2.0");
         fs::create_dir_all(fixture.path("wheels")).unwrap();

@@ -28,7 +28,7 @@ if model == "crash":
 files = {
     f"{name}.c": f"double dalembert_{name}(void) {{ return {model}; }}\n",
     "model.rs": f"pub static {name.upper()}: Model = Model;\n",
-    "manifest.json": json.dumps({"name": name, "static": name.upper(), "sources": [f"{name}.c"]}),
+    "manifest.json": json.dumps({"name": name, "static": name.upper(), "sources": [f"{name}.c"], "lanes": []}),
 }
 folder = os.path.join(arguments.out, name)
 os.makedirs(folder)

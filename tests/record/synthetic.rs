@@ -124,6 +124,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             frame: "The ground does not move.".into(),
             ..Ledger::default()
         }),
+        error: None,
         wall: Duration::ZERO,
         failure: None,
     }
@@ -317,6 +318,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
                     does work."
                     .into(),
         }),
+        error: None,
         wall: Duration::from_millis(123),
         failure: None,
     }

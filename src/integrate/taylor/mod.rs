@@ -9,11 +9,13 @@
 //! the shortest time scale, resolved or not.
 
 mod dense;
+mod lanes;
 mod length;
 mod quadrature;
 mod series;
 
 pub use dense::TaylorDense;
+pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;

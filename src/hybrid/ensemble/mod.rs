@@ -1,0 +1,169 @@
+//! Many trajectories of one scene, with parameters and initial states of their own.
+//!
+//! Trajectories in the same mode go side by side, one in each lane of a vector register: each at its
+//! own time, with steps and events of its own (`group`). What is not a plain step or a plain fall of a
+//! guard is done by the engine for single runs, on the trajectory alone, and so is a mode that does not
+//! go in lanes: stiff ones, and those with guards that are more than a coordinate or a rate. A
+//! trajectory that leaves its mode makes room for the next that has entered it (`worker`).
+//!
+//! What a trajectory gives is independent of the others, of their number, of the number of lanes and of
+//! threads: to the bit. It agrees with a single run to the accuracy, as the two take different steps.
+
+mod group;
+mod worker;
+
+use super::failure::Reason;
+use super::problem::{Initial, Method, Problem};
+use super::simulation::Simulation;
+use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
+use crate::record::{Jump, Recorded, Silent};
+use rayon::prelude::*;
+use worker::Worker;
+
+/// One trajectory of an ensemble: what is its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Member<'a> {
+    /// Parameters in the order and the units of the model.
+    pub parameters: &'a [f64],
+    /// Where it starts.
+    pub initial: &'a Initial,
+}
+
+impl<'a> From<&'a Problem> for Member<'a> {
+    /// Parameters and initial state of a problem.
+    fn from(problem: &'a Problem) -> Self {
+        Member {
+            parameters: &problem.parameters,
+            initial: &problem.initial,
+        }
+    }
+}
+
+/// A scene made ready for many runs.
+pub struct Ensemble {
+    problem: Problem,
+    /// Whether the trajectories in a mode are to go side by side.
+    in_lanes: Vec<bool>,
+    /// Level of the processor.
+    level: usize,
+}
+
+/// A trajectory at its end.
+pub struct Finished<'a, 'p> {
+    simulation: &'a Simulation<'p>,
+    /// Why it stopped before its end, if it did.
+    pub failure: Option<Reason>,
+}
+
+impl Ensemble {
+    /// Prepares a scene. Neither a trajectory nor the ledger nor states at events are recorded.
+    ///
+    /// With [`Method::Auto`] the scene itself is run once: modes that turn out to be stiff in it do not
+    /// go in lanes.
+    ///
+    /// # Errors
+    /// As [`super::simulate`].
+    pub fn new(problem: &Problem) -> Result<Self, Reason> {
+        let mut problem = problem.clone();
+        problem.record.ledger = false;
+        problem.record.event_states = false;
+        problem.record.columns = Recorded::default();
+        problem.record.every = Some(problem.end.time);
+        let modes = problem.variant.modes;
+        let stiff = match problem.method {
+            Method::Radau => vec![true; modes.len()],
+            Method::Taylor => vec![false; modes.len()],
+            Method::Auto => {
+                let mut pilot = Simulation::new(&problem)?;
+                pilot.begin()?;
+                // Where it fails it has shown what it can.
+                let _ = pilot.run(&mut Silent);
+                let verdicts = pilot.stiffness.iter();
+                verdicts.map(|s| s.prefers_implicit()).collect()
+            }
+        };
+        let in_lanes = (modes.iter().zip(stiff))
+            .map(|(mode, stiff)| !stiff && with_kernel!(&mode.kernels, k => k.goes_in_lanes()))
+            .collect();
+        Ok(Ensemble {
+            problem,
+            in_lanes,
+            level: processor_level(),
+        })
+    }
+
+    /// The same by the functions for a lower level of the processor, an index into
+    /// [`LANES_OF_LEVELS`]: it gives the same bits.
+    ///
+    /// # Panics
+    /// If this processor does not have the level.
+    pub fn at_level(mut self, level: usize) -> Self {
+        assert!(level <= processor_level(), "the processor has that level");
+        self.level = level;
+        self
+    }
+
+    /// Runs all members, on the threads of the present pool of rayon; gives what `extract` takes from
+    /// each, in their order.
+    pub fn run<T: Send>(
+        &self,
+        members: &[Member],
+        extract: impl Fn(usize, Finished) -> T + Sync,
+    ) -> Vec<T> {
+        let share = members.len().div_ceil(rayon::current_num_threads()).max(1);
+        let mut results: Vec<Option<T>> = members.iter().map(|_| None).collect();
+        (results.par_chunks_mut(share).zip(members.par_chunks(share)))
+            .enumerate()
+            .for_each(|(chunk, (results, members))| {
+                let mut take = |member: usize, finished: Finished| {
+                    results[member] = Some(extract(chunk * share + member, finished));
+                };
+                match LANES_OF_LEVELS[self.level] {
+                    8 => Worker::<8>::new(self, members).run(&mut take),
+                    4 => Worker::<4>::new(self, members).run(&mut take),
+                    _ => Worker::<2>::new(self, members).run(&mut take),
+                }
+            });
+        let results = results.into_iter();
+        results
+            .map(|result| result.expect("every member comes to its end"))
+            .collect()
+    }
+}
+
+impl Finished<'_, '_> {
+    /// Time reached, s.
+    pub fn time(&self) -> f64 {
+        self.simulation.here.now.seconds()
+    }
+
+    /// Index of the last mode in the variant of the problem.
+    pub fn mode(&self) -> usize {
+        self.simulation.here.mode
+    }
+
+    /// All coordinates.
+    pub fn q(&self) -> &[f64] {
+        &self.simulation.here.q
+    }
+
+    /// All velocities.
+    pub fn v(&self) -> &[f64] {
+        &self.simulation.here.v
+    }
+
+    /// All discrete states.
+    pub fn discrete(&self) -> &[f64] {
+        &self.simulation.context.discrete
+    }
+
+    /// The transitions.
+    pub fn events(&self) -> &[Jump] {
+        &self.simulation.jumps
+    }
+
+    /// Steps made, in lanes and alone.
+    pub fn steps(&self) -> u64 {
+        self.simulation.solver.steps
+    }
+}

@@ -1,0 +1,240 @@
+//! The members of an ensemble that a thread runs: which of them is in which lane.
+
+use super::super::failure::Reason;
+use super::super::simulation::{Simulation, Stop};
+use super::group::{Group, Outcome};
+use super::{Ensemble, Finished, Member};
+use crate::input::Signals;
+use crate::kernel::with_kernel;
+use crate::record::Silent;
+
+/// A group, whatever its number of free coordinates.
+trait AnyGroup<const W: usize> {
+    fn load(&mut self, lane: usize, from: &Simulation);
+    fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
+    fn vacate(&mut self, lane: usize);
+    fn unload(&mut self, lane: usize, into: &mut Simulation);
+    fn step(&mut self, signals: &Signals);
+    fn outcomes(&self) -> [Outcome; W];
+}
+
+impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
+    fn load(&mut self, lane: usize, from: &Simulation) {
+        Group::load(self, lane, from)
+    }
+    fn go_on(&mut self, lane: usize, from: &Simulation) -> bool {
+        Group::go_on(self, lane, from)
+    }
+    fn vacate(&mut self, lane: usize) {
+        Group::vacate(self, lane)
+    }
+    fn unload(&mut self, lane: usize, into: &mut Simulation) {
+        Group::unload(self, lane, into)
+    }
+    fn step(&mut self, signals: &Signals) {
+        Group::step(self, signals)
+    }
+    fn outcomes(&self) -> [Outcome; W] {
+        self.outcomes
+    }
+}
+
+/// The lanes of a mode.
+struct Lanes<const W: usize> {
+    group: Box<dyn AnyGroup<W>>,
+    /// The slot in each lane.
+    slots: [Option<usize>; W],
+}
+
+/// A trajectory under way.
+struct Slot<'a> {
+    simulation: Simulation<'a>,
+    /// The member that it is.
+    member: usize,
+    state: State,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum State {
+    /// It has come to its end.
+    Free,
+    /// It is in a mode that goes in lanes.
+    Waiting,
+    InLane,
+}
+
+pub(super) struct Worker<'a, const W: usize> {
+    ensemble: &'a Ensemble,
+    members: &'a [Member<'a>],
+    /// The first member that has not started.
+    next: usize,
+    slots: Vec<Slot<'a>>,
+    /// The lanes of each mode, made when they are first needed.
+    lanes: Vec<Option<Lanes<W>>>,
+    quiet: bool,
+}
+
+impl<'a, const W: usize> Worker<'a, W> {
+    /// Ready to run some of the members of an ensemble.
+    pub fn new(ensemble: &'a Ensemble, members: &'a [Member<'a>]) -> Self {
+        let modes = ensemble.problem.variant.modes.len();
+        let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
+        // As many again as there are lanes, so that a full group can be found.
+        let count = ((going + 1) * W).min(members.len());
+        let slot = |_| Slot {
+            simulation: Simulation::new(&ensemble.problem).expect("the scene was prepared"),
+            member: 0,
+            state: State::Free,
+        };
+        Worker {
+            ensemble,
+            members,
+            next: 0,
+            slots: (0..count).map(slot).collect(),
+            lanes: (0..modes).map(|_| None).collect(),
+            quiet: ensemble.problem.signals.is_zero(),
+        }
+    }
+
+    /// Runs all of them; `take` gets each at its end.
+    pub fn run(mut self, take: &mut impl FnMut(usize, Finished)) {
+        loop {
+            for slot in 0..self.slots.len() {
+                while self.slots[slot].state == State::Free && self.next < self.members.len() {
+                    let (member, next) = (self.next, &self.members[self.next]);
+                    self.next += 1;
+                    let slot_ = &mut self.slots[slot];
+                    slot_.member = member;
+                    let begun = slot_.simulation.become_member(next);
+                    self.go_on(slot, begun.map(|()| true), false, take);
+                }
+                if self.slots[slot].state == State::Waiting {
+                    self.find_lane(slot);
+                }
+            }
+            let occupied = |lanes: &Option<Lanes<W>>| {
+                let slots = lanes
+                    .as_ref()
+                    .map(|lanes| lanes.slots.iter().flatten().count());
+                slots.unwrap_or(0)
+            };
+            let fullest =
+                (0..self.lanes.len()).max_by_key(|&m| (occupied(&self.lanes[m]), usize::MAX - m));
+            let Some(mode) = fullest.filter(|&mode| occupied(&self.lanes[mode]) > 0) else {
+                return;
+            };
+            self.step(mode, take);
+        }
+    }
+
+    /// Puts a waiting slot into a lane of its mode, if one is free.
+    fn find_lane(&mut self, slot: usize) {
+        let simulation = &self.slots[slot].simulation;
+        let mode = simulation.here.mode;
+        let (level, quiet) = (self.ensemble.level, self.quiet);
+        let lanes = self.lanes[mode].get_or_insert_with(|| {
+            let kernels = &simulation.mode().kernels;
+            let group: Box<dyn AnyGroup<W>> =
+                with_kernel!(kernels, k => Box::new(Group::new(k, level, quiet, simulation)));
+            Lanes {
+                group,
+                slots: [None; W],
+            }
+        });
+        if let Some(lane) = lanes.slots.iter().position(Option::is_none) {
+            lanes.group.load(lane, simulation);
+            lanes.slots[lane] = Some(slot);
+            self.slots[slot].state = State::InLane;
+        }
+    }
+
+    /// A step of a group, and what follows from it.
+    fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
+        let lanes = self.lanes[mode].as_mut().expect("it is occupied");
+        lanes.group.step(&self.ensemble.problem.signals);
+        let outcomes = lanes.group.outcomes();
+        for lane in 0..W {
+            let lanes = self.lanes[mode].as_mut().expect("it is occupied");
+            let Some(slot) = lanes.slots[lane] else {
+                continue;
+            };
+            let outcome = outcomes[lane];
+            if outcome == Outcome::GoesOn {
+                continue;
+            }
+            let simulation = &mut self.slots[slot].simulation;
+            lanes.group.unload(lane, simulation);
+            simulation.set_context();
+            let (stop, unclear) = match outcome {
+                Outcome::Event(guard) => (Stop::Event(guard), false),
+                Outcome::Until
+                    if simulation.here.now.seconds() >= self.ensemble.problem.end.time =>
+                {
+                    (Stop::End, false)
+                }
+                Outcome::Until => (Stop::Breakpoint, false),
+                _ => (Stop::Method, true),
+            };
+            let passed = simulation.pass(stop);
+            let stays = matches!(outcome, Outcome::Event(_))
+                && matches!(passed, Ok(true))
+                && simulation.here.mode == mode
+                && !simulation.is_over();
+            if stays && lanes.group.go_on(lane, simulation) {
+                continue;
+            }
+            lanes.group.vacate(lane);
+            lanes.slots[lane] = None;
+            self.go_on(slot, passed, unclear, take);
+            if self.slots[slot].state == State::Waiting {
+                self.find_lane(slot);
+            }
+        }
+    }
+
+    /// From the end of a segment on to where the slot waits for a lane, or to its end. `alone`: the next
+    /// segment is for the engine of single runs.
+    fn go_on(
+        &mut self,
+        slot: usize,
+        passed: Result<bool, Reason>,
+        mut alone: bool,
+        take: &mut impl FnMut(usize, Finished),
+    ) {
+        let Slot {
+            simulation,
+            member,
+            state,
+        } = &mut self.slots[slot];
+        let mut passed = passed;
+        let failure = loop {
+            match passed {
+                Err(reason) => break Some(reason),
+                Ok(false) => break None,
+                Ok(true) => {}
+            }
+            match simulation.settle() {
+                Err(reason) => break Some(reason),
+                Ok(false) => break None,
+                Ok(true) => {}
+            }
+            if !alone
+                && self.ensemble.in_lanes[simulation.here.mode]
+                && Group::<0, W>::takes(&simulation.signs)
+            {
+                *state = State::Waiting;
+                return;
+            }
+            alone = false;
+            passed = simulation.advance_to_event(&mut Silent);
+        };
+        take(
+            *member,
+            Finished {
+                simulation,
+                failure,
+            },
+        );
+        *state = State::Free;
+    }
+}

@@ -1,0 +1,54 @@
+//! How precise runs are: of one run ([`estimate`]), and of all methods and tolerances ([`Study`]).
+//!
+//! Errors are differences to a run that is known to be better ([`Difference`]).
+
+mod difference;
+mod estimate;
+mod matching;
+mod study;
+
+pub use difference::Difference;
+pub use estimate::{ESTIMATE_FACTOR, estimate};
+pub use matching::{Match, match_events};
+pub use study::{Advice, Reference, Row, Study, TOLERANCES, Verdict};
+
+use crate::hybrid::{Method, Problem};
+use crate::record::Recorded;
+
+/// The tightest relative tolerance that is asked for: a few tens of roundings.
+pub const TIGHTEST: f64 = 1e-14;
+
+/// The problem at another tolerance and by another method, of which nothing but events, end and ledger
+/// is recorded. The ratios of the scene's tolerances to each other stay.
+fn variation(problem: &Problem, method: Method, tolerance: f64) -> Problem {
+    let mut other = problem.clone();
+    let factor = tolerance / problem.accuracy.relative;
+    other.method = method;
+    other.accuracy.relative = tolerance;
+    let absolute = &mut other.accuracy;
+    for tolerance in absolute
+        .q_absolute
+        .iter_mut()
+        .chain(&mut absolute.v_absolute)
+    {
+        *tolerance *= factor;
+    }
+    other.record.every = Some(f64::INFINITY);
+    other.record.columns = Recorded::default();
+    other.record.event_states = false;
+    other
+}
+
+/// Typical sizes of coordinates and velocities: absolute ÷ relative tolerance.
+fn scales(problem: &Problem) -> [Vec<f64>; 2] {
+    let accuracy = &problem.accuracy;
+    let scale = |absolute: &[f64]| absolute.iter().map(|a| a / accuracy.relative).collect();
+    [scale(&accuracy.q_absolute), scale(&accuracy.v_absolute)]
+}
+
+/// Name of a method, as scenes write it.
+pub fn method_name(method: Method) -> &'static str {
+    let methods = crate::scene::METHODS;
+    let found = methods.iter().find(|(_, known)| *known == method);
+    found.expect("every method has a name").0
+}

@@ -1,0 +1,191 @@
+//! `precision`, and the estimate of `run`.
+
+use super::*;
+
+/// The rows of precision.csv, by the heads of the columns.
+fn rows(folder: &Path) -> Vec<std::collections::HashMap<String, String>> {
+    let mut csv = csv::Reader::from_path(folder.join("precision.csv")).unwrap();
+    csv.deserialize().map(Result::unwrap).collect()
+}
+
+#[test]
+fn every_method_comes_with_time_and_error_at_every_tolerance() {
+    let home = tempfile::tempdir().unwrap();
+    let precision = ["precision", &scene("sliding_oscillator"), "--out", "out"];
+    let output = ends_with(0, home.path(), &precision);
+    let text = stdout(&output);
+    let out = home.path().join("out");
+    assert!(
+        fs::read_to_string(out.join("precision.svg"))
+            .unwrap()
+            .contains("radau")
+    );
+    let rows = rows(&out);
+    assert_eq!(rows.len(), 3 * 11);
+    for row in &rows {
+        let number = |head: &str| {
+            row[head]
+                .parse::<f64>()
+                .unwrap_or_else(|_| panic!("{head}: {row:?}"))
+        };
+        assert_eq!(row["outcome"], "complete");
+        assert_eq!(
+            (number("missed events"), number("extra events")),
+            (0.0, 0.0)
+        );
+        assert!(number("time [s]") > 0.0 && number("steps") > 55.0);
+        let (tolerance, error) = (number("tolerance"), number("end error"));
+        // A global error is of the size of the tolerance here, down to the rounding of the states.
+        assert!(error <= (10.0 * tolerance).max(1e-12), "{row:?}");
+        assert!(number("bound of the end error") < 1e-13);
+    }
+    let advice = text
+        .lines()
+        .filter(|line| line.starts_with("for an error of"));
+    assert_eq!(advice.clone().count(), 3, "{text}");
+    assert!(
+        advice.clone().all(|line| line.contains("tolerance 1e-")),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_tolerance_that_is_advised_reaches_the_error() {
+    // P2 of benches/peers, against its reference of 30 digits.
+    let home = tempfile::tempdir().unwrap();
+    let reference: serde_json::Value =
+        serde_json::from_str(include_str!("../../benches/peers/reference.json")).unwrap();
+    let end = &reference["P2"]["y_end"];
+    let theta: f64 = end[0].as_str().unwrap().parse().unwrap();
+    fs::write(
+        home.path().join("scene.json"),
+        r#"{"model": "rocking_block",
+            "parameters": {"alpha": 0.25, "R": 1.5, "e": 0.85},
+            "initial": {"theta": 0.075},
+            "inputs": {"ground_acceleration": {"sine": {"amplitude": -3.4335, "frequency": 1.5, "phase": 0.3}}},
+            "end": 10, "accuracy": {"relative": 1e-8}}"#,
+    )
+    .unwrap();
+    for error in ["1e-4", "1e-8"] {
+        let output = ends_with(
+            0,
+            home.path(),
+            &["precision", "scene.json", "--error", error],
+        );
+        let text = stdout(&output);
+        let line = text
+            .lines()
+            .find(|line| line.starts_with("for an error of"))
+            .unwrap();
+        let word = |after: &str| {
+            let rest = line.split_once(after).unwrap().1;
+            rest.split(',').next().unwrap().trim().to_owned()
+        };
+        let settings = [
+            format!("method={}", word("method ")),
+            format!("accuracy.relative={}", word("tolerance ")),
+        ];
+        let run = [
+            "run",
+            "scene.json",
+            "--set",
+            &settings[0],
+            "--set",
+            &settings[1],
+            "--out",
+            "out",
+        ];
+        ends_with(0, home.path(), &run);
+        let summary = json(&home.path().join("out/summary.json"));
+        let found = summary["end"]["q"]["theta"].as_f64().unwrap();
+        // The model's typical angle is 0.1 rad.
+        let reached = (found.abs() - theta.abs()).abs() / 0.1;
+        assert!(reached <= error.parse().unwrap(), "{line}: {reached:e}");
+    }
+}
+
+#[test]
+fn a_method_that_is_hopeless_is_given_up_and_a_failing_scene_says_so() {
+    let home = tempfile::tempdir().unwrap();
+    let stiff = [
+        "precision",
+        &scene("sliding_oscillator"),
+        "--out",
+        "out",
+        "--set",
+        "parameters.k=1.05e16",
+        "--set",
+        "parameters.c=6.42e12",
+        "--set",
+        "end=0.05",
+    ];
+    let output = ends_with(0, home.path(), &stiff);
+    let text = stdout(&output);
+    assert!(text.contains("given up"), "{text}");
+    assert!(text.contains("no other method"), "{text}");
+}
+
+#[test]
+fn wrong_requests_of_precision_are_refused() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = scene("bouncing_ball");
+    for wrong in ["0", "-1e-3", "much"] {
+        let output = ends_with(
+            2,
+            home.path(),
+            &["precision", &scene, &format!("--error={wrong}")],
+        );
+        assert!(
+            stderr(&output).contains("positive number"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    ends_with(2, home.path(), &["precision", "nowhere.json"]);
+    let both = ["run", &scene, "--resume", "out", "--error-estimate"];
+    assert!(stderr(&ends_with(2, home.path(), &both)).contains("--error-estimate"));
+}
+
+#[test]
+fn the_estimate_of_a_run_is_its_error() {
+    // The error is told by a run at the tightest tolerance.
+    let home = tempfile::tempdir().unwrap();
+    let scene = scene("sliding_oscillator");
+    let at = |tolerance: &str, more: &[&str], out: &str| {
+        let tolerance = format!("accuracy.relative={tolerance}");
+        let run = ["run", &scene, "--set", &tolerance, "--out", out];
+        ends_with(0, home.path(), &[&run[..], more].concat());
+        json(&home.path().join(out).join("summary.json"))
+    };
+    let exact = at("1e-13", &[], "exact");
+    for tolerance in ["1e-4", "1e-7"] {
+        let run = at(tolerance, &["--error-estimate"], "out");
+        let estimate = &run["error_estimate"];
+        assert_eq!(estimate["missed_events"], 0);
+        // Over the peaks of the run, so that different units compare.
+        let mut parts = Vec::new();
+        for state in ["q", "v"] {
+            for (name, value) in estimate[state].as_object().unwrap() {
+                let of =
+                    |summary: &serde_json::Value| summary["end"][state][name].as_f64().unwrap();
+                let peak = |which: &str| run["peaks"][name][which].as_f64().unwrap().abs();
+                let size = peak("max").max(peak("min"));
+                let error = (of(&run) - of(&exact)).abs();
+                if size == 0.0 {
+                    assert_eq!((value.as_f64(), error), (Some(0.0), 0.0), "{name} is held");
+                    continue;
+                }
+                parts.push((value.as_f64().unwrap() / size, error / size));
+            }
+        }
+        let largest = parts.iter().fold(0.0_f64, |most, part| most.max(part.1));
+        // The better run is itself off by a few percent.
+        assert!(
+            parts
+                .iter()
+                .all(|(e, error)| (e - error).abs() <= 0.1 * largest),
+            "{parts:?}"
+        );
+    }
+    assert!(exact.get("error_estimate").is_none());
+}

@@ -1,0 +1,219 @@
+//! Ensembles: each trajectory is what a single run gives, and independent of everything around it.
+
+mod common;
+
+use common::problem;
+use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
+use dalembert::input::{Function, Sine};
+use dalembert::kernel::processor_level;
+use dalembert::record::Silent;
+
+/// What a trajectory ends with.
+#[derive(Debug, Clone, PartialEq)]
+struct End {
+    events: Vec<(&'static str, f64)>,
+    state: Vec<f64>,
+    failure: Option<String>,
+}
+
+/// The problems of the members: `count` variations of one, which `vary` makes of a number in [0, 1).
+fn variations(like: &Problem, count: usize, vary: impl Fn(&mut Problem, f64)) -> Vec<Problem> {
+    let variation = |i| {
+        let mut own = like.clone();
+        vary(&mut own, i as f64 / count as f64);
+        own
+    };
+    (0..count).map(variation).collect()
+}
+
+/// Each by itself.
+fn alone(problems: &[Problem]) -> Vec<End> {
+    let run = |problem: &Problem| {
+        let mut simulator = Simulator::new(problem).unwrap();
+        let failure = simulator.run(&mut Silent).err().map(|why| why.to_string());
+        let events = simulator.events().iter().map(|e| (e.transition, e.t));
+        End {
+            events: events.collect(),
+            state: [simulator.q(), simulator.v()].concat(),
+            failure,
+        }
+    };
+    problems.iter().map(run).collect()
+}
+
+/// All in lanes, at a level of the processor and on some threads.
+fn together(problems: &[Problem], level: usize, threads: usize) -> Vec<End> {
+    let ensemble = Ensemble::new(&problems[0]).unwrap().at_level(level);
+    let members: Vec<_> = problems.iter().map(Member::from).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let extract = |_, finished: dalembert::hybrid::Finished| End {
+        events: finished
+            .events()
+            .iter()
+            .map(|e| (e.transition, e.t))
+            .collect(),
+        state: [finished.q(), finished.v()].concat(),
+        failure: finished.failure.as_ref().map(|why| why.to_string()),
+    };
+    pool.build()
+        .unwrap()
+        .install(|| ensemble.run(&members, extract))
+}
+
+/// The largest difference of event times and states, relative to one; the transitions are the same.
+fn difference(one: &[End], other: &[End]) -> f64 {
+    let mut most = 0.0_f64;
+    for (i, (one, other)) in one.iter().zip(other).enumerate() {
+        let names = |end: &End| end.events.iter().map(|e| e.0).collect::<Vec<_>>();
+        assert_eq!(names(one), names(other), "member {i}");
+        assert_eq!(one.failure, other.failure, "member {i}");
+        let times = one
+            .events
+            .iter()
+            .zip(&other.events)
+            .map(|(a, b)| (a.1, b.1));
+        let states = one.state.iter().copied().zip(other.state.iter().copied());
+        most = times
+            .chain(states)
+            .fold(most, |most, (a, b)| most.max((a - b).abs()));
+    }
+    most
+}
+
+fn set_size(problem: &mut Problem, tolerance: f64, q: f64, v: f64) {
+    problem.set_tolerance(tolerance);
+    problem.accuracy.q_absolute.fill(tolerance * q);
+    problem.accuracy.v_absolute.fill(tolerance * v);
+}
+
+/// A rocking block on shaken ground: 28 impacts each.
+fn shaken_blocks(tolerance: f64, count: usize) -> Vec<Problem> {
+    let mut block = problem("rocking_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.85)]);
+    block.set_initial("theta", 0.075).unwrap();
+    let shake = Sine::new(-0.35 * 9.81, 3.0 * std::f64::consts::PI, 0.3);
+    block
+        .set_input("ground_acceleration", Function::from(shake))
+        .unwrap();
+    block.end.time = 10.0;
+    set_size(&mut block, tolerance, 0.2, 0.5);
+    variations(&block, count, |p, x| {
+        p.set_parameter("R", 1.5 + 0.05 * x).unwrap()
+    })
+}
+
+#[test]
+fn each_trajectory_of_an_ensemble_is_a_single_run() {
+    for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let blocks = shaken_blocks(tolerance, 37);
+        let difference = difference(&alone(&blocks), &together(&blocks, processor_level(), 2));
+        // The two take the same steps, with other roundings; the motion amplifies them a hundredfold.
+        assert!(difference < 1e-12, "{tolerance:e}: {difference:e}");
+    }
+}
+
+#[test]
+fn accumulations_and_rest_are_those_of_single_runs() {
+    // Free rocking dies out in an accumulation, in another mode, at times of its own for each.
+    let mut block = problem("rocking_block", &[("alpha", 0.25), ("R", 1.5)]);
+    block.end.time = 60.0;
+    set_size(&mut block, 1e-9, 0.2, 0.5);
+    let blocks = variations(&block, 29, |p, x| {
+        p.set_parameter("e", 0.6 + 0.3 * x).unwrap();
+        p.set_initial("theta", 0.02 + 0.2 * x).unwrap();
+    });
+    let ends = together(&blocks, processor_level(), 1);
+    assert!(
+        ends.iter()
+            .all(|end| end.events.last().unwrap().0 == "rest")
+    );
+    // The limit of a series is known to the tolerance.
+    assert!(difference(&alone(&blocks), &ends) < 1e-8);
+}
+
+#[test]
+fn modes_that_do_not_go_in_lanes_are_run_alone() {
+    // Stick and slip: sticking is left when a force exceeds friction, which is no coordinate.
+    let mut slider = problem("sliding_oscillator", &[("k", 1.05e6), ("c", 642.0)]);
+    let shake = Sine::new(20.0, 14.0 * std::f64::consts::PI, 0.0);
+    slider
+        .set_input("ground_acceleration", Function::from(shake))
+        .unwrap();
+    slider.end.time = 0.5;
+    set_size(&mut slider, 1e-9, 1e-3, 0.1);
+    let sliders = variations(&slider, 21, |p, x| {
+        p.set_parameter("c", 642.0 + 100.0 * x).unwrap()
+    });
+    let ends = together(&sliders, processor_level(), 1);
+    assert!(ends.iter().all(|end| end.events.len() > 5));
+    assert!(difference(&alone(&sliders), &ends) < 1e-8);
+}
+
+#[test]
+fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours() {
+    let blocks = shaken_blocks(1e-6, 37);
+    let all = together(&blocks, 0, 1);
+    for level in 0..=processor_level() {
+        for threads in [1, 2, 3] {
+            assert_eq!(
+                together(&blocks, level, threads),
+                all,
+                "level {level}, {threads} threads"
+            );
+        }
+    }
+    let mut reversed = blocks.clone();
+    reversed[1..].reverse(); // the first one is the scene itself
+    let mut ends = together(&reversed, processor_level(), 1);
+    ends[1..].reverse();
+    assert_eq!(ends, all);
+}
+
+#[test]
+fn a_member_that_fails_says_why_and_leaves_the_others_alone() {
+    // A block in strong gravity stays on the ground; in weak gravity the ground's motion lifts it off.
+    let mut blocks = shaken_blocks(1e-6, 16);
+    for (i, block) in blocks.iter_mut().enumerate().skip(1) {
+        if i % 3 == 0 {
+            block.set_initial("theta", 0.24).unwrap();
+            block.set_initial("theta.rate", 3.0).unwrap();
+        }
+    }
+    let (single, ends) = (alone(&blocks), together(&blocks, processor_level(), 1));
+    for (i, (one, other)) in single.iter().zip(&ends).enumerate() {
+        assert_eq!(one.failure.is_some(), other.failure.is_some(), "member {i}");
+        assert_eq!(
+            one.failure.is_some(),
+            i > 0 && i % 3 == 0,
+            "member {i}: {one:?}"
+        );
+    }
+}
+
+#[test]
+fn members_start_where_their_initial_state_says() {
+    let initial = |h: f64| Initial {
+        q: vec![h],
+        v: vec![0.0],
+        discrete: vec![],
+        mode: None,
+    };
+    let mut ball = problem("bouncing_ball", &[]);
+    ball.initial = initial(1.0);
+    ball.end.time = 1.0;
+    set_size(&mut ball, 1e-9, 1.0, 4.4);
+    let g = ball.parameters[ball
+        .model
+        .parameters
+        .iter()
+        .position(|p| p.name == "g")
+        .unwrap()];
+    let balls = variations(&ball, 11, |p, x| p.initial = initial(1.0 + x));
+    for (end, ball) in together(&balls, processor_level(), 1).iter().zip(&balls) {
+        let fall = (2.0 * ball.initial.q[0] / g).sqrt();
+        assert!(
+            (end.events[0].1 - fall).abs() < 4e-16,
+            "{} {fall}",
+            end.events[0].1
+        );
+    }
+}
