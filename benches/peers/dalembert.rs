@@ -1,7 +1,11 @@
-//! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`.
+//! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`, or
+//! `overhead` for the cost of a step.
 //!
 //! One row a problem, method and tolerance, in the format of `benches/peers/README.md`. Preparation
 //! is outside the timed part, as it is for the peers; events are recorded with their times only.
+
+#[path = "overhead.rs"]
+mod overhead;
 
 use dalembert::hybrid::{End, Method, Problem, Simulator};
 use dalembert::input::{Function, Sine};
@@ -27,6 +31,9 @@ fn main() {
         .skip(1)
         .filter(|a| a != "--bench")
         .collect();
+    if named == ["overhead"] {
+        return overhead::report();
+    }
     for name in PROBLEMS {
         if !named.is_empty() && !named.iter().any(|n| n == name) {
             continue;

@@ -66,7 +66,15 @@ pub fn rows(problem: &Problem, tolerance: f64, stiff: bool) {
         ($method:literal, $order:literal, $solver:expr) => {
             if let Ok(mut solver) = $solver {
                 crate::measure("diffsol", $method, problem, tolerance, |run| {
-                    drive(problem, &equations, &mut solver, $order, tolerance, &forget, run)
+                    drive(
+                        problem,
+                        &equations,
+                        &mut solver,
+                        $order,
+                        tolerance,
+                        &forget,
+                        run,
+                    )
                 });
             }
         };

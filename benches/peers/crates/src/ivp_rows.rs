@@ -82,7 +82,8 @@ fn drive(system: &System, method: Method, tolerance: f64, absolute: &[f64], run:
             return;
         };
         run.steps += piece.nstep;
-        let (Some(&t), Some(y), true) = (piece.t.last(), piece.y.last(), piece.status.is_success()) else {
+        let (Some(&t), Some(y), true) = (piece.t.last(), piece.y.last(), piece.status.is_success())
+        else {
             run.status = -2;
             return;
         };

@@ -51,7 +51,13 @@ fn main() {
 }
 
 /// Runs again and again, and prints a row.
-fn measure(peer: &str, method: &str, problem: &Problem, tolerance: f64, mut work: impl FnMut(&mut Run)) {
+fn measure(
+    peer: &str,
+    method: &str,
+    problem: &Problem,
+    tolerance: f64,
+    mut work: impl FnMut(&mut Run),
+) {
     let quick = std::env::var_os("PEERS_QUICK").is_some();
     let (repeats, budget) = if quick { (3, 10) } else { (10, 80) };
     let (mut run, mut times, begin) = (Run::default(), Vec::new(), Instant::now());
