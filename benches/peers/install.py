@@ -75,7 +75,10 @@ class Peers:
         return [program]
 
     def heyoka(self):
-        self.venv()
+        self.walking_tank()
+        library = self.tank / "libtank_events.so"
+        call([*CXX, "-shared", "-fPIC", "-I", self.tank, HERE / "tank_events.cpp", self.tank / "libtank.a", "-o", library])
+        os.environ["PEERS_TANK"] = str(library)
         return [self.python, "-B", HERE / "heyoka_rows.py"]
 
     def casadi(self):

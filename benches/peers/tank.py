@@ -77,7 +77,7 @@ def main(folder):
     subprocess.run([sys.executable, "-B", "-m", "codegen", "generate", "--model-dir", "models/walking_tank", "--out", folder], cwd=ROOT, check=True)
     generated = folder / "walking_tank"
     (folder / "tank_tables.hpp").write_text(tables((generated / "model.rs").read_text()))
-    compile_c = ["gcc", "-O3", "-march=native", "-c"]
+    compile_c = ["gcc", "-O3", "-march=native", "-fPIC", "-c"]
     subprocess.run([*compile_c, generated / "walking_tank.c", "-o", folder / "walking_tank.o"], check=True)
     # Its error-free sums must not be contracted.
     subprocess.run([*compile_c, "-ffp-contract=off", ROOT / "codegen" / "elementary.c", "-o", folder / "elementary.o"], check=True)
