@@ -6,8 +6,8 @@ use ivp::matrix::Matrix;
 use ivp::prelude::*;
 use std::cell::RefCell;
 
-struct System<'p> {
-    problem: &'p Problem,
+pub struct System<'p> {
+    pub problem: &'p Problem,
     jacobian: RefCell<Vec<f64>>,
 }
 
@@ -62,6 +62,7 @@ pub fn rows(problem: &Problem, tolerance: f64, stiff: bool) {
             drive(&system, method, tolerance, &absolute, run)
         });
     }
+    crate::ivp_in_place::rows(&system, tolerance, stiff);
 }
 
 fn drive(system: &System, method: Method, tolerance: f64, absolute: &[f64], run: &mut Run) {

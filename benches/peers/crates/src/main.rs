@@ -1,6 +1,7 @@
 //! Rows of the Rust crates diffsol and `ivp`: `peers CRATE [PROBLEM ...]`; see `../README.md`.
 
 mod diffsol_rows;
+mod ivp_in_place;
 mod ivp_rows;
 mod problems;
 
