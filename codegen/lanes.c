@@ -71,13 +71,14 @@ DALEMBERT_INLINE real inverse_root(real x, double n) {
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what
  * remains and is not more than the horizon. tolerances: relative, then absolute ones of the coordinates,
- * then of the velocities.
+ * then of the velocities. The terms of order p - 3 and p - 2 limit it, too, times their factors:
+ * src/integrate/taylor/length.rs.
  */
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const double *tolerances,
-                                  const real *remaining, const real *horizon, real *out);
+                                  const double *factors, const real *remaining, const real *horizon, real *out);
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const double *tolerances,
-                                  const real *remaining, const real *horizon, real *out) {
-  real sizes[3] = {{0}};
+                                  const double *factors, const real *remaining, const real *horizon, real *out) {
+  real sizes[3] = {{0}}, earlier[2] = {{0}};
   for (size_t i = 0; i < free; ++i) {
     const real of_q = 1.0 / (tolerances[1 + i] + tolerances[0] * size_of(q[i]));
     const real of_v = 1.0 / (tolerances[1 + free + i] + tolerances[0] * size_of(v[i]));
@@ -85,9 +86,11 @@ void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const re
     sizes[1] = greater(size_of(v[p * free + i]) * of_v, sizes[1]);
     sizes[1] = greater(size_of(q[p * free + i]) * of_q, sizes[1]);
     sizes[2] = greater(size_of(q[(p + 1) * free + i]) * of_q, sizes[2]);
+    for (size_t k = 0; k < 2; ++k) earlier[k] = greater(size_of(v[(p - 3 + k) * free + i]) * of_v, earlier[k]);
   }
   real length = *horizon;
   for (size_t k = 0; k < 3; ++k) length = smaller(inverse_root(sizes[k], (double)(p + k - 1)), length);
+  for (size_t k = 0; k < 2; ++k) length = smaller(factors[k] * inverse_root(earlier[k], (double)(p - 3 + k)), length);
   const real half = pick(2.0 * length > *remaining, 0.5 * *remaining, length);
   *out = pick(length >= *remaining, *remaining, half);
 }
