@@ -233,6 +233,47 @@ fn stick_and_slip_on_a_belt_repeat() {
 }
 
 #[test]
+fn sticks_of_a_microsecond_and_of_a_nanosecond_are_kept() {
+    // The closed form of the reference's 10l with k = m = 1: (F_s − x_restick)/v = 2 (F_s − F_k)/v.
+    with_each_method(|| {
+        for stick in [1e-6, 1e-9] {
+            let (v, g) = (0.1, 10.0);
+            let excess = 0.5 * stick * v;
+            let parameters = [
+                ("belt", v),
+                ("mu_s", 0.1),
+                ("mu_k", 0.1 - excess / g),
+                ("g", g),
+            ];
+            let mut problem = problem("belt_oscillator", &parameters);
+            problem.initial.mode = Some(mode(&problem, "sticks"));
+            problem.set_initial("x", 1.0 - 1e-3).unwrap();
+            problem.end.time = 60.0;
+            problem.set_tolerance(TIGHTEST);
+            let run = run(&problem);
+            let (slips, sticks) = (times(&run, "slip"), times(&run, "stick"));
+            println!("STICK {stick:e}: {} {}", slips.len(), sticks.len());
+            for k in 0..sticks.len() - 1 {
+                println!("  {:e} {:e}", sticks[k]-slips[k] - (2.0 * std::f64::consts::PI - 2.0 * (excess / v).atan()), slips[k + 1] - sticks[k] - stick);
+            }
+        }
+    });
+}
+
+#[test]
+fn flights_of_a_nanosecond_are_flown() {
+    with_each_method(|| {
+        for e in [1e-9, 1e-12] {
+            let mut problem = problem("bouncing_ball", &[("e", e)]);
+            problem.set_initial("h", 1.0).unwrap();
+            problem.set_tolerance(TIGHTEST);
+            let run = run(&problem);
+            println!("FLIGHT {e:e} {:?} {:?}", run.events.iter().map(|e| (e.t, e.transition, e.before.v[0], e.after.v[0])).collect::<Vec<_>>(), (2.0f64/9.81).sqrt());
+        }
+    });
+}
+
+#[test]
 fn a_relay_switches_five_thousand_times() {
     with_each_method(|| {
         let item = item("10o_relay_hysteresis");
