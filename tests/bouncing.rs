@@ -131,8 +131,12 @@ fn chattering_ends_in_sticking_and_release() {
 fn an_accumulation_in_every_period_of_an_orbit_is_found() {
     with_each_method(|| {
         let reference = reference("05_bouncing_ball");
-        let cases = reference["reference"]["chattering_sticking"].as_array().unwrap();
-        let periodic = cases.iter().filter(|c| c["orbit_period_in_table_periods"] == 1);
+        let cases = reference["reference"]["chattering_sticking"]
+            .as_array()
+            .unwrap();
+        let periodic = cases
+            .iter()
+            .filter(|c| c["orbit_period_in_table_periods"] == 1);
         let mut count = 0;
         for case in periodic {
             count += 1;
@@ -149,16 +153,19 @@ fn an_accumulation_in_every_period_of_an_orbit_is_found() {
             assert_eq!(rests.len(), 10, "Γ = {gamma}: {rests:?}");
             for (n, rest) in rests.iter().enumerate() {
                 let error = (rest - sticks - n as f64 * period).abs();
-                println!("ORBIT {gamma} {n} {error:e}");
-                assert!(error < 1e-8, "Γ = {gamma}, period {n}: {error:e}");
+                // The reference demands 1e-8; found: 7e-15, a rounding of t.
+                assert!(error < 1e-13, "Γ = {gamma}, period {n}: {error:e}");
             }
-            let releases: Vec<f64> = times(&run, "take_off").into_iter().filter(|&t| t > 1.0).collect();
+            let releases: Vec<f64> = times(&run, "take_off")
+                .into_iter()
+                .filter(|&t| t > 1.0)
+                .collect();
             assert_eq!(releases.len(), 9, "Γ = {gamma}");
             for (n, t) in releases.iter().enumerate() {
                 let error = (t - (n + 1) as f64 * period).abs();
-                assert!(error < 1e-11, "Γ = {gamma}, release {n}: {error:e}");
+                assert!(error < 1e-12, "Γ = {gamma}, release {n}: {error:e}");
             }
         }
-        assert!(count >= 1);
+        assert_eq!(count, 2);
     });
 }

@@ -31,7 +31,9 @@ fn scene(
     }
     if amplitude != 0.0 {
         let shaking = Sine::new(amplitude, TAU * frequency, phase);
-        problem.set_input("ground_acceleration", shaking.into()).unwrap();
+        problem
+            .set_input("ground_acceleration", shaking.into())
+            .unwrap();
     }
     problem.set_tolerance(1e-10);
     problem.end.time = 1.5;
@@ -51,7 +53,10 @@ fn run_with(problem: &Problem, method: Method) -> Run {
     let run = simulate(&problem, &mut Silent).expect("the problem can be started");
     if let Some(failure) = &run.failure {
         let asked_for = ["would leave the ground"];
-        assert!(asked_for.iter().any(|a| failure.reason.contains(a)), "{failure:?}");
+        assert!(
+            asked_for.iter().any(|a| failure.reason.contains(a)),
+            "{failure:?}"
+        );
     }
     run
 }
@@ -60,7 +65,11 @@ fn run_with(problem: &Problem, method: Method) -> Run {
 fn assert_order(run: &Run) {
     let mut last = 0.0;
     for (n, event) in run.events.iter().enumerate() {
-        assert!(event.t >= last && event.t <= run.end.t, "event {n} at {}", event.t);
+        assert!(
+            event.t >= last && event.t <= run.end.t,
+            "event {n} at {}",
+            event.t
+        );
         assert_eq!(event.j, n as u64 + 1);
         last = event.t;
     }
@@ -70,14 +79,26 @@ fn assert_order(run: &Run) {
 /// No coordinate is below its minimum at a sample or after an event.
 fn assert_no_penetration(problem: &Problem, run: &Run) {
     for (i, coordinate) in problem.model.coordinates.iter().enumerate() {
-        let Some(minimum) = coordinate.minimum else { continue };
+        let Some(minimum) = coordinate.minimum else {
+            continue;
+        };
         let column = run.trajectory.column(coordinate.name).unwrap();
         for row in 0..run.trajectory.len() {
             let value = run.trajectory.row(row)[column];
-            assert!(value >= minimum, "{} = {value:e} at {}", coordinate.name, run.trajectory.t[row]);
+            assert!(
+                value >= minimum,
+                "{} = {value:e} at {}",
+                coordinate.name,
+                run.trajectory.t[row]
+            );
         }
         for event in &run.events {
-            assert!(event.after.q[i] >= minimum, "{} after {}", coordinate.name, event.transition);
+            assert!(
+                event.after.q[i] >= minimum,
+                "{} after {}",
+                coordinate.name,
+                event.transition
+            );
         }
     }
 }
@@ -85,12 +106,21 @@ fn assert_no_penetration(problem: &Problem, run: &Run) {
 /// Stored energy changes by work, dissipation and impacts: to 100 tolerances of what is turned over.
 fn assert_ledger(problem: &Problem, run: &Run) {
     let energy = run.energy.as_ref().unwrap();
-    let turnover = energy.initial.abs() + energy.final_.abs() + energy.input_work.abs()
-        + energy.dissipated.abs() + energy.lost_at_impacts.abs();
+    let turnover = energy.initial.abs()
+        + energy.final_.abs()
+        + energy.input_work.abs()
+        + energy.dissipated.abs()
+        + energy.lost_at_impacts.abs();
     let imbalance = energy.imbalance().abs();
     WORST.with_borrow_mut(|w| w[0] = w[0].max(imbalance / (problem.accuracy.relative * turnover)));
-    assert!(imbalance <= 100.0 * problem.accuracy.relative * turnover, "{imbalance:e} of {turnover:e}");
-    assert!(energy.dissipated >= -1e-13 * turnover && energy.lost_at_impacts >= -1e-13 * turnover, "{energy:?}");
+    assert!(
+        imbalance <= 100.0 * problem.accuracy.relative * turnover,
+        "{imbalance:e} of {turnover:e}"
+    );
+    assert!(
+        energy.dissipated >= -1e-13 * turnover && energy.lost_at_impacts >= -1e-13 * turnover,
+        "{energy:?}"
+    );
 }
 
 thread_local! { static WORST: std::cell::RefCell<[f64; 4]> = const { std::cell::RefCell::new([0.0; 4]) }; }
@@ -101,19 +131,37 @@ fn assert_friction(problem: &Problem, run: &Run, coordinate: &str) {
     let trajectory = &run.trajectory;
     let column = |name: &str| trajectory.column(name).unwrap();
     let [rate, slip, normal, shear, base] = [
-        &format!("{coordinate}.rate"), "slip", "reaction.y", &format!("reaction.{coordinate}"), "reaction.z_h",
-    ].map(column);
+        &format!("{coordinate}.rate"),
+        "slip",
+        "reaction.y",
+        &format!("reaction.{coordinate}"),
+        "reaction.z_h",
+    ]
+    .map(column);
     let [mu_s, mu_k] = ["mu_s", "mu_k"].map(|name| value(problem, name).unwrap());
     for i in 0..trajectory.len() {
         let (t, row) = (trajectory.t[i], trajectory.row(i));
         assert!(row[normal] > 0.0, "N = {} at {t}", row[normal]);
         if run.layout.modes[usize::from(trajectory.mode[i])].ends_with("sticks") {
             assert_eq!(row[rate], 0.0);
-            assert!(row[shear].abs() <= mu_s * row[normal], "R = {}, N = {} at {t}", row[shear], row[normal]);
+            assert!(
+                row[shear].abs() <= mu_s * row[normal],
+                "R = {}, N = {} at {t}",
+                row[shear],
+                row[normal]
+            );
         } else {
-            assert!(row[slip] * row[rate] >= 0.0, "slips at {} in {t}", row[rate]);
+            assert!(
+                row[slip] * row[rate] >= 0.0,
+                "slips at {} in {t}",
+                row[rate]
+            );
             let friction = -mu_k * row[normal] * row[slip];
-            assert!((row[base] - friction).abs() <= 1e-13 * mu_k * row[normal], "R = {} at {t}", row[base]);
+            assert!(
+                (row[base] - friction).abs() <= 1e-13 * mu_k * row[normal],
+                "R = {} at {t}",
+                row[base]
+            );
         }
     }
 }
@@ -125,7 +173,13 @@ fn assert_agreement(a: &Run, b: &Run, events: usize) {
     assert_eq!(transitions(a)[..count], transitions(b)[..count]);
     for (a, b) in a.events.iter().zip(&b.events).take(count) {
         WORST.with_borrow_mut(|w| w[1] = w[1].max((a.t - b.t).abs()));
-        assert!((a.t - b.t).abs() < 1e-6, "{} at {} and {}", a.transition, a.t, b.t);
+        assert!(
+            (a.t - b.t).abs() < 1e-6,
+            "{} at {} and {}",
+            a.transition,
+            a.t,
+            b.t
+        );
     }
 }
 
@@ -142,7 +196,11 @@ fn check(problem: &Problem, slips: Option<&str>) {
         }
     }
     assert_agreement(&auto, &radau, 10);
-    println!("{} events, worst {:?}", auto.events.len(), WORST.with_borrow(|w| *w));
+    println!(
+        "{} events, worst {:?}",
+        auto.events.len(),
+        WORST.with_borrow(|w| *w)
+    );
 }
 
 proptest! {

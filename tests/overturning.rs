@@ -82,10 +82,12 @@ fn a_block_released_just_below_its_equilibrium_falls_back_in_time() {
             problem.end.after = Some(("landing", 1));
             let run = run(&problem);
             let error = (times(&run, "landing")[0] - exact).abs();
-            // A rounding of θ is amplified to this.
+            // A rounding of θ is amplified to this. Found: 1.1 times it.
             let amplified = 0.5 * f64::EPSILON * alpha / (2.0 * (alpha - theta));
-            println!("RELEASE {theta} {method:?} {error:e} {amplified:e}");
-            assert!(error < 10.0 * amplified + 1e-14, "{theta}, {method:?}: {error:e}");
+            assert!(
+                error < 3.0 * amplified + 1e-15,
+                "{theta}, {method:?}: {error:e}"
+            );
 
             let mut beyond = problem.clone();
             beyond.set_initial("theta", 2.0 * alpha - theta).unwrap();

@@ -78,8 +78,11 @@ fn a_vibration_without_damping_keeps_its_energy() {
             let [stop, end] = [&run.events[0].after, &run.end.state]
                 .map(|state| vibration(k, state.q[1], state.v[1]));
             let lost = (end / stop - 1.0).abs();
-            println!("VIB {k:e} {method:?} {lost:e}");
-            assert!(lost < 1e-6, "k = {k:e}, {method:?}: {lost:e}");
+            // Found: 1e-11 at k = 1e6 to 1e-8 at 1e12, where 1e6 steps of 1e-12 add up.
+            assert!(
+                lost < 2e-8 * (k / 1e12).sqrt().max(1e-2),
+                "k = {k:e}, {method:?}: {lost:e}"
+            );
         }
     }
 }
@@ -97,7 +100,7 @@ fn a_mass_that_vanishes_follows_the_block() {
             let at = format!("m = {m:e}, {method:?}");
             assert_eq!(transitions(&run), ["stick"], "{at}");
             let error = run.events[0].t - exact;
-            println!("MASSLESS {at} {error:e} {:e} {}", run.events[0].after.q[1] / (0.3 * 9.81 * m / k) -1.0, run.solver.steps);
+            assert!(run.solver.steps < 100, "{at}: {} steps", run.solver.steps);
             assert!(error.abs() < 1e-14, "{at}: {error:e}");
             let elongation = run.events[0].after.q[1] / (0.3 * 9.81 * m / k) - 1.0;
             assert!(elongation.abs() < 1e-10, "{at}: {elongation:e}");
@@ -136,7 +139,7 @@ fn a_stiff_spring_switched_on_by_an_impact_throws_back_what_it_got() {
                 worst[1] = worst[1].max((leave / (exact + contact) - 1.0).abs());
                 worst[2] = worst[2].max((run.events[2 * n + 1].after.v[0] - v).abs());
             }
-            println!("BUFFER {at} {worst:?} steps {}", run.solver.steps);
+            // Found: 2e-12 after 99 contacts, that is 2 % of the tolerance in each.
             assert!(worst.iter().all(|&e| e < 1e-11), "{at}: {worst:?}");
         }
     }
@@ -158,9 +161,9 @@ fn a_damped_spring_switched_on_by_an_impact_has_the_restitution_of_its_damping()
                 assert_eq!(transitions(&run), ["press", "leave"], "{at}");
                 let contact = run.events[1].t - run.events[0].t - PI / (damped * omega);
                 let error = run.events[1].after.v[0] - restitution;
-                println!("DAMPED {at} {contact:e} {error:e}");
-                assert!(contact.abs() < 1e-14, "{at}: {contact:e}");
-                assert!(error.abs() < 1e-11, "{at}: {error:e}");
+                // The slower it leaves, the more a deviation of the place moves the instant.
+                assert!(contact.abs() * restitution < 1e-14, "{at}: {contact:e}");
+                assert!(error.abs() < 1e-12, "{at}: {error:e}");
             }
         }
     }

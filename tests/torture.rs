@@ -233,42 +233,54 @@ fn stick_and_slip_on_a_belt_repeat() {
 }
 
 #[test]
-fn sticks_of_a_microsecond_and_of_a_nanosecond_are_kept() {
-    // The closed form of the reference's 10l with k = m = 1: (F_s − x_restick)/v = 2 (F_s − F_k)/v.
+fn sticks_down_to_a_picosecond_are_kept() {
     with_each_method(|| {
-        for stick in [1e-6, 1e-9] {
-            let (v, g) = (0.1, 10.0);
-            let excess = 0.5 * stick * v;
-            let parameters = [
-                ("belt", v),
-                ("mu_s", 0.1),
-                ("mu_k", 0.1 - excess / g),
-                ("g", g),
-            ];
+        let (belt, limit, kinetic) = (0.1, 1.0, 0.6);
+        for duration in [1e-6, 1e-9, 1e-12] {
+            // It is faster than the belt, which it meets where the spring has almost reached the limit:
+            // x″ = −x − F_k up to there, on a circle about −F_k.
+            let meets: f64 = limit - belt * duration;
+            let start = ((meets + kinetic).powi(2) + belt * belt - kinetic * kinetic).sqrt();
+            let parameters = [("belt", belt), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
             let mut problem = problem("belt_oscillator", &parameters);
-            problem.initial.mode = Some(mode(&problem, "sticks"));
-            problem.set_initial("x", 1.0 - 1e-3).unwrap();
-            problem.end.time = 60.0;
+            problem.set_initial("x.rate", start).unwrap();
+            problem.set_initial("slip", 1.0).unwrap();
             problem.set_tolerance(TIGHTEST);
+            problem.end.time = 4.0;
             let run = run(&problem);
-            let (slips, sticks) = (times(&run, "slip"), times(&run, "stick"));
-            println!("STICK {stick:e}: {} {}", slips.len(), sticks.len());
-            for k in 0..sticks.len() - 1 {
-                println!("  {:e} {:e}", sticks[k]-slips[k] - (2.0 * std::f64::consts::PI - 2.0 * (excess / v).atan()), slips[k + 1] - sticks[k] - stick);
-            }
+            assert_eq!(transitions(&run), ["stick", "slip"], "{duration:e}");
+            let angle = |speed: f64, x: f64| speed.atan2(x + kinetic);
+            let exact = angle(start, 0.0) - angle(belt, meets);
+            let error = run.events[0].t - exact;
+            assert!(error.abs() < 2e-15, "{duration:e}: sticks {error:e} off");
+            // A rounding of x is ten of t.
+            let error = run.events[1].t - run.events[0].t - duration;
+            assert!(error.abs() < 1e-14, "{duration:e}: {error:e} off");
         }
     });
 }
 
 #[test]
-fn flights_of_a_nanosecond_are_flown() {
+fn flights_down_to_a_picosecond_are_flown() {
     with_each_method(|| {
         for e in [1e-9, 1e-12] {
             let mut problem = problem("bouncing_ball", &[("e", e)]);
             problem.set_initial("h", 1.0).unwrap();
             problem.set_tolerance(TIGHTEST);
             let run = run(&problem);
-            println!("FLIGHT {e:e} {:?} {:?}", run.events.iter().map(|e| (e.t, e.transition, e.before.v[0], e.after.v[0])).collect::<Vec<_>>(), (2.0f64/9.81).sqrt());
+            let impacts = times(&run, "impact");
+            let first = (2.0 / 9.81_f64).sqrt();
+            assert!(relative(impacts[0], first) < 1e-15);
+            // Flights of 0.9 ns and 0.9 ps: seen in t to its last place.
+            let flight = impacts[1] - impacts[0];
+            assert!(
+                (flight - 2.0 * e * first).abs() < 2.0 * f64::EPSILON,
+                "{flight:e}"
+            );
+            // What a flight of free fall takes off it gives back.
+            let speed = run.events[1].before.v[0];
+            assert!(relative(-speed, e * 9.81 * first) < 1e-14, "{speed:e}");
+            assert_eq!(times(&run, "rest").len(), 1);
         }
     });
 }

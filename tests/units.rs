@@ -25,6 +25,7 @@ fn factor(unit: &str, units: Units) -> f64 {
                 "s" => s,
                 "Hz" => 1.0 / s,
                 "N" => kg * m / (s * s),
+                "J" => kg * m * m / (s * s),
                 _ => panic!("unit `{name}`"),
             };
             value.powi(power.parse().unwrap())
@@ -78,9 +79,15 @@ fn results(run: &Run, units: Units) -> Vec<f64> {
         state(event.t, &event.after);
     }
     state(run.end.t, &run.end.state);
-    let joule = factor("N m", units);
+    let joule = factor("J", units);
     let energy = run.energy.as_ref().unwrap();
-    for part in [energy.initial, energy.final_, energy.dissipated, energy.input_work, energy.lost_at_impacts] {
+    for part in [
+        energy.initial,
+        energy.final_,
+        energy.dissipated,
+        energy.input_work,
+        energy.lost_at_impacts,
+    ] {
         all.push(part / joule);
     }
     for row in 0..run.trajectory.len() {
@@ -96,7 +103,7 @@ fn results(run: &Run, units: Units) -> Vec<f64> {
 fn scene(name: &str, method: Method, relative: f64, units: Units) -> Run {
     let (parameters, initial, amplitude, end): (&[_], &[_], _, _) = match name {
         // Rocks, slides and bulges.
-        "walking_tank" => (&[("mu_s", 0.6), ("mu_k", 0.57)], &[], 20.0, 0.5),
+        "walking_tank" => (&[("mu_s", 1.4), ("mu_k", 1.33)], &[], 20.0, 0.7),
         // Lands until it rests.
         "rocking_block" => (&[("e", 0.7)], &[("theta", 0.1)], 0.0, 4.0),
         "bouncing_ball" => (&[("e", 0.7)], &[("h", 1.0)], 0.0, 4.0),
@@ -123,17 +130,23 @@ fn scene(name: &str, method: Method, relative: f64, units: Units) -> Run {
     run(&in_units(&problem, units, &inputs))
 }
 
-const SCENES: [&str; 4] = ["walking_tank", "rocking_block", "bouncing_ball", "sliding_oscillator"];
+const SCENES: [&str; 4] = [
+    "walking_tank",
+    "rocking_block",
+    "bouncing_ball",
+    "sliding_oscillator",
+];
 
-/// Powers of two that make up a metre, a kilogram and a second.
+/// Powers of two that make up a metre, a kilogram and a second. Taylor coefficients of order 30 leave
+/// the range of doubles where a second is 2^±30 units of time.
 const POWERS: [[i32; 3]; 7] = [
     [10, 0, 0],
     [0, 10, 0],
     [0, 0, 10],
     [-7, 3, -5],
     [40, -30, 20],
-    [-60, 90, -40],
-    [100, 100, 100],
+    [-60, 90, -20],
+    [100, 100, 1],
 ];
 
 #[test]
@@ -143,7 +156,11 @@ fn units_of_powers_of_two_change_no_bit() {
             for relative in [1e-4, 1e-8, 1e-12] {
                 let metres = scene(name, method, relative, [1.0; 3]);
                 let expected = results(&metres, [1.0; 3]);
-                assert!(metres.events.len() > 3, "{name}: {:?}", transitions(&metres));
+                assert!(
+                    metres.events.len() > 3,
+                    "{name}: {:?}",
+                    transitions(&metres)
+                );
                 for powers in POWERS {
                     let units = powers.map(|power| 2f64.powi(power));
                     let other = scene(name, method, relative, units);
@@ -170,7 +187,8 @@ fn millimetres_and_tonnes_change_rounding_only() {
             assert_eq!(transitions(&other), transitions(&metres), "{name}");
             let pairs = metres.events.iter().zip(&other.events);
             let worst = pairs.fold(0.0f64, |most, (a, b)| most.max((a.t / b.t - 1.0).abs()));
-            println!("MM {name} {method:?} {worst:e} {}", metres.events.len());
+            // Found: 9e-16, after 30 events of the tank. Were a scale lost, it would be of the tolerance.
+            assert!(worst < 1e-14, "{name} {method:?}: {worst:e}");
         }
     }
 }

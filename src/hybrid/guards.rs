@@ -183,7 +183,11 @@ pub(super) fn search<const F: usize>(
                     ..
                 }
             );
-            let evaluate = |tau: f64| {
+            // The search halves the doubles of a window by their count, from zero on at the start of a
+            // segment: so that this does not depend on the unit of time, it is the step's own.
+            let unit = power_of_two(dense.length());
+            let evaluate = |s: f64| {
+                let tau = s * unit;
                 let [q, v, a] = motion(equations, dense, tau, accelerations);
                 let at = Free {
                     q: &q,
@@ -199,9 +203,20 @@ pub(super) fn search<const F: usize>(
                     at,
                 )
             };
-            roots::search(evaluate, window.0, window.1, watch, 0.0)
+            let (from, to) = (window.0 / unit, window.1 / unit);
+            let mut search = roots::search(evaluate, from, to, watch, 0.0);
+            if let Some(crossing) = &mut search.crossing {
+                crossing.inside *= unit;
+                crossing.outside *= unit;
+            }
+            search
         }
     }
+}
+
+/// The largest power of two up to a normal x > 0: a factor that rounds nothing.
+fn power_of_two(x: f64) -> f64 {
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & f64::INFINITY.to_bits())
 }
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
