@@ -103,7 +103,7 @@ fn assert_no_penetration(problem: &Problem, run: &Run) {
     }
 }
 
-/// Stored energy changes by work, dissipation and impacts: to 100 tolerances of what is turned over.
+/// Stored energy changes by work, dissipation and impacts: to the tolerance of what is turned over (found: 1.2 of it).
 fn assert_ledger(problem: &Problem, run: &Run) {
     let energy = run.energy.as_ref().unwrap();
     let turnover = energy.initial.abs()
@@ -112,9 +112,8 @@ fn assert_ledger(problem: &Problem, run: &Run) {
         + energy.dissipated.abs()
         + energy.lost_at_impacts.abs();
     let imbalance = energy.imbalance().abs();
-    WORST.with_borrow_mut(|w| w[0] = w[0].max(imbalance / (problem.accuracy.relative * turnover)));
     assert!(
-        imbalance <= 100.0 * problem.accuracy.relative * turnover,
+        imbalance <= 2.0 * problem.accuracy.relative * turnover,
         "{imbalance:e} of {turnover:e}"
     );
     assert!(
@@ -122,8 +121,6 @@ fn assert_ledger(problem: &Problem, run: &Run) {
         "{energy:?}"
     );
 }
-
-thread_local! { static WORST: std::cell::RefCell<[f64; 4]> = const { std::cell::RefCell::new([0.0; 4]) }; }
 
 /// Coulomb's law at every sample: the shear is within the cone of static friction where the base
 /// sticks, and on that of kinetic friction, against the slip, where it slips.
@@ -166,15 +163,14 @@ fn assert_friction(problem: &Problem, run: &Run, coordinate: &str) {
     }
 }
 
-/// The methods agree on the transitions and their times up to `events` of them, and as accurately as
-/// the tolerance allows, amplified by each event.
-fn assert_agreement(a: &Run, b: &Run, events: usize) {
-    let count = a.events.len().min(b.events.len()).min(events);
+/// The methods agree on the first ten transitions and their times: to 10 tolerances (found: 0.7).
+/// Later ones may have amplified what the first differ by.
+fn assert_agreement(a: &Run, b: &Run) {
+    let count = a.events.len().min(b.events.len()).min(10);
     assert_eq!(transitions(a)[..count], transitions(b)[..count]);
     for (a, b) in a.events.iter().zip(&b.events).take(count) {
-        WORST.with_borrow_mut(|w| w[1] = w[1].max((a.t - b.t).abs()));
         assert!(
-            (a.t - b.t).abs() < 1e-6,
+            (a.t - b.t).abs() < 1e-9,
             "{} at {} and {}",
             a.transition,
             a.t,
@@ -195,12 +191,10 @@ fn check(problem: &Problem, slips: Option<&str>) {
             assert_friction(problem, run, coordinate);
         }
     }
-    assert_agreement(&auto, &radau, 10);
-    println!(
-        "{} events, worst {:?}",
-        auto.events.len(),
-        WORST.with_borrow(|w| *w)
-    );
+    assert_agreement(&auto, &radau);
+    if auto.events.len() < 10 {
+        assert_eq!(transitions(&auto), transitions(&radau));
+    }
 }
 
 proptest! {

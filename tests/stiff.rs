@@ -13,17 +13,13 @@ const METHODS: [Method; 3] = [Method::Auto, Method::Radau, Method::Taylor];
 fn block(m: f64, k: f64, c: f64) -> Problem {
     let mut problem = problem("stiff_block", &[("m", m), ("k", k), ("c", c)]);
     problem.set_initial("x.rate", 2.0).unwrap();
+    problem.record.ledger = false;
     problem.set_tolerance(1e-12);
     let r = problem.model.coordinate("r").unwrap();
     let load = 0.3 * 9.81 * m / k;
     problem.accuracy.q_absolute[r] = 1e-12 * load;
     problem.accuracy.v_absolute[r] = 1e-12 * load * (k / m).sqrt();
     problem
-}
-
-/// Whether an explicit method can follow: where the damping is strong, 1e9 steps would be needed.
-fn can_follow(method: Method, c: f64) -> bool {
-    method != Method::Taylor || c < 1.0
 }
 
 #[test]
@@ -33,13 +29,17 @@ fn a_block_with_a_stiff_oscillator_stops_undamped_and_damped() {
     assert_eq!(rows.len(), 8);
     for row in rows {
         let (k, c) = (number(&row["k"]), number(&row["c"]));
-        for method in METHODS.into_iter().filter(|&m| can_follow(m, c)) {
+        for method in [Method::Auto, Method::Radau] {
             let mut problem = block(0.1, k, c);
             problem.method = method;
             problem.end.time = 1.0;
             let run = run(&problem);
             let at = format!("k = {k:e}, c = {c:e}, {method:?}");
             assert_eq!(transitions(&run), ["stick"], "{at}");
+            // A million cycles are the explicit method's, strong damping is not.
+            let implicit = method == Method::Radau || c > 1.0;
+            let name = &run.solver.method;
+            assert_eq!(name.contains("Radau"), implicit, "{at}: {name}");
             let stop = &run.events[0];
             // As accurate as the reference demands: 1e-11, 1e-12; here to rounding, 5e-15 and 2e-16.
             let time = stop.t - number(&row["t_stop"]);
@@ -70,7 +70,7 @@ fn vibration(k: f64, r: f64, rate: f64) -> f64 {
 fn a_vibration_without_damping_keeps_its_energy() {
     // From the stop to t = 1 an undamped spring makes 500 cycles at k = 1e6 and 160,000 at k = 1e12.
     for k in [1e6, 1e8, 1e10, 1e12] {
-        for method in METHODS {
+        for method in [Method::Auto, Method::Radau] {
             let mut problem = block(0.1, k, 0.0);
             problem.method = method;
             problem.end.time = 1.0;
@@ -78,11 +78,9 @@ fn a_vibration_without_damping_keeps_its_energy() {
             let [stop, end] = [&run.events[0].after, &run.end.state]
                 .map(|state| vibration(k, state.q[1], state.v[1]));
             let lost = (end / stop - 1.0).abs();
-            // Found: 1e-11 at k = 1e6 to 1e-8 at 1e12, where 1e6 steps of 1e-12 add up.
-            assert!(
-                lost < 2e-8 * (k / 1e12).sqrt().max(1e-2),
-                "k = {k:e}, {method:?}: {lost:e}"
-            );
+            let cycles = (1.0 - run.events[0].t) * (k / 0.1).sqrt() / (2.0 * PI);
+            // Found: a fifth of the tolerance in a cycle, whatever the stiffness.
+            assert!(lost < 5e-13 * cycles, "k = {k:e}, {method:?}: {lost:e}");
         }
     }
 }
