@@ -183,11 +183,7 @@ pub(super) fn search<const F: usize>(
                     ..
                 }
             );
-            // The search halves the doubles of a window by their count, from zero on at the start of a
-            // segment: so that this does not depend on the unit of time, it is the step's own.
-            let unit = power_of_two(dense.length());
-            let evaluate = |s: f64| {
-                let tau = s * unit;
+            let evaluate = |tau: f64| {
                 let [q, v, a] = motion(equations, dense, tau, accelerations);
                 let at = Free {
                     q: &q,
@@ -203,20 +199,26 @@ pub(super) fn search<const F: usize>(
                     at,
                 )
             };
-            let (from, to) = (window.0 / unit, window.1 / unit);
-            let mut search = roots::search(evaluate, from, to, watch, 0.0);
-            if let Some(crossing) = &mut search.crossing {
-                crossing.inside *= unit;
-                crossing.outside *= unit;
-            }
-            search
+            search_function(evaluate, window, watch)
         }
     }
 }
 
-/// The largest power of two up to a normal x > 0: a factor that rounds nothing.
-fn power_of_two(x: f64) -> f64 {
-    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & f64::INFINITY.to_bits())
+/// Searches a function of local time, as one of s = (τ − start)/length of the window: so the search, which
+/// counts doubles, does not depend on the unit of time.
+fn search_function(
+    mut evaluate: impl FnMut(f64) -> f64,
+    (from, to): (f64, f64),
+    watch: Watch,
+) -> Search {
+    let length = to - from;
+    let local = |s: f64| if s < 1.0 { from + s * length } else { to };
+    let mut search = roots::search(|s| evaluate(local(s)), 0.0, 1.0, watch, 0.0);
+    if let Some(crossing) = &mut search.crossing {
+        crossing.inside = local(crossing.inside);
+        crossing.outside = local(crossing.outside);
+    }
+    search
 }
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
