@@ -70,6 +70,7 @@ struct LaneFunctions {
         *const f64,
         *const f64,
         *const f64,
+        *const f64,
         *mut f64,
     ),
     first_fall: unsafe extern "C" fn(
@@ -96,6 +97,7 @@ macro_rules! lane_functions {
                 q: *const f64,
                 v: *const f64,
                 tolerances: *const f64,
+                factors: *const f64,
                 remaining: *const f64,
                 horizon: *const f64,
                 out: *mut f64,
@@ -187,16 +189,16 @@ pub fn lane_sum<const F: usize, const W: usize>(
 
 /// The length at which the last terms of a series of order `p` equal the tolerance, as it fits into what
 /// is `remaining` and not more than `horizon`. `tolerances` are the relative one and the absolute ones
-/// of coordinates and velocities.
+/// of coordinates and velocities, `factors` those of the terms of order p − 3 and p − 2.
 #[inline]
 pub fn lane_length<const F: usize, const W: usize>(
     level: usize,
     p: usize,
     series: &LaneSeries<F, W>,
-    tolerances: &[f64],
+    (tolerances, factors): (&[f64], &[f64; 2]),
     [remaining, horizon]: [&Lanes<W>; 2],
 ) -> Lanes<W> {
-    assert!(p >= 2 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
+    assert!(p >= 5 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
     let mut out = Lanes::of(0.0);
     let [q, v] = [&series.q, &series.v].map(|rows| rows.as_ptr().cast());
     let [remaining, horizon] = [remaining, horizon].map(|x| (&raw const *x).cast());
@@ -209,6 +211,7 @@ pub fn lane_length<const F: usize, const W: usize>(
             q,
             v,
             tolerances.as_ptr(),
+            factors.as_ptr(),
             remaining,
             horizon,
             (&raw mut out).cast(),

@@ -14,6 +14,8 @@ mod length;
 mod quadrature;
 mod series;
 
+use length::EarlierTerm;
+
 pub use dense::TaylorDense;
 pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
@@ -55,6 +57,7 @@ impl Implicit {
 pub struct Taylor<const F: usize> {
     tolerances: Tolerances<F>,
     order: usize,
+    earlier: [EarlierTerm; 2],
     start: State<F>,
     end: State<F>,
     lost_at_start: Lost<F>,
@@ -93,6 +96,7 @@ impl<const F: usize> Taylor<F> {
             lag: 0.0,
             tolerances: *tolerances,
             order,
+            earlier: length::earlier_terms(relative, order),
             start: origin,
             end: origin,
             lost_at_start: Lost::nothing(),
@@ -320,24 +324,32 @@ impl<const F: usize> Taylor<F> {
         terms
     }
 
-    /// The length at which the last terms equal the tolerance.
+    /// The length at which the last terms equal the tolerance, as far as those before agree.
     fn length(&self) -> f64 {
-        self.last_terms()
-            .iter()
-            .fold(f64::INFINITY, |h, &(power, size)| h.min(root(size, power)))
+        let last = self.last_terms();
+        let last = last.iter().map(|&(power, size)| root(size, power));
+        let earlier = self.earlier.iter();
+        let earlier =
+            earlier.map(|term| term.factor * root(self.velocity_term(term.power), term.power));
+        last.chain(earlier).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Size of the term of a power of the velocity, in units of the tolerance.
+    fn velocity_term(&self, power: usize) -> f64 {
+        let Series { v, .. } = &self.dense.series;
+        let relative = self.tolerances.relative();
+        let mut size = 0.0_f64;
+        for i in 0..F {
+            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
+            size = size.max(v[power][i].abs() * of_v);
+        }
+        size
     }
 
     /// The length of a step of Radau IIA, as the term of its error estimate allows.
     fn implicit_length(&self) -> f64 {
-        let Series { v, .. } = &self.dense.series;
         let Implicit { power, error } = self.implicit;
-        let mut size = 0.0_f64;
-        for i in 0..F {
-            let relative = self.tolerances.relative();
-            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
-            size = size.max(v[power][i].abs() * of_v);
-        }
-        root(size * error, power)
+        root(self.velocity_term(power) * error, power)
     }
 
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
