@@ -22,8 +22,8 @@ and the grid of the samples must be those of the run; inputs, accuracy and froze
 taken from the scene as it is now and are expected to be the same. The integrator starts anew at \
 the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.
 
---error-estimate runs the scene a second time, by another method at a tolerance a hundred times \
-tighter (1e-14 at most), and reports what the two differ by: coordinates and velocities at the end, \
+--error-estimate runs the scene a second time, by another method at a tolerance ten thousand \
+times tighter (1e-14 at most), and reports what the two differ by: coordinates and velocities at the end, \
 times of events, events that only one of them has. In summary.json it is `error_estimate`. Where there \
 is no estimate, the reason is said and the status is 3. Radau stands in where Taylor has no series or \
 takes twenty times as long. `dalembert precision` has more.")]
