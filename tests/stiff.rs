@@ -68,8 +68,9 @@ fn vibration(k: f64, r: f64, rate: f64) -> f64 {
 
 #[test]
 fn a_vibration_without_damping_keeps_its_energy() {
-    // From the stop to t = 1 an undamped spring makes 500 cycles at k = 1e6 and 160,000 at k = 1e12.
-    for k in [1e6, 1e8, 1e10, 1e12] {
+    // From the stop to t = 1 an undamped spring makes 160 cycles at k = 1e6 and 16,000 at k = 1e10. The
+    // 160,000 at k = 1e12, found as well, are in the test above: its elongation at t = 1.
+    for k in [1e6, 1e8, 1e10] {
         for method in [Method::Auto, Method::Radau] {
             let mut problem = block(0.1, k, 0.0);
             problem.method = method;
