@@ -104,7 +104,7 @@ pub struct LaneSystem<const F: usize, const W: usize> {
     pub load: [Lanes<W>; F],
 }
 
-/// [`Series`] in lanes.
+/// [`crate::integrate::Series`] in lanes.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub struct LaneSeries<const F: usize, const W: usize> {
