@@ -1,6 +1,6 @@
 /* What trajectories side by side need in every mode: sines for their inputs, lengths of steps, values of
  * series, and the first falls of guards. The formulas are those of src/input, src/integrate/taylor and
- * src/hybrid/roots, which have the reasons; src/kernel.rs calls the functions.
+ * src/hybrid/roots, which have the reasons; src/kernel/mod.rs calls the functions.
  *
  * Arrays of series have one row an order, `stride` numbers a row.
  */
@@ -46,13 +46,7 @@ void LANES(dalembert_lane_sum)(size_t count, size_t stride, const real *row, con
   *out = sum(count, stride, row, *tau);
 }
 
-/* log2 x and 2^x to a percent: src/integrate/logarithm.rs. */
-DALEMBERT_INLINE real binary_logarithm(real x) {
-  const truth bits = (truth)x;
-  const real exponent = __builtin_convertvector(bits >> 52, real) - 1023.0;
-  const real fraction = (real)((bits & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
-  return exponent + fraction * (1.0 + 0.347 * (1.0 - fraction));
-}
+/* 2^x to a percent: src/integrate/logarithm.rs. */
 DALEMBERT_INLINE real binary_power(real x) {
   const real exponent = x + 1023.0;
   const truth whole = __builtin_convertvector(exponent, truth);
@@ -60,15 +54,31 @@ DALEMBERT_INLINE real binary_power(real x) {
   return (real)(whole << 52) * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
+/* x^(-1/n) for positive normal x, and infinity for zero, as there. */
+DALEMBERT_INLINE real inverse_root(real x, double n) {
+  const truth bits = (truth)x;
+  const real exponent = __builtin_convertvector(bits >> 52, real) - 1023.0;
+  const real mantissa = (real)((bits & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
+  const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
+  /* exponent = n whole + rest with 0 <= rest < n; the first guess is off by one at most. */
+  real whole = __builtin_convertvector(__builtin_convertvector(exponent / n, truth), real);
+  whole = pick(exponent - n * whole < 0.0, whole - 1.0, whole);
+  const real rest = exponent - n * whole;
+  const real power = (real)((1023 - __builtin_convertvector(whole, truth)) << 52);
+  const real root = power * binary_power(-(rest + fraction) / n);
+  return pick(x >= 0x1p-1022, root, REAL(INFINITY));
+}
+
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what
  * remains and is not more than the horizon. tolerances: relative, then absolute ones of the coordinates,
- * then of the velocities.
+ * then of the velocities. The terms of order p - 3 and p - 2 limit it, too, times their factors:
+ * src/integrate/taylor/length.rs.
  */
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const double *tolerances,
-                                  const real *remaining, const real *horizon, real *out);
+                                  const double *factors, const real *remaining, const real *horizon, real *out);
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const double *tolerances,
-                                  const real *remaining, const real *horizon, real *out) {
-  real sizes[3] = {{0}};
+                                  const double *factors, const real *remaining, const real *horizon, real *out) {
+  real sizes[3] = {{0}}, earlier[2] = {{0}};
   for (size_t i = 0; i < free; ++i) {
     const real of_q = 1.0 / (tolerances[1 + i] + tolerances[0] * size_of(q[i]));
     const real of_v = 1.0 / (tolerances[1 + free + i] + tolerances[0] * size_of(v[i]));
@@ -76,16 +86,11 @@ void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const re
     sizes[1] = greater(size_of(v[p * free + i]) * of_v, sizes[1]);
     sizes[1] = greater(size_of(q[p * free + i]) * of_q, sizes[1]);
     sizes[2] = greater(size_of(q[(p + 1) * free + i]) * of_q, sizes[2]);
+    for (size_t k = 0; k < 2; ++k) earlier[k] = greater(size_of(v[(p - 3 + k) * free + i]) * of_v, earlier[k]);
   }
-  const real none = REAL(INFINITY);
-  real logarithm = none;
-  for (size_t k = 0; k < 3; ++k) {
-    const real root = binary_logarithm(sizes[k]) * (-1.0 / (double)(p + k - 1));
-    logarithm = smaller(pick(sizes[k] >= 0x1p-1022, root, none), logarithm);
-  }
-  const truth limited = logarithm < 1000.0;
-  const real power = binary_power(pick(limited, logarithm, REAL(0.0)));
-  const real length = smaller(pick(limited, power, none), *horizon);
+  real length = *horizon;
+  for (size_t k = 0; k < 3; ++k) length = smaller(inverse_root(sizes[k], (double)(p + k - 1)), length);
+  for (size_t k = 0; k < 2; ++k) length = smaller(factors[k] * inverse_root(earlier[k], (double)(p - 3 + k)), length);
   const real half = pick(2.0 * length > *remaining, 0.5 * *remaining, length);
   *out = pick(length >= *remaining, *remaining, half);
 }

@@ -22,7 +22,8 @@ fn least_events(reference: &Value, tolerance: f64) -> Option<usize> {
 }
 
 /// At every tolerance no event is missed or doubled, and end state and times of events are as accurate
-/// as asked for: the errors of the steps, some hundred, add up and are amplified from event to event.
+/// as asked for. Found: 1.2 tolerances at most for the times (P2), and 8.5 for the end (P1, whose impacts
+/// amplify the errors before them tenfold).
 #[test]
 fn no_event_is_missed_or_doubled_at_any_tolerance() {
     let text = include_str!("../benches/peers/reference.json");
@@ -52,17 +53,16 @@ fn no_event_is_missed_or_doubled_at_any_tolerance() {
                 let found: Vec<f64> = found.map(|e| e.t).collect();
                 let least = least_events(&reference[name], tolerance).unwrap_or(events.len());
                 assert!((least..=events.len()).contains(&found.len()), "{at}");
-                let allowed = (100.0 * tolerance).max(1e-11);
                 for (found, exact) in found.iter().zip(&events) {
                     assert!(
-                        (found - exact).abs() < allowed * exact,
+                        (found - exact).abs() < 2.0 * tolerance * exact,
                         "{at}: {found} {exact}"
                     );
                 }
                 let state = rows::state(name, &simulator);
                 for &i in &components {
                     let error = (state[i] - end[i]).abs() / scales[i];
-                    assert!(error < allowed, "{at}: {i} {error:e}");
+                    assert!(error < 10.0 * tolerance, "{at}: {i} {error:e}");
                 }
             }
         }
@@ -73,7 +73,7 @@ fn no_event_is_missed_or_doubled_at_any_tolerance() {
 #[test]
 fn the_scripts_of_the_comparison_pass_their_tests() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers");
-    let run = std::process::Command::new("python3")
+    let run = std::process::Command::new(env!("DALEMBERT_PYTHON_EXE"))
         .args(["-B", "test_rows.py"])
         .current_dir(folder)
         .output()

@@ -9,7 +9,7 @@
 use super::instant::Instant;
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
-const LONGEST_PATTERN: usize = 8;
+pub const LONGEST_PATTERN: usize = 8;
 
 /// Largest ratio of successive patterns that is told from one: the sum of the series divides by
 /// 1 − ratio, which keeps half of a double's digits here (1 − √ε). Events whose ratio is closer to

@@ -199,9 +199,26 @@ pub(super) fn search<const F: usize>(
                     at,
                 )
             };
-            roots::search(evaluate, window.0, window.1, watch, 0.0)
+            search_function(evaluate, window, watch)
         }
     }
+}
+
+/// Searches a function of local time, as one of s = (τ − start)/length of the window: so the search, which
+/// counts doubles, does not depend on the unit of time.
+fn search_function(
+    mut evaluate: impl FnMut(f64) -> f64,
+    (from, to): (f64, f64),
+    watch: Watch,
+) -> Search {
+    let length = to - from;
+    let local = |s: f64| if s < 1.0 { from + s * length } else { to };
+    let mut search = roots::search(|s| evaluate(local(s)), 0.0, 1.0, watch, 0.0);
+    if let Some(crossing) = &mut search.crossing {
+        crossing.inside = local(crossing.inside);
+        crossing.outside = local(crossing.outside);
+    }
+    search
 }
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.

@@ -29,6 +29,7 @@ mod stiffness;
 mod visited;
 mod work;
 
+pub(crate) use accumulation::LONGEST_PATTERN;
 pub use ensemble::{Ensemble, Finished, Member};
 pub use failure::Reason;
 pub use problem::{Accuracy, End, Initial, Method, Problem, Record, Unknown};

@@ -8,11 +8,17 @@ pub(super) fn natural_logarithm(x: f64) -> f64 {
 
 /// log₂ x to 0.01, for normal x > 0.
 fn binary_logarithm(x: f64) -> f64 {
+    let (exponent, fraction) = split(x);
+    exponent as f64 + fraction
+}
+
+/// log₂ x to 0.01 as a whole number and what is left, in [0, 1), for normal x > 0.
+fn split(x: f64) -> (i64, f64) {
     let bits = x.to_bits();
-    let exponent = (bits >> 52) as f64 - 1023.0;
+    let exponent = (bits >> 52) as i64 - 1023;
     let fraction = f64::from_bits(bits & ((1 << 52) - 1) | 1f64.to_bits()) - 1.0;
     // The parabola through the ends of [1, 2) that is right at √2 too.
-    exponent + fraction * (1.0 + 0.347 * (1.0 - fraction))
+    (exponent, fraction * (1.0 + 0.347 * (1.0 - fraction)))
 }
 
 /// 2^x to 1 %, for |x| < 1000.
@@ -23,12 +29,17 @@ fn binary_power(x: f64) -> f64 {
     f64::from_bits((whole as u64) << 52) * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)))
 }
 
-/// x^(−1/n) to 2 %: the length h with which x hⁿ is one. Infinite for x = 0.
+/// x^(−1/n) to 2 %: the length h with which x hⁿ is one. Infinite for x = 0. Where x is 2^(kn) times as
+/// large, it is 2^(−k) times as large to the bit: a step does not depend on the unit of time.
 pub(super) fn root(x: f64, n: usize) -> f64 {
     if x < f64::MIN_POSITIVE {
         return f64::INFINITY;
     }
-    binary_power(-binary_logarithm(x) / n as f64)
+    let (exponent, fraction) = split(x);
+    let n = n as i64;
+    let (whole, rest) = (exponent.div_euclid(n), exponent.rem_euclid(n));
+    let power = f64::from_bits(((1023 - whole) as u64) << 52);
+    power * binary_power(-(rest as f64 + fraction) / n as f64)
 }
 
 #[cfg(test)]
@@ -47,5 +58,19 @@ mod tests {
             }
         }
         assert_eq!(root(0.0, 7), f64::INFINITY);
+    }
+
+    #[test]
+    fn roots_of_powers_of_two_are_exact_factors() {
+        for n in 1..=31 {
+            for i in 0..200 {
+                let x = 10f64.powf(f64::from(i) * 0.03 - 3.0);
+                for c in [-20, -3, 1, 10, 25] {
+                    let scaled = x * 2f64.powi(-c * n);
+                    let expected = root(x, n as usize) * 2f64.powi(c);
+                    assert_eq!(root(scaled, n as usize), expected, "{x:e} {n} {c}");
+                }
+            }
+        }
     }
 }

@@ -10,7 +10,8 @@ pub struct Difference {
     pub q: Vec<f64>,
     /// Of each velocity at the end, in its unit.
     pub v: Vec<f64>,
-    /// Largest of these, each divided by its typical size.
+    /// Largest of these, each divided by what a tolerance of 1 would allow: its typical size (absolute
+    /// ÷ relative tolerance) and its magnitude.
     pub end: f64,
     /// The events.
     pub events: Match,
@@ -25,7 +26,10 @@ impl Difference {
         let (end, other) = (&run.end.state, &better.end.state);
         let (q, v) = (minus(&end.q, &other.q), minus(&end.v, &other.v));
         let sizes = of_q.iter().chain(of_v);
-        let parts = q.iter().chain(&v).zip(sizes).map(|(d, size)| d / size);
+        let allowed = sizes
+            .zip(other.q.iter().chain(&other.v))
+            .map(|(size, value)| size + value.abs());
+        let parts = q.iter().chain(&v).zip(allowed).map(|(d, a)| d / a);
         Difference {
             end: parts.fold(0.0, f64::max),
             events: match_events(&run.events, &better.events),

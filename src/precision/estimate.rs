@@ -1,41 +1,106 @@
 //! The error of one run, estimated by a better one.
 
-use super::{Difference, TIGHTEST, method_name, scales, variation};
-use crate::hybrid::{Method, Problem, Reason, simulate};
+use super::attempt::{Attempt, attempt};
+use super::{Difference, GIVEN_UP, TIGHTEST, rounding, scales, used_taylor, variation};
+use crate::hybrid::{Method, Problem, Reason};
 use crate::record::{ErrorEstimate, Progress, Run};
+use std::time::Duration;
 
-/// How much tighter the tolerance of the better run is: its own error is then about a percent of what is
-/// estimated.
-pub const ESTIMATE_FACTOR: f64 = 100.0;
+/// How much tighter the tolerance of the better run is. At the same tolerance the errors of two methods
+/// differ by up to some hundred times (a rocking block at 1e-3: 3e-3 by Taylor, 9e-6 by Radau), so the
+/// better run's own error is a few percent of what is estimated. At high orders that costs little: four
+/// decades take less than twice as long.
+pub const ESTIMATE_FACTOR: f64 = 1e4;
+
+/// Time that the Taylor method gets at least to be the better run: nobody waits for less.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// Why a run has no estimate of its error.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NoEstimate {
+    /// The run itself did not come to its end.
+    #[error("the run stopped early, so there is no end to compare")]
+    Early,
+    /// The better run did not come to its end.
+    #[error("the run it was to be compared with stopped early at t = {t} s: {reason}")]
+    Better {
+        /// When, s.
+        t: f64,
+        /// Why.
+        reason: String,
+    },
+    /// The better run was interrupted.
+    #[error("interrupted")]
+    Interrupted,
+    /// The better run could not be started.
+    #[error(transparent)]
+    Refused(#[from] Reason),
+}
 
 /// Estimates the error of a run that has come to its end: the difference to a run by another method at
-/// a tighter tolerance. (A run that Radau has made alone is compared with `auto`, any other with
-/// Radau.) `None` where the better run stops early.
+/// a tolerance [`ESTIMATE_FACTOR`] times as tight, but not tighter than [`TIGHTEST`], and the rounding
+/// of their steps. What Taylor has a part in is compared with Radau; what Radau has made alone is
+/// compared with Taylor, or with Radau where Taylor would take many times as long or has no series.
 ///
 /// # Errors
-/// As [`simulate`].
+/// [`NoEstimate`] if one of the two runs did not come to its end.
 pub fn estimate(
     problem: &Problem,
     run: &Run,
     progress: &mut dyn Progress,
-) -> Result<Option<ErrorEstimate>, Reason> {
-    let method = match problem.method {
-        Method::Radau => Method::Auto,
-        Method::Auto | Method::Taylor => Method::Radau,
-    };
-    let tolerance = (problem.accuracy.relative / ESTIMATE_FACTOR).max(TIGHTEST);
-    let better = simulate(&variation(problem, method, tolerance), progress)?;
-    if better.failure.is_some() {
-        return Ok(None);
+) -> Result<ErrorEstimate, NoEstimate> {
+    if run.failure.is_some() {
+        return Err(NoEstimate::Early);
     }
-    let Difference { q, v, events, .. } = Difference::new(run, &better, &scales(problem));
-    Ok(Some(ErrorEstimate {
-        method: method_name(method).into(),
+    let tolerance = (problem.accuracy.relative / ESTIMATE_FACTOR).max(TIGHTEST);
+    let better = better(problem, run, tolerance, progress)?;
+    if let Some(failure) = better.failure {
+        let (t, reason) = (failure.at.t, failure.reason);
+        return Err(NoEstimate::Better { t, reason });
+    }
+    let Difference { q, v, end, events } = Difference::new(run, &better, &scales(problem));
+    let rounding = rounding(run).max(rounding(&better));
+    let with_rounding = |errors: Vec<f64>, values: &[f64]| {
+        let with = |(error, value): (f64, &f64)| error + rounding * value.abs();
+        errors.into_iter().zip(values).map(with).collect()
+    };
+    let last = run.events.last().map_or(0.0, |event| event.t);
+    Ok(ErrorEstimate {
         tolerance,
-        q,
-        v,
-        event_time: events.time,
+        q: with_rounding(q, &run.end.state.q),
+        v: with_rounding(v, &run.end.state.v),
+        relative: end + rounding,
+        event_time: events.time + rounding * last,
         missed: events.missed,
         extra: events.extra,
-    }))
+        in_tails: events.in_tails,
+        method: better.solver.method,
+    })
+}
+
+/// The run to compare with.
+fn better(
+    problem: &Problem,
+    run: &Run,
+    tolerance: f64,
+    progress: &mut dyn Progress,
+) -> Result<Run, NoEstimate> {
+    if !used_taylor(run) {
+        let limit = (run.wall * GIVEN_UP).max(GRACE);
+        let taylor = variation(problem, Method::Taylor, tolerance);
+        match attempt(&taylor, Some(limit), progress)? {
+            Attempt::Interrupted => return Err(NoEstimate::Interrupted),
+            Attempt::Done(better) if better.failure.is_none() => return Ok(better),
+            _ => {}
+        }
+    }
+    match attempt(
+        &variation(problem, Method::Radau, tolerance),
+        None,
+        progress,
+    )? {
+        Attempt::Done(better) => Ok(better),
+        _ => Err(NoEstimate::Interrupted),
+    }
 }

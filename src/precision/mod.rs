@@ -2,21 +2,28 @@
 //!
 //! Errors are differences to a run that is known to be better ([`Difference`]).
 
+mod attempt;
 mod difference;
 mod estimate;
 mod matching;
+mod reference;
 mod study;
 
 pub use difference::Difference;
-pub use estimate::{ESTIMATE_FACTOR, estimate};
+pub use estimate::{ESTIMATE_FACTOR, NoEstimate, estimate};
 pub use matching::{Match, match_events};
-pub use study::{Advice, Reference, Row, Study, TOLERANCES, Verdict};
+pub use reference::{Bound, Horizon, Reference};
+pub use study::{Measured, Row, Study, TOLERANCES, Verdict};
 
 use crate::hybrid::{Method, Problem};
-use crate::record::Recorded;
+use crate::record::{Recorded, Run};
 
 /// The tightest relative tolerance that is asked for: a few tens of roundings.
 pub const TIGHTEST: f64 = 1e-14;
+
+/// A method that takes so many times as long as Radau is given up: it is no choice. Stiff equations
+/// take the Taylor method thousands of times as long.
+pub const GIVEN_UP: u32 = 20;
 
 /// The problem at another tolerance and by another method, of which nothing but events, end and ledger
 /// is recorded. The ratios of the scene's tolerances to each other stay.
@@ -44,6 +51,17 @@ fn scales(problem: &Problem) -> [Vec<f64>; 2] {
     let accuracy = &problem.accuracy;
     let scale = |absolute: &[f64]| absolute.iter().map(|a| a / accuracy.relative).collect();
     [scale(&accuracy.q_absolute), scale(&accuracy.v_absolute)]
+}
+
+/// Relative error that rounding leaves in the steps of a run: each rounds the state by up to half a
+/// unit in its last place, and roundings of either sign add up as the root of their number.
+fn rounding(run: &Run) -> f64 {
+    f64::EPSILON / 2.0 * (run.solver.steps.max(1) as f64).sqrt()
+}
+
+/// Whether the Taylor method made steps of a run; it names every method that did.
+fn used_taylor(run: &Run) -> bool {
+    run.solver.method.contains("Taylor")
 }
 
 /// Name of a method, as scenes write it.

@@ -57,23 +57,7 @@ impl Display for Report {
         }
         writeln!(f)?;
         energies(f, summary)?;
-        if let Some(estimate) = &summary.error_estimate {
-            let states = estimate.q.0.iter().chain(&estimate.v.0);
-            let states: Vec<_> = states
-                .map(|(name, x)| format!("{name} {}", rounded(*x, 2)))
-                .collect();
-            writeln!(
-                f,
-                "error       at the end: {}; of an event's time: {} s; events missed {}, extra {}\n            \
-                 (difference to {} at a tolerance of {})",
-                states.join(", "),
-                rounded(estimate.event_time, 2),
-                estimate.missed_events,
-                estimate.extra_events,
-                estimate.method,
-                rounded(estimate.tolerance, 2),
-            )?;
-        }
+        error_estimate(f, summary)?;
         let solver = &summary.solver;
         writeln!(
             f,
@@ -144,6 +128,30 @@ fn table<const N: usize>(f: &mut Formatter, rows: &[[String; N]]) -> fmt::Result
         writeln!(f, "{}", line.join("  ").trim_end())?;
     }
     Ok(())
+}
+
+fn error_estimate(f: &mut Formatter, summary: &Summary) -> fmt::Result {
+    let Some(estimate) = &summary.error_estimate else {
+        return Ok(());
+    };
+    let states = estimate.q.0.iter().chain(&estimate.v.0);
+    let states: Vec<_> = states
+        .map(|(name, x)| format!("{name} {}", rounded(*x, 2)))
+        .collect();
+    writeln!(
+        f,
+        "error       at the end {}, relative {}\n            \
+         of an event's time {} s; events missed {}, extra {}, in tails of accumulations {}\n            \
+         estimated by {}, at a tolerance of {}",
+        states.join(", "),
+        rounded(estimate.relative, 2),
+        rounded(estimate.event_time, 2),
+        estimate.missed_events,
+        estimate.extra_events,
+        estimate.events_in_tails,
+        estimate.method,
+        rounded(estimate.tolerance, 2),
+    )
 }
 
 fn energies(f: &mut Formatter, summary: &Summary) -> fmt::Result {

@@ -29,10 +29,11 @@ pub struct Run {
     pub failure: Option<Failure>,
 }
 
-/// Estimate of the error of a run: its difference to a run by another method at a tighter tolerance.
+/// Estimate of the error of a run: its difference to a run by another method at a tighter tolerance, and
+/// the rounding of their steps.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorEstimate {
-    /// Method of the better run, as scenes name it.
+    /// The methods of the better run, as [`Solver::method`] names them.
     pub method: String,
     /// Relative tolerance of the better run.
     pub tolerance: f64,
@@ -40,12 +41,17 @@ pub struct ErrorEstimate {
     pub q: Vec<f64>,
     /// Of each velocity at the end, in its unit.
     pub v: Vec<f64>,
+    /// Largest of these, each divided by what a relative tolerance of 1 would allow: its typical size
+    /// (absolute ÷ relative tolerance) and its magnitude.
+    pub relative: f64,
     /// Largest difference of the times of a transition (s).
     pub event_time: f64,
     /// Transitions that the better run alone has.
     pub missed: usize,
     /// Transitions that the run alone has.
     pub extra: usize,
+    /// Transitions that one of the two alone has, in the tails of accumulations: no errors.
+    pub in_tails: usize,
 }
 
 /// What was simulated: enough to say which run a file belongs to.

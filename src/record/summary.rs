@@ -119,10 +119,11 @@ pub struct Impacts {
     pub ground_work: f64,
 }
 
-/// Estimate of the error: the difference to a run by another method at a tighter tolerance.
+/// Estimate of the error: the difference to a run by another method at a tighter tolerance, and the
+/// rounding of their steps.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Estimate {
-    /// Method of the better run.
+    /// The methods of the better run.
     pub method: String,
     /// Its relative tolerance.
     pub tolerance: f64,
@@ -130,12 +131,17 @@ pub struct Estimate {
     pub q: Named<f64>,
     /// Of the velocities at the end.
     pub v: Named<f64>,
+    /// Largest of these, each divided by what a relative tolerance of 1 would allow: its typical size
+    /// (absolute ÷ relative tolerance) and its magnitude.
+    pub relative: f64,
     /// Largest difference of the times of a transition (s).
     pub event_time: f64,
     /// Transitions that the better run alone has.
     pub missed_events: usize,
     /// Transitions that the run alone has.
     pub extra_events: usize,
+    /// Transitions that one of the two alone has, in the tails of accumulations: no errors.
+    pub events_in_tails: usize,
 }
 
 /// The balance `initial + input_work − dissipated − lost_at_impacts − final = imbalance`.
@@ -220,9 +226,11 @@ impl Summary {
                 tolerance: error.tolerance,
                 q: named(&run.layout.coordinates, &error.q),
                 v: named(&run.layout.velocities, &error.v),
+                relative: error.relative,
                 event_time: error.event_time,
                 missed_events: error.missed,
                 extra_events: error.extra,
+                events_in_tails: error.in_tails,
             }),
             solver: run.solver.clone(),
             wall_seconds: run.wall.as_secs_f64(),

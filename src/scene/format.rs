@@ -4,6 +4,7 @@
 
 use super::shape::{Key, Object, Quantity, Shape};
 use crate::hybrid::Method;
+use crate::integrate::Tolerances;
 use crate::model::{Coordinate, Input, Model, Variant};
 
 /// Relative tolerance of a scene that asks for none: eight digits, well above the rounding of long
@@ -300,10 +301,10 @@ fn end(model: Option<&Model>) -> Shape {
 }
 
 fn accuracy(model: Option<&Model>) -> Object {
-    // No tolerance can be below the distance of neighbouring doubles.
+    // What the methods take: above the distance of neighbouring doubles.
     let relative = Quantity {
         unit: "1".into(),
-        minimum: f64::EPSILON,
+        minimum: Tolerances::<0>::SMALLEST_RELATIVE,
         minimum_exclusive: false,
         maximum: 1.0,
     };

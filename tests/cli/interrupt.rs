@@ -190,6 +190,37 @@ mod signals {
     }
 
     #[test]
+    fn an_interrupted_study_of_precision_is_written_as_far_as_it_came() {
+        let home = tempfile::tempdir().unwrap();
+        let precision = ["precision", &scene("belt_oscillator"), "--set", "end=1e9"];
+        let output = interrupted(home.path(), &[&precision[..], &["--out", "out"]].concat());
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert!(stdout(&output).contains("interrupted: 0 of 33 runs are there"));
+        let rows = table(&home.path().join("out/precision.csv"));
+        assert_eq!(rows.len(), 33);
+        assert!(rows.iter().all(|row| row[3] == "interrupted"));
+    }
+
+    #[test]
+    fn a_run_without_its_estimate_is_written() {
+        let home = tempfile::tempdir().unwrap();
+        let run = [
+            "run",
+            &scene("belt_oscillator"),
+            "--set",
+            "end=1e9",
+            "--error-estimate",
+        ];
+        let quiet = ["--set", "record.every=1e6", "--out", "out"];
+        let output = interrupted(home.path(), &[&run[..], &quiet].concat());
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        assert!(stderr(&output).contains("no estimate of the error"));
+        let summary = json(&home.path().join("out/summary.json"));
+        assert_eq!(summary["failure"]["reason"], "interrupted");
+        assert!(summary.get("error_estimate").is_none());
+    }
+
+    #[test]
     fn an_interrupted_comparison_says_so() {
         let home = tempfile::tempdir().unwrap();
         let compare = ["compare", &scene("tank_full_plate"), "--set", "end=1e6"];

@@ -6,29 +6,36 @@ use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::interrupt;
-use super::outcome::{Failure, Outcome, Result};
+use super::interrupt::{self, Interruptible};
+use super::outcome::{Outcome, Result};
 use super::print;
 use super::run::refusal;
 use crate::kernel::MODELS;
 use crate::precision::Study;
-use crate::record::OutputFolder;
+use crate::record::{OutputFolder, Silent};
 use crate::scene::Scene;
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Every method runs the scene at the tolerances 1e-3 … 1e-13, one after the other on one thread. The \
-reference is a run at 1e-14 by another method; what two such runs by different methods differ by \
-bounds its error, and smaller errors than that are shown as \"≤ bound\". The error of the end is the \
-largest of a coordinate or velocity over its typical size (absolute ÷ relative tolerance of the \
-scene). Times are the least of repeats, without preparation. A method that takes twenty times as \
+reference is a run at 1e-14 by another method; what two such runs by different methods differ by, and \
+the rounding of their steps, bounds its error, and smaller errors than that are shown as \"≤ bound\". \
+Where the two have different events, or stop early, the scene is compared up to there.
+
+The error of the end is the largest of a coordinate or velocity over what a relative tolerance of 1 \
+would allow: its typical size (absolute ÷ relative tolerance of the scene) and its magnitude. Events \
+are the same if the names of their transitions are, in their order. An accumulation has infinitely \
+many, of which a tighter tolerance records more: those that only one run records right before a rest \
+of both are counted as `in tails`, not as missed or extra.
+
+Times are the least of repeats, without preparation and ledger. A method that takes twenty times as \
 long as Radau is given up.
 
 The advice names the fastest tolerance whose error, and that of all tighter ones, is at most the \
 wanted one, with every event found. There the error is that of the end, or that of an event's time \
-over the duration of the run, whichever is larger.
+over the duration of the run, whichever is larger, and the bound comes on top.
 
---out DIR writes precision.csv and precision.svg. Ctrl-C ends the study; the rows done so far are \
+--out DIR writes precision.csv and precision.svg. Ctrl-C ends the study; what was done so far is \
 shown and written, with status 3.")]
 pub struct PrecisionArguments {
     /// Scene file (JSON)
@@ -70,28 +77,21 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
 
     let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}");
     let bar = ProgressBar::new(0).with_style(style.expect("the template is well-formed"));
-    let study = Study::new(problem, &interrupt::asked, |done, all| {
+    let study = Study::new(problem, &mut Interruptible(Silent), |done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     });
     bar.finish_and_clear();
-    let study = study.map_err(|reason| refusal(&scene, &reason))?;
-    if study.reference.is_none() {
-        return Err(Failure::system(
-            "interrupted before the reference was there: nothing can be compared",
-        ));
-    }
-    let complete = study.complete;
     let precision = Precision {
         title: problem.title.clone().unwrap_or(problem.model.name.into()),
-        study,
+        study: study.map_err(|reason| refusal(&scene, &reason))?,
         errors: arguments.error.clone(),
     };
     if let Some(folder) = &folder {
         precision.write(folder)?;
     }
     print::output(&precision)?;
-    Ok(match complete {
+    Ok(match precision.study.is_complete() {
         true => Outcome::Done,
         false => Outcome::StoppedEarly,
     })

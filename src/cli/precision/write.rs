@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use super::Precision;
 use crate::cli::table::Table;
-use crate::precision::{Reference, Row, Verdict, method_name};
+use crate::precision::{Bound, GIVEN_UP, Measured, Reference, Row, Verdict, method_name};
 use crate::record::plot::{Chart, Curve, Dimension};
 use crate::record::{FolderError, OutputFolder, exact, rounded};
 
@@ -16,11 +16,6 @@ const PLOT: &str = "precision.svg";
 const SIZE: (f64, f64) = (640.0, 420.0);
 
 impl Precision {
-    fn reference(&self) -> &Reference {
-        let reference = self.study.reference.as_ref();
-        reference.expect("a study is shown once it has its reference")
-    }
-
     /// Writes the table and the plot.
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         folder.replace(|files| {
@@ -29,9 +24,13 @@ impl Precision {
         })
     }
 
+    fn bound(&self) -> Option<Bound> {
+        self.study.reference.as_ref().map(|r| r.bound)
+    }
+
     /// One row a run, numbers with 17 significant digits.
     fn table(&self, out: impl Write) -> io::Result<()> {
-        let bound = &self.reference().bound;
+        let bound = self.bound();
         let mut csv = csv::Writer::from_writer(out);
         csv.write_record([
             "method",
@@ -44,58 +43,67 @@ impl Precision {
             "bound of the event time error [s]",
             "missed events",
             "extra events",
+            "events in tails",
             "energy imbalance [J]",
             "steps",
             "evaluations",
             "time [s]",
         ])?;
         for row in &self.study.rows {
+            let found = row.measured();
             let number = |x: Option<f64>| x.map_or(String::new(), exact);
-            let count = |x: Option<usize>| x.map_or(String::new(), |n| n.to_string());
-            let error = row.error.as_ref();
-            let complete = error.is_some();
+            let count =
+                |of: fn(&Measured) -> u64| found.map_or(String::new(), |m| of(m).to_string());
             csv.write_record([
                 method_name(row.method).to_owned(),
-                row.used.clone(),
+                found.map_or(String::new(), |m| m.used.clone()),
                 exact(row.tolerance),
-                outcome(row),
-                number(error.map(|e| e.end)),
-                exact(bound.end),
-                number(error.map(|e| e.events.time)),
-                exact(bound.events.time),
-                count(error.map(|e| e.events.missed)),
-                count(error.map(|e| e.events.extra)),
-                number(row.imbalance),
-                row.steps.to_string(),
-                row.evaluations.to_string(),
-                number(complete.then_some(row.seconds)),
+                outcome(&row.verdict),
+                number(found.map(|m| m.error.end)),
+                number(bound.map(|b| b.end)),
+                number(found.map(|m| m.error.events.time)),
+                number(bound.map(|b| b.event_time)),
+                count(|m| m.error.events.missed as u64),
+                count(|m| m.error.events.extra as u64),
+                count(|m| m.error.events.in_tails as u64),
+                number(found.and_then(|m| m.imbalance)),
+                count(|m| m.steps),
+                count(|m| m.evaluations),
+                number(found.map(|m| m.seconds)),
             ])?;
         }
         csv.flush()
     }
 
-    /// Time over error, a curve a method. Errors below the bound are drawn at the bound.
+    /// Time over error, a curve a method, and the bound. Errors below the bound are drawn at the bound.
     fn chart(&self) -> Chart {
-        let bound = self.reference().bound.end;
+        let bound = self.bound().map_or(0.0, |b| b.end);
         let mut curves: Vec<Curve> = Vec::new();
         for row in &self.study.rows {
-            let Some(error) = &row.error else { continue };
-            let label = method_name(row.method);
-            let curve = match curves.iter_mut().position(|c| c.label == label) {
-                Some(i) => &mut curves[i],
-                None => {
-                    curves.push(Curve {
-                        label: label.to_owned(),
-                        points: Vec::new(),
-                    });
-                    curves.last_mut().expect("it was pushed")
-                }
+            let Some(found) = row.measured() else {
+                continue;
             };
-            curve.points.push((error.end.max(bound), row.seconds));
+            let point = (found.error.end.max(bound), found.seconds);
+            let label = method_name(row.method);
+            match curves.iter_mut().find(|c| c.label == label) {
+                Some(curve) => curve.points.push(point),
+                None => curves.push(Curve {
+                    label: label.to_owned(),
+                    points: vec![point],
+                }),
+            }
         }
+        let times = curves.iter().flat_map(|c| &c.points).map(|p| p.1);
+        let (low, high) = times.fold((f64::INFINITY, 0.0_f64), |(low, high), t| {
+            (low.min(t), high.max(t))
+        });
+        curves.push(Curve {
+            label: "bound of the reference".into(),
+            points: vec![(bound, low), (bound, high)],
+        });
         Chart {
             title: self.title.clone(),
-            x: Dimension::log("error of the end over typical sizes", "1"),
+            x: Dimension::log("error of the end, relative", "1"),
             y: Dimension::log("time", "s"),
             curves,
             marks: true,
@@ -103,19 +111,22 @@ impl Precision {
     }
 }
 
-/// How a row ended, in words.
-fn outcome(row: &Row) -> String {
-    match &row.verdict {
-        Verdict::Complete => "complete".into(),
-        Verdict::Stopped(reason) => format!("stopped early: {reason}"),
-        Verdict::GivenUp => "given up: takes many times as long as radau".into(),
+/// How a run ended, in words.
+fn outcome(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Complete(_) => "complete".into(),
+        Verdict::Stopped { at, reason } => {
+            format!("stopped early at t = {} s: {reason}", rounded(*at, 6))
+        }
+        Verdict::GivenUp { .. } => format!("given up: takes {GIVEN_UP} times as long as radau"),
+        Verdict::NoSeries => "no mode that is visited has a Taylor series".into(),
+        Verdict::Interrupted => "interrupted".into(),
     }
 }
 
 /// An error, or that it is below what the reference tells.
 fn shown(error: f64, bound: f64) -> String {
     match error <= bound {
-        _ if error == 0.0 => "0".into(),
         true => format!("≤ {bound:.0e}"),
         false => format!("{error:.1e}"),
     }
@@ -130,10 +141,58 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// What the table shows of a run, after method and tolerance.
+fn cells(verdict: &Verdict, bound: Bound) -> [String; 9] {
+    let only = |word: &str, time: String| {
+        let mut cells: [String; 9] = Default::default();
+        (cells[0], cells[8]) = (word.to_owned(), time);
+        cells
+    };
+    let found = match verdict {
+        Verdict::Complete(found) => found,
+        Verdict::Stopped { .. } => return only("stopped early", String::new()),
+        Verdict::GivenUp { seconds } => {
+            return only("given up", format!("> {}", duration(*seconds)));
+        }
+        Verdict::NoSeries => return only("no series", String::new()),
+        Verdict::Interrupted => return only("interrupted", String::new()),
+    };
+    let events = &found.error.events;
+    [
+        shown(found.error.end, bound.end),
+        match events.matched {
+            0 => "–".to_owned(),
+            _ => shown(events.time, bound.event_time),
+        },
+        events.missed.to_string(),
+        events.extra.to_string(),
+        events.in_tails.to_string(),
+        found
+            .imbalance
+            .map_or("–".to_owned(), |x| format!("{x:.1e}")),
+        found.steps.to_string(),
+        found.evaluations.to_string(),
+        duration(found.seconds),
+    ]
+}
+
 impl Display for Precision {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        let (study, reference) = (&self.study, self.reference());
-        let bound = &reference.bound;
+        let study = &self.study;
+        if !study.is_complete() {
+            let rows = study.rows.iter();
+            let there = rows
+                .filter(|row| row.verdict != Verdict::Interrupted)
+                .count();
+            writeln!(
+                f,
+                "interrupted: {there} of {} runs are there\n",
+                study.rows.len()
+            )?;
+        }
+        let Some(reference) = &study.reference else {
+            return write!(f, "the reference is not there, so nothing can be compared");
+        };
         let heads = [
             "method",
             "tolerance",
@@ -141,6 +200,7 @@ impl Display for Precision {
             "event time/s",
             "missed",
             "extra",
+            "in tails",
             "imbalance/J",
             "steps",
             "evaluations",
@@ -149,88 +209,68 @@ impl Display for Precision {
         let mut table = Table::new(heads).right(1..heads.len());
         let mut rows: Vec<&Row> = study.rows.iter().collect();
         rows.sort_by_key(|row| method_name(row.method));
-        for row in rows {
-            let method = method_name(row.method).to_owned();
+        for row in &rows {
             let tolerance = format!("{:.0e}", row.tolerance);
-            let Some(error) = &row.error else {
-                let none = String::new;
-                let word = match row.verdict {
-                    Verdict::GivenUp => "given up",
-                    _ => "stopped early",
-                };
-                let rest = [
-                    none(),
-                    none(),
-                    none(),
-                    none(),
-                    row.steps.to_string(),
-                    none(),
-                ];
-                let cells = [method, tolerance, word.to_owned()].into_iter().chain(rest);
-                table.row(cells.chain([format!("> {}", duration(row.seconds))]));
-                continue;
-            };
-            table.row([
-                method,
-                tolerance,
-                shown(error.end, bound.end),
-                match error.events.matched {
-                    0 => "–".to_owned(),
-                    _ => shown(error.events.time, bound.events.time),
-                },
-                error.events.missed.to_string(),
-                error.events.extra.to_string(),
-                row.imbalance.map_or("–".to_owned(), |x| format!("{x:.1e}")),
-                row.steps.to_string(),
-                row.evaluations.to_string(),
-                duration(row.seconds),
-            ]);
+            let cells = cells(&row.verdict, reference.bound);
+            table.row(
+                [method_name(row.method).to_owned(), tolerance]
+                    .into_iter()
+                    .chain(cells),
+            );
         }
         writeln!(f, "{table}\n")?;
-        if !study.complete {
-            writeln!(f, "interrupted: {} runs are there\n", study.rows.len())?;
-        }
-        let by = match reference.independent {
-            true => "taylor and radau at a tolerance of 1e-14",
-            false => {
-                "radau at tolerances of 1e-14 and 1e-13 (there is no other method for this scene)"
+        for row in rows {
+            if let Verdict::Stopped { .. } = row.verdict {
+                let (method, how) = (method_name(row.method), outcome(&row.verdict));
+                writeln!(f, "{method} at {:.0e} {how}", row.tolerance)?;
             }
-        };
-        writeln!(
-            f,
-            "reference: {by}, {} events; the two differ by {:.0e} at the end and {:.0e} s in an event's time",
-            reference.events(),
-            bound.end,
-            bound.events.time,
-        )?;
-        if bound.events.until.is_finite() {
-            writeln!(
-                f,
-                "They have the same events up to t = {} s only: after that the scene does not determine its \
-                 events to double precision, and no row is right or wrong.",
-                rounded(bound.events.until, 6)
-            )?;
         }
-        if let Some(failure) = reference.failure() {
-            writeln!(
-                f,
-                "It stopped early at t = {} s: {}",
-                rounded(failure.at.t, 6),
-                failure.reason
-            )?;
-        }
+        describe(reference, f)?;
         for &wanted in &self.errors {
-            match study.advice(wanted).row.map(|i| &study.rows[i]) {
+            match study.advice(wanted) {
                 Some(row) => write!(
                     f,
                     "\nfor an error of {wanted:.0e}: method {}, tolerance {:.0e}, {}",
                     method_name(row.method),
                     row.tolerance,
-                    duration(row.seconds)
+                    duration(row.measured().map_or(f64::NAN, |found| found.seconds))
                 )?,
-                None => write!(f, "\nfor an error of {wanted:.0e}: no run reaches it")?,
+                None if wanted <= reference.bound.end => write!(
+                    f,
+                    "\nfor an error of {wanted:.0e}: the reference itself is not known to that"
+                )?,
+                None => write!(
+                    f,
+                    "\nfor an error of {wanted:.0e}: no run reaches it reliably"
+                )?,
             }
         }
         Ok(())
     }
+}
+
+/// Says what the runs were compared with.
+fn describe(reference: &Reference, f: &mut Formatter) -> fmt::Result {
+    let by = match reference.alone() {
+        None => "taylor and radau at a tolerance of 1e-14".to_owned(),
+        Some(why) => format!("radau at tolerances of 1e-14 and 1e-13 ({why})"),
+    };
+    writeln!(
+        f,
+        "reference: {by}, {} events; known to {:.0e} at the end and {:.0e} s in an event's time",
+        reference.events(),
+        reference.bound.end,
+        reference.bound.event_time,
+    )?;
+    if let Some(horizon) = &reference.horizon {
+        writeln!(
+            f,
+            "It is not determined beyond event {} at t = {} s: {}.\nAll runs end at t = {} s.",
+            reference.events(),
+            rounded(horizon.until, 6),
+            horizon.why,
+            rounded(horizon.at, 6),
+        )?;
+    }
+    Ok(())
 }

@@ -17,6 +17,8 @@ pub struct LaneTaylor<const F: usize, const W: usize> {
     order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     tolerances: Box<[f64]>,
+    /// Factors of the earlier terms.
+    factors: [f64; 2],
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
@@ -26,14 +28,16 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
+        let order = length::order(relative, convolutions, F);
         LaneTaylor {
+            factors: length::earlier_terms(relative, order).map(|term| term.factor),
             series: LaneSeries {
                 q: rows,
                 v: rows,
                 a: rows,
             },
             level,
-            order: length::order(relative, convolutions, F),
+            order,
             tolerances: std::iter::once(relative).chain(absolute).collect(),
         }
     }
@@ -59,7 +63,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
             self.level,
             self.order,
             &self.series,
-            &self.tolerances,
+            (&self.tolerances, &self.factors),
             limits,
         )
     }

@@ -1,6 +1,6 @@
 //! Order and length of a step.
 
-use super::super::logarithm::natural_logarithm;
+use super::super::logarithm::{natural_logarithm, root};
 use super::series::ORDERS;
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
@@ -9,6 +9,9 @@ use super::series::ORDERS;
 const STEP: f64 = 120.0;
 const ORDER: f64 = 10.0;
 const PRODUCT: f64 = 0.6;
+
+/// Least order: so many terms decide about the length.
+const LEAST: usize = 5;
 
 /// Order at which a unit of time is cheapest for a relative tolerance ε.
 ///
@@ -21,10 +24,13 @@ pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> 
     let digits = natural_logarithm(tolerance);
     let half_period = natural_logarithm(std::f64::consts::PI);
     let mut factorial = 0.0; // its logarithm
-    let mut best = (1, f64::INFINITY);
+    let mut best = (LEAST, f64::INFINITY);
     for order in 1..=ORDERS - 2 {
         let p = order as f64;
         factorial += natural_logarithm(p);
+        if order < LEAST {
+            continue;
+        }
         if convolutions == 0 {
             best.0 = order;
             if factorial + digits >= p * half_period {
@@ -40,6 +46,29 @@ pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> 
         }
     }
     best.0
+}
+
+/// A term before the last ones, which limits the length where those happen to vanish.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct EarlierTerm {
+    /// Power of τ in the velocity.
+    pub power: usize,
+    /// What the length at which this term equals the tolerance is multiplied with.
+    pub factor: f64,
+}
+
+/// The terms of order p − 3 and p − 2 of a method of order `p` ≥ 5.
+///
+/// From a state of high symmetry only every fourth term differs from zero (a pendulum released from the
+/// horizontal: τ², τ⁶, τ¹⁰ …), so that the two last terms tell nothing. A term of order k tells the
+/// radius of convergence, ρ = h_k ε^(−1/k) with the length h_k at which it equals the tolerance, and from
+/// there the length for order p, ρ ε^(1/p). The terms of regular series fall unevenly: twice that length
+/// is the limit.
+pub(super) fn earlier_terms(tolerance: f64, p: usize) -> [EarlierTerm; 2] {
+    [p - 3, p - 2].map(|power| EarlierTerm {
+        power,
+        factor: 2.0 * root(tolerance, power) / root(tolerance, p),
+    })
 }
 
 #[cfg(test)]

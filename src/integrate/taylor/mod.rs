@@ -14,6 +14,8 @@ mod length;
 mod quadrature;
 mod series;
 
+use length::EarlierTerm;
+
 pub use dense::TaylorDense;
 pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
@@ -55,6 +57,9 @@ impl Implicit {
 pub struct Taylor<const F: usize> {
     tolerances: Tolerances<F>,
     order: usize,
+    /// Parts of a step in its quadrature.
+    panels: usize,
+    earlier: [EarlierTerm; 2],
     start: State<F>,
     end: State<F>,
     lost_at_start: Lost<F>,
@@ -93,6 +98,8 @@ impl<const F: usize> Taylor<F> {
             lag: 0.0,
             tolerances: *tolerances,
             order,
+            panels: quadrature::panels(convolutions),
+            earlier: length::earlier_terms(relative, order),
             start: origin,
             end: origin,
             lost_at_start: Lost::nothing(),
@@ -320,24 +327,32 @@ impl<const F: usize> Taylor<F> {
         terms
     }
 
-    /// The length at which the last terms equal the tolerance.
+    /// The length at which the last terms equal the tolerance, as far as those before agree.
     fn length(&self) -> f64 {
-        self.last_terms()
-            .iter()
-            .fold(f64::INFINITY, |h, &(power, size)| h.min(root(size, power)))
+        let last = self.last_terms();
+        let last = last.iter().map(|&(power, size)| root(size, power));
+        let earlier = self.earlier.iter();
+        let earlier =
+            earlier.map(|term| term.factor * root(self.velocity_term(term.power), term.power));
+        last.chain(earlier).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Size of the term of a power of the velocity, in units of the tolerance.
+    fn velocity_term(&self, power: usize) -> f64 {
+        let Series { v, .. } = &self.dense.series;
+        let relative = self.tolerances.relative();
+        let mut size = 0.0_f64;
+        for i in 0..F {
+            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
+            size = size.max(v[power][i].abs() * of_v);
+        }
+        size
     }
 
     /// The length of a step of Radau IIA, as the term of its error estimate allows.
     fn implicit_length(&self) -> f64 {
-        let Series { v, .. } = &self.dense.series;
         let Implicit { power, error } = self.implicit;
-        let mut size = 0.0_f64;
-        for i in 0..F {
-            let relative = self.tolerances.relative();
-            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
-            size = size.max(v[power][i].abs() * of_v);
-        }
-        root(size * error, power)
+        root(self.velocity_term(power) * error, power)
     }
 
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
@@ -382,12 +397,15 @@ impl<const F: usize> Taylor<F> {
             false => &[],
         };
         let (t, h) = (self.start.t, self.end.t - self.start.t);
-        rule.iter().map(move |&(place, weight)| {
-            let (q, v, a) = self.dense.at_offset(place * h);
+        let h_part = h / self.panels as f64;
+        let all = (0..self.panels).flat_map(|part| rule.iter().map(move |node| (part, node)));
+        all.map(move |(part, &(place, weight))| {
+            let tau = (part as f64 + place) * h_part;
+            let (q, v, a) = self.dense.at_offset(tau);
             Node {
-                weight: weight * h,
+                weight: weight * h_part,
                 state: State {
-                    t: t + place * h,
+                    t: t + tau,
                     q,
                     v,
                     a,
