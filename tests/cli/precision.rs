@@ -158,7 +158,7 @@ fn a_scene_is_compared_up_to_where_it_stops() {
     let output = ends_with(0, home.path(), &thrown);
     let text = stdout(&output);
     assert!(
-        text.contains("not determined beyond event 0 at t = 0.42"),
+        text.contains("not determined beyond event 0, at t = 0.42"),
         "{text}"
     );
     assert!(text.contains("the block would leave the ground"), "{text}");
