@@ -7,7 +7,7 @@ use std::path::Path;
 use super::error::Error;
 use super::generate::Generated;
 
-/// Most free coordinates that a mode may have: the cases of `ModeKernels` in `src/kernel.rs`.
+/// Most free coordinates that a mode may have: the cases of `ModeKernels` in `src/kernel/mod.rs`.
 const MOST_FREE: usize = 6;
 
 /// Writes the file, and tells the crate which numbers of free coordinates its modes have. It holds a module per model, with the generated fragment inside, and

@@ -1,6 +1,6 @@
 """Emission of the Rust tables of a model: names, units, dimensions and function pointers.
 
-The fragment is placed inside a module of `src/kernel.rs`, see there for the types.
+The fragment is placed inside a module of `src/kernel/mod.rs`, see there for the types.
 """
 
 import json
@@ -10,7 +10,7 @@ import casadi as ca
 from . import units
 
 MOST_FREE = 6
-"""Most free coordinates a mode may have; `ModeKernels` in src/kernel.rs has one case for each."""
+"""Most free coordinates a mode may have; `ModeKernels` in src/kernel/mod.rs has one case for each."""
 
 _MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions",
                    "energies", "powers", "momenta")

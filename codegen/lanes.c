@@ -1,6 +1,6 @@
 /* What trajectories side by side need in every mode: sines for their inputs, lengths of steps, values of
  * series, and the first falls of guards. The formulas are those of src/input, src/integrate/taylor and
- * src/hybrid/roots, which have the reasons; src/kernel.rs calls the functions.
+ * src/hybrid/roots, which have the reasons; src/kernel/mod.rs calls the functions.
  *
  * Arrays of series have one row an order, `stride` numbers a row.
  */

@@ -126,3 +126,46 @@ fn chattering_ends_in_sticking_and_release() {
         }
     });
 }
+
+#[test]
+fn an_accumulation_in_every_period_of_an_orbit_is_found() {
+    with_each_method(|| {
+        let reference = reference("05_bouncing_ball");
+        let cases = reference["reference"]["chattering_sticking"]
+            .as_array()
+            .unwrap();
+        let periodic = cases
+            .iter()
+            .filter(|c| c["orbit_period_in_table_periods"] == 1);
+        let mut count = 0;
+        for case in periodic {
+            count += 1;
+            let gamma = number(&case["Gamma"]);
+            let release = (1.0 / gamma).asin();
+            let mut problem = table(gamma, number(&case["e"]), release);
+            let period = std::f64::consts::TAU;
+            problem.end.time = 10.0 * period - 0.1;
+            let run = run(&problem);
+            let rests = times(&run, "rest");
+            let sticks = number(&case["accumulation_time(stick begins)"]) - release;
+            // Beside it the ball that stands on the table at t = 0 and is released at once.
+            let rests: Vec<f64> = rests.into_iter().filter(|&t| t > 0.0).collect();
+            assert_eq!(rests.len(), 10, "Γ = {gamma}: {rests:?}");
+            for (n, rest) in rests.iter().enumerate() {
+                let error = (rest - sticks - n as f64 * period).abs();
+                // The reference demands 1e-8; found: 7e-15, a rounding of t.
+                assert!(error < 1e-13, "Γ = {gamma}, period {n}: {error:e}");
+            }
+            let releases: Vec<f64> = times(&run, "take_off")
+                .into_iter()
+                .filter(|&t| t > 1.0)
+                .collect();
+            assert_eq!(releases.len(), 9, "Γ = {gamma}");
+            for (n, t) in releases.iter().enumerate() {
+                let error = (t - (n + 1) as f64 * period).abs();
+                assert!(error < 1e-12, "Γ = {gamma}, release {n}: {error:e}");
+            }
+        }
+        assert_eq!(count, 2);
+    });
+}

@@ -45,10 +45,14 @@ fn sliding_oscillator(factor: f64, relative: f64) -> Problem {
     problem
 }
 
+/// Largest difference of the methods, in tolerances, where slips and sticks end the errors before them:
+/// 0.09 was found.
+const FORGETTING: f64 = 0.2;
+
 #[test]
 fn an_oscillation_that_is_resolved_is_left_to_the_explicit_method() {
     for relative in [1e-3, 1e-6, 1e-10] {
-        let method = chosen(&sliding_oscillator(1.0, relative), 100.0);
+        let method = chosen(&sliding_oscillator(1.0, relative), FORGETTING);
         assert!(!method.contains("Radau"), "{relative:e}: {method}");
     }
 }
@@ -56,7 +60,7 @@ fn an_oscillation_that_is_resolved_is_left_to_the_explicit_method() {
 #[test]
 fn a_fast_decay_that_is_over_calls_for_the_implicit_method() {
     for relative in [1e-3, 1e-6, 1e-10] {
-        let method = chosen(&sliding_oscillator(1e4, relative), 100.0);
+        let method = chosen(&sliding_oscillator(1e4, relative), FORGETTING);
         assert!(method.contains("Radau"), "{relative:e}: {method}");
     }
 }
@@ -66,7 +70,8 @@ fn a_rocking_block_is_not_stiff() {
     let mut problem = problem("rocking_block", &[("alpha", 0.25), ("R", 1.5)]);
     problem.set_initial("theta", 0.15).unwrap();
     problem.end.time = 3.0;
-    let method = chosen(&problem, 100.0);
+    // Every landing amplifies the errors before it: 4.1 tolerances after some twenty of them.
+    let method = chosen(&problem, 5.0);
     assert!(!method.contains("Radau"), "{method}");
 }
 

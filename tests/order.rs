@@ -35,7 +35,8 @@ fn impact_times_are_as_accurate_as_asked_for() {
     for digits in 2..=12 {
         let tolerance = 10f64.powi(-digits);
         let (error, steps) = tenth_impact(tolerance);
-        assert!(error < tolerance, "{tolerance:e}: {error:e}");
-        assert!(steps < 60.0, "{tolerance:e}: {steps} steps");
+        // Found: at most 0.034 of the tolerance, at 1e-7, the tightest with five stages; 13 to 26 steps.
+        assert!(error < 0.05 * tolerance, "{tolerance:e}: {error:e}");
+        assert!(steps < 30.0, "{tolerance:e}: {steps} steps");
     }
 }

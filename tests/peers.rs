@@ -13,8 +13,17 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(number).collect()
 }
 
+/// How many events must be found: all, but of landings that accumulate those before a hop that is lower
+/// than the absolute tolerance of the angle.
+fn least_events(reference: &Value, tolerance: f64) -> Option<usize> {
+    let (_, least) = (reference["least_events"].as_object()?.iter())
+        .find(|(of, _)| of.parse::<f64>().unwrap() == tolerance)?;
+    Some(least.as_u64().unwrap() as usize)
+}
+
 /// At every tolerance no event is missed or doubled, and end state and times of events are as accurate
-/// as asked for: the errors of the steps, some hundred, add up and are amplified from event to event.
+/// as asked for. Found: 1.2 tolerances at most for the times (P2), and 8.5 for the end (P1, whose impacts
+/// amplify the errors before them tenfold).
 #[test]
 fn no_event_is_missed_or_doubled_at_any_tolerance() {
     let text = include_str!("../benches/peers/reference.json");
@@ -25,8 +34,11 @@ fn no_event_is_missed_or_doubled_at_any_tolerance() {
         let scales: Vec<f64> = (reference[name]["scales"].as_array().unwrap().iter())
             .map(|x| x.as_f64().unwrap())
             .collect();
-        // The spring of P4S is slaved: nanometres.
-        let components: &[usize] = if name == "P4S" { &[0, 2] } else { &[0, 1] };
+        let components = match name {
+            // Its spring is slaved: nanometres.
+            "P4S" => vec![0, 2],
+            _ => (0..scales.len()).collect(),
+        };
         for method in [Method::Auto, Method::Radau] {
             for digits in 3..=13 {
                 let tolerance = 10f64.powi(-digits);
@@ -39,20 +51,33 @@ fn no_event_is_missed_or_doubled_at_any_tolerance() {
                     .unwrap_or_else(|e| panic!("{at}: {e}"));
                 let found = simulator.events().iter().filter(|e| e.transition != "rest");
                 let found: Vec<f64> = found.map(|e| e.t).collect();
-                assert_eq!(found.len(), events.len(), "{at}");
-                let allowed = (100.0 * tolerance).max(1e-11);
+                let least = least_events(&reference[name], tolerance).unwrap_or(events.len());
+                assert!((least..=events.len()).contains(&found.len()), "{at}");
                 for (found, exact) in found.iter().zip(&events) {
                     assert!(
-                        (found - exact).abs() < allowed * exact,
+                        (found - exact).abs() < 2.0 * tolerance * exact,
                         "{at}: {found} {exact}"
                     );
                 }
                 let state = rows::state(name, &simulator);
-                for &i in components {
+                for &i in &components {
                     let error = (state[i] - end[i]).abs() / scales[i];
-                    assert!(error < allowed, "{at}: {i} {error:e}");
+                    assert!(error < 10.0 * tolerance, "{at}: {i} {error:e}");
                 }
             }
         }
     }
+}
+
+/// The scripts of the comparison judge rows as they should.
+#[test]
+fn the_scripts_of_the_comparison_pass_their_tests() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers");
+    let run = std::process::Command::new(env!("DALEMBERT_PYTHON_EXE"))
+        .args(["-B", "test_rows.py"])
+        .current_dir(folder)
+        .output()
+        .expect("python3 runs");
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(run.status.success(), "{said}");
 }

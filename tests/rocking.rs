@@ -2,6 +2,8 @@
 
 mod common;
 use common::*;
+use dalembert::hybrid::{Method, simulate};
+use dalembert::record::Silent;
 
 fn free_rocking(case: &serde_json::Value, end: f64) -> dalembert::record::Run {
     let (alpha, p) = (number(&case["alpha"]), number(&case["p"]));
@@ -67,4 +69,43 @@ fn forty_impacts_of_an_elastic_block() {
         let run = free_rocking(case, 1.01 * numbers(&case["reference"]["impact_times"])[40]);
         check_impacts(case, &run);
     });
+}
+
+#[test]
+fn a_block_released_just_below_its_equilibrium_falls_back_in_time() {
+    // t₁ = (K(k) − F(φ, k))/p, k = cos((α − θ₀)/2), sin φ = cos(α/2)/k, for these θ₀ as doubles
+    // (the form of tests/data/01_rocking_free.json, in 40 digits).
+    let alpha = 0.25;
+    for (theta, exact) in [
+        (0.249, 3.107_953_873_982_982),
+        (0.249999, 6.561_833_324_416_633),
+        (0.249999999, 10.015_710_964_172_975),
+        (0.249999999999, 13.469_585_786_481_053),
+    ] {
+        for method in [Method::Auto, Method::Radau, Method::Taylor] {
+            let r = 3.0 * 9.81 / (4.0 * 2.0 * 2.0);
+            let mut problem = problem("rocking_block", &[("alpha", alpha), ("R", r)]);
+            problem.set_initial("theta", theta).unwrap();
+            tighten(&mut problem, alpha - theta);
+            problem.method = method;
+            problem.end.time = 20.0;
+            problem.end.after = Some(("landing", 1));
+            let run = run(&problem);
+            let error = (times(&run, "landing")[0] - exact).abs();
+            // A rounding of θ is amplified to this. Found: 1.1 times it.
+            let amplified = 0.5 * f64::EPSILON * alpha / (2.0 * (alpha - theta));
+            assert!(
+                error < 3.0 * amplified + 1e-15,
+                "{theta}, {method:?}: {error:e}"
+            );
+
+            // As far beyond the equilibrium it falls over, and leaves the ground in the end.
+            problem.set_initial("theta", 2.0 * alpha - theta).unwrap();
+            let run = simulate(&problem, &mut Silent).unwrap();
+            assert_eq!(times(&run, "landing").len(), 0, "{theta}, {method:?}");
+            if let Some(failure) = run.failure {
+                assert!(failure.reason.contains("leave the ground"), "{failure:?}");
+            }
+        }
+    }
 }

@@ -233,6 +233,59 @@ fn stick_and_slip_on_a_belt_repeat() {
 }
 
 #[test]
+fn sticks_down_to_a_picosecond_are_kept() {
+    with_each_method(|| {
+        let (belt, limit, kinetic) = (0.1, 1.0, 0.6);
+        for duration in [1e-6, 1e-9, 1e-12] {
+            // It is faster than the belt, which it meets where the spring has almost reached the limit:
+            // x″ = −x − F_k up to there, on a circle about −F_k.
+            let meets: f64 = limit - belt * duration;
+            let start = ((meets + kinetic).powi(2) + belt * belt - kinetic * kinetic).sqrt();
+            let parameters = [("belt", belt), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
+            let mut problem = problem("belt_oscillator", &parameters);
+            problem.set_initial("x.rate", start).unwrap();
+            problem.set_initial("slip", 1.0).unwrap();
+            problem.set_tolerance(TIGHTEST);
+            problem.end.time = 4.0;
+            let run = run(&problem);
+            assert_eq!(transitions(&run), ["stick", "slip"], "{duration:e}");
+            let angle = |speed: f64, x: f64| speed.atan2(x + kinetic);
+            let exact = angle(start, 0.0) - angle(belt, meets);
+            let error = run.events[0].t - exact;
+            assert!(error.abs() < 2e-15, "{duration:e}: sticks {error:e} off");
+            // A rounding of x is ten of t.
+            let error = run.events[1].t - run.events[0].t - duration;
+            assert!(error.abs() < 1e-14, "{duration:e}: {error:e} off");
+        }
+    });
+}
+
+#[test]
+fn flights_down_to_a_picosecond_are_flown() {
+    with_each_method(|| {
+        for e in [1e-9, 1e-12] {
+            let mut problem = problem("bouncing_ball", &[("e", e)]);
+            problem.set_initial("h", 1.0).unwrap();
+            problem.set_tolerance(TIGHTEST);
+            let run = run(&problem);
+            let impacts = times(&run, "impact");
+            let first = (2.0 / 9.81_f64).sqrt();
+            assert!(relative(impacts[0], first) < 1e-15);
+            // Flights of 0.9 ns and 0.9 ps: seen in t to its last place.
+            let flight = impacts[1] - impacts[0];
+            assert!(
+                (flight - 2.0 * e * first).abs() < 2.0 * f64::EPSILON,
+                "{flight:e}"
+            );
+            // What a flight of free fall takes off it gives back.
+            let speed = run.events[1].before.v[0];
+            assert!(relative(-speed, e * 9.81 * first) < 1e-14, "{speed:e}");
+            assert_eq!(times(&run, "rest").len(), 1);
+        }
+    });
+}
+
+#[test]
 fn a_relay_switches_five_thousand_times() {
     with_each_method(|| {
         let item = item("10o_relay_hysteresis");

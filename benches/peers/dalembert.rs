@@ -1,7 +1,11 @@
-//! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`.
+//! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`, or
+//! `overhead` for the cost of a step.
 //!
 //! One row a problem, method and tolerance, in the format of `benches/peers/README.md`. Preparation
 //! is outside the timed part, as it is for the peers; events are recorded with their times only.
+
+#[path = "overhead.rs"]
+mod overhead;
 
 use dalembert::hybrid::{End, Method, Problem, Simulator};
 use dalembert::input::{Function, Sine};
@@ -10,18 +14,26 @@ use dalembert::record::Silent;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-pub const PROBLEMS: [&str; 6] = ["P1", "P2", "P3b", "P4", "P4S", "P5"];
+pub const PROBLEMS: [&str; 8] = ["P1", "P2", "P3b", "P4", "P4S", "P5", "free", "plate"];
 const METHODS: [Method; 3] = [Method::Auto, Method::Taylor, Method::Radau];
 
 /// Repeats end when both are reached: minima of fewer scatter by more than a few percent.
 const REPEATS: usize = 20;
 const BUDGET: Duration = Duration::from_millis(100);
 
+/// Whether a trial was asked for: few tolerances and repeats.
+fn quick() -> bool {
+    std::env::var_os("PEERS_QUICK").is_some()
+}
+
 fn main() {
     let named: Vec<String> = std::env::args()
         .skip(1)
         .filter(|a| a != "--bench")
         .collect();
+    if named == ["overhead"] {
+        return overhead::report();
+    }
     for name in PROBLEMS {
         if !named.is_empty() && !named.iter().any(|n| n == name) {
             continue;
@@ -31,7 +43,7 @@ fn main() {
                 // An explicit method: 300 000 steps.
                 continue;
             }
-            for digits in 3..=13 {
+            for digits in (3..=13).step_by(if quick() { 3 } else { 1 }) {
                 measure(name, method, 10f64.powi(-digits));
             }
         }
@@ -44,9 +56,13 @@ fn measure(name: &str, method: Method, tolerance: f64) {
     problem.record.ledger = false;
     problem.record.event_states = false;
     let mut simulator = Simulator::new(&problem).expect("the initial state fits a mode");
+    let (repeats, budget) = match quick() {
+        true => (3, Duration::ZERO),
+        false => (REPEATS, BUDGET),
+    };
     let (mut times, start) = (Vec::new(), Instant::now());
     let mut failed = false;
-    while !failed && (times.len() < REPEATS || start.elapsed() < BUDGET) {
+    while !failed && (times.len() < repeats || start.elapsed() < budget) {
         let start = Instant::now();
         failed = simulator.run(&mut Silent).is_err();
         times.push(start.elapsed().as_secs_f64());
@@ -90,6 +106,8 @@ pub fn state(name: &str, simulator: &Simulator) -> Vec<f64> {
             vec![side * q[0], side * v[0]]
         }
         "P4" | "P4S" => vec![q[0], q[1], v[0], v[1]],
+        // The height of the base is held.
+        "free" | "plate" => [&q[..3], &v[..3]].concat(),
         _ => vec![q[0], v[0]],
     }
 }
@@ -137,6 +155,21 @@ pub fn problem(name: &str, tolerance: f64) -> Problem {
                 after: Some(("impact", 30)),
             };
             accuracy(p, tolerance, &[1.0], &[4.4])
+        }
+        // The scenes tank_free_release.json and tank_full_plate.json, with the model's own scales.
+        "free" => {
+            let mut p = model("walking_tank", &[]);
+            start(&mut p, "theta", 0.02);
+            p.end.time = 0.5;
+            p.set_tolerance(tolerance);
+            p
+        }
+        "plate" => {
+            let mut p = model("walking_tank", &[]);
+            shake(&mut p, Sine::new(20.0, TAU * 7.0, 0.0));
+            p.end.time = 2.0;
+            p.set_tolerance(tolerance);
+            p
         }
         _ => unreachable!("problems are those of PROBLEMS"),
     }

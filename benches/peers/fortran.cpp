@@ -1,7 +1,7 @@
 // The Fortran codes LSODAR (which finds roots itself) and RADAU5 (roots on its dense output, here), as
 // built into libsiconos_externals.
 #include "problems.hpp"
-#include <cstring>
+#include <limits>
 
 extern "C" {
 using LsodaF = void(int *, double *, double *, double *);
@@ -23,7 +23,8 @@ static constexpr int STEPS = 5'000'000;
 template <class P> struct Global {
   inline static P problem;
   inline static long rhs, jacobians, steps;
-  inline static double guard, event_time, event_y[P::N];
+  inline static double at_start[P::GUARDS], event_time, event_y[P::N];
+  inline static int which;
   inline static bool found;
 
   static void f(int *, double *t, double *y, double *out) { ++rhs; problem.rhs(*t, y, out); }
@@ -34,45 +35,59 @@ template <class P> struct Global {
     for (int r = 0; r < P::N; ++r) for (int c = 0; c < P::N; ++c) out[c * stride + r] = j[r][c];
   }
   static void j(int *, double *t, double *y, int *, int *, double *out, int *stride) { transposed(*t, y, out, *stride); }
-  static void g(int *, double *t, double *y, int *, double *out) { *out = problem.guard(*t, y); }
+  static void g(int *, double *t, double *y, int *, double *out) { problem.guards(*t, y, out); }
   static void radau_f(int *, double *t, double *y, double *out, double *, int *) { ++rhs; problem.rhs(*t, y, out); }
   static void radau_j(int *, double *t, double *y, double *out, int *stride, double *, int *) { transposed(*t, y, out, *stride); }
   static void mass(int *, double *, int *, double *, int *) {}
 
-  // After a step: looks for a fall of the guard in its two halves, by bisection with secants.
+  // After a step: the earliest fall of a guard, looked for in the two halves of the step.
   static void after_step(int *number, double *from, double *to, double *y, double *dense, int *size, int *, double *, int *, int *stop) {
-    const double end_guard = problem.guard(*to, y);
-    if (*number == 1) { guard = end_guard; return; }
-    ++steps;
-    double at[P::N];
-    auto value = [&](double t) {
-      for (int i = 1; i <= P::N; ++i) at[i - 1] = contr5_(&i, &t, dense, size);
-      return problem.guard(t, at);
-    };
-    const double middle = *from + (*to - *from) / 2;
-    double left = *from, left_guard = guard;
-    for (double right : {middle, *to}) {
-      double right_guard = right == middle ? value(middle) : end_guard;
-      if (left_guard > 0 && right_guard < 0) {
-        for (bool bisect = false;; bisect = !bisect) {
-          double t = bisect ? left + (right - left) / 2 : left + (right - left) * (left_guard / (left_guard - right_guard));
-          if (!(t > left && t < right)) t = left + (right - left) / 2;
-          if (!(t > left && t < right)) break;
-          const double here = value(t);
-          (here > 0 ? left : right) = t;
-          (here > 0 ? left_guard : right_guard) = here;
+    double here[P::GUARDS];
+    problem.guards(*to, y, here);
+    if (*number > 1) {
+      ++steps;
+      double at[P::N], values[P::GUARDS];
+      auto all = [&](double t) {
+        for (int i = 1; i <= P::N; ++i) at[i - 1] = contr5_(&i, &t, dense, size);
+        problem.guards(t, at, values);
+      };
+      const double middle = *from + (*to - *from) / 2;
+      double in_middle[P::GUARDS];
+      all(middle);
+      std::copy(values, values + P::GUARDS, in_middle);
+      event_time = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < P::GUARDS; ++i) {
+        auto value = [&](double t) { all(t); return values[i]; };
+        double t = event_time, left = *from, at_left = at_start[i];
+        // A guard that starts at zero rises first: at some fraction of the step, unless rounding hides it.
+        for (double length = middle - *from; at_start[i] == 0 && in_middle[i] < 0 && at_left <= 0 && *from + length > *from;) {
+          left = *from + (length /= 2);
+          at_left = value(left);
         }
-        value(right);
+        if (at_left > 0 && in_middle[i] < 0) t = fall(value, left, at_left, middle, in_middle[i]);
+        else if (in_middle[i] > 0 && here[i] < 0) t = fall(value, middle, in_middle[i], *to, here[i]);
+        if (t < event_time) { event_time = t; which = i; }
+      }
+      found = event_time <= *to;
+      if (found) {
+        all(event_time);
         std::copy(at, at + P::N, event_y);
-        event_time = right;
-        found = true;
         *stop = -1;
         return;
       }
-      left = right;
-      left_guard = right_guard;
     }
-    guard = end_guard;
+    std::copy(here, here + P::GUARDS, at_start);
+  }
+  // The first number at which a value is not positive, by bisection with secants.
+  template <class Value> static double fall(Value value, double left, double at_left, double right, double at_right) {
+    for (bool bisect = false;; bisect = !bisect) {
+      double t = bisect ? left + (right - left) / 2 : left + (right - left) * (at_left / (at_left - at_right));
+      if (!(t > left && t < right)) t = left + (right - left) / 2;
+      if (!(t > left && t < right)) return right;
+      const double here = value(t);
+      (here > 0 ? left : right) = t;
+      (here > 0 ? at_left : at_right) = here;
+    }
   }
 };
 
@@ -80,19 +95,20 @@ template <class P> void lsodar(double tolerance) {
   using G = Global<P>;
   measure("LSODAR", "Adams/BDF", P::NAME, tolerance, [&](Run &run) {
     double absolute[P::N], y[P::N], work[400] = {}, end = P::END;
-    int integers[64] = {}, n = P::N, vectors = 2, to_stop = 4, state = 1, options = 1, size = 400, integer_size = 64, jacobian = 1, guards = 1, which;
+    int integers[64] = {}, n = P::N, vectors = 2, to_stop = 4, state = 1, options = 1, size = 400, integer_size = 64, jacobian = 1, guards = P::GUARDS, found[P::GUARDS];
     for (int i = 0; i < P::N; ++i) absolute[i] = tolerance * P::SCALES[i];
     G::rhs = G::jacobians = 0;
-    G::problem.start(y);
+    G::problem.start(y, tolerance);
     for (;;) {
       work[0] = P::END;
       integers[5] = STEPS;
-      dlsodar_(G::f, &n, y, &run.time, &end, &vectors, &tolerance, absolute, &to_stop, &state, &options, work, &size, integers, &integer_size, G::j, &jacobian, G::g, &guards, &which);
+      dlsodar_(G::f, &n, y, &run.time, &end, &vectors, &tolerance, absolute, &to_stop, &state, &options, work, &size, integers, &integer_size, G::j, &jacobian, G::g, &guards, found);
       run.steps += integers[10];
       if (state < 0) run.status = state;
       if (state != 3) break;
       run.events.push_back(run.time);
-      if (G::problem.event(run.time, y) || run.runaway()) break;
+      const int which = std::find(found, found + P::GUARDS, 1) - found;
+      if (G::problem.event(run.time, y, which) || run.runaway()) break;
       state = 1;
       std::fill(work + 4, work + 10, 0.0);
       std::fill(integers + 4, integers + 10, 0);
@@ -111,7 +127,7 @@ template <class P> void radau5(double tolerance) {
     double absolute[P::N], relative[P::N], y[P::N], work[400], unused = 0;
     int integers[64], n = P::N, vectors = 1, given = 1, output = 1, size = 400, integer_size = 64, unused_int = 0, flag = 0;
     G::rhs = G::jacobians = G::steps = 0;
-    G::problem.start(y);
+    G::problem.start(y, tolerance);
     for (;;) {
       std::fill(work, work + 20, 0.0);
       std::fill(integers, integers + 20, 0);
@@ -128,7 +144,7 @@ template <class P> void radau5(double tolerance) {
       run.time = G::event_time;
       std::copy(G::event_y, G::event_y + P::N, y);
       run.events.push_back(run.time);
-      if (G::problem.event(run.time, y) || run.runaway()) break;
+      if (G::problem.event(run.time, y, G::which) || run.runaway()) break;
     }
     run.steps = G::steps;
     run.rhs = G::rhs;

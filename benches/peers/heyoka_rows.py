@@ -5,10 +5,13 @@ C++ would not pay: per restart, that of the same calls over a span of no length.
 """
 
 import math
+import os
 import sys
 import time
 
 import heyoka as hy
+
+from heyoka_tank import Tank
 
 GRAVITY = 9.81
 TAU = 2 * math.pi
@@ -22,7 +25,8 @@ def sign(x):
 
 
 class Problem:
-    """Modes by name: equations and guards; `event(t, y, side)` changes y and returns the next side."""
+    """Modes by name: equations and guards; `event(t, y, side, which)` changes y at the fall of a guard and returns the
+    next side."""
 
     stop_after = None
 
@@ -30,8 +34,19 @@ class Problem:
         self.name = name
         getattr(self, {"P1": "block", "P2": "block", "P3b": "belt", "P4": "sliding", "P4S": "sliding", "P5": "ball"}[name])()
 
+    def idle(self, t, y, side):
+        """What an event costs in Python."""
+        self.event(t, y, side, 0)
+
+    def begun(self, _):
+        """The side at the start of a run."""
+        return self.side
+
     def mode(self, side):
         return "sticks" if side == 0 else "moves"
+
+    def parameters(self, side):
+        return [side]
 
     def block(self):
         angle, rate = hy.make_vars("angle", "rate")
@@ -44,7 +59,7 @@ class Problem:
         self.start, self.side, self.end = [(0.3 if shaken else 0.6) * 0.25, 0.0], 1.0, 10.0 if shaken else 6.0
         restitution = 0.85 if shaken else 0.9
 
-        def event(t, y, side):
+        def event(t, y, side, _):
             y[0] = -side * BEYOND
             y[1] *= restitution
             return -side
@@ -61,7 +76,7 @@ class Problem:
         }
         self.start, self.side, self.end = [0.05, 0.0], 1.0, 20.0
 
-        def event(t, y, side):
+        def event(t, y, side, _):
             force = k * y[0] + c * belt
             sticks = side != 0 and abs(force) <= static
             after = 0.0 if sticks else sign(force)
@@ -88,7 +103,7 @@ class Problem:
         }
         self.start, self.side, self.end = [0.0] * 4, 0.0, 2.0
 
-        def event(t, y, side):
+        def event(t, y, side, _):
             force = k * y[1] + c * y[3] - base * 20 * math.sin(7 * TAU * t)
             sticks = side != 0 and abs(force) <= static
             after = 0.0 if sticks else sign(force)
@@ -102,7 +117,7 @@ class Problem:
         self.modes = {"moves": ([(h, v), (v, 0.0 * h - GRAVITY)], [h])}
         self.start, self.side, self.end, self.stop_after = [1.0, 0.0], 1.0, 100.0, 30
 
-        def event(t, y, side):
+        def event(t, y, side, _):
             y[0] = BEYOND
             y[1] *= -0.8
             return side
@@ -112,7 +127,7 @@ class Problem:
 
 class Solver:
     def __init__(self, problem, tolerance):
-        self.problem = problem
+        self.problem, self.tolerance = problem, tolerance
         self.modes = {}
         for name, (equations, guards) in problem.modes.items():
             events = [hy.t_event(g, direction=hy.event_direction.negative) for g in guards]
@@ -124,13 +139,13 @@ class Solver:
         integrator.time = t
         state[:] = y
         if len(parameters):
-            parameters[0] = side
+            parameters[:] = self.problem.parameters(side)[: len(parameters)]
         integrator.reset_cooldowns()
         return integrator, state
 
     def run(self):
         p = self.problem
-        side = p.side
+        side = p.begun(self.tolerance)
         integrator, state = self.begin(p.mode(side), 0.0, p.start, side)
         events, steps = [], 0
         while True:
@@ -142,7 +157,8 @@ class Solver:
                 return integrator.time, state, events, steps, -1
             t = integrator.time
             events.append(t)
-            side = p.event(t, state, side)
+            # Outcomes of terminal events are −1, −2, …
+            side = p.event(t, state, side, -int(outcome[0]) - 1)
             if len(events) == p.stop_after:
                 return t, state, events, steps, 0
             integrator, state = self.begin(p.mode(side), t, state, side)
@@ -150,10 +166,11 @@ class Solver:
     def cost_of_calls(self):
         """Of one restart and its propagation, s: the same calls over a span of no length."""
         p = self.problem
+        side = p.begun(self.tolerance)
 
         def once():
-            integrator, state = self.begin(p.mode(p.side), 0.0, p.start, p.side)
-            p.event(0.0, list(p.start), p.side)
+            integrator, state = self.begin(p.mode(side), 0.0, p.start, side)
+            p.idle(0.0, state, side)
             integrator.propagate_until(0.0)
             integrator.time
 
@@ -174,11 +191,12 @@ def fastest(work, most, budget=0.1):
 
 
 def main():
-    for name in sys.argv[1:] or ["P1", "P2", "P3b", "P4", "P4S", "P5"]:
-        problem = Problem(name)
-        for digits in range(3, 14):
+    quick = "PEERS_QUICK" in os.environ
+    for name in sys.argv[1:] or ["P1", "P2", "P3b", "P4", "P4S", "P5", "free", "plate"]:
+        problem = Tank(name) if name in ("free", "plate") else Problem(name)
+        for digits in range(3, 14, 3 if quick else 1):
             solver = Solver(problem, 10.0**-digits)
-            least, median, repeats = fastest(solver.run, 200)
+            least, median, repeats = fastest(solver.run, 5 if quick else 200)
             t, y, events, steps, status = solver.run()
             y = list(y)  # before the measurement of the calls begins anew
             calls = (len(events) + 1) * solver.cost_of_calls()

@@ -1,13 +1,15 @@
 // The benchmark problems, and how a C++ peer runs and prints them; see README.md.
 //
-// A problem is a hybrid automaton whose every mode has one guard. An event is the guard falling
-// through zero; `event` applies the jump and returns whether the run ends there.
+// A problem is a hybrid automaton whose modes have guards, of which P1 … P5 have one each. An event is a
+// guard falling through zero; `event` applies its jump and returns whether the run ends there.
 #pragma once
+#include "tank.hpp"
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string_view>
 #include <vector>
 
@@ -19,14 +21,14 @@ inline double sign(double x) { return x < 0 ? -1.0 : 1.0; }
 // P1, P2: Housner's rocking block, free and on shaken ground; y = (angle, rate).
 template <bool SHAKEN> struct RockingBlock {
   static constexpr const char *NAME = SHAKEN ? "P2" : "P1";
-  static constexpr int N = 2;
+  static constexpr int N = 2, GUARDS = 1;
   static constexpr double END = SHAKEN ? 10.0 : 6.0;
   static constexpr std::array<double, N> SCALES{0.2, 0.5};
   static constexpr double ALPHA = 0.25, P_SQUARED = 3 * GRAVITY / (4 * 1.5);
   static constexpr double RESTITUTION = SHAKEN ? 0.85 : 0.9;
   double side;
 
-  void start(double *y) { side = 1; y[0] = (SHAKEN ? 0.3 : 0.6) * ALPHA; y[1] = 0; }
+  void start(double *y, double) { side = 1; y[0] = (SHAKEN ? 0.3 : 0.6) * ALPHA; y[1] = 0; }
   static double ground(double t) { return SHAKEN ? 0.35 * std::sin(1.5 * TAU * t + 0.3) : 0.0; }
   void rhs(double t, const double *y, double *f) const {
     const double angle = ALPHA * side - y[0];
@@ -38,20 +40,20 @@ template <bool SHAKEN> struct RockingBlock {
     j[0][0] = 0; j[0][1] = 1; j[1][1] = 0;
     j[1][0] = P_SQUARED * (std::cos(angle) - (SHAKEN ? ground(t) * std::sin(angle) : 0.0));
   }
-  double guard(double, const double *y) const { return side * y[0]; }
-  bool event(double, double *y) { y[0] = 0; y[1] *= RESTITUTION; side = -side; return false; }
+  void guards(double, const double *y, double *g) const { *g = side * y[0]; }
+  bool event(double, double *y, int) { y[0] = 0; y[1] *= RESTITUTION; side = -side; return false; }
 };
 
 // P3b: stick-slip on a belt; y = (x, v); slip is the sign of belt - v, 0 where the mass sticks.
 struct Belt {
   static constexpr const char *NAME = "P3b";
-  static constexpr int N = 2;
+  static constexpr int N = 2, GUARDS = 1;
   static constexpr double END = 20;
   static constexpr std::array<double, N> SCALES{0.05, 0.9};
   static constexpr double K = 400, C = 0.1, BELT = 0.2, STATIC = 0.4 * GRAVITY, KINETIC = 0.25 * GRAVITY;
   double slip;
 
-  void start(double *y) { slip = 1; y[0] = 0.05; y[1] = 0; }
+  void start(double *y, double) { slip = 1; y[0] = 0.05; y[1] = 0; }
   static double spring(const double *y) { return K * y[0] + C * y[1]; }
   void rhs(double, const double *y, double *f) const {
     f[0] = y[1];
@@ -61,10 +63,10 @@ struct Belt {
     j[0][0] = 0; j[0][1] = 1;
     j[1][0] = slip == 0 ? 0 : -K; j[1][1] = slip == 0 ? 0 : -C;
   }
-  double guard(double, const double *y) const {
-    return slip == 0 ? STATIC - std::fabs(spring(y)) : slip * (BELT - y[1]);
+  void guards(double, const double *y, double *g) const {
+    *g = slip == 0 ? STATIC - std::fabs(spring(y)) : slip * (BELT - y[1]);
   }
-  bool event(double, double *y) {
+  bool event(double, double *y, int) {
     y[1] = BELT;
     const double force = spring(y);
     slip = slip != 0 && std::fabs(force) <= STATIC ? 0 : sign(force);
@@ -75,14 +77,14 @@ struct Belt {
 // P4, P4S: an oscillator on a base that slips, y = (u, d, u', d'); STIFF: k and c times 10^4.
 template <bool STIFF> struct Sliding {
   static constexpr const char *NAME = STIFF ? "P4S" : "P4";
-  static constexpr int N = 4;
+  static constexpr int N = 4, GUARDS = 1;
   static constexpr double END = 2;
   static constexpr std::array<double, N> SCALES{0.02, STIFF ? 8e-8 : 1e-3, 0.9, STIFF ? 3.5e-6 : 0.1};
   static constexpr double BASE = 5, UPPER = 39.33, FACTOR = STIFF ? 1e4 : 1, K = 1.05e6 * FACTOR, C = 642 * FACTOR;
   static constexpr double WEIGHT = (BASE + UPPER) * GRAVITY, STATIC = 0.2 * WEIGHT, KINETIC = 0.19 * WEIGHT;
   double slip;
 
-  void start(double *y) { slip = 0; std::fill(y, y + N, 0.0); }
+  void start(double *y, double) { slip = 0; std::fill(y, y + N, 0.0); }
   static double ground(double t) { return 20 * std::sin(7 * TAU * t); }
   static double spring(const double *y) { return K * y[1] + C * y[3]; }
   static double held(double t, const double *y) { return spring(y) - BASE * ground(t); }
@@ -100,8 +102,8 @@ template <bool STIFF> struct Sliding {
     j[2][1] = K * base; j[2][3] = C * base;
     j[3][1] = -K * (1 / UPPER + base); j[3][3] = -C * (1 / UPPER + base);
   }
-  double guard(double t, const double *y) const { return slip == 0 ? STATIC - std::fabs(held(t, y)) : slip * y[2]; }
-  bool event(double t, double *y) {
+  void guards(double t, const double *y, double *g) const { *g = slip == 0 ? STATIC - std::fabs(held(t, y)) : slip * y[2]; }
+  bool event(double t, double *y, int) {
     const double force = held(t, y);
     const bool sticks = slip != 0 && std::fabs(force) <= STATIC;
     if (slip != 0) y[2] = 0;
@@ -113,16 +115,16 @@ template <bool STIFF> struct Sliding {
 // P5: a bouncing ball up to its 30th impact; y = (height, velocity).
 struct Ball {
   static constexpr const char *NAME = "P5";
-  static constexpr int N = 2;
+  static constexpr int N = 2, GUARDS = 1;
   static constexpr double END = 100;
   static constexpr std::array<double, N> SCALES{1, 4.4};
   int impacts;
 
-  void start(double *y) { impacts = 0; y[0] = 1; y[1] = 0; }
+  void start(double *y, double) { impacts = 0; y[0] = 1; y[1] = 0; }
   void rhs(double, const double *y, double *f) const { f[0] = y[1]; f[1] = -GRAVITY; }
   void jacobian(double, const double *, double (*j)[N]) const { j[0][0] = 0; j[0][1] = 1; j[1][0] = 0; j[1][1] = 0; }
-  double guard(double, const double *y) const { return y[0]; }
-  bool event(double, double *y) { y[0] = 0; y[1] *= -0.8; return ++impacts == 30; }
+  void guards(double, const double *y, double *g) const { *g = y[0]; }
+  bool event(double, double *y, int) { y[0] = 0; y[1] *= -0.8; return ++impacts == 30; }
 };
 
 struct Run {
@@ -134,12 +136,15 @@ struct Run {
   bool runaway() { if (events.size() > 1000) status = -1000; return status != 0; }
 };
 
+// Whether a trial was asked for: few tolerances and repeats.
+inline bool quick() { return std::getenv("PEERS_QUICK") != nullptr; }
+
 template <class Work> void measure(const char *peer, const char *method, const char *problem, double tolerance, Work work) {
   using Clock = std::chrono::steady_clock;
   auto seconds = [](auto from) { return std::chrono::duration<double>(Clock::now() - from).count(); };
   Run run;
   std::vector<double> times;
-  for (const auto begin = Clock::now(); times.size() < 10 || seconds(begin) < 0.08;) {
+  for (const auto begin = Clock::now(); times.size() < (quick() ? 3 : 10) || seconds(begin) < (quick() ? 0 : 0.08);) {
     run = Run();
     const auto start = Clock::now();
     work(run);
@@ -160,7 +165,7 @@ template <class Work> void measure(const char *peer, const char *method, const c
 template <class Visit> void each(int count, char **names, Visit visit) {
   auto one = [&]<class P>() {
     if (count > 1 && std::none_of(names + 1, names + count, [](const char *n) { return std::string_view(n) == P::NAME; })) return;
-    for (int digits = 3; digits <= 13; ++digits) visit.template operator()<P>(std::pow(10.0, -digits));
+    for (int digits = 3; digits <= 13; digits += quick() ? 3 : 1) visit.template operator()<P>(std::pow(10.0, -digits));
   };
   one.template operator()<RockingBlock<false>>();
   one.template operator()<RockingBlock<true>>();
@@ -168,4 +173,6 @@ template <class Visit> void each(int count, char **names, Visit visit) {
   one.template operator()<Sliding<false>>();
   one.template operator()<Sliding<true>>();
   one.template operator()<Ball>();
+  one.template operator()<Tank<true>>();
+  one.template operator()<Tank<false>>();
 }

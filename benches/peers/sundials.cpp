@@ -28,8 +28,8 @@ template <class P> int jacobian(sunrealtype t, N_Vector y, N_Vector, SUNMatrix o
   for (int r = 0; r < P::N; ++r) for (int c = 0; c < P::N; ++c) SM_ELEMENT_D(out, r, c) = j[r][c];
   return 0;
 }
-template <class P> int guard(sunrealtype t, N_Vector y, sunrealtype *g, void *user) {
-  *g = static_cast<Data<P> *>(user)->problem.guard(t, NV_DATA_S(y));
+template <class P> int guards(sunrealtype t, N_Vector y, sunrealtype *g, void *user) {
+  static_cast<Data<P> *>(user)->problem.guards(t, NV_DATA_S(y), g);
   return 0;
 }
 
@@ -42,10 +42,10 @@ template <class P> struct Vectors {
 };
 
 // Runs a solver given by how it restarts, advances and counts.
-template <class P, class Restart, class Advance, class Steps>
-void drive(Run &run, Data<P> &data, N_Vector y, int root_found, Restart restart, Advance advance, Steps steps) {
+template <class P, class Restart, class Advance, class Steps, class Roots>
+void drive(Run &run, Data<P> &data, double tolerance, N_Vector y, int root_found, Restart restart, Advance advance, Steps steps, Roots roots) {
   data.rhs = data.jacobians = 0;
-  data.problem.start(NV_DATA_S(y));
+  data.problem.start(NV_DATA_S(y), tolerance);
   restart(0.0);
   for (;;) {
     const int flag = advance(&run.time);
@@ -55,7 +55,10 @@ void drive(Run &run, Data<P> &data, N_Vector y, int root_found, Restart restart,
     if (flag < 0) run.status = flag;
     if (flag != root_found) break;
     run.events.push_back(run.time);
-    if (data.problem.event(run.time, NV_DATA_S(y)) || run.runaway()) break;
+    int found[P::GUARDS];
+    roots(found);
+    const int which = std::find_if(found, found + P::GUARDS, [](int f) { return f != 0; }) - found;
+    if (data.problem.event(run.time, NV_DATA_S(y), which) || run.runaway()) break;
     restart(run.time);
   }
   run.rhs = data.rhs;
@@ -66,7 +69,7 @@ void drive(Run &run, Data<P> &data, N_Vector y, int root_found, Restart restart,
 template <class P> void cvode(double tolerance, int family, bool newton) {
   Data<P> data;
   Vectors<P> v(tolerance);
-  data.problem.start(NV_DATA_S(v.y));
+  data.problem.start(NV_DATA_S(v.y), tolerance);
   void *solver = CVodeCreate(family, context);
   CVodeInit(solver, rhs<P>, 0, v.y);
   CVodeSVtolerances(solver, tolerance, v.absolute);
@@ -80,16 +83,18 @@ template <class P> void cvode(double tolerance, int family, bool newton) {
     fixed = SUNNonlinSol_FixedPoint(v.y, 0, context);
     CVodeSetNonlinearSolver(solver, fixed);
   }
-  int falling = -1;
-  CVodeRootInit(solver, 1, guard<P>);
-  CVodeSetRootDirection(solver, &falling);
+  int falling[P::GUARDS];
+  std::fill(falling, falling + P::GUARDS, -1);
+  CVodeRootInit(solver, P::GUARDS, guards<P>);
+  CVodeSetRootDirection(solver, falling);
   CVodeSetNoInactiveRootWarn(solver);
   const std::string method = std::string(family == CV_BDF ? "BDF" : "Adams") + (newton ? " Newton" : " fixed point");
   measure("CVODE", method.c_str(), P::NAME, tolerance, [&](Run &run) {
-    drive(run, data, v.y, CV_ROOT_RETURN,
+    drive(run, data, tolerance, v.y, CV_ROOT_RETURN,
           [&](double t) { CVodeReInit(solver, t, v.y); CVodeSetStopTime(solver, P::END); },
           [&](double *t) { return CVode(solver, P::END, v.y, t, CV_NORMAL); },
-          [&](long *n) { CVodeGetNumSteps(solver, n); });
+          [&](long *n) { CVodeGetNumSteps(solver, n); },
+          [&](int *found) { CVodeGetRootInfo(solver, found); });
   });
   CVodeFree(&solver);
   if (fixed) SUNNonlinSolFree(fixed);
@@ -98,49 +103,53 @@ template <class P> void cvode(double tolerance, int family, bool newton) {
 template <class P> void explicit_pair(double tolerance, int order) {
   Data<P> data;
   Vectors<P> v(tolerance);
-  data.problem.start(NV_DATA_S(v.y));
+  data.problem.start(NV_DATA_S(v.y), tolerance);
   void *solver = ERKStepCreate(rhs<P>, 0, v.y, context);
-  ERKStepSVtolerances(solver, tolerance, v.absolute);
-  ERKStepSetUserData(solver, &data);
-  ERKStepSetMaxNumSteps(solver, STEPS);
-  ERKStepSetOrder(solver, order);
-  int falling = -1;
-  ERKStepRootInit(solver, 1, guard<P>);
-  ERKStepSetRootDirection(solver, &falling);
-  ERKStepSetNoInactiveRootWarn(solver);
+  ARKodeSVtolerances(solver, tolerance, v.absolute);
+  ARKodeSetUserData(solver, &data);
+  ARKodeSetMaxNumSteps(solver, STEPS);
+  ARKodeSetOrder(solver, order);
+  int falling[P::GUARDS];
+  std::fill(falling, falling + P::GUARDS, -1);
+  ARKodeRootInit(solver, P::GUARDS, guards<P>);
+  ARKodeSetRootDirection(solver, falling);
+  ARKodeSetNoInactiveRootWarn(solver);
   const std::string method = "ERK " + std::to_string(order);
   measure("ARKODE", method.c_str(), P::NAME, tolerance, [&](Run &run) {
-    drive(run, data, v.y, ARK_ROOT_RETURN,
-          [&](double t) { ERKStepReInit(solver, rhs<P>, t, v.y); ERKStepSetStopTime(solver, P::END); },
-          [&](double *t) { return ERKStepEvolve(solver, P::END, v.y, t, ARK_NORMAL); },
-          [&](long *n) { ERKStepGetNumSteps(solver, n); });
+    drive(run, data, tolerance, v.y, ARK_ROOT_RETURN,
+          [&](double t) { ERKStepReInit(solver, rhs<P>, t, v.y); ARKodeSetStopTime(solver, P::END); },
+          [&](double *t) { return ARKodeEvolve(solver, P::END, v.y, t, ARK_NORMAL); },
+          [&](long *n) { ARKodeGetNumSteps(solver, n); },
+          [&](int *found) { ARKodeGetRootInfo(solver, found); });
   });
-  ERKStepFree(&solver);
+  ARKodeFree(&solver);
 }
 
 template <class P> void diagonally_implicit(double tolerance, int order) {
   Data<P> data;
   Vectors<P> v(tolerance);
-  data.problem.start(NV_DATA_S(v.y));
+  data.problem.start(NV_DATA_S(v.y), tolerance);
   void *solver = ARKStepCreate(nullptr, rhs<P>, 0, v.y, context);
-  ARKStepSVtolerances(solver, tolerance, v.absolute);
-  ARKStepSetUserData(solver, &data);
-  ARKStepSetMaxNumSteps(solver, STEPS);
-  ARKStepSetOrder(solver, order);
-  ARKStepSetLinearSolver(solver, v.linear, v.matrix);
-  ARKStepSetJacFn(solver, jacobian<P>);
-  int falling = -1;
-  ARKStepRootInit(solver, 1, guard<P>);
-  ARKStepSetRootDirection(solver, &falling);
-  ARKStepSetNoInactiveRootWarn(solver);
+  ARKodeSVtolerances(solver, tolerance, v.absolute);
+  ARKodeSetUserData(solver, &data);
+  ARKodeSetMaxNumSteps(solver, STEPS);
+  ARKodeSetOrder(solver, order);
+  ARKodeSetLinearSolver(solver, v.linear, v.matrix);
+  ARKodeSetJacFn(solver, jacobian<P>);
+  int falling[P::GUARDS];
+  std::fill(falling, falling + P::GUARDS, -1);
+  ARKodeRootInit(solver, P::GUARDS, guards<P>);
+  ARKodeSetRootDirection(solver, falling);
+  ARKodeSetNoInactiveRootWarn(solver);
   const std::string method = "DIRK " + std::to_string(order);
   measure("ARKODE", method.c_str(), P::NAME, tolerance, [&](Run &run) {
-    drive(run, data, v.y, ARK_ROOT_RETURN,
-          [&](double t) { ARKStepReInit(solver, nullptr, rhs<P>, t, v.y); ARKStepSetStopTime(solver, P::END); },
-          [&](double *t) { return ARKStepEvolve(solver, P::END, v.y, t, ARK_NORMAL); },
-          [&](long *n) { ARKStepGetNumSteps(solver, n); });
+    drive(run, data, tolerance, v.y, ARK_ROOT_RETURN,
+          [&](double t) { ARKStepReInit(solver, nullptr, rhs<P>, t, v.y); ARKodeSetStopTime(solver, P::END); },
+          [&](double *t) { return ARKodeEvolve(solver, P::END, v.y, t, ARK_NORMAL); },
+          [&](long *n) { ARKodeGetNumSteps(solver, n); },
+          [&](int *found) { ARKodeGetRootInfo(solver, found); });
   });
-  ARKStepFree(&solver);
+  ARKodeFree(&solver);
 }
 
 int main(int count, char **names) {

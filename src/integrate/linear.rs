@@ -93,13 +93,13 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
     /// brought up to date, its pivot chosen, and row `k` finished.
     #[inline(always)]
     fn eliminate(&mut self, k: usize, scale: &mut [f64; F]) -> Result<(), Singular> {
-        let mut largest = 0.0_f64;
-        for i in 0..F {
-            largest = largest.max(self.rows[i][k].size() * scale[i]);
-        }
+        let mut largest = [0.0_f64; F];
         for i in k..F {
+            largest[i] = self.rows[i][k].size();
             for l in 0..k {
-                self.rows[i][k] = self.rows[i][k] - self.rows[i][l] * self.rows[l][k];
+                let product = self.rows[i][l] * self.rows[l][k];
+                largest[i] = largest[i].max(product.size());
+                self.rows[i][k] = self.rows[i][k] - product;
             }
         }
         let mut pivot = k;
@@ -111,10 +111,10 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
                 size = candidate;
             }
         }
-        // F roundings of numbers as large as the column: what is left below that is no information.
-        // (A NaN fails the comparison as well.)
+        // F roundings of the largest number of its sum: what is left below that is no information.
+        // A row of small numbers may well be exact. (A NaN fails the comparison as well.)
         let rounding = if k == 0 { 0.0 } else { F as f64 * f64::EPSILON };
-        if !(size > rounding * largest && size.is_finite()) {
+        if !(size > rounding * largest[pivot] * scale[pivot] && size.is_finite()) {
             return Err(Singular { coordinate: k });
         }
         if pivot != k {

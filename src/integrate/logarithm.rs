@@ -59,4 +59,18 @@ mod tests {
         }
         assert_eq!(root(0.0, 7), f64::INFINITY);
     }
+
+    #[test]
+    fn roots_of_powers_of_two_are_exact_factors() {
+        for n in 1..=31 {
+            for i in 0..200 {
+                let x = 10f64.powf(f64::from(i) * 0.03 - 3.0);
+                for c in [-20, -3, 1, 10, 25] {
+                    let scaled = x * 2f64.powi(-c * n);
+                    let expected = root(x, n as usize) * 2f64.powi(c);
+                    assert_eq!(root(scaled, n as usize), expected, "{x:e} {n} {c}");
+                }
+            }
+        }
+    }
 }

@@ -3,6 +3,7 @@
 mod dense;
 mod failures;
 mod order;
+mod pleiades;
 mod problems;
 mod references;
 mod robustness;

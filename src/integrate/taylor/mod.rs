@@ -57,6 +57,8 @@ impl Implicit {
 pub struct Taylor<const F: usize> {
     tolerances: Tolerances<F>,
     order: usize,
+    /// Parts of a step in its quadrature.
+    panels: usize,
     earlier: [EarlierTerm; 2],
     start: State<F>,
     end: State<F>,
@@ -96,6 +98,7 @@ impl<const F: usize> Taylor<F> {
             lag: 0.0,
             tolerances: *tolerances,
             order,
+            panels: quadrature::panels(convolutions),
             earlier: length::earlier_terms(relative, order),
             start: origin,
             end: origin,
@@ -394,12 +397,15 @@ impl<const F: usize> Taylor<F> {
             false => &[],
         };
         let (t, h) = (self.start.t, self.end.t - self.start.t);
-        rule.iter().map(move |&(place, weight)| {
-            let (q, v, a) = self.dense.at_offset(place * h);
+        let h_part = h / self.panels as f64;
+        let all = (0..self.panels).flat_map(|part| rule.iter().map(move |node| (part, node)));
+        all.map(move |(part, &(place, weight))| {
+            let tau = (part as f64 + place) * h_part;
+            let (q, v, a) = self.dense.at_offset(tau);
             Node {
-                weight: weight * h,
+                weight: weight * h_part,
                 state: State {
-                    t: t + place * h,
+                    t: t + tau,
                     q,
                     v,
                     a,

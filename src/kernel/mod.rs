@@ -4,7 +4,12 @@
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
-use crate::input::{LaneSignals, Side, Signals};
+mod context;
+mod lanes;
+
+pub use context::{Context, Dimensions};
+pub use lanes::{LANES_OF_LEVELS, LaneContext, LaneSeries, LaneSystem, processor_level};
+
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
@@ -262,138 +267,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// Numbers of entries of the context arrays of a model; its address identifies the model.
-#[derive(Debug)]
-pub struct Dimensions {
-    /// Coordinates.
-    pub coordinates: usize,
-    /// Ground motions.
-    pub motions: usize,
-    /// Signals.
-    pub signals: usize,
-    /// Discrete states.
-    pub discretes: usize,
-    /// Parameters.
-    pub parameters: usize,
-    /// Constants computed from the parameters.
-    pub constants: usize,
-}
-
-/// What a generated function needs besides the free coordinates.
-#[derive(Debug, Clone)]
-pub struct Context {
-    dimensions: &'static Dimensions,
-    /// Signals of the inputs at the present time.
-    signals: Box<[f64]>,
-    /// Time derivatives of the signals.
-    signal_rates: Box<[f64]>,
-    /// Time and side that the signals and their rates are set for, s; NaN: none.
-    signals_at: (f64, Side),
-    /// Whether no input ever acts: all signals are zero and stay so.
-    pub quiet: bool,
-    /// Discrete states.
-    pub discrete: Box<[f64]>,
-    /// All coordinates; the generated functions read those that the mode holds.
-    pub held: Box<[f64]>,
-    /// Taylor coefficients of the signals, one row an order.
-    signal_series: Box<[f64]>,
-    constants: Box<[f64]>,
-    /// Taylor coefficients of the guards, one row an order.
-    pub guard_series: Box<[f64]>,
-    /// What the series functions carry from one order to the next.
-    workspace: Box<[f64]>,
-}
-
 impl Context {
-    /// A context for `model` with the constants of `parameters` (in the order of the model).
-    ///
-    /// # Panics
-    /// If the number of parameters is not the model's.
-    pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
-        let dimensions = model.constants.dimensions;
-        let modes = model.variants.iter().flat_map(|variant| variant.modes);
-        let rooms = modes.map(|mode| with_kernel!(&mode.kernels, k => (k.workspace(), k.guards)));
-        let (workspace, guards) = rooms.fold((0, 0), |most, room| {
-            (most.0.max(room.0), most.1.max(room.1))
-        });
-        Context {
-            dimensions,
-            signals: vec![0.0; dimensions.signals].into(),
-            signal_rates: vec![0.0; dimensions.signals].into(),
-            signals_at: (f64::NAN, Side::Right),
-            quiet: false,
-            discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
-            held: vec![0.0; dimensions.coordinates].into(),
-            signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
-            constants: {
-                let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
-                model.constants.evaluate(parameters, &mut constants);
-                constants
-            },
-            guard_series: vec![0.0; ORDERS * guards].into(),
-            workspace: vec![0.0; workspace].into(),
-        }
-    }
-
-    /// Goes over to other parameters.
-    ///
-    /// # Panics
-    /// As [`Context::new`], and if it is another model.
-    pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
-        assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
-        model.constants.evaluate(parameters, &mut self.constants);
-    }
-
-    /// Signals of the inputs at the present time.
-    pub fn signals(&self) -> &[f64] {
-        &self.signals
-    }
-
-    /// Signals and their rates, for values of one's own.
-    pub fn signals_mut(&mut self) -> [&mut [f64]; 2] {
-        self.signals_at.0 = f64::NAN;
-        [&mut self.signals, &mut self.signal_rates]
-    }
-
-    /// Sets signals and their rates to those at time `t` (s), as they are on that side.
-    #[inline]
-    pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
-        if !self.quiet && self.signals_at != (t, side) {
-            signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
-            self.signals_at = (t, side);
-        }
-    }
-
-    /// Sets signals and their rates to those of a lane at time `t` (s), as they are right after it;
-    /// `from` are its signals.
-    pub fn set_signals_of_lane<const W: usize>(
-        &mut self,
-        of: &LaneSignals<W>,
-        lane: usize,
-        signals: &Signals,
-        t: f64,
-        from: &[Lanes<W>],
-    ) {
-        of.of_lane(
-            lane,
-            signals,
-            from,
-            &mut self.signals,
-            &mut self.signal_rates,
-        );
-        self.signals_at = (t, Side::Right);
-    }
-
-    /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
-    #[inline]
-    pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
-        if !self.quiet {
-            self.set_signals(signals, t, Side::Right);
-            let rows = &mut self.signal_series[..orders * self.signals.len()];
-            signals.series(t, &self.signals, &self.signal_rates, rows);
-        }
-    }
-
     /// Calls a generated function.
     ///
     /// # Safety
@@ -929,95 +803,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 }
 
-/// Number of lanes at each level of the processor that generated code is compiled for; the same in
-/// build/compile.rs.
-pub const LANES_OF_LEVELS: &[usize] = &[
-    2,
-    #[cfg(target_arch = "x86_64")]
-    4,
-    #[cfg(target_arch = "x86_64")]
-    8,
-];
-
-/// The best level of this processor, an index into [`LANES_OF_LEVELS`].
-pub fn processor_level() -> usize {
-    #[cfg(target_arch = "x86_64")]
-    {
-        let best = ["avx512f", "avx512dq", "avx512vl"];
-        let has = |name| match name {
-            "avx512f" => std::arch::is_x86_feature_detected!("avx512f"),
-            "avx512dq" => std::arch::is_x86_feature_detected!("avx512dq"),
-            _ => std::arch::is_x86_feature_detected!("avx512vl"),
-        };
-        if best.into_iter().all(has) {
-            return 2;
-        }
-        if std::arch::is_x86_feature_detected!("avx2") {
-            return 1;
-        }
-    }
-    0
-}
-
-/// What generated functions need besides the free coordinates, for `W` trajectories side by side: as
-/// [`Context`], each entry a number a lane.
-#[derive(Debug, Clone)]
-pub struct LaneContext<const W: usize> {
-    dimensions: &'static Dimensions,
-    /// Signals of the inputs.
-    pub signals: Box<[Lanes<W>]>,
-    /// Taylor coefficients of the signals, one row an order.
-    pub signal_series: Box<[Lanes<W>]>,
-    discrete: Box<[Lanes<W>]>,
-    held: Box<[Lanes<W>]>,
-    constants: Box<[Lanes<W>]>,
-    workspace: Box<[Lanes<W>]>,
-}
-
 impl<const W: usize> LaneContext<W> {
-    /// A context for a mode, with the discrete states, held coordinates and constants of `like` in all
-    /// lanes.
-    pub fn new<const F: usize>(kernel: &ModeKernel<F>, like: &Context) -> Self {
-        let zeros = |count: usize| vec![Lanes::of(0.0); count].into_boxed_slice();
-        let mut context = LaneContext {
-            dimensions: like.dimensions,
-            signals: zeros(like.signals.len()),
-            signal_series: zeros(like.signal_series.len()),
-            discrete: zeros(like.discrete.len()),
-            held: zeros(like.held.len()),
-            constants: zeros(like.constants.len()),
-            workspace: zeros(kernel.workspace()),
-        };
-        for lane in 0..W {
-            context.load(lane, like);
-        }
-        context
-    }
-
-    /// Takes over discrete states, held coordinates and constants of a trajectory.
-    ///
-    /// # Panics
-    /// If it is one of another model.
-    pub fn load(&mut self, lane: usize, from: &Context) {
-        assert!(std::ptr::eq(self.dimensions, from.dimensions));
-        let of = [&from.discrete, &from.held, &from.constants];
-        let into = [&mut self.discrete, &mut self.held, &mut self.constants];
-        for (into, of) in into.into_iter().zip(of) {
-            for (into, of) in into.iter_mut().zip(of) {
-                into.0[lane] = *of;
-            }
-        }
-    }
-
-    /// The same for a trajectory whose constants were loaded before.
-    pub fn load_state(&mut self, lane: usize, from: &Context) {
-        let of = from.discrete.iter().chain(&from.held);
-        let into = self.discrete.iter_mut().chain(&mut self.held);
-        for (into, of) in into.zip(of) {
-            into.0[lane] = *of;
-        }
-    }
-
     /// The context as C sees it.
     fn raw(&self, dimensions: &'static Dimensions) -> RawContext {
         assert!(
@@ -1036,28 +822,6 @@ impl<const W: usize> LaneContext<W> {
             j: std::ptr::null(),
         }
     }
-}
-
-/// Mass matrix M, by columns, and load b of r = M a + b, in lanes.
-#[derive(Debug, Clone, Copy)]
-#[repr(C)]
-pub struct LaneSystem<const F: usize, const W: usize> {
-    /// M = ∂r/∂a.
-    pub mass: [[Lanes<W>; F]; F],
-    /// r at a = 0.
-    pub load: [Lanes<W>; F],
-}
-
-/// [`Series`] in lanes.
-#[derive(Debug, Clone)]
-#[repr(C, align(64))]
-pub struct LaneSeries<const F: usize, const W: usize> {
-    /// Of the coordinates.
-    pub q: [[Lanes<W>; F]; ORDERS],
-    /// Of the velocities.
-    pub v: [[Lanes<W>; F]; ORDERS],
-    /// Of the accelerations.
-    pub a: [[Lanes<W>; F]; ORDERS],
 }
 
 impl<const F: usize> ModeKernel<F> {

@@ -1,0 +1,112 @@
+"""Rows of the comparison: errors against the references, the best of each peer, table and figure."""
+
+import math
+
+PROBLEMS = ["P1", "P2", "P3b", "P4", "P4S", "P5", "free", "plate"]
+LEVELS = [1e-3, 1e-6, 1e-9, 1e-12]
+COLUMNS = ["peer", "method", "problem", "tolerance", "least_us", "median_us", "repeats", "rhs", "jacobians", "steps", "events", "end_error", "event_time_error", "verdict"]
+# The spring of P4S follows its load to 1e-9 m; the height at an impact is 0 by the reset.
+COMPARED = {"P4S": [0, 2], "P5": [1]}
+
+
+def least_events(reference, tolerance):
+    """How many events must be found: all, but of the tank's landings, which accumulate, only those before a
+    hop that is lower than the absolute tolerance of the angle."""
+    return reference.get("least_events", {}).get(f"{tolerance:g}", len(reference["events"]))
+
+
+def collect(line, references):
+    """A printed row as a row of results.csv: errors against the references, and whether every event was found."""
+    peer, method, problem, tolerance, least, median, repeats, rhs, jacobians, steps, status, time, y, events = line.split("|")
+    reference = references[problem]
+    y, events = ([float(x) for x in field.split(";") if x] for field in (y, events))
+    true_events = [float(t) for t in reference["events"]]
+    end_error = event_error = math.nan
+    found = least_events(reference, float(tolerance)) <= len(events) <= len(true_events)
+    verdict = "failed" if int(status) else "ok" if found else "wrong events"
+    if verdict == "ok":
+        true_y = [float(x) for x in reference["y_end"]]
+        end_error = max(abs(y[i] - true_y[i]) / reference["scales"][i] for i in COMPARED.get(problem, range(len(y))))
+        if problem == "P5":
+            end_error = max(end_error, abs(float(time) - float(reference["t_end"])))
+        event_error = max(abs(t - s) for t, s in zip(events, true_events))
+    values = [peer, method, problem, f"{float(tolerance):g}", f"{1e6 * float(least):.2f}", f"{1e6 * float(median):.2f}", repeats, rhs, jacobians, steps,
+              len(events), f"{end_error:.2e}", f"{event_error:.2e}", verdict]
+    return dict(zip(COLUMNS, map(str, values)))
+
+
+def merged(rows, new):
+    """Rows with new ones in place of the old ones of the same peers and problems."""
+    replaced = {(row["peer"], row["problem"]) for row in new}
+    return [row for row in rows if (row["peer"], row["problem"]) not in replaced] + new
+
+
+def best(rows, problem, level):
+    """Fastest row of each peer with every event and an end error of at most the level."""
+    fastest = {}
+    for row in rows:
+        if row["problem"] == problem and row["verdict"] == "ok" and float(row["end_error"]) <= level:
+            if row["peer"] not in fastest or float(row["least_us"]) < float(fastest[row["peer"]]["least_us"]):
+                fastest[row["peer"]] = row
+    return fastest
+
+
+def table(rows, floors):
+    """Markdown: per problem and level each peer's best time, and our ratios."""
+    peers = sorted({row["peer"] for row in rows} - {"dalembert"})
+    lines = ["| problem | error | dalembert | " + " | ".join(peers) + " | to the best peer | to the floor |", "|---|--:|--:|" + "--:|" * (len(peers) + 2)]
+    for problem in PROBLEMS:
+        for level in LEVELS:
+            fastest = best(rows, problem, level)
+            cell = lambda peer: f"{float(fastest[peer]['least_us']):.1f} ({fastest[peer]['method']}, {fastest[peer]['tolerance']})" if peer in fastest else "–"
+            ours = float(fastest["dalembert"]["least_us"]) if "dalembert" in fastest else math.nan
+            others = [float(row["least_us"]) for peer, row in fastest.items() if peer != "dalembert"]
+            ratio = f"{ours / min(others):.2f}" if others and not math.isnan(ours) else "–"
+            floor = floors.get(problem, {}).get(f"{level:g}")
+            of_floor = f"{ours / floor:.2f}" if floor and not math.isnan(ours) else "–"
+            lines.append(f"| {problem} | {level:g} | {cell('dalembert')} | " + " | ".join(map(cell, peers)) + f" | {ratio} | {of_floor} |")
+    return "\n".join(lines) + "\n"
+
+
+def frontier(points):
+    """Of (error, time) those that no point of a smaller error beats in time: a peer at its best."""
+    points = sorted(points)
+    return [p for p in points if all(p[1] < q[1] for q in points if q[0] < p[0])]
+
+
+def figure(rows, path):
+    """Least time against achieved error: a panel a problem, a line a peer."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    grey = "#808080"  # is readable on white and on black
+    plt.rcParams.update({"svg.hashsalt": "peers", "text.color": grey, "axes.edgecolor": grey, "axes.labelcolor": grey, "xtick.color": grey, "ytick.color": grey})
+    peers = sorted({row["peer"] for row in rows}, key=lambda peer: (peer != "dalembert", peer))
+    colours = dict(zip(peers, plt.get_cmap("tab10").colors))
+    panels, axes = plt.subplots(2, 4, figsize=(13, 7), sharex=True)
+    for axis, problem in zip(axes.flat, PROBLEMS):
+        for peer in peers:
+            points = frontier((float(r["end_error"]), float(r["least_us"])) for r in rows if (r["peer"], r["problem"], r["verdict"]) == (peer, problem, "ok"))
+            ours = peer == "dalembert"
+            axis.loglog([max(e, 1e-16) for e, _ in points], [t for _, t in points], "-o", ms=3, lw=3 if ours else 1.2, color=colours[peer], label=peer)
+        axis.set_title(problem, color=grey)
+        axis.set_xlim(3e-1, 1e-16)
+        axis.grid(alpha=0.3)
+    for axis in axes[1]:
+        axis.set_xlabel("error of the end state")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("time / µs")
+    panels.legend(*axes.flat[0].get_legend_handles_labels(), ncol=5, loc="lower center", frameon=False, labelcolor=grey)
+    panels.tight_layout(rect=(0, 0.08, 1, 1))
+    panels.savefig(path, transparent=True, metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    import csv
+    import sys
+
+    source, target = sys.argv[1:]
+    with open(source) as file:
+        figure(list(csv.DictReader(file)), target)

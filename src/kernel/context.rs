@@ -1,0 +1,139 @@
+//! What generated functions need besides the free coordinates.
+
+use crate::input::{LaneSignals, Side, Signals};
+use crate::integrate::{Lanes, ORDERS};
+use crate::model::Model;
+use crate::with_kernel;
+
+/// Numbers of entries of the context arrays of a model; its address identifies the model.
+#[derive(Debug)]
+pub struct Dimensions {
+    /// Coordinates.
+    pub coordinates: usize,
+    /// Ground motions.
+    pub motions: usize,
+    /// Signals.
+    pub signals: usize,
+    /// Discrete states.
+    pub discretes: usize,
+    /// Parameters.
+    pub parameters: usize,
+    /// Constants computed from the parameters.
+    pub constants: usize,
+}
+
+/// What a generated function needs besides the free coordinates.
+#[derive(Debug, Clone)]
+pub struct Context {
+    pub(super) dimensions: &'static Dimensions,
+    /// Signals of the inputs at the present time.
+    pub(super) signals: Box<[f64]>,
+    /// Time derivatives of the signals.
+    pub(super) signal_rates: Box<[f64]>,
+    /// Time and side that the signals and their rates are set for, s; NaN: none.
+    pub(super) signals_at: (f64, Side),
+    /// Whether no input ever acts: all signals are zero and stay so.
+    pub quiet: bool,
+    /// Discrete states.
+    pub discrete: Box<[f64]>,
+    /// All coordinates; the generated functions read those that the mode holds.
+    pub held: Box<[f64]>,
+    /// Taylor coefficients of the signals, one row an order.
+    pub(super) signal_series: Box<[f64]>,
+    pub(super) constants: Box<[f64]>,
+    /// Taylor coefficients of the guards, one row an order.
+    pub guard_series: Box<[f64]>,
+    /// What the series functions carry from one order to the next.
+    pub(super) workspace: Box<[f64]>,
+}
+
+impl Context {
+    /// A context for `model` with the constants of `parameters` (in the order of the model).
+    ///
+    /// # Panics
+    /// If the number of parameters is not the model's.
+    pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
+        let dimensions = model.constants.dimensions;
+        let modes = model.variants.iter().flat_map(|variant| variant.modes);
+        let rooms = modes.map(|mode| with_kernel!(&mode.kernels, k => (k.workspace(), k.guards)));
+        let (workspace, guards) = rooms.fold((0, 0), |most, room| {
+            (most.0.max(room.0), most.1.max(room.1))
+        });
+        Context {
+            dimensions,
+            signals: vec![0.0; dimensions.signals].into(),
+            signal_rates: vec![0.0; dimensions.signals].into(),
+            signals_at: (f64::NAN, Side::Right),
+            quiet: false,
+            discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
+            held: vec![0.0; dimensions.coordinates].into(),
+            signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
+            constants: {
+                let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
+                model.constants.evaluate(parameters, &mut constants);
+                constants
+            },
+            guard_series: vec![0.0; ORDERS * guards].into(),
+            workspace: vec![0.0; workspace].into(),
+        }
+    }
+
+    /// Goes over to other parameters.
+    ///
+    /// # Panics
+    /// As [`Context::new`], and if it is another model.
+    pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
+        assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
+        model.constants.evaluate(parameters, &mut self.constants);
+    }
+
+    /// Signals of the inputs at the present time.
+    pub fn signals(&self) -> &[f64] {
+        &self.signals
+    }
+
+    /// Signals and their rates, for values of one's own.
+    pub fn signals_mut(&mut self) -> [&mut [f64]; 2] {
+        self.signals_at.0 = f64::NAN;
+        [&mut self.signals, &mut self.signal_rates]
+    }
+
+    /// Sets signals and their rates to those at time `t` (s), as they are on that side.
+    #[inline]
+    pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
+        if !self.quiet && self.signals_at != (t, side) {
+            signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
+            self.signals_at = (t, side);
+        }
+    }
+
+    /// Sets signals and their rates to those of a lane at time `t` (s), as they are right after it;
+    /// `from` are its signals.
+    pub fn set_signals_of_lane<const W: usize>(
+        &mut self,
+        of: &LaneSignals<W>,
+        lane: usize,
+        signals: &Signals,
+        t: f64,
+        from: &[Lanes<W>],
+    ) {
+        of.of_lane(
+            lane,
+            signals,
+            from,
+            &mut self.signals,
+            &mut self.signal_rates,
+        );
+        self.signals_at = (t, Side::Right);
+    }
+
+    /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
+    #[inline]
+    pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
+        if !self.quiet {
+            self.set_signals(signals, t, Side::Right);
+            let rows = &mut self.signal_series[..orders * self.signals.len()];
+            signals.series(t, &self.signals, &self.signal_rates, rows);
+        }
+    }
+}
