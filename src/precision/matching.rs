@@ -1,5 +1,6 @@
 //! Which events of two runs are the same.
 
+use super::TOLERANCES;
 use crate::hybrid::LONGEST_PATTERN;
 use crate::record::Event;
 
@@ -22,9 +23,10 @@ pub struct Match {
     pub in_tails: usize,
     /// Largest difference of the times of an event that both have, s.
     pub time: f64,
-    /// Time of the last event before the first one that is missed or extra, s; 0 if there is none.
+    /// Time of the last event before `until`, s; 0 if there is none.
     pub common: f64,
-    /// Time of the first event that is missed or extra, s; infinite if there is none.
+    /// Time of the first event that is missed or extra, or whose two times differ by more than the
+    /// loosest tolerance of a study, relative, s; infinite if there is none.
     pub until: f64,
 }
 
@@ -70,10 +72,14 @@ impl Price {
 impl Match {
     /// Takes note of an event that both have.
     fn pair(&mut self, a: &Event, b: &Event) {
+        let (apart, first) = ((a.t - b.t).abs(), a.t.min(b.t));
         self.matched += 1;
-        self.time = self.time.max((a.t - b.t).abs());
+        self.time = self.time.max(apart);
+        if apart > TOLERANCES[0] * b.t {
+            self.until = self.until.min(first);
+        }
         if self.until.is_infinite() {
-            self.common = a.t.min(b.t);
+            self.common = first;
         }
     }
 
@@ -288,6 +294,16 @@ mod tests {
         let found = match_events(&events(&run), &events(&better));
         assert_eq!((found.matched, found.missed, found.extra), (18, 2, 0));
         assert_eq!((found.time, found.common, found.until), (0.0, 5.0, 6.0));
+        // The same in their order, but one is too late to be the same motion.
+        let mut run = better.clone();
+        run[7].1 += 0.006;
+        assert_eq!(
+            match_events(&events(&run), &events(&better)).until,
+            f64::INFINITY
+        );
+        run[7].1 += 0.002;
+        let found = match_events(&events(&run), &events(&better));
+        assert_eq!((found.missed, found.common, found.until), (0, 6.0, 7.0));
         // Another transition in place of one, and one more.
         let mut run = better.clone();
         run[3].0 = "land";

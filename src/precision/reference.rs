@@ -165,7 +165,7 @@ impl Pair {
             Some(failure) if stop <= events.until => {
                 format!("the reference stops early there: {}", failure.reason)
             }
-            _ => "from there on its two runs have different events".to_owned(),
+            _ => "from there on its two runs have different events, or at other times".to_owned(),
         };
         let at = (events.common.min(until) + until) / 2.0;
         Some(Horizon { at, until, why })

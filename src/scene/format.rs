@@ -301,12 +301,12 @@ fn end(model: Option<&Model>) -> Shape {
 }
 
 fn accuracy(model: Option<&Model>) -> Object {
-    // What the methods take: above the distance of neighbouring doubles.
+    // Below, no method can tell a step's error from rounding; above, it controls nothing.
     let relative = Quantity {
         unit: "1".into(),
         minimum: Tolerances::<0>::SMALLEST_RELATIVE,
         minimum_exclusive: false,
-        maximum: 1.0,
+        maximum: 0.1,
     };
     let each = match model {
         None => Object::new("coordinate", Vec::new()).others(Quantity::positive("")),

@@ -20,7 +20,8 @@ use crate::scene::Scene;
 Every method runs the scene at the tolerances 1e-3 … 1e-13, one after the other on one thread. The \
 reference is a run at 1e-14 by another method; what two such runs by different methods differ by, and \
 the rounding of their steps, bounds its error, and smaller errors than that are shown as \"≤ bound\". \
-Where the two have different events, or stop early, the scene is compared up to there.
+Where the two have different events, or at times that differ by a thousandth, or stop early, the \
+scene is compared up to there.
 
 The error of the end is the largest of a coordinate or velocity over what a relative tolerance of 1 \
 would allow: its typical size (absolute ÷ relative tolerance of the scene) and its magnitude. Events \

@@ -255,18 +255,20 @@ fn describe(reference: &Reference, f: &mut Formatter) -> fmt::Result {
         None => "taylor and radau at a tolerance of 1e-14".to_owned(),
         Some(why) => format!("radau at tolerances of 1e-14 and 1e-13 ({why})"),
     };
-    writeln!(
+    let (events, bound) = (reference.events(), reference.bound);
+    write!(
         f,
-        "reference: {by}, {} events; known to {:.0e} at the end and {:.0e} s in an event's time",
-        reference.events(),
-        reference.bound.end,
-        reference.bound.event_time,
+        "reference: {by}, {events} events; known to {:.0e} at the end",
+        bound.end
     )?;
+    if events > 0 {
+        write!(f, " and {:.0e} s in an event's time", bound.event_time)?;
+    }
+    writeln!(f)?;
     if let Some(horizon) = &reference.horizon {
         writeln!(
             f,
-            "It is not determined beyond event {} at t = {} s: {}.\nAll runs end at t = {} s.",
-            reference.events(),
+            "It is not determined beyond event {events}, at t = {} s: {}.\nAll runs end at t = {} s.",
             rounded(horizon.until, 6),
             horizon.why,
             rounded(horizon.at, 6),

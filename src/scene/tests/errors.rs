@@ -282,7 +282,7 @@ fn numbers() {
     );
     expect(
         &tank("1e-8", "1e-17"),
-        "1e-17 is not admissible here: it must be >= 2.220446049250313e-15 and <= 1",
+        "1e-17 is not admissible here: it must be >= 2.220446049250313e-15 and <= 0.1",
         "8:29",
         "",
     );
