@@ -62,12 +62,18 @@ pub(super) struct EarlierTerm {
 /// From a state of high symmetry only every fourth term differs from zero (a pendulum released from the
 /// horizontal: τ², τ⁶, τ¹⁰ …), so that the two last terms tell nothing. A term of order k tells the
 /// radius of convergence, ρ = h_k ε^(−1/k) with the length h_k at which it equals the tolerance, and from
-/// there the length for order p, ρ ε^(1/p). The terms of regular series fall unevenly: twice that length
-/// is the limit.
-pub(super) fn earlier_terms(tolerance: f64, p: usize) -> [EarlierTerm; 2] {
-    [p - 3, p - 2].map(|power| EarlierTerm {
-        power,
-        factor: 2.0 * root(tolerance, power) / root(tolerance, p),
+/// there the length for order p, ρ ε^(1/p). Without convolutions the radius is infinite, and what the
+/// terms tell of it grows in proportion to their order.
+pub(super) fn earlier_terms(tolerance: f64, p: usize, convolutions: usize) -> [EarlierTerm; 2] {
+    [p - 3, p - 2].map(|power| {
+        let growth = match convolutions {
+            0 => p as f64 / power as f64,
+            _ => 1.0,
+        };
+        EarlierTerm {
+            power,
+            factor: growth * root(tolerance, power) / root(tolerance, p),
+        }
     })
 }
 

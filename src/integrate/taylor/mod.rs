@@ -99,7 +99,7 @@ impl<const F: usize> Taylor<F> {
             tolerances: *tolerances,
             order,
             panels: quadrature::panels(convolutions),
-            earlier: length::earlier_terms(relative, order),
+            earlier: length::earlier_terms(relative, order, convolutions),
             start: origin,
             end: origin,
             lost_at_start: Lost::nothing(),
