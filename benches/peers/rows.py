@@ -78,8 +78,9 @@ def summary(rows):
             if ours and fastest:
                 other = min(fastest.values(), key=lambda row: float(row["least_us"]))
                 times = [float(row["least_us"]) for row in (ours, other)]
-                power = f"1e-{round(-math.log10(level))}"
-                lines.append(f"| {problem} | {power} | {times[0]:.1f} | {times[1]:.1f} ({other['peer']}) | {times[0] / times[1]:.2g} |")
+                ratio = times[0] / times[1]
+                shown = f"{ratio:.2f}" if ratio >= 0.1 else f"{ratio:.1g}"
+                lines.append(f"| {problem} | 1e-{round(-math.log10(level))} | {times[0]:.1f} | {times[1]:.1f} ({other['peer']}) | {shown} |")
     return "\n".join(lines) + "\n"
 
 
