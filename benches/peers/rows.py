@@ -68,6 +68,32 @@ def table(rows, floors):
     return "\n".join(lines) + "\n"
 
 
+def summary(rows):
+    """Markdown for the README: our best time and that of the best peer, where both reach the error."""
+    lines = ["| problem | error | dalembert / µs | best other / µs | ratio |", "|---|--:|--:|---|--:|"]
+    for problem in PROBLEMS:
+        for level in (1e-3, 1e-6, 1e-12):
+            fastest = best(rows, problem, level)
+            ours = fastest.pop("dalembert", None)
+            if ours and fastest:
+                other = min(fastest.values(), key=lambda row: float(row["least_us"]))
+                times = [float(row["least_us"]) for row in (ours, other)]
+                ratio = times[0] / times[1]
+                shown = f"{ratio:.2f}" if ratio >= 0.1 else f"{ratio:.1g}"
+                lines.append(f"| {problem} | 1e-{round(-math.log10(level))} | {times[0]:.1f} | {times[1]:.1f} ({other['peer']}) | {shown} |")
+    return "\n".join(lines) + "\n"
+
+
+def with_summary(page, rows):
+    """A page with its table replaced by that of the rows."""
+    new = summary(rows)
+    head = new.splitlines()[0]
+    before, found, after = page.partition(head)
+    if not found:
+        raise ValueError(f"the page has no table with the head `{head}`")
+    return before + new + after[after.index("\n\n") + 1:]
+
+
 def frontier(points):
     """Of (error, time) those that no point of a smaller error beats in time: a peer at its best."""
     points = sorted(points)

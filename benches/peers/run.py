@@ -1,7 +1,7 @@
 """Compares dalembert with other solvers on one machine: python3 benches/peers/run.py SCRATCH; see README.md.
 
-Installs the peers into the folder SCRATCH (once), runs them, and writes results.csv, best.md and overhead.md here
-and docs/peers.svg. The rows of each peer and problem are written as soon as they are there.
+Installs the peers into the folder SCRATCH (once), runs them, and writes results.csv, best.md and overhead.md here,
+docs/peers.svg and the table in README.md of the project. The rows of each peer and problem are written as soon as they are there.
 """
 
 import argparse
@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 from install import HERE, ROOT, RUNNABLE, Peers, call
-from rows import COLUMNS, PROBLEMS, collect, merged, table
+from rows import COLUMNS, PROBLEMS, collect, merged, table, with_summary
 
 # The names of the rows that a peer prints.
 PRINTS = {"sundials": {"CVODE", "ARKODE"}, "fortran": {"LSODAR", "RADAU5"}, "heyoka": {"heyoka", "heyoka less calls"}, "casadi": {"CasADi"}}
@@ -88,6 +88,9 @@ def main():
     text = table(rows, reference["floors"])
     (results / "best.md").write_text(text)
     print(text)
+    page = ROOT / "README.md"
+    if not arguments.quick:
+        page.write_text(with_summary(page.read_text(), rows))
     peers.venv()
     call([peers.python, "-B", HERE / "rows.py", results / "results.csv", figure])
     if failed:

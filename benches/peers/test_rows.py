@@ -2,7 +2,7 @@
 
 import unittest
 
-from rows import best, collect, frontier, merged, table
+from rows import best, collect, frontier, merged, table, with_summary
 from run import is_there
 
 REFERENCES = {
@@ -62,6 +62,14 @@ class Best(unittest.TestCase):
         lines = table(self.ROWS, {"P1": {"0.001": 5.0}}).splitlines()
         [line] = [one for one in lines if one.startswith("| P1 | 0.001 |")]
         self.assertTrue(line.endswith("| 0.33 | 2.00 |"), line)
+
+    def test_the_table_of_the_readme_is_replaced_and_nothing_else(self):
+        old = "| problem | error | dalembert / µs | best other / µs | ratio |\n|---|--:|--:|---|--:|\n| old |\n"
+        got = with_summary(f"before\n\n{old}\nafter\n", self.ROWS)
+        head = old.replace("| old |\n", "")
+        self.assertEqual(got, f"before\n\n{head}| P1 | 1e-3 | 10.0 | 30.0 (x) | 0.33 |\n\nafter\n")
+        with self.assertRaises(ValueError):
+            with_summary("no table", self.ROWS)
 
     def test_the_frontier_leaves_out_what_is_both_slower_and_less_accurate(self):
         self.assertEqual(frontier([(1e-3, 5.0), (1e-6, 4.0), (1e-9, 9.0), (1e-2, 1.0)]), [(1e-9, 9.0), (1e-6, 4.0), (1e-2, 1.0)])

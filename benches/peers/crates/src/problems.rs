@@ -39,13 +39,12 @@ impl Problem {
     /// All problems.
     pub fn all() -> impl Iterator<Item = Problem> {
         // SAFETY: the table is constant and has COUNT rows.
-        unsafe { &*(&raw const peers_problems) }
-            .iter()
-            .map(|table| Problem {
-                table,
-                rhs_calls: Cell::new(0),
-                jacobian_calls: Cell::new(0),
-            })
+        let tables: &'static [Table; COUNT] = unsafe { &peers_problems };
+        tables.iter().map(|table| Problem {
+            table,
+            rhs_calls: Cell::new(0),
+            jacobian_calls: Cell::new(0),
+        })
     }
 
     pub fn name(&self) -> &'static str {
