@@ -46,12 +46,10 @@ void LANES(dalembert_lane_sum)(size_t count, size_t stride, const real *row, con
   *out = sum(count, stride, row, *tau);
 }
 
-/* 2^x to a percent: src/integrate/logarithm.rs. */
-DALEMBERT_INLINE real binary_power(real x) {
-  const real exponent = x + 1023.0;
-  const truth whole = __builtin_convertvector(exponent, truth);
-  const real fraction = exponent - __builtin_convertvector(whole, real);
-  return (real)(whole << 52) * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
+/* 2^(-x) to a percent for 0 <= x <= 1: src/integrate/logarithm.rs. */
+DALEMBERT_INLINE real inverse_power(real x) {
+  const real fraction = 1.0 - x;
+  return 0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
 /* x^(-1/n) for positive normal x, and infinity for zero, as there. */
@@ -65,7 +63,7 @@ DALEMBERT_INLINE real inverse_root(real x, double n) {
   whole = pick(exponent - n * whole < 0.0, whole - 1.0, whole);
   const real rest = exponent - n * whole;
   const real power = (real)((1023 - __builtin_convertvector(whole, truth)) << 52);
-  const real root = power * binary_power(-(rest + fraction) / n);
+  const real root = power * inverse_power((rest + fraction) / n);
   return pick(x >= 0x1p-1022, root, REAL(INFINITY));
 }
 

@@ -112,23 +112,20 @@ impl Sine {
         }
     }
 
-    /// Adds the Taylor coefficients about the time at which value and rate are those given; each is
+    /// The Taylor coefficients about the time at which value and rate are those given; each is
     /// −ω²/(k (k − 1)) times the last but one.
-    pub(super) fn add_series(&self, [value, rate]: [f64; 2], out: &mut [f64]) {
+    #[inline]
+    pub(super) fn series(&self, [value, rate]: [f64; 2]) -> impl Iterator<Item = f64> {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (value, rate);
-        for (k, pair) in out.chunks_mut(2).enumerate() {
-            let inverse = |n: usize| INVERSES[2 * k + n];
-            pair[0] += even;
-            even *= factor * (inverse(1) * inverse(2));
-            if let Some(out) = pair.get_mut(1) {
-                *out += odd;
-                odd *= factor * (inverse(2) * inverse(3));
-            }
-        }
+        let pairs = INVERSES[1..].iter().zip(&INVERSES[2..]);
+        pairs.scan((value, rate), move |(now, next), (first, second)| {
+            let coefficient = *now;
+            (*now, *next) = (*next, coefficient * (factor * (first * second)));
+            Some(coefficient)
+        })
     }
 
-    /// [`Sine::add_series`] for each of several times, to rows of zeros.
+    /// [`Sine::series`] for each of several times.
     #[inline(always)]
     pub(super) fn fill_series<const W: usize>(
         &self,
