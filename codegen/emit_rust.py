@@ -232,8 +232,8 @@ def _mode(variant, i, equations):
 
 
 def _series(function, level=""):
-    (start, run), (lead, row) = function.symbol, function.workspace
-    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row} }}"
+    (start, run), (lead, row, convolutions) = function.symbol, function.workspace
+    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row}, convolutions: {convolutions} }}"
 
 
 def _lanes(variant, i, functions):

@@ -137,8 +137,8 @@ impl Signals {
         let width = u.len();
         for c in &self.channels {
             let known = [u[c.signal], u_dot[c.signal]];
-            let column = rows[c.signal..].iter_mut().step_by(width);
-            c.function.series(t, Side::Right, known, column);
+            let column = &mut rows[c.signal..];
+            c.function.series(t, Side::Right, known, width, column);
             let antiderivatives = c.signal + 1..c.signal + c.kind.signals();
             if wanted[antiderivatives].contains(&true) {
                 let orders = rows.len() / width;
@@ -194,9 +194,9 @@ impl Channel {
     }
 }
 
-/// 1/k; the first is not used. A few more than [`Signals::MOST_ORDERS`], as a sine looks ahead.
-const INVERSES: [f64; Signals::MOST_ORDERS + 3] = {
-    let mut inverses = [f64::INFINITY; Signals::MOST_ORDERS + 3];
+/// 1/k; the first is not used.
+const INVERSES: [f64; Signals::MOST_ORDERS] = {
+    let mut inverses = [f64::INFINITY; Signals::MOST_ORDERS];
     let mut k = 1;
     while k < inverses.len() {
         inverses[k] = 1.0 / k as f64;

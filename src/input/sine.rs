@@ -1,8 +1,19 @@
 //! A sine that may start late and end early.
 
-use super::{INVERSES, Jet, Side};
+use super::{Jet, Side, Signals};
 use crate::integrate::Lanes;
 use crate::kernel::{lane_sin_cos, sin_cos};
+
+/// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
+const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
+    let mut inverses = [0.0; Signals::MOST_ORDERS];
+    let mut k = 0;
+    while k < inverses.len() {
+        inverses[k] = (1.0 / (k + 1) as f64) * (1.0 / (k + 2) as f64);
+        k += 1;
+    }
+    inverses
+};
 
 /// A·sin(ω (t − start) + φ) for start ≤ t < end, and zero outside.
 ///
@@ -112,36 +123,34 @@ impl Sine {
         }
     }
 
-    /// The Taylor coefficients about the time at which value and rate are those given; each is
-    /// −ω²/(k (k − 1)) times the last but one.
+    /// Fills every `stride`-th entry of `out` with the Taylor coefficients about the time at which value
+    /// and rate are those given; each is −ω²/(k (k − 1)) times the last but one.
     #[inline]
-    pub(super) fn series(&self, [value, rate]: [f64; 2]) -> impl Iterator<Item = f64> {
+    pub(super) fn fill_series(
+        &self,
+        [mut now, mut next]: [f64; 2],
+        stride: usize,
+        out: &mut [f64],
+    ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let pairs = INVERSES[1..].iter().zip(&INVERSES[2..]);
-        pairs.scan((value, rate), move |(now, next), (first, second)| {
-            let coefficient = *now;
-            (*now, *next) = (*next, coefficient * (factor * (first * second)));
-            Some(coefficient)
-        })
+        for (out, inverse) in out.chunks_mut(stride).zip(&INVERSES_OF_PAIRS) {
+            out[0] = now;
+            (now, next) = (next, now * (factor * inverse));
+        }
     }
 
-    /// [`Sine::series`] for each of several times.
+    /// [`Sine::fill_series`] for each of several times.
     #[inline(always)]
-    pub(super) fn fill_series<const W: usize>(
+    pub(super) fn fill_series_of_lanes<const W: usize>(
         &self,
         [value, rate]: [Lanes<W>; 2],
         out: &mut [Lanes<W>],
     ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (value, rate);
-        for (k, pair) in out.chunks_mut(2).enumerate() {
-            let inverse = |n: usize| INVERSES[2 * k + n];
-            pair[0] = even;
-            even = even * (factor * (inverse(1) * inverse(2)));
-            if let Some(out) = pair.get_mut(1) {
-                *out = odd;
-                odd = odd * (factor * (inverse(2) * inverse(3)));
-            }
+        let (mut now, mut next) = (value, rate);
+        for (out, inverse) in out.iter_mut().zip(&INVERSES_OF_PAIRS) {
+            *out = now;
+            (now, next) = (next, now * (factor * inverse));
         }
     }
 

@@ -419,6 +419,8 @@ struct SeriesKernel {
     lead: usize,
     /// Doubles of the workspace for each order.
     row: usize,
+    /// Convolutions that an order takes.
+    convolutions: usize,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -482,7 +484,8 @@ impl<const F: usize> ModeKernel<F> {
     /// Convolutions of an order of the Taylor series of the motion.
     pub fn convolutions(&self, x: &Context) -> usize {
         // Each has a left and a right factor in the workspace.
-        self.motion_series(x).map_or(0, |series| series.row / 2)
+        self.motion_series(x)
+            .map_or(0, |series| series.convolutions)
     }
 
     #[inline]

@@ -30,7 +30,8 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let order = length::order(relative, convolutions, F);
         LaneTaylor {
-            factors: length::earlier_terms(relative, order, convolutions).map(|term| term.factor),
+            factors: length::earlier_terms(relative, order, convolutions)
+                .map(|term| term.factor.value()),
             series: LaneSeries {
                 q: rows,
                 v: rows,
