@@ -78,6 +78,14 @@ impl Function {
             .fold(Jet::default(), |sum, term| sum + term.at(t, side))
     }
 
+    /// The values alone at several instants.
+    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
+        match &self.terms[..] {
+            [Term::Sine(sine)] => sine.values(at),
+            _ => at.map(|(t, side)| self.at(t, side).value),
+        }
+    }
+
     /// Fills every `stride`-th entry of `out` with the coefficients of f(t + τ) in powers of τ, of the
     /// function that acts just before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in
     /// `out[stride · k]`. They are those of one analytic function up to [`Function::next_knot`]. `known`

@@ -2,7 +2,7 @@
 
 use super::{Jet, Side, Signals};
 use crate::integrate::Lanes;
-use crate::kernel::{lane_sin_cos, sin_cos};
+use crate::kernel::{lane_sin_cos, sin_cos, sin_cos_of_eight};
 
 /// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
 const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
@@ -67,6 +67,38 @@ impl Sine {
         self.jet(t, side, y, sin_cos(0.5 * y))
     }
 
+    /// sin(y/2 + φ) and cos(y/2 + φ) from those of y/2.
+    #[inline(always)]
+    fn shifted(&self, (sin, cos): (f64, f64)) -> (f64, f64) {
+        (
+            sin * self.cos_phase + cos * self.sin_phase,
+            cos * self.cos_phase - sin * self.sin_phase,
+        )
+    }
+
+    /// The value alone at each of several instants.
+    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
+        let [sines, cosines] = sin_cos_of_eight(&at.map(|(t, _)| 0.5 * self.angle(t)));
+        std::array::from_fn(|i| {
+            let (t, side) = at[i];
+            let (sin, cos) = (sines[i], cosines[i]);
+            let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
+            match self.acts(t, side) {
+                true => self.amplitude * (sin_shifted * cos + cos_shifted * sin),
+                false => 0.0,
+            }
+        })
+    }
+
+    /// Whether it acts at an instant.
+    #[inline(always)]
+    fn acts(&self, t: f64, side: Side) -> bool {
+        match side {
+            Side::Right => self.start <= t && t < self.end,
+            Side::Left => self.start < t && t <= self.end,
+        }
+    }
+
     /// [`Sine::at`] for each of several times.
     #[inline(always)]
     pub(super) fn at_lanes<const W: usize>(
@@ -93,19 +125,14 @@ impl Sine {
     /// What [`Sine::at`] gives, with sin(y/2) and cos(y/2).
     #[inline(always)]
     fn jet(&self, t: f64, side: Side, y: f64, (sin, cos): (f64, f64)) -> Jet {
-        let acts = match side {
-            Side::Right => self.start <= t && t < self.end,
-            Side::Left => self.start < t && t <= self.end,
-        };
         let (amplitude, omega) = (self.amplitude, self.angular_frequency);
-        let sin_shifted = sin * self.cos_phase + cos * self.sin_phase;
-        let cos_shifted = cos * self.cos_phase - sin * self.sin_phase;
+        let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
         let [first, second] = self.of_integrals;
         let integral = first * 2.0 * sin_shifted * sin;
         let double_integral = second
             * (self.cos_phase * less_its_sine(y, 2.0 * sin * cos)
                 + 2.0 * self.sin_phase * sin * sin);
-        let (rate, value) = if acts {
+        let (rate, value) = if self.acts(t, side) {
             (
                 amplitude * omega * (cos_shifted * cos - sin_shifted * sin),
                 amplitude * (sin_shifted * cos + cos_shifted * sin),

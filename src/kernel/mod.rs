@@ -175,6 +175,25 @@ pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lan
     (sin, cos)
 }
 
+/// Sines and cosines of eight angles (rad), side by side in lanes of this processor.
+pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
+    fn in_lanes<const W: usize>(level: usize, x: &[f64; 8]) -> [[f64; 8]; 2] {
+        let [mut sines, mut cosines] = [[0.0; 8]; 2];
+        for from in (0..8).step_by(W) {
+            let (sin, cos) = lane_sin_cos(level, Lanes::<W>::from_fn(|lane| x[from + lane]));
+            sines[from..from + W].copy_from_slice(&sin.0);
+            cosines[from..from + W].copy_from_slice(&cos.0);
+        }
+        [sines, cosines]
+    }
+    let level = processor_level();
+    match LANES_OF_LEVELS[level] {
+        8 => in_lanes::<8>(level, x),
+        4 => in_lanes::<4>(level, x),
+        _ => in_lanes::<2>(level, x),
+    }
+}
+
 /// Σ `rows[k][i]` τᵏ.
 #[inline]
 pub fn lane_sum<const F: usize, const W: usize>(
