@@ -180,7 +180,8 @@ impl Accumulation {
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
         let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
-        if !(0.0 < last && last < middle && middle < first) {
+        // The last may be shorter than the resolution of an instant.
+        if !(0.0 <= last && last < middle && middle < first) {
             return None;
         }
         let (ratio, ratio_before) = (last / middle, middle / first);
