@@ -1,8 +1,9 @@
 //! A sine that may start late and end early.
 
-use super::{INVERSES, Jet, Side};
+use super::lanes::LaneJet;
+use super::{INVERSES, Jet, Side, Signals};
 use crate::integrate::Lanes;
-use crate::kernel::{lane_sin_cos, sin_cos};
+use crate::kernel::{lane_sine, lane_sine_series, sin_cos};
 
 /// A·sin(ω (t − start) + φ) for start ≤ t < end, and zero outside.
 ///
@@ -18,6 +19,8 @@ pub struct Sine {
     cos_phase: f64,
     /// Amplitudes of the antiderivatives, A/ω and A/ω².
     of_integrals: [f64; 2],
+    /// Of the Taylor coefficients: that of order k + 2 is −ω²/((k + 1)(k + 2)) times that of order k.
+    factors: [f64; Signals::MOST_ORDERS],
 }
 
 impl Sine {
@@ -37,6 +40,9 @@ impl Sine {
                 amplitude / angular_frequency,
                 amplitude / (angular_frequency * angular_frequency),
             ],
+            factors: std::array::from_fn(|k| {
+                -(angular_frequency * angular_frequency) * (INVERSES[k + 1] * INVERSES[k + 2])
+            }),
         }
     }
 
@@ -52,36 +58,8 @@ impl Sine {
     /// A/ω · 2 sin(y/2 + φ) sin(y/2) and A/ω² (cos φ (y − sin y) + 2 sin φ sin²(y/2)), so that
     /// nothing cancels near the start.
     pub fn at(&self, t: f64, side: Side) -> Jet {
-        let y = self.angle(t);
-        self.jet(t, side, y, sin_cos(0.5 * y))
-    }
-
-    /// [`Sine::at`] for each of several times.
-    #[inline(always)]
-    pub(super) fn at_lanes<const W: usize>(
-        &self,
-        level: usize,
-        t: &[f64; W],
-        side: Side,
-    ) -> [Jet; W] {
-        let y: Lanes<W> = Lanes::from_fn(|i| self.angle(t[i]));
-        let (sin, cos) = lane_sin_cos(level, y * 0.5);
-        let mut jets = [Jet::default(); W];
-        for i in 0..W {
-            jets[i] = self.jet(t[i], side, y.0[i], (sin.0[i], cos.0[i]));
-        }
-        jets
-    }
-
-    /// y = ω s while the sine acts.
-    #[inline(always)]
-    fn angle(&self, t: f64) -> f64 {
-        self.angular_frequency * (t.clamp(self.start, self.end) - self.start)
-    }
-
-    /// What [`Sine::at`] gives, with sin(y/2) and cos(y/2).
-    #[inline(always)]
-    fn jet(&self, t: f64, side: Side, y: f64, (sin, cos): (f64, f64)) -> Jet {
+        let y = self.angular_frequency * (t.clamp(self.start, self.end) - self.start);
+        let (sin, cos) = sin_cos(0.5 * y);
         let acts = match side {
             Side::Right => self.start <= t && t < self.end,
             Side::Left => self.start < t && t <= self.end,
@@ -112,40 +90,51 @@ impl Sine {
         }
     }
 
-    /// Adds the Taylor coefficients about the time at which value and rate are those given; each is
-    /// −ω²/(k (k − 1)) times the last but one.
+    /// [`Sine::at`] on the right of each of several times (codegen/lanes.c).
+    #[inline]
+    pub(super) fn at_lanes<const W: usize>(
+        &self,
+        level: usize,
+        t: &Lanes<W>,
+        jet: &mut LaneJet<W>,
+    ) {
+        let [of_integral, of_double_integral] = self.of_integrals;
+        let numbers = [
+            self.amplitude,
+            self.angular_frequency,
+            self.start,
+            self.end,
+            self.sin_phase,
+            self.cos_phase,
+            of_integral,
+            of_double_integral,
+        ];
+        lane_sine(level, &numbers, t, &mut jet.0);
+    }
+
+    /// Adds the Taylor coefficients about the time at which value and rate are those given.
     pub(super) fn add_series(&self, [value, rate]: [f64; 2], out: &mut [f64]) {
-        let factor = -(self.angular_frequency * self.angular_frequency);
         let (mut even, mut odd) = (value, rate);
-        for (k, pair) in out.chunks_mut(2).enumerate() {
-            let inverse = |n: usize| INVERSES[2 * k + n];
+        for (pair, factors) in out.chunks_mut(2).zip(self.factors.chunks(2)) {
             pair[0] += even;
-            even *= factor * (inverse(1) * inverse(2));
+            even *= factors[0];
             if let Some(out) = pair.get_mut(1) {
                 *out += odd;
-                odd *= factor * (inverse(2) * inverse(3));
+                odd *= factors[1];
             }
         }
     }
 
-    /// [`Sine::add_series`] for each of several times, to rows of zeros.
-    #[inline(always)]
-    pub(super) fn fill_series<const W: usize>(
+    /// The same coefficients for each of several times, into every `stride`-th of `rows`.
+    #[inline]
+    pub(super) fn series_of_lanes<const W: usize>(
         &self,
-        [value, rate]: [Lanes<W>; 2],
-        out: &mut [Lanes<W>],
+        level: usize,
+        jet: &LaneJet<W>,
+        rows: &mut [Lanes<W>],
+        stride: usize,
     ) {
-        let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (value, rate);
-        for (k, pair) in out.chunks_mut(2).enumerate() {
-            let inverse = |n: usize| INVERSES[2 * k + n];
-            pair[0] = even;
-            even = even * (factor * (inverse(1) * inverse(2)));
-            if let Some(out) = pair.get_mut(1) {
-                *out = odd;
-                odd = odd * (factor * (inverse(2) * inverse(3)));
-            }
-        }
+        lane_sine_series(level, &self.factors, &jet.0, rows, stride);
     }
 
     /// Start and end, if they are after `t`.

@@ -1,10 +1,8 @@
 //! Numbers of several trajectories side by side.
 //!
-//! What is worth vector instructions is C (codegen/lanes.c): here are the few operations between.
+//! What is done with them is C (codegen/lanes.c), compiled for each level of the processor.
 
-use std::ops::{Add, Div, Mul, Sub};
-
-/// A number a lane. The operations are those of each lane by itself, rounding included.
+/// A number a lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(16))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
@@ -20,71 +18,46 @@ impl<const W: usize> LaneMask<W> {
         LaneMask([0; W])
     }
 
+    /// Yes for all lanes.
+    pub fn all() -> Self {
+        LaneMask([u64::MAX; W])
+    }
+
     /// Sets the answer of a lane.
+    #[inline]
     pub fn set(&mut self, lane: usize, yes: bool) {
         self.0[lane] = if yes { u64::MAX } else { 0 };
     }
 
     /// Whether it is yes for a lane.
+    #[inline]
     pub fn is(&self, lane: usize) -> bool {
         self.0[lane] != 0
+    }
+
+    /// Yes where it is yes here and not there.
+    #[inline]
+    pub fn without(&self, other: &Self) -> Self {
+        LaneMask(std::array::from_fn(|lane| self.0[lane] & !other.0[lane]))
+    }
+
+    /// Yes where it is yes here or there.
+    #[inline]
+    pub fn or(&self, other: &Self) -> Self {
+        LaneMask(std::array::from_fn(|lane| self.0[lane] | other.0[lane]))
     }
 }
 
 impl<const W: usize> Lanes<W> {
     /// The same number in all lanes.
-    #[inline(always)]
+    #[inline]
     pub fn of(x: f64) -> Self {
         Lanes([x; W])
     }
 
     /// What `f` gives for each lane.
-    #[inline(always)]
+    #[inline]
     pub fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
         Lanes(std::array::from_fn(f))
     }
-
-    /// `f` of each number.
-    #[inline(always)]
-    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut out = self;
-        for i in 0..W {
-            out.0[i] = f(self.0[i]);
-        }
-        out
-    }
-
-    /// `f` of each pair of numbers.
-    #[inline(always)]
-    pub fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let mut out = self;
-        for i in 0..W {
-            out.0[i] = f(self.0[i], other.0[i]);
-        }
-        out
-    }
 }
-
-macro_rules! by_lane {
-    ($trait:ident, $method:ident, $operator:tt) => {
-        impl<const W: usize> $trait for Lanes<W> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                self.with(other, |x, y| x $operator y)
-            }
-        }
-        impl<const W: usize> $trait<f64> for Lanes<W> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: f64) -> Self {
-                self.map(|x| x $operator other)
-            }
-        }
-    };
-}
-
-by_lane!(Add, add, +);
-by_lane!(Sub, sub, -);
-by_lane!(Mul, mul, *);
-by_lane!(Div, div, /);

@@ -8,9 +8,10 @@ mod context;
 mod lanes;
 
 pub use context::{Context, Dimensions};
-pub use lanes::{LANES_OF_LEVELS, LaneContext, LaneSeries, LaneSystem, processor_level};
+pub use lanes::{LANES_OF_LEVELS, LaneContext, LanePoint, LaneRows, LaneSeries, LaneSystem, processor_level};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
+use lanes::Block;
 use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
 
@@ -63,94 +64,51 @@ unsafe extern "C" {
     safe fn dalembert_sin_cos(x: f64) -> SinCos;
 }
 
-/// What codegen/lanes.c has for every mode, at a level of the processor.
-struct LaneFunctions {
-    sin_cos: unsafe extern "C" fn(*const f64, *mut f64, *mut f64),
-    sum: unsafe extern "C" fn(usize, usize, *const f64, *const f64, *mut f64),
-    length: unsafe extern "C" fn(
-        usize,
-        usize,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *mut f64,
-    ),
-    first_fall: unsafe extern "C" fn(
-        usize,
-        usize,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const u64,
-        *mut f64,
-        *mut f64,
-    ),
-}
-
+/// What codegen/lanes.c has for every mode, at each level of the processor.
 macro_rules! lane_functions {
-    ($sin_cos:ident, $sum:ident, $length:ident, $first_fall:ident) => {{
+    ([$($(#[$only:meta])? $level:literal),*] $functions:tt) => {
+        lane_functions!(@table $functions);
+        /// By level.
+        static LANE_FUNCTIONS: &[LaneFunctions] =
+            &[$($(#[$only])? lane_functions!(@level $level $functions)),*];
+    };
+    (@table ($($name:ident($($argument:ty),*);)*)) => {
+        struct LaneFunctions {
+            $($name: unsafe extern "C" fn($($argument),*),)*
+        }
+    };
+    (@level $level:literal ($($name:ident($($argument:ty),*);)*)) => {{
         unsafe extern "C" {
-            fn $sin_cos(x: *const f64, sin: *mut f64, cos: *mut f64);
-            fn $sum(count: usize, stride: usize, row: *const f64, tau: *const f64, out: *mut f64);
-            fn $length(
-                free: usize,
-                p: usize,
-                q: *const f64,
-                v: *const f64,
-                tolerances: *const f64,
-                factors: *const f64,
-                remaining: *const f64,
-                horizon: *const f64,
-                out: *mut f64,
-            );
-            fn $first_fall(
-                count: usize,
-                stride: usize,
-                row: *const f64,
-                h: *const f64,
-                factor: *const f64,
-                offset: *const f64,
-                starts_at_zero: *const u64,
-                c: *mut f64,
-                out: *mut f64,
-            );
+            $(
+                #[link_name = concat!("dalembert_lane_", stringify!($name), $level)]
+                fn $name($(_: $argument),*);
+            )*
         }
-        LaneFunctions {
-            sin_cos: $sin_cos,
-            sum: $sum,
-            length: $length,
-            first_fall: $first_fall,
-        }
+        LaneFunctions { $($name,)* }
     }};
 }
 
-/// By level.
-static LANE_FUNCTIONS: &[LaneFunctions] = &[
-    lane_functions!(
-        dalembert_lane_sin_cos_v1,
-        dalembert_lane_sum_v1,
-        dalembert_lane_length_v1,
-        dalembert_lane_first_fall_v1
-    ),
-    #[cfg(target_arch = "x86_64")]
-    lane_functions!(
-        dalembert_lane_sin_cos_v3,
-        dalembert_lane_sum_v3,
-        dalembert_lane_length_v3,
-        dalembert_lane_first_fall_v3
-    ),
-    #[cfg(target_arch = "x86_64")]
-    lane_functions!(
-        dalembert_lane_sin_cos_v4,
-        dalembert_lane_sum_v4,
-        dalembert_lane_length_v4,
-        dalembert_lane_first_fall_v4
-    ),
-];
+/// A number a lane, or several after each other.
+type In = *const f64;
+type Out = *mut f64;
+/// Yes or no for each lane.
+type InMask = *const u64;
+type OutMask = *mut u64;
+
+lane_functions!(
+    ["_v1", #[cfg(target_arch = "x86_64")] "_v3", #[cfg(target_arch = "x86_64")] "_v4"]
+    (
+        sine(In, In, Out);
+        sine_series(usize, usize, In, In, Out);
+        antiderivative(usize, usize, In, In, Out);
+        begin(usize, In, InMask, In, Out, Out, Out, Out, OutMask);
+        unmet(usize, In, OutMask);
+        length(usize, usize, In, In, In, In, In, In, In, In, Out, OutMask, OutMask);
+        first_fall(usize, usize, In, In, In, In, InMask, Out, Out);
+        end(usize, usize, In, In, In, In, In, Out);
+        take(usize, InMask, In, Out);
+    )
+);
 
 /// The functions of a level.
 ///
@@ -162,51 +120,128 @@ fn lane_functions<const W: usize>(level: usize) -> &'static LaneFunctions {
     &LANE_FUNCTIONS[level]
 }
 
-/// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
+/// Rate, value, integral and double integral of a sine at times of lanes (s), on their right; the numbers
+/// of a sine are those of [`crate::input::Sine`].
 ///
 /// # Panics
 /// If `W` is not the number of lanes of the level; so do the other functions for lanes.
 #[inline]
-pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
-    let (mut sin, mut cos) = (x, x);
-    let (to_sin, to_cos) = ((&raw mut sin).cast(), (&raw mut cos).cast());
-    // SAFETY: one number a lane each.
-    unsafe { (lane_functions::<W>(level).sin_cos)((&raw const x).cast(), to_sin, to_cos) };
-    (sin, cos)
-}
-
-/// Σ `rows[k][i]` τᵏ.
-#[inline]
-pub fn lane_sum<const F: usize, const W: usize>(
+pub fn lane_sine<const W: usize>(
     level: usize,
-    rows: &[[Lanes<W>; F]],
-    i: usize,
-    tau: &Lanes<W>,
-) -> Lanes<W> {
-    assert!(i < F);
-    let mut out = Lanes::of(0.0);
-    let row = rows.as_flattened()[i..].as_ptr().cast();
-    let (tau, to) = ((&raw const *tau).cast(), (&raw mut out).cast());
-    // SAFETY: as many rows of F entries are there, of which entry i is read.
-    unsafe { (lane_functions::<W>(level).sum)(rows.len(), F, row, tau, to) };
-    out
+    sine: &[f64; 8],
+    t: &Lanes<W>,
+    jet: &mut [Lanes<W>; 4],
+) {
+    let (t, jet) = ((&raw const *t).cast(), jet.as_mut_ptr().cast());
+    // SAFETY: eight numbers, one number a lane, four a lane.
+    unsafe { (lane_functions::<W>(level).sine)(sine.as_ptr(), t, jet) };
 }
 
-/// The length at which the last terms of a series of order `p` equal the tolerance, as it fits into what
-/// is `remaining` and not more than `horizon`. `tolerances` are the relative one and the absolute ones
-/// of coordinates and velocities, `factors` those of the terms of order p − 3 and p − 2.
+/// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet; `factors`:
+/// what each coefficient is of the last but one.
+#[inline]
+pub fn lane_sine_series<const W: usize>(
+    level: usize,
+    factors: &[f64],
+    jet: &[Lanes<W>; 4],
+    rows: &mut [Lanes<W>],
+    stride: usize,
+) {
+    let count = rows.len().div_ceil(stride);
+    assert!(factors.len() >= count);
+    let (row, jet) = (rows.as_mut_ptr().cast(), jet.as_ptr().cast());
+    let series = lane_functions::<W>(level).sine_series;
+    // SAFETY: the last of the rows is (count − 1) · stride < their number; factors are as many.
+    unsafe { series(count, stride, factors.as_ptr(), jet, row) };
+}
+
+/// Rows of the Taylor coefficients of an antiderivative into every `stride`-th of `rows` from the second
+/// on, given its value; the entries before are those of its derivative. `inverses`: 1/k.
+#[inline]
+pub fn lane_antiderivative<const W: usize>(
+    level: usize,
+    inverses: &[f64],
+    value: &Lanes<W>,
+    rows: &mut [Lanes<W>],
+    stride: usize,
+) {
+    let own = &mut rows[1..];
+    let count = own.len().div_ceil(stride);
+    assert!(inverses.len() >= count);
+    let (row, value) = (own.as_mut_ptr().cast(), (&raw const *value).cast());
+    let antiderivative = lane_functions::<W>(level).antiderivative;
+    // SAFETY: the last of the rows is (count − 1) · stride < their number, and one entry is before each;
+    // the inverses are as many.
+    unsafe { antiderivative(count, stride, inverses.as_ptr(), value, row) };
+}
+
+/// Inverts the mass matrices, sets the accelerations (those of `point` where a segment starts) and the
+/// rows of the series that follow from them. Gives the inverses, and in `unclear` the lanes that have no
+/// positive pivots.
+#[inline]
+pub fn lane_begin<const F: usize, const W: usize>(
+    level: usize,
+    point: &LanePoint<F, W>,
+    at_start: &LaneMask<W>,
+    system: &LaneSystem<F, W>,
+    series: &mut LaneSeries<F, W>,
+    unclear: &mut LaneMask<W>,
+) -> [[Lanes<W>; F]; F] {
+    let mut inverse = [[Lanes::of(0.0); F]; F];
+    let [q, v, a] = [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
+    let begin = lane_functions::<W>(level).begin;
+    // SAFETY: a point and a system of F coordinates, room for F × F numbers, three rows of each series.
+    unsafe {
+        begin(
+            F,
+            (&raw const *point).cast(),
+            at_start.0.as_ptr(),
+            (&raw const *system).cast(),
+            inverse.as_mut_ptr().cast(),
+            q,
+            v,
+            a,
+            unclear.0.as_mut_ptr(),
+        )
+    };
+    inverse
+}
+
+/// Marks the lanes in which not all of some numbers are positive.
+#[inline]
+pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>], marked: &mut LaneMask<W>) {
+    let unmet = lane_functions::<W>(level).unmet;
+    // SAFETY: as many numbers a lane.
+    unsafe { unmet(numbers.len(), numbers.as_ptr().cast(), marked.0.as_mut_ptr()) };
+}
+
+/// What limits the lengths of the steps of a series.
+#[derive(Debug, Clone)]
+pub struct LaneLimits {
+    /// Order p of the series.
+    pub order: usize,
+    /// The relative tolerance, and the absolute ones of coordinates and velocities.
+    pub tolerances: Box<[f64]>,
+    /// Factors of the terms of order p − 3 and p − 2.
+    pub factors: [f64; 2],
+}
+
+/// The length at which the last terms of a series equal the tolerance, as it fits into what remains up
+/// to the times `last` and not more than `horizon`. Gives the lanes in which it reaches `last`; marks
+/// those that are `unclear`, as their series is not finite or their time does not advance.
 #[inline]
 pub fn lane_length<const F: usize, const W: usize>(
     level: usize,
-    p: usize,
+    limits: &LaneLimits,
     series: &LaneSeries<F, W>,
-    (tolerances, factors): (&[f64], &[f64; 2]),
-    [remaining, horizon]: [&Lanes<W>; 2],
-) -> Lanes<W> {
-    assert!(p >= 5 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
-    let mut out = Lanes::of(0.0);
-    let [q, v] = [&series.q, &series.v].map(|rows| rows.as_ptr().cast());
-    let [remaining, horizon] = [remaining, horizon].map(|x| (&raw const *x).cast());
+    point: &LanePoint<F, W>,
+    [last, horizon]: [&Lanes<W>; 2],
+    unclear: &mut LaneMask<W>,
+) -> (Lanes<W>, LaneMask<W>) {
+    let p = limits.order;
+    assert!(p >= 5 && p + 2 <= ORDERS && limits.tolerances.len() == 1 + 2 * F);
+    let (mut h, mut until) = (Lanes::of(0.0), LaneMask::none());
+    let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let length = lane_functions::<W>(level).length;
     // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
     unsafe {
@@ -215,19 +250,23 @@ pub fn lane_length<const F: usize, const W: usize>(
             p,
             q,
             v,
-            tolerances.as_ptr(),
-            factors.as_ptr(),
-            remaining,
-            horizon,
-            (&raw mut out).cast(),
+            a,
+            limits.tolerances.as_ptr(),
+            limits.factors.as_ptr(),
+            (&raw const *point).cast(),
+            (&raw const *last).cast(),
+            (&raw const *horizon).cast(),
+            (&raw mut h).cast(),
+            until.0.as_mut_ptr(),
+            unclear.0.as_mut_ptr(),
         )
     };
-    out
+    (h, until)
 }
 
 /// The first fall of factor · Σ `rows[k][i]` τᵏ + offset on 0 < τ ≤ h, as a part of h: infinite where
-/// there is none, not a number where that takes a closer look. Of those that start at zero (a word of
-/// ones in their lane) the factor τ is divided out. `coefficients` get those in powers of τ/h.
+/// there is none, not a number where that takes a closer look. Of those that start at zero the factor τ
+/// is divided out. `coefficients` get those in powers of τ/h.
 #[inline]
 pub fn lane_first_fall<const F: usize, const W: usize>(
     level: usize,
@@ -236,7 +275,7 @@ pub fn lane_first_fall<const F: usize, const W: usize>(
     starts_at_zero: &LaneMask<W>,
     coefficients: &mut [Lanes<W>; ORDERS],
 ) -> Lanes<W> {
-    assert!(i < F && (1..=ORDERS).contains(&rows.len()));
+    assert!(i < F && (2..=ORDERS).contains(&rows.len()));
     let mut out = Lanes::of(0.0);
     let row = rows.as_flattened()[i..].as_ptr().cast();
     let [h, factor, offset] = [h, factor, offset].map(|x| (&raw const *x).cast());
@@ -257,6 +296,48 @@ pub fn lane_first_fall<const F: usize, const W: usize>(
         )
     };
     out
+}
+
+/// The points to which series of order `p` lead from a point in the durations `tau` (s).
+#[inline]
+pub fn lane_end<const F: usize, const W: usize>(
+    level: usize,
+    p: usize,
+    series: &LaneSeries<F, W>,
+    point: &LanePoint<F, W>,
+    tau: &Lanes<W>,
+    to: &mut LanePoint<F, W>,
+) {
+    assert!(p + 2 <= ORDERS);
+    let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
+    let (point, tau) = ((&raw const *point).cast(), (&raw const *tau).cast());
+    let end = lane_functions::<W>(level).end;
+    // SAFETY: rows up to p + 1 are there; the points are those of F coordinates.
+    unsafe { end(F, p, q, v, a, point, tau, (&raw mut *to).cast()) };
+}
+
+impl<const F: usize, const W: usize> LanePoint<F, W> {
+    /// Takes over those of some lanes.
+    #[inline]
+    pub fn take(&mut self, level: usize, lanes: &LaneMask<W>, from: &Self) {
+        let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
+        // SAFETY: a point has as many numbers a lane, one after the other.
+        unsafe { (lane_functions::<W>(level).take)(5 * F + 2, lanes.0.as_ptr(), from, to) };
+    }
+}
+
+/// The numbers of blocks.
+fn lanes_of<const W: usize>(blocks: &[Block<W>]) -> &[Lanes<W>] {
+    let count = blocks.len() * Block::<W>::LANES;
+    // SAFETY: a block is nothing but so many numbers a lane, without gaps: its size is a multiple of 64.
+    unsafe { std::slice::from_raw_parts(blocks.as_ptr().cast(), count) }
+}
+
+/// The same to write to.
+fn lanes_of_mut<const W: usize>(blocks: &mut [Block<W>]) -> &mut [Lanes<W>] {
+    let count = blocks.len() * Block::<W>::LANES;
+    // SAFETY: as in `lanes_of`; the blocks are borrowed for as long.
+    unsafe { std::slice::from_raw_parts_mut(blocks.as_mut_ptr().cast(), count) }
 }
 
 /// Sine and cosine of `x` (rad), by the same function as in generated code: by the same bits on every
@@ -842,8 +923,7 @@ impl<const F: usize> ModeKernel<F> {
     /// other functions for lanes.
     pub fn lane_series_start<const W: usize>(
         &self,
-        level: usize,
-        quiet: bool,
+        (level, quiet): (usize, bool),
         x: &mut LaneContext<W>,
         at: &mut LaneSeries<F, W>,
     ) -> LaneSystem<F, W> {

@@ -5,6 +5,7 @@ use super::super::simulation::{Simulation, Stop};
 use super::group::{Group, Outcome};
 use super::{Ensemble, Finished, Member};
 use crate::input::Signals;
+use crate::integrate::LaneMask;
 use crate::kernel::with_kernel;
 use crate::record::Silent;
 
@@ -14,8 +15,8 @@ trait AnyGroup<const W: usize> {
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
-    fn step(&mut self, signals: &Signals);
-    fn outcomes(&self) -> [Outcome; W];
+    fn step(&mut self, signals: &Signals) -> LaneMask<W>;
+    fn outcome(&self, lane: usize) -> Outcome;
 }
 
 impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
@@ -31,11 +32,11 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
     }
-    fn step(&mut self, signals: &Signals) {
+    fn step(&mut self, signals: &Signals) -> LaneMask<W> {
         Group::step(self, signals)
     }
-    fn outcomes(&self) -> [Outcome; W] {
-        self.outcomes
+    fn outcome(&self, lane: usize) -> Outcome {
+        self.outcomes[lane]
     }
 }
 
@@ -151,17 +152,13 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// A step of a group, and what follows from it.
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
-        lanes.group.step(&self.ensemble.problem.signals);
-        let outcomes = lanes.group.outcomes();
-        for lane in 0..W {
+        let ended = lanes.group.step(&self.ensemble.problem.signals);
+        for lane in (0..W).filter(|&lane| ended.is(lane)) {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
             let Some(slot) = lanes.slots[lane] else {
                 continue;
             };
-            let outcome = outcomes[lane];
-            if outcome == Outcome::GoesOn {
-                continue;
-            }
+            let outcome = lanes.group.outcome(lane);
             let simulation = &mut self.slots[slot].simulation;
             lanes.group.unload(lane, simulation);
             simulation.set_context();

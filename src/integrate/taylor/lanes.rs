@@ -1,11 +1,13 @@
 //! The Taylor method for trajectories side by side: the formulas of [`super::Taylor`], lane by lane.
 
 use super::super::lanes::{LaneMask, Lanes};
-use super::super::state::add;
 use super::super::tolerances::Tolerances;
 use super::length;
 use super::series::ORDERS;
-use crate::kernel::{LaneSeries, lane_first_fall, lane_length, lane_sum};
+use crate::kernel::{
+    LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_end, lane_first_fall,
+    lane_length,
+};
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
 #[derive(Debug, Clone)]
@@ -14,11 +16,7 @@ pub struct LaneTaylor<const F: usize, const W: usize> {
     pub series: LaneSeries<F, W>,
     /// Level of the processor, as in [`crate::kernel::LANES_OF_LEVELS`].
     level: usize,
-    order: usize,
-    /// The relative tolerance, and the absolute ones of coordinates and velocities.
-    tolerances: Box<[f64]>,
-    /// Factors of the earlier terms.
-    factors: [f64; 2],
+    limits: LaneLimits,
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
@@ -30,73 +28,68 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let order = length::order(relative, convolutions, F);
         LaneTaylor {
-            factors: length::earlier_terms(relative, order, convolutions).map(|term| term.factor),
             series: LaneSeries {
                 q: rows,
                 v: rows,
                 a: rows,
             },
             level,
-            order,
-            tolerances: std::iter::once(relative).chain(absolute).collect(),
+            limits: LaneLimits {
+                order,
+                tolerances: std::iter::once(relative).chain(absolute).collect(),
+                factors: length::earlier_terms(relative, order, convolutions)
+                    .map(|term| term.factor),
+            },
         }
     }
 
     /// Order of the method.
     pub fn order(&self) -> usize {
-        self.order
+        self.limits.order
     }
 
-    /// Whether the coefficients of a lane are finite.
+    /// Sets accelerations, and all that follows from the state without the series; gives the inverses of
+    /// the mass matrices. See [`lane_begin`].
     #[inline]
-    pub fn is_finite(&self, lane: usize) -> bool {
-        let last = &self.series.a[self.order - 1];
-        last.iter().all(|a| a.0[lane].is_finite())
-    }
-
-    /// The length at which the last terms equal the tolerance, but not more than `remaining` and
-    /// `horizon`: as a step of [`super::Taylor`].
-    #[inline]
-    pub fn length(&self, remaining: &Lanes<W>, horizon: &Lanes<W>) -> Lanes<W> {
-        let limits = [remaining, horizon];
-        lane_length(
+    pub fn begin(
+        &mut self,
+        point: &LanePoint<F, W>,
+        at_start: &LaneMask<W>,
+        system: &LaneSystem<F, W>,
+        unclear: &mut LaneMask<W>,
+    ) -> [[Lanes<W>; F]; F] {
+        lane_begin(
             self.level,
-            self.order,
-            &self.series,
-            (&self.tolerances, &self.factors),
-            limits,
+            point,
+            at_start,
+            system,
+            &mut self.series,
+            unclear,
         )
     }
 
-    /// Coordinates and velocities at τ, with what rounding lost before the step and loses in it.
+    /// The length of the step, as a step of [`super::Taylor`]: see [`lane_length`].
     #[inline]
-    pub fn state(
+    pub fn length(
         &self,
-        tau: &Lanes<W>,
-        lost: &[[Lanes<W>; F]; 2],
-    ) -> ([[Lanes<W>; F]; 2], [[Lanes<W>; F]; 2]) {
-        let LaneSeries { q, v, .. } = &self.series;
-        let p = self.order;
-        let mut state = [q[0], v[0]];
-        let mut lost_now = *lost;
-        for i in 0..F {
-            let changes = [&q[1..p + 2], &v[1..p + 1]];
-            for (x, rows) in changes.into_iter().enumerate() {
-                let change = lane_sum(self.level, rows, i, tau) * *tau;
-                for lane in 0..W {
-                    (state[x][i].0[lane], lost_now[x][i].0[lane]) =
-                        add(state[x][i].0[lane], change.0[lane], lost[x][i].0[lane]);
-                }
-            }
-        }
-        (state, lost_now)
+        point: &LanePoint<F, W>,
+        limits: [&Lanes<W>; 2],
+        unclear: &mut LaneMask<W>,
+    ) -> (Lanes<W>, LaneMask<W>) {
+        lane_length(
+            self.level,
+            &self.limits,
+            &self.series,
+            point,
+            limits,
+            unclear,
+        )
     }
 
-    /// Accelerations at τ.
+    /// The point that the step from a point leads to in the durations `tau`, s.
     #[inline]
-    pub fn acceleration(&self, tau: &Lanes<W>) -> [Lanes<W>; F] {
-        let rows = &self.series.a[..self.order];
-        std::array::from_fn(|i| lane_sum(self.level, rows, i, tau))
+    pub fn end(&self, point: &LanePoint<F, W>, tau: &Lanes<W>, to: &mut LanePoint<F, W>) {
+        lane_end(self.level, self.order(), &self.series, point, tau, to);
     }
 
     /// The first fall of factor · x + offset on 0 < τ ≤ h, with x coordinate `index` or its rate: see
@@ -110,8 +103,8 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         coefficients: &mut [Lanes<W>; ORDERS],
     ) -> (Lanes<W>, usize) {
         let rows = match rate {
-            false => &self.series.q[..self.order + 2],
-            true => &self.series.v[..self.order + 1],
+            false => &self.series.q[..self.order() + 2],
+            true => &self.series.v[..self.order() + 1],
         };
         let numbers = [h, factor, offset];
         let rows_of = (rows, index);
