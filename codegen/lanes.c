@@ -181,45 +181,41 @@ DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau
   return (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2;
 }
 
-/* 2^x to a percent: src/integrate/logarithm.rs. */
-DALEMBERT_INLINE real binary_power(real x) {
-  const real exponent = x + 1023.0;
-  const truth whole = __builtin_convertvector(exponent, truth);
-  const real fraction = exponent - __builtin_convertvector(whole, real);
-  return (real)(whole << 52) * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
+/* 2^(-x) to a percent for 0 <= x <= 1: src/integrate/logarithm.rs. */
+DALEMBERT_INLINE real inverse_power(real x) {
+  const real fraction = 1.0 - x;
+  return 0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
-/* x^(-1/n) for positive normal x, and infinity for zero, as there. */
-DALEMBERT_INLINE real inverse_root(real x, double n) {
-  const double inverse = 1.0 / n;
-  const truth bits_of_x = (truth)x;
-  const real exponent = __builtin_convertvector(bits_of_x >> 52, real) - 1023.0;
-  const real mantissa = (real)((bits_of_x & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
+/* x^(-1/n) for positive normal x, and infinity for zero, as there; given 1/n. */
+DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
+  const truth word = (truth)x;
+  const real exponent = __builtin_convertvector(word >> 52, real) - 1023.0;
+  const real mantissa = (real)((word & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
   const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
-  /* exponent = n whole + rest with 0 <= rest < n; the first guess is off by one at most. */
-  real whole = __builtin_convertvector(__builtin_convertvector(exponent * inverse, truth), real);
-  whole = pick(exponent - n * whole < 0.0, whole - 1.0, whole);
-  whole = pick(exponent - n * whole >= n, whole + 1.0, whole);
-  const real rest = exponent - n * whole;
-  const real power = (real)((1023 - __builtin_convertvector(whole, truth)) << 52);
-  const real root = power * binary_power(-(rest + fraction) * inverse);
+  /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
+  const truth whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, truth);
+  const real rest = exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
+  const real power = (real)((1023 + 1024 - whole) << 52);
+  const real root = power * inverse_power((rest + fraction) * inverse);
   return pick(x >= 0x1p-1022, root, REAL(INFINITY));
 }
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
  * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
- * coordinates, then of the velocities. The terms of order p - 3 and p - 2 limit it, too, times their
- * factors: src/integrate/taylor/length.rs. until: lanes in which it reaches `last`. Unclear are lanes
+ * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
+ * p - 3 and p - 2, their inverses, and the factors of the lengths that they tell:
+ * src/integrate/taylor/length.rs. until: lanes in which it reaches `last`. Unclear are lanes
  * whose series is not finite and those whose time would not advance.
  */
 DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
-                             const double *tolerances, const double *factors, const real *point, const real *last,
+                             const double *tolerances, const double *terms, const real *point, const real *last,
                              const real *horizon, real *h, truth *until, truth *unclear) {
   const real now = point[5 * free], rest = point[5 * free + 1];
   real remaining;
   const real error = two_sum_of(*last, -now, &remaining);
   remaining += error - rest;
-  real sizes[3] = {{0}}, earlier[2] = {{0}};
+  real sizes[5] = {{0}};
   truth marked = *unclear;
   for (size_t i = 0; i < free; ++i) {
     const real of_q = 1.0 / (tolerances[1 + i] + tolerances[0] * size_of(q[i]));
@@ -228,12 +224,13 @@ DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, c
     sizes[1] = greater(size_of(v[p * free + i]) * of_v, sizes[1]);
     sizes[1] = greater(size_of(q[p * free + i]) * of_q, sizes[1]);
     sizes[2] = greater(size_of(q[(p + 1) * free + i]) * of_q, sizes[2]);
-    for (size_t k = 0; k < 2; ++k) earlier[k] = greater(size_of(v[(p - 3 + k) * free + i]) * of_v, earlier[k]);
+    sizes[3] = greater(size_of(v[(p - 3) * free + i]) * of_v, sizes[3]);
+    sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
     marked |= ~(size_of(a[(p - 1) * free + i]) < INFINITY);
   }
   real longest = *horizon;
-  for (size_t k = 0; k < 3; ++k) longest = smaller(inverse_root(sizes[k], (double)(p + k - 1)), longest);
-  for (size_t k = 0; k < 2; ++k) longest = smaller(factors[k] * inverse_root(earlier[k], (double)(p - 3 + k)), longest);
+#pragma GCC unroll 5
+  for (int k = 0; k < 5; ++k) longest = smaller(terms[10 + k] * inverse_root(sizes[k], terms[k], terms[5 + k]), longest);
   const real half = pick(2.0 * longest > remaining, 0.5 * remaining, longest);
   *h = pick(longest >= remaining, remaining, half);
   *until = *h == remaining;
@@ -241,14 +238,14 @@ DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, c
 }
 
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
-                                  const double *tolerances, const double *factors, const real *point, const real *last,
+                                  const double *tolerances, const double *terms, const real *point, const real *last,
                                   const real *horizon, real *h, truth *until, truth *unclear);
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
-                                  const double *tolerances, const double *factors, const real *point, const real *last,
+                                  const double *tolerances, const double *terms, const real *point, const real *last,
                                   const real *horizon, real *h, truth *until, truth *unclear) {
   switch (free) {
 #define CASE(n) \
-  case n: length(n, p, q, v, a, tolerances, factors, point, last, horizon, h, until, unclear); return;
+  case n: length(n, p, q, v, a, tolerances, terms, point, last, horizon, h, until, unclear); return;
     FREE(CASE)
 #undef CASE
   }

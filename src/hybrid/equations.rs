@@ -40,33 +40,36 @@ impl Clock<'_> {
         }
     }
 
-    /// Absolute time from which on the inputs are the analytic functions that act just after local
-    /// time `tau`, and the local time until which they are.
+    /// The piece that acts just after local time `tau`, and the absolute time at which it does.
     ///
     /// A knot belongs to the piece after it, even if its local time is rounded to an instant before.
-    fn piece(&self, tau: f64) -> (f64, f64) {
+    /// `last` is the piece found before, for an earlier time.
+    fn piece(&self, tau: f64, last: Piece) -> (f64, Piece) {
         let mut t = self.start.plus(tau).seconds();
+        if t < last.knot && tau < last.limit {
+            return (t, last);
+        }
         loop {
             let knot = self.signals.next_knot(t);
-            if knot == f64::INFINITY {
-                return (t, knot);
-            }
-            let limit = Instant::new(knot).since(self.start);
+            let limit = match knot == f64::INFINITY {
+                true => knot,
+                false => Instant::new(knot).since(self.start),
+            };
             if limit > tau {
-                return (t, limit);
+                return (t, Piece { knot, limit });
             }
             t = knot;
         }
     }
+}
 
-    /// Sets the Taylor coefficients of the signals about local time `tau`, and everything else as
-    /// `set` does.
-    fn expand(&self, tau: f64, orders: usize, context: &mut Context) {
-        self.set_held(tau, context);
-        if !context.quiet {
-            context.expand_signals(self.signals, self.piece(tau).0, orders);
-        }
-    }
+/// A stretch of time within which all inputs are analytic.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    /// Absolute time at which it ends, s.
+    knot: f64,
+    /// The same in local time.
+    limit: f64,
 }
 
 /// The reduced system of a mode.
@@ -82,6 +85,8 @@ pub(super) struct Equations<'a, const F: usize> {
     set_for: f64,
     /// Local time about which the guards were last expanded; NaN: none.
     guards_expanded_at: f64,
+    /// The piece of the inputs in which the last expansion was.
+    piece: Piece,
 }
 
 impl<'a, const F: usize> Equations<'a, F> {
@@ -100,6 +105,11 @@ impl<'a, const F: usize> Equations<'a, F> {
             scale,
             set_for: f64::NAN,
             guards_expanded_at: f64::NAN,
+            // None yet: it has ended before all times.
+            piece: Piece {
+                knot: f64::NEG_INFINITY,
+                limit: f64::NEG_INFINITY,
+            },
         }
     }
 
@@ -218,7 +228,13 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
         order: usize,
         series: &Series<F>,
     ) -> (SMatrix<f64, F, F>, SVector<f64, F>) {
-        self.clock.expand(t, order + 1, self.context);
+        self.clock.set_held(t, self.context);
+        if !self.context.quiet {
+            let (from, piece) = self.clock.piece(t, self.piece);
+            self.piece = piece;
+            let signals = self.clock.signals;
+            self.context.expand_signals(signals, from, order + 1);
+        }
         self.set_for = t;
         let system = self.kernel.series_start(self.context, series);
         (system.mass, system.load)
@@ -236,7 +252,7 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
     fn horizon(&self, t: f64) -> f64 {
         match self.context.quiet {
             true => f64::INFINITY,
-            false => self.clock.piece(t).1,
+            false => self.clock.piece(t, self.piece).1.limit,
         }
     }
 }

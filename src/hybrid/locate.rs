@@ -76,7 +76,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                     guard,
                     &end,
                     0.0,
-                    TAYLOR * (window - start),
+                    window - start,
                 ),
             });
         }
@@ -92,10 +92,10 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 false => Landing::Short,
             });
         }
-        let smooth = TAYLOR * (window - start);
-        if correction.abs() <= smooth {
+        let step = window - start;
+        if correction.abs() <= TAYLOR * step {
             return Ok(beyond_the_crossing(
-                equations, conditions, guard, &end, correction, smooth,
+                equations, conditions, guard, &end, correction, step,
             ));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {
@@ -119,19 +119,20 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// The first state on the far side, from the end of the step on by about `correction`.
 ///
 /// The guard's own values decide. Its rounding may keep them at or above zero at the computed
-/// root: the move is lengthened by its last place, or by that of `smooth` if it is hardly a move at
-/// all, doubled each time, until it is strictly crossed; after `smooth` the Taylor polynomial ends.
+/// root: the move is lengthened by the last place of the length of the `step`, in which a motion over
+/// its own size passes the rounding of that, doubled each time, until it is strictly crossed; after
+/// `smooth` the Taylor polynomial ends.
 fn beyond_the_crossing<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: &Guard,
     end: &State<F>,
     correction: f64,
-    smooth: f64,
+    step: f64,
 ) -> Landing<F> {
     let of_accelerations = depends_on_accelerations(conditions, guard);
-    let least = (f64::EPSILON * smooth).max(f64::MIN_POSITIVE);
-    let mut place = (f64::EPSILON * correction.abs()).max(least);
+    let smooth = TAYLOR * step;
+    let mut place = (f64::EPSILON * step).max(f64::MIN_POSITIVE);
     let mut beyond = correction;
     loop {
         let mut state = moved(end, beyond);

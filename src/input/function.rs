@@ -83,14 +83,27 @@ impl Function {
     /// before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in `out[k]`. They are those of
     /// one analytic function up to [`Function::next_knot`]. `known` are value and rate, which
     /// [`Function::at`] gave.
-    pub fn series(&self, t: f64, side: Side, known: [f64; 2], out: &mut [f64]) {
-        out.fill(0.0);
+    ///
+    /// # Panics
+    /// If there are more than [`Signals::MOST_ORDERS`] of them.
+    #[inline]
+    pub fn series<'a>(
+        &self,
+        t: f64,
+        side: Side,
+        known: [f64; 2],
+        out: impl ExactSizeIterator<Item = &'a mut f64>,
+    ) {
         if let [Term::Sine(sine)] = &self.terms[..] {
-            return sine.add_series(known, out);
+            out.zip(sine.series(known)).for_each(|(out, c)| *out = c);
+            return;
         }
+        let mut room = [0.0; Signals::MOST_ORDERS];
+        let room = &mut room[..out.len()];
         for term in &self.terms {
-            term.add_series(t, side, out);
+            term.add_series(t, side, room);
         }
+        out.zip(room).for_each(|(out, c)| *out = *c);
     }
 
     /// [`Function::at`] on the right of each of several times.
@@ -125,7 +138,7 @@ impl Function {
         let [rate, value, ..] = jet.0;
         for lane in 0..W {
             let known = [value, rate].map(|x| x.0[lane]);
-            self.series(t.0[lane], Side::Right, known, room);
+            self.series(t.0[lane], Side::Right, known, room.iter_mut());
             for (row, value) in rows.iter_mut().step_by(stride).zip(&*room) {
                 row.0[lane] = *value;
             }
@@ -201,7 +214,8 @@ impl Term {
             }
             Term::Sine(sine) => {
                 let jet = sine.at(t, side);
-                sine.add_series([jet.value, jet.rate], out);
+                let coefficients = sine.series([jet.value, jet.rate]);
+                (out.iter_mut().zip(coefficients)).for_each(|(out, c)| *out += c);
             }
             Term::Table(table) => table.add_series(t, side, out),
         }

@@ -86,13 +86,15 @@ impl<const W: usize> LaneSignals<W> {
     }
 
     /// Fills `rows` with the Taylor coefficients of the signals about the times that they were set for:
-    /// one row an order, `width` signals a row. As [`Signals::series`].
+    /// one row an order. As [`Signals::series`].
     #[inline]
-    pub fn series(&self, signals: &Signals, width: usize, rows: &mut [Lanes<W>]) {
+    pub fn series(&self, signals: &Signals, wanted: &[bool], rows: &mut [Lanes<W>]) {
+        let width = wanted.len();
         for (c, jet) in signals.channels.iter().zip(&self.jets) {
             let own = &mut rows[c.signal..];
             c.function.series_of_lanes(self.level, &self.t, jet, own, width);
-            if c.kind == InputKind::Acceleration {
+            let antiderivatives = c.signal + 1..c.signal + c.kind.signals();
+            if wanted[antiderivatives].contains(&true) {
                 let [_, _, integral, double_integral] = jet.0;
                 for (before, value) in [integral, double_integral].iter().enumerate() {
                     let rows = &mut own[before..];

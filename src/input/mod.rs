@@ -129,25 +129,19 @@ impl Signals {
     /// Fills `rows` with the Taylor coefficients of the signals about `t` (s), as they go on after
     /// it: one row an order, with the layout of [`Signals::evaluate`]. They hold until
     /// [`Signals::next_knot`]. `u` and `u_dot` are what [`Signals::jets`] gives on the right of `t`.
+    /// The antiderivatives of an acceleration are filled in where one of them is `wanted`.
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] rows.
-    pub fn series(&self, t: f64, u: &[f64], u_dot: &[f64], rows: &mut [f64]) {
+    pub fn series(&self, t: f64, [u, u_dot]: [&[f64]; 2], wanted: &[bool], rows: &mut [f64]) {
         let width = u.len();
-        if width == 0 {
-            return;
-        }
-        let orders = rows.len() / width;
-        let mut room = [0.0; Self::MOST_ORDERS];
         for c in &self.channels {
-            let coefficients = &mut room[..orders];
-            let (rate, value) = (u_dot[c.signal], u[c.signal]);
-            c.function
-                .series(t, Side::Right, [value, rate], coefficients);
-            for (row, value) in rows.chunks_exact_mut(width).zip(&*coefficients) {
-                row[c.signal] = *value;
-            }
-            if c.kind == InputKind::Acceleration {
+            let known = [u[c.signal], u_dot[c.signal]];
+            let column = rows[c.signal..].iter_mut().step_by(width);
+            c.function.series(t, Side::Right, known, column);
+            let antiderivatives = c.signal + 1..c.signal + c.kind.signals();
+            if wanted[antiderivatives].contains(&true) {
+                let orders = rows.len() / width;
                 rows[c.signal + 1] = u[c.signal + 1];
                 rows[c.signal + 2] = u[c.signal + 2];
                 for k in 1..orders {

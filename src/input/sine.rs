@@ -90,6 +90,17 @@ impl Sine {
         }
     }
 
+    /// The Taylor coefficients about the time at which value and rate are those given.
+    #[inline]
+    pub(super) fn series(&self, [value, rate]: [f64; 2]) -> impl Iterator<Item = f64> {
+        let steps = self.factors.iter();
+        steps.scan((value, rate), |(now, next), factor| {
+            let coefficient = *now;
+            (*now, *next) = (*next, coefficient * factor);
+            Some(coefficient)
+        })
+    }
+
     /// [`Sine::at`] on the right of each of several times (codegen/lanes.c).
     #[inline]
     pub(super) fn at_lanes<const W: usize>(
@@ -112,20 +123,7 @@ impl Sine {
         lane_sine(level, &numbers, t, &mut jet.0);
     }
 
-    /// Adds the Taylor coefficients about the time at which value and rate are those given.
-    pub(super) fn add_series(&self, [value, rate]: [f64; 2], out: &mut [f64]) {
-        let (mut even, mut odd) = (value, rate);
-        for (pair, factors) in out.chunks_mut(2).zip(self.factors.chunks(2)) {
-            pair[0] += even;
-            even *= factors[0];
-            if let Some(out) = pair.get_mut(1) {
-                *out += odd;
-                odd *= factors[1];
-            }
-        }
-    }
-
-    /// The same coefficients for each of several times, into every `stride`-th of `rows`.
+    /// [`Sine::series`] for each of several times, into every `stride`-th of `rows`.
     #[inline]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,

@@ -21,13 +21,27 @@ fn split(x: f64) -> (i64, f64) {
     (exponent, fraction * (1.0 + 0.347 * (1.0 - fraction)))
 }
 
-/// 2^x to 1 %, for |x| < 1000.
-fn binary_power(x: f64) -> f64 {
-    let exponent = x + 1023.0;
-    let whole = exponent as i64;
-    let fraction = exponent - whole as f64;
-    f64::from_bits((whole as u64) << 52) * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)))
+/// 2^(−x) to 1 %, for 0 ≤ x ≤ 1.
+fn inverse_power(x: f64) -> f64 {
+    // 2^(−x) = ½ · 2^(1 − x)
+    let fraction = 1.0 - x;
+    0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)))
 }
+
+/// Largest n of [`root`].
+const MOST: usize = 32;
+
+/// ⌈2³⁶/n⌉: times a number below 2¹⁸ it is 2³⁶ times the quotient by n, and less than 2³⁶/n more, so that
+/// the whole part is right.
+const RECIPROCALS: [u64; MOST + 1] = {
+    let mut table = [0; MOST + 1];
+    let mut n = 1;
+    while n <= MOST {
+        table[n] = (1_u64 << 36).div_ceil(n as u64);
+        n += 1;
+    }
+    table
+};
 
 /// x^(−1/n) to 2 %: the length h with which x hⁿ is one. Infinite for x = 0. Where x is 2^(kn) times as
 /// large, it is 2^(−k) times as large to the bit: a step does not depend on the unit of time.
@@ -36,10 +50,12 @@ pub(super) fn root(x: f64, n: usize) -> f64 {
         return f64::INFINITY;
     }
     let (exponent, fraction) = split(x);
-    let n = n as i64;
-    let (whole, rest) = (exponent.div_euclid(n), exponent.rem_euclid(n));
-    let power = f64::from_bits(((1023 - whole) as u64) << 52);
-    power * binary_power(-(rest as f64 + fraction) / n as f64)
+    // The exponent divided by n, rounded down: a multiple of n makes it positive before.
+    let lift = 1024 * n as i64;
+    let quotient = ((exponent + lift) as u64 * RECIPROCALS[n]) >> 36;
+    let rest = exponent + lift - quotient as i64 * n as i64;
+    let power = f64::from_bits((1023 + 1024 - quotient) << 52);
+    power * inverse_power((rest as f64 + fraction) / n as f64)
 }
 
 #[cfg(test)]

@@ -20,6 +20,8 @@ pub struct Dimensions {
     pub parameters: usize,
     /// Constants computed from the parameters.
     pub constants: usize,
+    /// Of each signal, whether Taylor series depend on it.
+    pub expanded: &'static [bool],
 }
 
 /// What a generated function needs besides the free coordinates.
@@ -124,7 +126,8 @@ impl Context {
         if !self.quiet {
             self.set_signals(signals, t, Side::Right);
             let rows = &mut self.signal_series[..orders * self.signals.len()];
-            signals.series(t, &self.signals, &self.signal_rates, rows);
+            let known = [&*self.signals, &self.signal_rates];
+            signals.series(t, known, self.dimensions.expanded, rows);
         }
     }
 }

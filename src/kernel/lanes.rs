@@ -113,6 +113,11 @@ impl<const W: usize> LaneContext<W> {
         context
     }
 
+    /// Of each signal, whether Taylor series depend on it.
+    pub fn expanded(&self) -> &'static [bool] {
+        self.dimensions.expanded
+    }
+
     /// Takes over discrete states, held coordinates and constants of a trajectory.
     ///
     /// # Panics

@@ -222,8 +222,9 @@ pub struct LaneLimits {
     pub order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     pub tolerances: Box<[f64]>,
-    /// Factors of the terms of order p − 3 and p − 2.
-    pub factors: [f64; 2],
+    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; and
+    /// the factors of the lengths that they tell.
+    pub terms: [[f64; 5]; 3],
 }
 
 /// The length at which the last terms of a series equal the tolerance, as it fits into what remains up
@@ -252,7 +253,7 @@ pub fn lane_length<const F: usize, const W: usize>(
             v,
             a,
             limits.tolerances.as_ptr(),
-            limits.factors.as_ptr(),
+            limits.terms.as_ptr().cast(),
             (&raw const *point).cast(),
             (&raw const *last).cast(),
             (&raw const *horizon).cast(),

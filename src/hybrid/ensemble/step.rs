@@ -75,10 +75,10 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let order = self.taylor.order();
         let context = &mut self.context;
         if !self.quiet {
-            let width = context.signals.len();
+            let expanded = context.expanded();
             self.signals.set(signals, t, &mut context.signals);
-            let rows = &mut context.signal_series[..(order + 1) * width];
-            self.signals.series(signals, width, rows);
+            let rows = &mut context.signal_series[..(order + 1) * expanded.len()];
+            self.signals.series(signals, expanded, rows);
         }
         let which = (self.level, self.quiet);
         let series = &mut self.taylor.series;

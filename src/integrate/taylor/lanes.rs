@@ -27,6 +27,9 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let order = length::order(relative, convolutions, F);
+        let earlier = length::earlier_terms(relative, order, convolutions);
+        let [first, second] = earlier.map(|term| term.factor);
+        let orders = [order - 1, order, order + 1, order - 3, order - 2].map(|n| n as f64);
         LaneTaylor {
             series: LaneSeries {
                 q: rows,
@@ -37,8 +40,11 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
             limits: LaneLimits {
                 order,
                 tolerances: std::iter::once(relative).chain(absolute).collect(),
-                factors: length::earlier_terms(relative, order, convolutions)
-                    .map(|term| term.factor),
+                terms: [
+                    orders,
+                    orders.map(|n| 1.0 / n),
+                    [1.0, 1.0, 1.0, first, second],
+                ],
             },
         }
     }
