@@ -12,30 +12,44 @@
 #endif
 
 /* All bits of a lane for true, none for false: what a comparison gives. */
-typedef long long truth __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
+typedef long long mask __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
 
+/* The same in registers: a bit a lane where the processor compares so. */
+#if DALEMBERT_LANES == 8
+typedef __mmask8 truth;
+DALEMBERT_INLINE truth truth_of(mask x) { return _mm512_movepi64_mask((__m512i)x); }
+DALEMBERT_INLINE mask mask_of(truth x) { return (mask)_mm512_movm_epi64(x); }
+DALEMBERT_INLINE real pick(truth where, real yes, real no) { return (real)_mm512_mask_blend_pd(where, (__m512d)no, (__m512d)yes); }
+DALEMBERT_INLINE truth below(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LT_OQ); }
+DALEMBERT_INLINE truth at_most(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LE_OQ); }
+DALEMBERT_INLINE truth same(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_EQ_OQ); }
+DALEMBERT_INLINE int any(truth x) { return x != 0; }
+#else
+typedef mask truth;
+DALEMBERT_INLINE truth truth_of(mask x) { return x; }
+DALEMBERT_INLINE mask mask_of(truth x) { return x; }
 DALEMBERT_INLINE real pick(truth where, real yes, real no) {
   return (real)(((truth)yes & where) | ((truth)no & ~where));
 }
-DALEMBERT_INLINE real size_of(real x) { return (real)((truth)x & 0x7fffffffffffffff); }
-DALEMBERT_INLINE real greater(real x, real y) { return pick(x > y, x, y); }
-DALEMBERT_INLINE real smaller(real x, real y) { return pick(x < y, x, y); }
-
-/* A bit a lane. */
-DALEMBERT_INLINE unsigned bits(truth x) {
-#if defined(__AVX512DQ__)
-  return _mm512_movepi64_mask((__m512i)x);
-#elif defined(__AVX2__)
-  return (unsigned)_mm256_movemask_pd((__m256d)x);
+DALEMBERT_INLINE truth below(real x, real y) { return x < y; }
+DALEMBERT_INLINE truth at_most(real x, real y) { return x <= y; }
+DALEMBERT_INLINE truth same(real x, real y) { return x == y; }
+DALEMBERT_INLINE int any(truth x) {
+#if defined(__AVX2__)
+  return _mm256_movemask_pd((__m256d)x) != 0;
 #elif defined(__x86_64__)
-  return (unsigned)_mm_movemask_pd((__m128d)x);
+  return _mm_movemask_pd((__m128d)x) != 0;
 #else
-  unsigned all = 0;
-  for (int i = 0; i < DALEMBERT_LANES; ++i) all |= (unsigned)(x[i] != 0) << i;
-  return all;
+  long long all = 0;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) all |= x[i];
+  return all != 0;
 #endif
 }
-DALEMBERT_INLINE int any(truth x) { return bits(x) != 0; }
+#endif
+
+DALEMBERT_INLINE real size_of(real x) { return (real)((mask)x & 0x7fffffffffffffff); }
+DALEMBERT_INLINE real greater(real x, real y) { return pick(below(y, x), x, y); }
+DALEMBERT_INLINE real smaller(real x, real y) { return pick(below(x, y), x, y); }
 
 /* a + b = sum + what is returned, exactly (Knuth). */
 DALEMBERT_INLINE real two_sum_of(real a, real b, real *sum) {
@@ -52,7 +66,7 @@ struct sine { double amplitude, angular_frequency, start, end, sin_phase, cos_ph
 
 /* y - sin y for y >= 0, as there. */
 DALEMBERT_INLINE real less_its_sine(real y, real sin_y) {
-  const truth near = y < 1.0;
+  const truth near = below(y, REAL(1.0));
   const real far = y - sin_y;
   if (!any(near)) return far;
   const real y2 = y * y;
@@ -66,7 +80,7 @@ void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *je
 void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *jet) {
   const double amplitude = sine->amplitude, omega = sine->angular_frequency;
   const real start = REAL(sine->start), end = REAL(sine->end);
-  const real acting = pick(*t < start, start, pick(*t > end, end, *t));
+  const real acting = pick(below(*t, start), start, smaller(end, *t));
   const real y = omega * (acting - start);
   const struct dalembert_sin_cos half = dalembert_sin_cos(0.5 * y);
   const real sin_shifted = half.sin * sine->cos_phase + half.cos * sine->sin_phase;
@@ -74,12 +88,12 @@ void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *je
   const real integral = sine->of_integral * 2.0 * sin_shifted * half.sin;
   const real double_integral = sine->of_double_integral * (sine->cos_phase * less_its_sine(y, 2.0 * half.sin * half.cos)
                                                            + 2.0 * sine->sin_phase * half.sin * half.sin);
-  const truth acts = (start <= *t) & (*t < end);
+  const truth acts = at_most(start, *t) & below(*t, end);
   const real zero = REAL(0.0);
   jet[0] = pick(acts, amplitude * omega * (cos_shifted * half.cos - sin_shifted * half.sin), zero);
   jet[1] = pick(acts, amplitude * (sin_shifted * half.cos + cos_shifted * half.sin), zero);
   jet[2] = integral;
-  jet[3] = double_integral + integral * pick(*t > end, *t - end, zero);
+  jet[3] = double_integral + integral * pick(below(end, *t), *t - end, zero);
 }
 
 /* Rows of the Taylor coefficients of a sine, from its value and rate. factors: what each is of the last
@@ -113,11 +127,11 @@ void LANES(dalembert_lane_antiderivative)(size_t count, size_t stride, const dou
  * unclear: lanes in which not all pivots are positive. A pivot within the rounding of its own sum is not
  * told from zero.
  */
-DALEMBERT_INLINE void begin(const size_t free, const real *point, const truth *at_start, const real *system,
-                            real *inverse, real *q, real *v, real *a, truth *unclear) {
+DALEMBERT_INLINE void begin(const size_t free, const real *point, const mask *at_start, const real *system,
+                            real *inverse, real *q, real *v, real *a, mask *unclear) {
   const double rounding = ((double)free + 1.0) * 0x1p-52;
   real m[6 * 6];
-  truth marked = {0};
+  truth marked = truth_of((mask){0});
   for (size_t k = 0; k < free * free; ++k) {
     m[k] = system[k];
     inverse[k] = REAL(k % (free + 1) == 0 ? 1.0 : 0.0);
@@ -125,7 +139,7 @@ DALEMBERT_INLINE void begin(const size_t free, const real *point, const truth *a
   /* Columns: m[free j + i] is the entry of row i. */
   for (size_t k = 0; k < free; ++k) {
     const real pivot = m[free * k + k];
-    marked |= ~(pivot > rounding * size_of(system[free * k + k]));
+    marked |= ~below(rounding * size_of(system[free * k + k]), pivot);
     for (size_t j = 0; j < free; ++j) {
       if (j > k) m[free * j + k] /= pivot;
       inverse[free * j + k] /= pivot;
@@ -139,22 +153,23 @@ DALEMBERT_INLINE void begin(const size_t free, const real *point, const truth *a
       }
     }
   }
+  const truth given = truth_of(*at_start);
   for (size_t i = 0; i < free; ++i) {
     real acceleration = REAL(0.0);
     for (size_t j = 0; j < free; ++j) acceleration -= inverse[free * j + i] * system[free * free + j];
-    acceleration = pick(*at_start, point[2 * free + i], acceleration);
+    acceleration = pick(given, point[2 * free + i], acceleration);
     a[i] = acceleration;
     v[free + i] = acceleration;
     q[free + i] = v[i];
     q[2 * free + i] = 0.5 * acceleration;
   }
-  *unclear = marked;
+  *unclear = mask_of(marked);
 }
 
-void LANES(dalembert_lane_begin)(size_t free, const real *point, const truth *at_start, const real *system,
-                                 real *inverse, real *q, real *v, real *a, truth *unclear);
-void LANES(dalembert_lane_begin)(size_t free, const real *point, const truth *at_start, const real *system,
-                                 real *inverse, real *q, real *v, real *a, truth *unclear) {
+void LANES(dalembert_lane_begin)(size_t free, const real *point, const mask *at_start, const real *system,
+                                 real *inverse, real *q, real *v, real *a, mask *unclear);
+void LANES(dalembert_lane_begin)(size_t free, const real *point, const mask *at_start, const real *system,
+                                 real *inverse, real *q, real *v, real *a, mask *unclear) {
   switch (free) {
 #define CASE(n) case n: begin(n, point, at_start, system, inverse, q, v, a, unclear); return;
     FREE(CASE)
@@ -163,21 +178,19 @@ void LANES(dalembert_lane_begin)(size_t free, const real *point, const truth *at
 }
 
 /* Marks the lanes in which not all numbers are positive. */
-void LANES(dalembert_lane_unmet)(size_t count, const real *x, truth *marked);
-void LANES(dalembert_lane_unmet)(size_t count, const real *x, truth *marked) {
-  for (size_t i = 0; i < count; ++i) *marked |= ~(x[i] > 0.0);
+void LANES(dalembert_lane_unmet)(size_t count, const real *x, mask *marked);
+void LANES(dalembert_lane_unmet)(size_t count, const real *x, mask *marked) {
+  for (size_t i = 0; i < count; ++i) *marked |= mask_of(~below(REAL(0.0), x[i]));
 }
 
-/* Sum of row k times tau to the power k, for k < count: in powers of tau^4 for every fourth. */
+/* Sum of row k times tau to the power k, for k < count: in powers of tau^4 for every fourth. Rows that fill
+ * up the last four are zero.
+ */
 DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau) {
   const real tau2 = tau * tau, tau4 = tau2 * tau2;
   real sums[4] = {{0}};
-  size_t k = count / 4 * 4;
-  for (size_t i = 0; k + i < count; ++i) sums[i] = row[(k + i) * stride];
-  while (k > 0) {
-    k -= 4;
-    for (size_t i = 0; i < 4; ++i) sums[i] = sums[i] * tau4 + row[(k + i) * stride];
-  }
+  for (size_t k = (count + 3) / 4 * 4; k > 0; k -= 4)
+    for (size_t i = 0; i < 4; ++i) sums[i] = sums[i] * tau4 + row[(k - 4 + i) * stride];
   return (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2;
 }
 
@@ -189,16 +202,16 @@ DALEMBERT_INLINE real inverse_power(real x) {
 
 /* x^(-1/n) for positive normal x, and infinity for zero, as there; given 1/n. */
 DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
-  const truth word = (truth)x;
+  const mask word = (mask)x;
   const real exponent = __builtin_convertvector(word >> 52, real) - 1023.0;
   const real mantissa = (real)((word & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
   const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
   /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
-  const truth whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, truth);
+  const mask whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, mask);
   const real rest = exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
   const real power = (real)((1023 + 1024 - whole) << 52);
   const real root = power * inverse_power((rest + fraction) * inverse);
-  return pick(x >= 0x1p-1022, root, REAL(INFINITY));
+  return pick(at_most(REAL(0x1p-1022), x), root, REAL(INFINITY));
 }
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
@@ -210,13 +223,13 @@ DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
  */
 DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
                              const double *tolerances, const double *terms, const real *point, const real *last,
-                             const real *horizon, real *h, truth *until, truth *unclear) {
+                             const real *horizon, real *h, mask *until, mask *unclear) {
   const real now = point[5 * free], rest = point[5 * free + 1];
   real remaining;
   const real error = two_sum_of(*last, -now, &remaining);
   remaining += error - rest;
   real sizes[5] = {{0}};
-  truth marked = *unclear;
+  truth marked = truth_of(*unclear);
   for (size_t i = 0; i < free; ++i) {
     const real of_q = 1.0 / (tolerances[1 + i] + tolerances[0] * size_of(q[i]));
     const real of_v = 1.0 / (tolerances[1 + free + i] + tolerances[0] * size_of(v[i]));
@@ -226,23 +239,23 @@ DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, c
     sizes[2] = greater(size_of(q[(p + 1) * free + i]) * of_q, sizes[2]);
     sizes[3] = greater(size_of(v[(p - 3) * free + i]) * of_v, sizes[3]);
     sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
-    marked |= ~(size_of(a[(p - 1) * free + i]) < INFINITY);
+    marked |= ~below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
   real longest = *horizon;
 #pragma GCC unroll 5
   for (int k = 0; k < 5; ++k) longest = smaller(terms[10 + k] * inverse_root(sizes[k], terms[k], terms[5 + k]), longest);
-  const real half = pick(2.0 * longest > remaining, 0.5 * remaining, longest);
-  *h = pick(longest >= remaining, remaining, half);
-  *until = *h == remaining;
-  *unclear = marked | (now + *h == now);
+  const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
+  *h = pick(at_most(remaining, longest), remaining, half);
+  *until = mask_of(same(*h, remaining));
+  *unclear = mask_of(marked | same(now + *h, now));
 }
 
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
                                   const double *tolerances, const double *terms, const real *point, const real *last,
-                                  const real *horizon, real *h, truth *until, truth *unclear);
+                                  const real *horizon, real *h, mask *until, mask *unclear);
 void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
                                   const double *tolerances, const double *terms, const real *point, const real *last,
-                                  const real *horizon, real *h, truth *until, truth *unclear) {
+                                  const real *horizon, real *h, mask *until, mask *unclear) {
   switch (free) {
 #define CASE(n) \
   case n: length(n, p, q, v, a, tolerances, terms, point, last, horizon, h, until, unclear); return;
@@ -279,9 +292,9 @@ void LANES(dalembert_lane_end)(size_t free, size_t p, const real *q, const real 
 }
 
 /* Takes over numbers in some lanes. */
-void LANES(dalembert_lane_take)(size_t count, const truth *where, const real *from, real *to);
-void LANES(dalembert_lane_take)(size_t count, const truth *where, const real *from, real *to) {
-  for (size_t i = 0; i < count; ++i) to[i] = pick(*where, from[i], to[i]);
+void LANES(dalembert_lane_take)(size_t count, const mask *where, const real *from, real *to);
+void LANES(dalembert_lane_take)(size_t count, const mask *where, const real *from, real *to) {
+  for (size_t i = 0; i < count; ++i) to[i] = pick(truth_of(*where), from[i], to[i]);
 }
 
 /* Numbers of coefficients that are told apart. */
@@ -332,7 +345,7 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   const real margin = (sizes[0] + sizes[1]) * (n * 0x1p-52);
   const real none = REAL(INFINITY);
   /* Where the negative terms cannot outweigh the first there is no fall. */
-  if (!any(~(least[0] + least[1] > margin))) return none;
+  if (!any((truth)~below(margin, least[0] + least[1]))) return none;
   real b[32];
   double binomial = 1.0; /* n - 1 over k */
 #pragma GCC unroll 32
@@ -346,12 +359,12 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
     for (int k = n - 1; k >= first; --k) b[k] += b[k - 1];
   }
   /* Whether all are certainly positive up to some place and certainly negative from there on. */
-  truth positive = b[0] > margin, once = positive;
+  truth positive = below(margin, b[0]), once = positive;
   real before = REAL(0.0), above = REAL(0.0), below_it = REAL(-1.0);
 #pragma GCC unroll 32
   for (int k = 1; k < n; ++k) {
-    const truth still = positive & (b[k] > margin), below = b[k] < -margin, here = positive & below;
-    once &= still | below;
+    const truth still = positive & below(margin, b[k]), negative = below(b[k], -margin), here = positive & negative;
+    once &= still | negative;
     before = pick(here, REAL((double)(k - 1)), before);
     above = pick(here, b[k - 1], above);
     below_it = pick(here, b[k], below_it);
@@ -367,25 +380,25 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
     const struct local at = local(n, c, s);
     /* The root of the parabola at s that a falling piece leads to, or Newton's. */
     const real discriminant = at.slope * at.slope - 4.0 * at.half_curvature * at.value;
-    const truth parabola = (discriminant > 0.0) & (at.slope < 0.0);
+    const truth parabola = below(REAL(0.0), discriminant) & below(at.slope, REAL(0.0));
     const real root = sqrt(pick(parabola, discriminant, REAL(1.0)));
     const real step = pick(parabola, 2.0 * at.value, -at.value) / pick(parabola, root - at.slope, at.slope);
     const real next = s + step;
-    const truth ended = size_of(step) <= LAST_STEP * next;
+    const truth ended = at_most(size_of(step), LAST_STEP * next);
     s = pick(moving, next, s);
     moving &= ~ended;
   }
   /* A step that has left the window, or has not ended, leads to no root. */
-  return pick(falls & ~moving & (s > 0.0) & (s <= 1.0), s, found);
+  return pick(falls & ~moving & below(REAL(0.0), s) & at_most(s, REAL(1.0)), s, found);
 }
 
 /* The first fall of factor * (row k times tau^k) + offset on 0 < tau <= h, as a part of h. Of those that
  * start at zero the factor tau is divided out. c gets the coefficients in powers of tau/h.
  */
 void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h, const real *factor,
-                                      const real *offset, const truth *starts_at_zero, real *c, real *out);
+                                      const real *offset, const mask *starts_at_zero, real *c, real *out);
 void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h, const real *factor,
-                                      const real *offset, const truth *starts_at_zero, real *c, real *out) {
+                                      const real *offset, const mask *starts_at_zero, real *c, real *out) {
   const size_t room = (count + 3) / 4 * 4;
   const real h2 = *h * *h;
   real power[2] = {*factor, *factor * *h};
@@ -397,8 +410,9 @@ void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *r
   c[0] += *offset;
   const real *search = c;
   real rising[32];
-  if (any(*starts_at_zero)) {
-    for (size_t k = 0; k < room; ++k) rising[k] = pick(*starts_at_zero, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
+  const truth rises = truth_of(*starts_at_zero);
+  if (any(rises)) {
+    for (size_t k = 0; k < room; ++k) rising[k] = pick(rises, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
     search = rising;
   }
   /* With their number known the compiler keeps all of them in registers. */

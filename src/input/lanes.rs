@@ -50,7 +50,8 @@ impl<const W: usize> LaneSignals<W> {
     /// before.
     #[inline]
     pub fn set(&mut self, signals: &Signals, t: &Lanes<W>, u: &mut [Lanes<W>]) {
-        if self.t == *t {
+        let known = self.t.0.iter().zip(&t.0).all(|(known, t)| known == t);
+        if known {
             return;
         }
         self.t = *t;

@@ -23,6 +23,12 @@ impl<const W: usize> LaneMask<W> {
         LaneMask([u64::MAX; W])
     }
 
+    /// Whether it is yes for some lane.
+    #[inline]
+    pub fn any(&self) -> bool {
+        self.0.iter().fold(0, |all, lane| all | lane) != 0
+    }
+
     /// Sets the answer of a lane.
     #[inline]
     pub fn set(&mut self, lane: usize, yes: bool) {

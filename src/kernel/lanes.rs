@@ -183,14 +183,17 @@ impl<const F: usize, const W: usize> LanePoint<F, W> {
     }
 }
 
+/// Rows of a series in lanes: those beyond its order are zero, and fill up fours.
+pub const LANE_ROWS: usize = ORDERS + 1;
+
 /// [`crate::integrate::Series`] in lanes.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub struct LaneSeries<const F: usize, const W: usize> {
     /// Of the coordinates.
-    pub q: [[Lanes<W>; F]; ORDERS],
+    pub q: [[Lanes<W>; F]; LANE_ROWS],
     /// Of the velocities.
-    pub v: [[Lanes<W>; F]; ORDERS],
+    pub v: [[Lanes<W>; F]; LANE_ROWS],
     /// Of the accelerations.
-    pub a: [[Lanes<W>; F]; ORDERS],
+    pub a: [[Lanes<W>; F]; LANE_ROWS],
 }

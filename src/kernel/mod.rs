@@ -8,7 +8,10 @@ mod context;
 mod lanes;
 
 pub use context::{Context, Dimensions};
-pub use lanes::{LANES_OF_LEVELS, LaneContext, LanePoint, LaneRows, LaneSeries, LaneSystem, processor_level};
+pub use lanes::{
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LanePoint, LaneRows, LaneSeries, LaneSystem,
+    processor_level,
+};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use lanes::Block;
@@ -313,7 +316,8 @@ pub fn lane_end<const F: usize, const W: usize>(
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let (point, tau) = ((&raw const *point).cast(), (&raw const *tau).cast());
     let end = lane_functions::<W>(level).end;
-    // SAFETY: rows up to p + 1 are there; the points are those of F coordinates.
+    // SAFETY: rows 1 … 32 are there, up to which a sum of p + 1 ≤ 31 rows is filled up; the points are
+    // those of F coordinates.
     unsafe { end(F, p, q, v, a, point, tau, (&raw mut *to).cast()) };
 }
 

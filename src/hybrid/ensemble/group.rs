@@ -131,6 +131,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
         for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
             guard.starts_at_zero.set(lane, *watch == Watch::Dormant);
         }
+        let problem = from.problem;
+        let breakpoint = problem.signals.next_breakpoint(from.here.now.seconds());
+        self.last.0[lane] = breakpoint.min(problem.end.time);
         self.at_start.set(lane, true);
         self.unchecked = true;
         self.steps[lane] = 0;
@@ -171,8 +174,6 @@ impl<const F: usize, const W: usize> Group<F, W> {
         }
         let [high, low] = from.here.now.parts();
         (here.t[0].0[lane], here.t[1].0[lane]) = (high, low);
-        let breakpoint = from.problem.signals.next_breakpoint(high);
-        self.last.0[lane] = breakpoint.min(from.problem.end.time);
         let zero = SVector::<f64, F>::zeros();
         let origin = Free {
             q: &zero,

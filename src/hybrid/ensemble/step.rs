@@ -141,7 +141,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let mut last_place = tau.0.map(|tau| tau * f64::EPSILON);
         loop {
             let short = self.not_crossed(falls).without(unclear);
-            if short == LaneMask::none() {
+            if !short.any() {
                 return;
             }
             for lane in (0..W).filter(|&lane| short.is(lane)) {

@@ -45,6 +45,8 @@ struct Lanes<const W: usize> {
     group: Box<dyn AnyGroup<W>>,
     /// The slot in each lane.
     slots: [Option<usize>; W],
+    /// Number of lanes with a slot.
+    occupied: usize,
 }
 
 /// A trajectory under way.
@@ -113,15 +115,9 @@ impl<'a, const W: usize> Worker<'a, W> {
                     self.find_lane(slot);
                 }
             }
-            let occupied = |lanes: &Option<Lanes<W>>| {
-                let slots = lanes
-                    .as_ref()
-                    .map(|lanes| lanes.slots.iter().flatten().count());
-                slots.unwrap_or(0)
-            };
-            let fullest =
-                (0..self.lanes.len()).max_by_key(|&m| (occupied(&self.lanes[m]), usize::MAX - m));
-            let Some(mode) = fullest.filter(|&mode| occupied(&self.lanes[mode]) > 0) else {
+            let occupied = |mode: usize| self.lanes[mode].as_ref().map_or(0, |l| l.occupied);
+            let fullest = (0..self.lanes.len()).max_by_key(|&m| (occupied(m), usize::MAX - m));
+            let Some(mode) = fullest.filter(|&mode| occupied(mode) > 0) else {
                 return;
             };
             self.step(mode, take);
@@ -140,11 +136,13 @@ impl<'a, const W: usize> Worker<'a, W> {
             Lanes {
                 group,
                 slots: [None; W],
+                occupied: 0,
             }
         });
         if let Some(lane) = lanes.slots.iter().position(Option::is_none) {
             lanes.group.load(lane, simulation);
             lanes.slots[lane] = Some(slot);
+            lanes.occupied += 1;
             self.slots[slot].state = State::InLane;
         }
     }
@@ -161,7 +159,6 @@ impl<'a, const W: usize> Worker<'a, W> {
             let outcome = lanes.group.outcome(lane);
             let simulation = &mut self.slots[slot].simulation;
             lanes.group.unload(lane, simulation);
-            simulation.set_context();
             let (stop, unclear) = match outcome {
                 Outcome::Event(guard) => (Stop::Event(guard), false),
                 Outcome::Until
@@ -182,6 +179,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             }
             lanes.group.vacate(lane);
             lanes.slots[lane] = None;
+            lanes.occupied -= 1;
             self.go_on(slot, passed, unclear, take);
             if self.slots[slot].state == State::Waiting {
                 self.find_lane(slot);

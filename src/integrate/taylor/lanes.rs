@@ -5,7 +5,7 @@ use super::super::tolerances::Tolerances;
 use super::length;
 use super::series::ORDERS;
 use crate::kernel::{
-    LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_end, lane_first_fall,
+    LANE_ROWS, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_end, lane_first_fall,
     lane_length,
 };
 
@@ -22,7 +22,7 @@ pub struct LaneTaylor<const F: usize, const W: usize> {
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// A method of the order that [`super::Taylor::new`] chooses.
     pub fn new(level: usize, tolerances: &Tolerances<F>, convolutions: usize) -> Self {
-        let rows = [[Lanes::of(0.0); F]; ORDERS];
+        let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
