@@ -44,7 +44,7 @@ def main():
         start = initial(member)
         coarse, fine = end(*start, 100), end(*start, 200)
         assert all(abs(a - b) < mpf("1e-30") for a, b in zip(coarse, fine)), member
-        rows.append({"member": member, "start": start, "end": [nstr(value, 25) for value in fine]})
+        rows.append({"member": member, "start": list(map(repr, start)), "end": [nstr(value, 25) for value in fine]})
     lines = ",\n  ".join(map(json.dumps, rows))
     print(f'{{\n "title": "Driven pendulums",\n "source": "tools/forced_pendulum.py",\n "members": [\n  {lines}\n ]\n}}')
 
