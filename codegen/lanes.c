@@ -392,33 +392,66 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   return pick(falls & ~moving & below(REAL(0.0), s) & at_most(s, REAL(1.0)), s, found);
 }
 
-/* The first fall of factor * (row k times tau^k) + offset on 0 < tau <= h, as a part of h. Of those that
- * start at zero the factor tau is divided out. c gets the coefficients in powers of tau/h.
+DALEMBERT_INLINE real first_fall_of(size_t count, const real *c) {
+  /* With their number known the compiler keeps all of them in registers. */
+  switch (count) {
+#define CASE(n) case n: return first_fall(n, c);
+    DEGREES(CASE)
+#undef CASE
+  }
+  return REAL(NAN);
+}
+
+/* A guard that is linear: src/hybrid/ensemble/bundle.rs. */
+struct guard {
+  real factor, offset;
+  /* Whether it is zero at the start of the step: then the factor tau is divided out. */
+  mask starts_at_zero;
+};
+
+/* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
+ * `place`, a part of h, that becomes it, and `fallen` the number of the guard. c gets the coefficients in
+ * powers of tau/h. Gives the lanes where that takes a closer look.
  */
-void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h, const real *factor,
-                                      const real *offset, const mask *starts_at_zero, real *c, real *out);
-void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h, const real *factor,
-                                      const real *offset, const mask *starts_at_zero, real *c, real *out) {
+void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+                                      const struct guard *guard, uint64_t number, real *c, real *place, mask *fallen,
+                                      mask *unclear);
+void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+                                      const struct guard *guard, uint64_t number, real *c, real *place, mask *fallen,
+                                      mask *unclear) {
   const size_t room = (count + 3) / 4 * 4;
   const real h2 = *h * *h;
-  real power[2] = {*factor, *factor * *h};
+  real power[2] = {guard->factor, guard->factor * *h};
   for (size_t k = 0; k < count; ++k) {
     c[k] = row[k * stride] * power[k % 2];
     power[k % 2] *= h2;
   }
   for (size_t k = count; k < room; ++k) c[k] = REAL(0.0);
-  c[0] += *offset;
-  const real *search = c;
+  c[0] += guard->offset;
+  const truth rises = truth_of(guard->starts_at_zero);
   real rising[32];
-  const truth rises = truth_of(*starts_at_zero);
-  if (any(rises)) {
+  if (any(rises))
     for (size_t k = 0; k < room; ++k) rising[k] = pick(rises, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
-    search = rising;
-  }
-  /* With their number known the compiler keeps all of them in registers. */
-  switch (room) {
-#define CASE(n) case n: *out = first_fall(n, search); return;
-    DEGREES(CASE)
-#undef CASE
+  const real found = first_fall_of(room, any(rises) ? rising : c);
+  const truth first = at_most(found, REAL(1.0)) & below(found, *place);
+  *place = pick(first, found, *place);
+  *fallen = (mask)pick(first, (real)((mask){0} + (long long)number), (real)*fallen);
+  *unclear = mask_of(~same(found, found));
+}
+
+/* Moves tau of some lanes on until the guard factor * (row k times tau^k) + offset is negative there: by `more`,
+ * twice as much each time, but not beyond `most`.
+ */
+void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
+                                 const struct guard *guard, const mask *where, const real *most, real *more, real *tau);
+void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
+                                 const struct guard *guard, const mask *where, const real *most, real *more, real *tau) {
+  truth moving = truth_of(*where);
+  for (;;) {
+    const real x = *row + (sum(count - 1, stride, row + stride, *tau) * *tau + *lost);
+    moving &= ~below(guard->factor * x + guard->offset, REAL(0.0)) & at_most(*more, *most);
+    if (!any(moving)) return;
+    *tau = pick(moving, *tau + *more, *tau);
+    *more = pick(moving, 2.0 * *more, *more);
   }
 }

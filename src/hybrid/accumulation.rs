@@ -77,6 +77,8 @@ const ROOM: usize = Accumulation::MEMORY.next_power_of_two();
 #[derive(Debug)]
 pub struct Accumulation {
     hops: [Hop; ROOM],
+    /// When they happened, as the nearest double: what is looked at most often.
+    times: [f64; ROOM],
     /// Coordinates and velocities after each of them.
     states: Box<[f64]>,
     /// Discrete states after each of them.
@@ -94,6 +96,7 @@ impl Accumulation {
     pub fn new(width: usize, discretes: usize) -> Self {
         Accumulation {
             hops: [Hop::default(); ROOM],
+            times: [0.0; ROOM],
             states: vec![0.0; ROOM * width].into(),
             discretes: vec![0.0; ROOM * discretes].into(),
             count: 0,
@@ -124,6 +127,7 @@ impl Accumulation {
             impact,
             at,
         };
+        self.times[slot] = at.seconds();
         let width = self.states.len() / ROOM;
         for (to, from) in self.states[slot * width..].iter_mut().zip(state) {
             *to = from;
@@ -185,7 +189,7 @@ impl Accumulation {
     fn shrinking(&self, longest: usize) -> u32 {
         let mut patterns = 0;
         for p in 1..=longest {
-            let [a, b, c, d] = [0, p, 2 * p, 3 * p].map(|back| self.hop(back).at.seconds());
+            let [a, b, c, d] = [0, p, 2 * p, 3 * p].map(|back| self.times[self.slot(back)]);
             // Each time is off by half a place, so that a difference of durations is off by two.
             let slack = 2.0 * f64::EPSILON * a.abs();
             let shrinks = ((a - b) - (b - c) <= slack) & ((b - c) - (c - d) <= slack);

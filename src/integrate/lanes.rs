@@ -47,6 +47,19 @@ impl<const W: usize> LaneMask<W> {
         LaneMask(std::array::from_fn(|lane| self.0[lane] & !other.0[lane]))
     }
 
+    /// The lanes for which it is yes.
+    #[inline]
+    pub fn lanes(&self) -> impl Iterator<Item = usize> + use<W> {
+        let all = self.0;
+        (0..W).filter(move |&lane| all[lane] != 0)
+    }
+
+    /// Yes where it is yes here and there.
+    #[inline]
+    pub fn and(&self, other: &Self) -> Self {
+        LaneMask(std::array::from_fn(|lane| self.0[lane] & other.0[lane]))
+    }
+
     /// Yes where it is yes here or there.
     #[inline]
     pub fn or(&self, other: &Self) -> Self {

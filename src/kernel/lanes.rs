@@ -2,7 +2,7 @@
 
 use super::ModeKernel;
 use super::context::{Context, Dimensions};
-use crate::integrate::{Lanes, ORDERS};
+use crate::integrate::{LaneMask, Lanes, ORDERS};
 use std::ops::{Deref, DerefMut};
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
@@ -180,6 +180,52 @@ impl<const F: usize, const W: usize> LanePoint<F, W> {
             lost: [zero; 2],
             t: [Lanes::of(0.0); 2],
         }
+    }
+}
+
+/// A guard that is factor · (a coordinate or rate) + offset.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct LaneGuard<const W: usize> {
+    /// ±1, or what the model says.
+    pub factor: Lanes<W>,
+    /// In its own unit.
+    pub offset: Lanes<W>,
+    /// Whether it is zero at the start of the step: then the factor τ is divided out.
+    pub starts_at_zero: LaneMask<W>,
+}
+
+/// The first falls of guards in a step.
+#[derive(Debug, Clone, Copy)]
+pub struct LaneFalls<const W: usize> {
+    /// Where, as parts of the step; infinite where none falls.
+    pub places: Lanes<W>,
+    /// Number of the guard that falls; [`LaneFalls::NONE`] where none does.
+    pub guards: [u64; W],
+}
+
+impl<const W: usize> LaneFalls<W> {
+    /// No guard.
+    pub const NONE: u64 = u64::MAX;
+
+    /// No fall.
+    pub fn none() -> Self {
+        LaneFalls {
+            places: Lanes::of(f64::INFINITY),
+            guards: [Self::NONE; W],
+        }
+    }
+
+    /// Lanes in which a guard falls, by its number.
+    #[inline]
+    pub fn of(&self, guard: u64) -> LaneMask<W> {
+        LaneMask(self.guards.map(|g| u64::from(g == guard).wrapping_neg()))
+    }
+
+    /// Lanes in which some guard falls.
+    #[inline]
+    pub fn any(&self) -> LaneMask<W> {
+        LaneMask(self.guards.map(|g| u64::from(g != Self::NONE).wrapping_neg()))
     }
 }
 

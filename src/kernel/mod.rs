@@ -9,7 +9,7 @@ mod lanes;
 
 pub use context::{Context, Dimensions};
 pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LanePoint, LaneRows, LaneSeries, LaneSystem,
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneFalls, LaneGuard, LanePoint, LaneRows, LaneSeries, LaneSystem,
     processor_level,
 };
 
@@ -107,7 +107,8 @@ lane_functions!(
         begin(usize, In, InMask, In, Out, Out, Out, Out, OutMask);
         unmet(usize, In, OutMask);
         length(usize, usize, In, In, In, In, In, In, In, In, Out, OutMask, OutMask);
-        first_fall(usize, usize, In, In, In, In, InMask, Out, Out);
+        first_fall(usize, usize, In, In, In, u64, Out, Out, OutMask, OutMask);
+        cross(usize, usize, In, In, In, InMask, In, Out, Out);
         end(usize, usize, In, In, In, In, In, Out);
         take(usize, InMask, In, Out);
     )
@@ -268,38 +269,63 @@ pub fn lane_length<const F: usize, const W: usize>(
     (h, until)
 }
 
-/// The first fall of factor · Σ `rows[k][i]` τᵏ + offset on 0 < τ ≤ h, as a part of h: infinite where
-/// there is none, not a number where that takes a closer look. Of those that start at zero the factor τ
-/// is divided out. `coefficients` get those in powers of τ/h.
+/// Looks for the first fall of guard `number`, factor · Σ `rows[k][i]` τᵏ + offset, on 0 < τ ≤ h. Where it
+/// is before that of `first`, it takes its place. `coefficients` get those in powers of τ/h. Gives the
+/// lanes where that takes a closer look.
 #[inline]
 pub fn lane_first_fall<const F: usize, const W: usize>(
     level: usize,
     (rows, i): (&[[Lanes<W>; F]], usize),
-    [h, factor, offset]: [&Lanes<W>; 3],
-    starts_at_zero: &LaneMask<W>,
+    h: &Lanes<W>,
+    (guard, number): (&LaneGuard<W>, u64),
     coefficients: &mut [Lanes<W>; ORDERS],
-) -> Lanes<W> {
+    first: &mut LaneFalls<W>,
+) -> LaneMask<W> {
     assert!(i < F && (2..=ORDERS).contains(&rows.len()));
-    let mut out = Lanes::of(0.0);
+    let mut unclear = LaneMask::none();
     let row = rows.as_flattened()[i..].as_ptr().cast();
-    let [h, factor, offset] = [h, factor, offset].map(|x| (&raw const *x).cast());
     let first_fall = lane_functions::<W>(level).first_fall;
     // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
-    // coefficients; the rest is one number a lane each.
+    // coefficients; the rest is one number a lane each, and a guard.
     unsafe {
         first_fall(
             rows.len(),
             F,
             row,
-            h,
-            factor,
-            offset,
-            starts_at_zero.0.as_ptr(),
+            (&raw const *h).cast(),
+            (&raw const *guard).cast(),
+            number,
             coefficients.as_mut_ptr().cast(),
-            (&raw mut out).cast(),
+            (&raw mut first.places).cast(),
+            first.guards.as_mut_ptr(),
+            unclear.0.as_mut_ptr(),
         )
     };
-    out
+    unclear
+}
+
+/// Moves `tau` (s) of some lanes on until the guard factor · Σ `rows[k][i]` τᵏ + offset, of `count` rows, is
+/// negative there: by `more`, twice as much each time, but not beyond `most`. `lost` is what rounding has lost of the first
+/// row.
+#[inline]
+pub fn lane_cross<const F: usize, const W: usize>(
+    level: usize,
+    (rows, i): (&[[Lanes<W>; F]; LANE_ROWS], usize),
+    count: usize,
+    lost: &Lanes<W>,
+    guard: &LaneGuard<W>,
+    lanes: &LaneMask<W>,
+    [tau, more, most]: [&mut Lanes<W>; 3],
+) {
+    assert!(i < F && (1..=ORDERS).contains(&count));
+    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let lost = (&raw const *lost).cast();
+    let [tau, more, most] = [tau, more, most].map(|x| (&raw mut *x).cast());
+    let guard = (&raw const *guard).cast();
+    let cross = lane_functions::<W>(level).cross;
+    // SAFETY: rows 1 … 32 are there, up to which a sum of `count` − 1 is filled up; the rest is one number
+    // a lane each, and a guard.
+    unsafe { cross(count, F, row, lost, guard, lanes.0.as_ptr(), most, more, tau) };
 }
 
 /// The points to which series of order `p` lead from a point in the durations `tau` (s).

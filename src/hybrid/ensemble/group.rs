@@ -7,7 +7,7 @@ use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
-use crate::kernel::{Free, LaneContext, LanePoint, LaneRows, ModeKernel};
+use crate::kernel::{Free, LaneContext, LaneGuard, LanePoint, LaneRows, ModeKernel};
 use crate::model::{GuardShape, Mode};
 use nalgebra::SVector;
 
@@ -22,16 +22,13 @@ pub(super) enum Outcome {
     Unclear,
 }
 
-/// A guard of the mode: factor · (a coordinate or rate) + offset.
-pub(super) struct LaneGuard<const W: usize> {
+/// A guard of the mode that is watched.
+pub(super) struct WatchedGuard<const W: usize> {
     /// Index in the mode.
     pub guard: usize,
-    pub index: usize,
-    pub rate: bool,
-    pub factor: Lanes<W>,
-    pub offset: Lanes<W>,
-    /// Whether it is zero at the start of the step.
-    pub starts_at_zero: LaneMask<W>,
+    /// Index of the coordinate, and whether it is its rate.
+    pub of: (usize, bool),
+    pub linear: LaneGuard<W>,
     /// In powers of a part of the last step.
     pub coefficients: [Lanes<W>; ORDERS],
 }
@@ -47,7 +44,7 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub taylor: LaneTaylor<F, W>,
     pub context: LaneContext<W>,
     pub signals: LaneSignals<W>,
-    pub guards: Vec<LaneGuard<W>>,
+    pub guards: Vec<WatchedGuard<W>>,
     /// Where the trajectories are. Accelerations are given where a segment starts.
     pub here: LanePoint<F, W>,
     /// Where the step under way leads to.
@@ -81,13 +78,14 @@ impl<const F: usize, const W: usize> Group<F, W> {
             let GuardShape::Linear { index, rate, .. } = mode.guards[watched.guard].shape else {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
             };
-            LaneGuard {
+            WatchedGuard {
                 guard: watched.guard,
-                index,
-                rate,
-                factor: Lanes::of(1.0),
-                offset: Lanes::of(0.0),
-                starts_at_zero: LaneMask::none(),
+                of: (index, rate),
+                linear: LaneGuard {
+                    factor: Lanes::of(1.0),
+                    offset: Lanes::of(0.0),
+                    starts_at_zero: LaneMask::none(),
+                },
                 coefficients: [Lanes::of(0.0); ORDERS],
             }
         });
@@ -129,7 +127,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
         self.context.load(lane, &from.context);
         self.set(lane, from);
         for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
-            guard.starts_at_zero.set(lane, *watch == Watch::Dormant);
+            let dormant = *watch == Watch::Dormant;
+            guard.linear.starts_at_zero.set(lane, dormant);
         }
         let problem = from.problem;
         let breakpoint = problem.signals.next_breakpoint(from.here.now.seconds());
@@ -148,11 +147,13 @@ impl<const F: usize, const W: usize> Group<F, W> {
         self.context.load_state(lane, &from.context);
         self.set(lane, from);
         for guard in &mut self.guards {
-            let of = |state: &[Lanes<W>; F]| guard.factor.0[lane] * state[guard.index].0[lane];
-            let state = if guard.rate { &self.here.v } else { &self.here.q };
-            let value = of(state) + guard.offset.0[lane];
-            guard.starts_at_zero.set(lane, value == 0.0);
-            let leaves_upwards = !guard.rate && of(&self.here.v) > 0.0;
+            let (index, rate) = guard.of;
+            let linear = &mut guard.linear;
+            let of = |state: &[Lanes<W>; F]| linear.factor.0[lane] * state[index].0[lane];
+            let state = if rate { &self.here.v } else { &self.here.q };
+            let value = of(state) + linear.offset.0[lane];
+            let leaves_upwards = !rate && of(&self.here.v) > 0.0;
+            linear.starts_at_zero.set(lane, value == 0.0);
             if !(value > 0.0 || value == 0.0 && leaves_upwards) {
                 return false;
             }
@@ -192,8 +193,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
             };
             let sign = discrete.map_or(1.0, |d| from.context.discrete[d]);
-            guard.factor.0[lane] = factor * sign;
-            guard.offset.0[lane] = match offset {
+            guard.linear.factor.0[lane] = factor * sign;
+            guard.linear.offset.0[lane] = match offset {
                 true => self.kernel.guard(&from.context, &model.kernel, origin),
                 false => 0.0,
             };

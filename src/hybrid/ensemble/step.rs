@@ -7,19 +7,11 @@ use super::super::roots::{Kind, Watch};
 use super::group::{Group, Outcome};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes, ORDERS};
-use crate::kernel::lane_unmet;
+use crate::kernel::{LaneFalls, lane_unmet};
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
 /// [`super::super::locate`].
 const FARTHEST: f64 = 3.8e-6;
-
-/// The first fall of a guard in each lane.
-struct Falls<const W: usize> {
-    /// Which of the watched guards falls, if any.
-    guards: [Option<u32>; W],
-    /// Where, as a part of the step; 1 if none falls.
-    places: Lanes<W>,
-}
 
 impl<const F: usize, const W: usize> Group<F, W> {
     /// Makes a step in each occupied lane; gives the lanes that do not simply go on.
@@ -31,30 +23,28 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let (h, reached) = self.taylor.length(&self.here, limits, &mut unclear);
         let falls = self.first_falls(&h, &mut unclear);
         self.land(&h, &falls, &mut unclear);
-        let mut ended = unclear;
-        for lane in 0..W {
-            self.outcomes[lane] = match falls.guards[lane] {
-                Some(number) => Outcome::Event(self.guards[number as usize].guard),
-                None if reached.is(lane) => Outcome::Until,
-                None => continue,
-            };
-            ended.set(lane, true);
-        }
-        self.check_end(signals, &reached, &falls, &mut unclear);
+        let until = reached.without(&falls.any());
+        self.check_end(signals, &until, &mut unclear);
 
         let made = self.occupied.without(&unclear);
         self.here.take(self.level, &made, &self.next);
         self.at_start = self.at_start.without(&made);
         for guard in &mut self.guards {
-            guard.starts_at_zero = guard.starts_at_zero.without(&made);
+            let zero = &mut guard.linear.starts_at_zero;
+            *zero = zero.without(&made);
         }
         for lane in 0..W {
             self.steps[lane] += made.0[lane] & 1;
-            if unclear.is(lane) {
-                self.outcomes[lane] = Outcome::Unclear;
-            }
         }
-        ended.or(&unclear)
+        let ended = falls.any().or(&until).or(&unclear).and(&self.occupied);
+        for lane in ended.lanes() {
+            self.outcomes[lane] = match falls.guards[lane] {
+                _ if unclear.is(lane) => Outcome::Unclear,
+                LaneFalls::<W>::NONE => Outcome::Until,
+                number => Outcome::Event(self.guards[number as usize].guard),
+            };
+        }
+        ended
     }
 
     /// Absolute times of the analytic pieces of the inputs that act just after the present instants, and
@@ -99,89 +89,62 @@ impl<const F: usize, const W: usize> Group<F, W> {
     }
 
     /// The first fall of a guard in each lane.
-    fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask<W>) -> Falls<W> {
-        let mut falls = Falls {
-            guards: [None; W],
-            places: Lanes::of(1.0),
-        };
-        for (number, guard) in self.guards.iter_mut().enumerate() {
-            let of = (guard.index, guard.rate);
-            let numbers = [h, &guard.factor, &guard.offset];
-            let zero = &guard.starts_at_zero;
-            let found = (self.taylor).first_fall(of, numbers, zero, &mut guard.coefficients);
-            let (places, count) = found;
-            for lane in 0..W {
-                let mut place = places.0[lane];
-                if place.is_nan() && self.occupied.is(lane) && !unclear.is(lane) {
-                    let coefficients = &guard.coefficients[..count];
-                    match search(coefficients, lane, zero.is(lane)) {
-                        Some(found) => place = found,
-                        None => unclear.set(lane, true),
+    fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask<W>) -> LaneFalls<W> {
+        let mut first = LaneFalls::none();
+        for (number, guard) in (0..).zip(&mut self.guards) {
+            let (linear, coefficients) = ((&guard.linear, number), &mut guard.coefficients);
+            let found = self
+                .taylor
+                .first_fall(guard.of, h, linear, coefficients, &mut first);
+            let (look, count) = found;
+            for lane in look.and(&self.occupied).without(unclear).lanes() {
+                let dormant = guard.linear.starts_at_zero.is(lane);
+                match search(&guard.coefficients[..count], lane, dormant) {
+                    Some(place) if place < first.places.0[lane] => {
+                        (first.guards[lane], first.places.0[lane]) = (number, place);
                     }
-                }
-                let first = falls.guards[lane].is_none() || place < falls.places.0[lane];
-                if place <= 1.0 && first {
-                    falls.guards[lane] = Some(number as u32);
-                    falls.places.0[lane] = place;
+                    Some(_) => {}
+                    None => unclear.set(lane, true),
                 }
             }
         }
-        falls
+        first
     }
 
     /// The end of the step, in `next`: for a fall the first state on its far side.
-    fn land(&mut self, h: &Lanes<W>, falls: &Falls<W>, unclear: &mut LaneMask<W>) {
+    fn land(&mut self, h: &Lanes<W>, falls: &LaneFalls<W>, unclear: &mut LaneMask<W>) {
         // A guard that all but fell at the end of the step before does so within the rounding of the start.
-        let tau = |lane: usize| (h.0[lane] * falls.places.0[lane]).max(f64::MIN_POSITIVE);
-        let mut tau = Lanes::from_fn(tau);
-        self.taylor.end(&self.here, &tau, &mut self.next);
-        if falls.guards.iter().all(Option::is_none) {
-            return;
-        }
-        let mut last_place = tau.0.map(|tau| tau * f64::EPSILON);
-        loop {
-            let short = self.not_crossed(falls).without(unclear);
-            if !short.any() {
-                return;
+        let tau = |lane: usize| h.0[lane] * falls.places.0[lane].min(1.0);
+        let mut tau = Lanes::from_fn(|lane| tau(lane).max(f64::MIN_POSITIVE));
+        let mut more = Lanes(tau.0.map(|tau| tau * f64::EPSILON));
+        let mut most = Lanes(h.0.map(|h| h * FARTHEST));
+        for (number, guard) in (0..).zip(&self.guards) {
+            let lanes = falls.of(number);
+            if lanes.any() {
+                let durations = [&mut tau, &mut more, &mut most];
+                (self.taylor).cross(&self.here, guard.of, &guard.linear, &lanes, durations);
             }
-            for lane in (0..W).filter(|&lane| short.is(lane)) {
-                tau.0[lane] += last_place[lane];
-                last_place[lane] *= 2.0;
-                // Beyond the rounding of the polynomial there is no such state.
-                if last_place[lane] > FARTHEST * h.0[lane] || tau.0[lane] > h.0[lane] {
-                    unclear.set(lane, true);
+        }
+        self.taylor.end(&self.here, &tau, &mut self.next);
+        // The guards' own values decide: an offset may be rounded in another way there.
+        for (number, guard) in (0..).zip(&self.guards) {
+            let lanes = falls.of(number);
+            if lanes.any() {
+                let at = [&self.next.q, &self.next.v, &self.next.a];
+                let (kernel, context) = (self.kernel, &self.context);
+                let value = kernel.lane_guard(self.level, context, guard.guard, at);
+                for lane in lanes.lanes() {
+                    // Beyond the rounding of the polynomial there is no such state.
+                    if !(value.0[lane] < 0.0 && tau.0[lane] <= h.0[lane]) {
+                        unclear.set(lane, true);
+                    }
                 }
             }
-            self.taylor.end(&self.here, &tau, &mut self.next);
         }
-    }
-
-    /// The lanes in which the guard that falls is not negative at the end of the step.
-    fn not_crossed(&self, falls: &Falls<W>) -> LaneMask<W> {
-        let mut short = LaneMask::none();
-        for (number, guard) in self.guards.iter().enumerate() {
-            let here = |lane: &usize| falls.guards[*lane] == Some(number as u32);
-            if !(0..W).any(|lane| here(&lane)) {
-                continue;
-            }
-            let at = [&self.next.q, &self.next.v, &self.next.a];
-            let value = (self.kernel).lane_guard(self.level, &self.context, guard.guard, at);
-            for lane in (0..W).filter(here) {
-                let crossed = value.0[lane] < 0.0;
-                short.set(lane, self.occupied.is(lane) && !crossed);
-            }
-        }
-        short
     }
 
     /// What the mode requires must hold at the end of the step; at the end of a segment the caller looks.
-    fn check_end(
-        &mut self,
-        signals: &Signals,
-        reached: &LaneMask<W>,
-        falls: &Falls<W>,
-        unclear: &mut LaneMask<W>,
-    ) {
+    fn check_end(&mut self, signals: &Signals, until: &LaneMask<W>, unclear: &mut LaneMask<W>) {
         if self.requirements.is_empty() {
             return;
         }
@@ -196,11 +159,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             .lane_requirements(self.level, context, at, requirements);
         let mut unmet = LaneMask::none();
         lane_unmet(self.level, requirements, &mut unmet);
-        for lane in 0..W {
-            if unmet.is(lane) && (falls.guards[lane].is_some() || !reached.is(lane)) {
-                unclear.set(lane, true);
-            }
-        }
+        *unclear = unclear.or(&unmet.without(until));
     }
 }
 

@@ -74,6 +74,8 @@ pub(super) struct Worker<'a, const W: usize> {
     slots: Vec<Slot<'a>>,
     /// The lanes of each mode, made when they are first needed.
     lanes: Vec<Option<Lanes<W>>>,
+    /// Whether a slot or a lane has become free.
+    vacancies: bool,
     quiet: bool,
 }
 
@@ -95,6 +97,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             next: 0,
             slots: (0..count).map(slot).collect(),
             lanes: (0..modes).map(|_| None).collect(),
+            vacancies: true,
             quiet: ensemble.problem.signals.is_zero(),
         }
     }
@@ -102,18 +105,8 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// Runs all of them; `take` gets each at its end.
     pub fn run(mut self, take: &mut impl FnMut(usize, Finished)) {
         loop {
-            for slot in 0..self.slots.len() {
-                while self.slots[slot].state == State::Free && self.next < self.members.len() {
-                    let (member, next) = (self.next, &self.members[self.next]);
-                    self.next += 1;
-                    let slot_ = &mut self.slots[slot];
-                    slot_.member = member;
-                    let begun = slot_.simulation.become_member(next);
-                    self.go_on(slot, begun.map(|()| true), false, take);
-                }
-                if self.slots[slot].state == State::Waiting {
-                    self.find_lane(slot);
-                }
+            if std::mem::take(&mut self.vacancies) {
+                (0..self.slots.len()).for_each(|slot| self.fill(slot, take));
             }
             let occupied = |mode: usize| self.lanes[mode].as_ref().map_or(0, |l| l.occupied);
             let fullest = (0..self.lanes.len()).max_by_key(|&m| (occupied(m), usize::MAX - m));
@@ -121,6 +114,20 @@ impl<'a, const W: usize> Worker<'a, W> {
                 return;
             };
             self.step(mode, take);
+        }
+    }
+
+    /// Starts members in a slot until one waits for a lane, and looks for one.
+    fn fill(&mut self, slot: usize, take: &mut impl FnMut(usize, Finished)) {
+        while self.slots[slot].state == State::Free && self.next < self.members.len() {
+            let (member, next) = (self.next, &self.members[self.next]);
+            self.next += 1;
+            self.slots[slot].member = member;
+            let begun = self.slots[slot].simulation.become_member(next);
+            self.go_on(slot, begun.map(|()| true), false, take);
+        }
+        if self.slots[slot].state == State::Waiting {
+            self.find_lane(slot);
         }
     }
 
@@ -151,7 +158,7 @@ impl<'a, const W: usize> Worker<'a, W> {
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
         let ended = lanes.group.step(&self.ensemble.problem.signals);
-        for lane in (0..W).filter(|&lane| ended.is(lane)) {
+        for lane in ended.lanes() {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
             let Some(slot) = lanes.slots[lane] else {
                 continue;
@@ -180,6 +187,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             lanes.group.vacate(lane);
             lanes.slots[lane] = None;
             lanes.occupied -= 1;
+            self.vacancies = true;
             self.go_on(slot, passed, unclear, take);
             if self.slots[slot].state == State::Waiting {
                 self.find_lane(slot);

@@ -5,8 +5,8 @@ use super::super::tolerances::Tolerances;
 use super::length;
 use super::series::ORDERS;
 use crate::kernel::{
-    LANE_ROWS, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_end, lane_first_fall,
-    lane_length,
+    LANE_ROWS, LaneFalls, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
+    lane_cross, lane_end, lane_first_fall, lane_length,
 };
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
@@ -98,23 +98,49 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         lane_end(self.level, self.order(), &self.series, point, tau, to);
     }
 
-    /// The first fall of factor · x + offset on 0 < τ ≤ h, with x coordinate `index` or its rate: see
-    /// [`lane_first_fall`]. Gives the number of coefficients, too.
+    /// Looks for the first fall of a guard that is coordinate `index` or its rate times a factor and an
+    /// offset: see [`lane_first_fall`]. Gives the number of coefficients, too.
     #[inline]
     pub fn first_fall(
         &self,
         (index, rate): (usize, bool),
-        [h, factor, offset]: [&Lanes<W>; 3],
-        starts_at_zero: &LaneMask<W>,
+        h: &Lanes<W>,
+        guard: (&LaneGuard<W>, u64),
         coefficients: &mut [Lanes<W>; ORDERS],
-    ) -> (Lanes<W>, usize) {
+        first: &mut LaneFalls<W>,
+    ) -> (LaneMask<W>, usize) {
         let rows = match rate {
             false => &self.series.q[..self.order() + 2],
             true => &self.series.v[..self.order() + 1],
         };
-        let numbers = [h, factor, offset];
-        let rows_of = (rows, index);
-        let fall = lane_first_fall(self.level, rows_of, numbers, starts_at_zero, coefficients);
-        (fall, rows.len())
+        let unclear = lane_first_fall(self.level, (rows, index), h, guard, coefficients, first);
+        (unclear, rows.len())
+    }
+
+    /// Moves the end of the step, from `point`, beyond the zero of such a guard in some lanes: see
+    /// [`lane_cross`].
+    #[inline]
+    pub fn cross(
+        &self,
+        point: &LanePoint<F, W>,
+        (index, rate): (usize, bool),
+        guard: &LaneGuard<W>,
+        lanes: &LaneMask<W>,
+        durations: [&mut Lanes<W>; 3],
+    ) {
+        let (rows, count) = match rate {
+            false => (&self.series.q, self.order() + 2),
+            true => (&self.series.v, self.order() + 1),
+        };
+        let lost = &point.lost[usize::from(rate)][index];
+        lane_cross(
+            self.level,
+            (rows, index),
+            count,
+            lost,
+            guard,
+            lanes,
+            durations,
+        );
     }
 }
