@@ -170,7 +170,7 @@ impl Accumulation {
     /// the limit's time.
     pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
         let longest = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
-        let mut patterns = self.shrinking(longest);
+        let mut patterns = self.shrinking(longest, relative);
         while patterns != 0 {
             let p = patterns.trailing_zeros() as usize;
             if let Some(series) = self.series(p, relative) {
@@ -184,16 +184,25 @@ impl Accumulation {
         None
     }
 
-    /// The patterns of up to `longest` events, a bit each, whose durations may shrink as far as plain
-    /// doubles tell: most patterns of most runs do not.
-    fn shrinking(&self, longest: usize) -> u32 {
+    /// The patterns of up to `longest` events, a bit each, whose durations may shrink geometrically, as far
+    /// as plain doubles tell: hardly any pattern of most runs does.
+    fn shrinking(&self, longest: usize, relative: f64) -> u32 {
         let mut patterns = 0;
         for p in 1..=longest {
-            let [a, b, c, d] = [0, p, 2 * p, 3 * p].map(|back| self.times[self.slot(back)]);
+            let [now, b, c, d] = [0, p, 2 * p, 3 * p].map(|back| self.times[self.slot(back)]);
+            let [last, middle, first] = [now - b, b - c, c - d];
             // Each time is off by half a place, so that a difference of durations is off by two.
-            let slack = 2.0 * f64::EPSILON * a.abs();
-            let shrinks = ((a - b) - (b - c) <= slack) & ((b - c) - (c - d) <= slack);
-            patterns |= u32::from(shrinks) << p;
+            let slack = 2.0 * f64::EPSILON * now.abs();
+            let shrinks = (last - middle <= slack) & (middle - first <= slack);
+            // The limits that the last two durations and the two before foretell are as close as in
+            // `series`; multiplied by the differences of the durations.
+            let apart = (middle * (last * first - middle * middle)).abs();
+            let relative = relative.max(f64::EPSILON);
+            let limit = now.abs() * (middle - last) + last * last;
+            let allowed = relative * limit * (first - middle);
+            // What the slack of each duration makes of the two, with their partial derivatives.
+            let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
+            patterns |= u32::from(shrinks & (apart <= allowed + noise)) << p;
         }
         patterns
     }
