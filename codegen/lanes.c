@@ -11,43 +11,50 @@
 #include <immintrin.h>
 #endif
 
-/* All bits of a lane for true, none for false: what a comparison gives. */
-typedef long long mask __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
+/* The bits of a number. */
+typedef long long word __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
 
-/* The same in registers: a bit a lane where the processor compares so. */
+/* Yes or no for each lane, in registers: a bit a lane where the processor compares so, else all bits of a
+ * lane or none. Between functions it is a bit a lane.
+ */
 #if DALEMBERT_LANES == 8
 typedef __mmask8 truth;
-DALEMBERT_INLINE truth truth_of(mask x) { return _mm512_movepi64_mask((__m512i)x); }
-DALEMBERT_INLINE mask mask_of(truth x) { return (mask)_mm512_movm_epi64(x); }
-DALEMBERT_INLINE real pick(truth where, real yes, real no) { return (real)_mm512_mask_blend_pd(where, (__m512d)no, (__m512d)yes); }
+DALEMBERT_INLINE truth truth_of(unsigned bits) { return (truth)bits; }
+DALEMBERT_INLINE unsigned bits(truth x) { return x; }
+DALEMBERT_INLINE real pick(truth where, real yes, real no) {
+  return (real)_mm512_mask_blend_pd(where, (__m512d)no, (__m512d)yes);
+}
 DALEMBERT_INLINE truth below(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LT_OQ); }
 DALEMBERT_INLINE truth at_most(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LE_OQ); }
 DALEMBERT_INLINE truth same(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_EQ_OQ); }
-DALEMBERT_INLINE int any(truth x) { return x != 0; }
 #else
-typedef mask truth;
-DALEMBERT_INLINE truth truth_of(mask x) { return x; }
-DALEMBERT_INLINE mask mask_of(truth x) { return x; }
+typedef word truth;
+DALEMBERT_INLINE truth truth_of(unsigned bits) {
+  word own;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) own[i] = 1LL << i;
+  return (own & (long long)bits) != 0;
+}
+DALEMBERT_INLINE unsigned bits(truth x) {
+#if defined(__AVX2__)
+  return (unsigned)_mm256_movemask_pd((__m256d)x);
+#elif defined(__x86_64__)
+  return (unsigned)_mm_movemask_pd((__m128d)x);
+#else
+  unsigned all = 0;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) all |= (unsigned)(x[i] != 0) << i;
+  return all;
+#endif
+}
 DALEMBERT_INLINE real pick(truth where, real yes, real no) {
   return (real)(((truth)yes & where) | ((truth)no & ~where));
 }
 DALEMBERT_INLINE truth below(real x, real y) { return x < y; }
 DALEMBERT_INLINE truth at_most(real x, real y) { return x <= y; }
 DALEMBERT_INLINE truth same(real x, real y) { return x == y; }
-DALEMBERT_INLINE int any(truth x) {
-#if defined(__AVX2__)
-  return _mm256_movemask_pd((__m256d)x) != 0;
-#elif defined(__x86_64__)
-  return _mm_movemask_pd((__m128d)x) != 0;
-#else
-  long long all = 0;
-  for (int i = 0; i < DALEMBERT_LANES; ++i) all |= x[i];
-  return all != 0;
 #endif
-}
-#endif
+DALEMBERT_INLINE int any(truth x) { return bits(x) != 0; }
 
-DALEMBERT_INLINE real size_of(real x) { return (real)((mask)x & 0x7fffffffffffffff); }
+DALEMBERT_INLINE real size_of(real x) { return (real)((word)x & 0x7fffffffffffffff); }
 DALEMBERT_INLINE real greater(real x, real y) { return pick(below(y, x), x, y); }
 DALEMBERT_INLINE real smaller(real x, real y) { return pick(below(x, y), x, y); }
 
@@ -124,14 +131,14 @@ void LANES(dalembert_lane_antiderivative)(size_t count, size_t stride, const dou
 
 /* Inverse of a mass matrix by elimination without exchanges, and the accelerations, which are given where a
  * segment starts; with them the first rows of the series. system: the matrix by columns, then the load.
- * unclear: lanes in which not all pivots are positive. A pivot within the rounding of its own sum is not
+ * Gives the lanes in which not all pivots are positive. A pivot within the rounding of its own sum is not
  * told from zero.
  */
-DALEMBERT_INLINE void begin(const size_t free, const real *point, const mask *at_start, const real *system,
-                            real *inverse, real *q, real *v, real *a, mask *unclear) {
+DALEMBERT_INLINE unsigned begin(const size_t free, const real *point, unsigned at_start, const real *system,
+                                real *inverse, real *q, real *v, real *a) {
   const double rounding = ((double)free + 1.0) * 0x1p-52;
   real m[6 * 6];
-  truth marked = truth_of((mask){0});
+  truth unclear = truth_of(0);
   for (size_t k = 0; k < free * free; ++k) {
     m[k] = system[k];
     inverse[k] = REAL(k % (free + 1) == 0 ? 1.0 : 0.0);
@@ -139,7 +146,7 @@ DALEMBERT_INLINE void begin(const size_t free, const real *point, const mask *at
   /* Columns: m[free j + i] is the entry of row i. */
   for (size_t k = 0; k < free; ++k) {
     const real pivot = m[free * k + k];
-    marked |= ~below(rounding * size_of(system[free * k + k]), pivot);
+    unclear |= ~below(rounding * size_of(system[free * k + k]), pivot);
     for (size_t j = 0; j < free; ++j) {
       if (j > k) m[free * j + k] /= pivot;
       inverse[free * j + k] /= pivot;
@@ -153,7 +160,7 @@ DALEMBERT_INLINE void begin(const size_t free, const real *point, const mask *at
       }
     }
   }
-  const truth given = truth_of(*at_start);
+  const truth given = truth_of(at_start);
   for (size_t i = 0; i < free; ++i) {
     real acceleration = REAL(0.0);
     for (size_t j = 0; j < free; ++j) acceleration -= inverse[free * j + i] * system[free * free + j];
@@ -163,24 +170,27 @@ DALEMBERT_INLINE void begin(const size_t free, const real *point, const mask *at
     q[free + i] = v[i];
     q[2 * free + i] = 0.5 * acceleration;
   }
-  *unclear = mask_of(marked);
+  return bits(unclear);
 }
 
-void LANES(dalembert_lane_begin)(size_t free, const real *point, const mask *at_start, const real *system,
-                                 real *inverse, real *q, real *v, real *a, mask *unclear);
-void LANES(dalembert_lane_begin)(size_t free, const real *point, const mask *at_start, const real *system,
-                                 real *inverse, real *q, real *v, real *a, mask *unclear) {
+unsigned LANES(dalembert_lane_begin)(size_t free, const real *point, unsigned at_start, const real *system,
+                                     real *inverse, real *q, real *v, real *a);
+unsigned LANES(dalembert_lane_begin)(size_t free, const real *point, unsigned at_start, const real *system,
+                                     real *inverse, real *q, real *v, real *a) {
   switch (free) {
-#define CASE(n) case n: begin(n, point, at_start, system, inverse, q, v, a, unclear); return;
+#define CASE(n) case n: return begin(n, point, at_start, system, inverse, q, v, a);
     FREE(CASE)
 #undef CASE
   }
+  return 0;
 }
 
-/* Marks the lanes in which not all numbers are positive. */
-void LANES(dalembert_lane_unmet)(size_t count, const real *x, mask *marked);
-void LANES(dalembert_lane_unmet)(size_t count, const real *x, mask *marked) {
-  for (size_t i = 0; i < count; ++i) *marked |= mask_of(~below(REAL(0.0), x[i]));
+/* The lanes in which not all numbers are positive. */
+unsigned LANES(dalembert_lane_unmet)(size_t count, const real *x);
+unsigned LANES(dalembert_lane_unmet)(size_t count, const real *x) {
+  truth met = truth_of(~0U);
+  for (size_t i = 0; i < count; ++i) met &= below(REAL(0.0), x[i]);
+  return bits((truth)~met);
 }
 
 /* Sum of row k times tau to the power k, for k < count: in powers of tau^4 for every fourth. Rows that fill
@@ -202,12 +212,12 @@ DALEMBERT_INLINE real inverse_power(real x) {
 
 /* x^(-1/n) for positive normal x, and infinity for zero, as there; given 1/n. */
 DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
-  const mask word = (mask)x;
-  const real exponent = __builtin_convertvector(word >> 52, real) - 1023.0;
-  const real mantissa = (real)((word & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
+  const word pattern = (word)x;
+  const real exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
+  const real mantissa = (real)((pattern & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
   const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
   /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
-  const mask whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, mask);
+  const word whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, word);
   const real rest = exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
   const real power = (real)((1023 + 1024 - whole) << 52);
   const real root = power * inverse_power((rest + fraction) * inverse);
@@ -218,18 +228,18 @@ DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
  * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
  * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
  * p - 3 and p - 2, their inverses, and the factors of the lengths that they tell:
- * src/integrate/taylor/length.rs. until: lanes in which it reaches `last`. Unclear are lanes
- * whose series is not finite and those whose time would not advance.
+ * src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
+ * those whose series is not finite or whose time would not advance.
  */
-DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
+DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
                              const double *tolerances, const double *terms, const real *point, const real *last,
-                             const real *horizon, real *h, mask *until, mask *unclear) {
+                             const real *horizon, real *h, unsigned *unclear) {
   const real now = point[5 * free], rest = point[5 * free + 1];
   real remaining;
   const real error = two_sum_of(*last, -now, &remaining);
   remaining += error - rest;
   real sizes[5] = {{0}};
-  truth marked = truth_of(*unclear);
+  truth finite = truth_of(~0U);
   for (size_t i = 0; i < free; ++i) {
     const real of_q = 1.0 / (tolerances[1 + i] + tolerances[0] * size_of(q[i]));
     const real of_v = 1.0 / (tolerances[1 + free + i] + tolerances[0] * size_of(v[i]));
@@ -239,29 +249,30 @@ DALEMBERT_INLINE void length(const size_t free, const size_t p, const real *q, c
     sizes[2] = greater(size_of(q[(p + 1) * free + i]) * of_q, sizes[2]);
     sizes[3] = greater(size_of(v[(p - 3) * free + i]) * of_v, sizes[3]);
     sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
-    marked |= ~below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
+    finite &= below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
   real longest = *horizon;
 #pragma GCC unroll 5
   for (int k = 0; k < 5; ++k) longest = smaller(terms[10 + k] * inverse_root(sizes[k], terms[k], terms[5 + k]), longest);
   const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
   *h = pick(at_most(remaining, longest), remaining, half);
-  *until = mask_of(same(*h, remaining));
-  *unclear = mask_of(marked | same(now + *h, now));
+  *unclear |= bits((truth)~finite | same(now + *h, now));
+  return bits(same(*h, remaining));
 }
 
-void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
+unsigned LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
                                   const double *tolerances, const double *terms, const real *point, const real *last,
-                                  const real *horizon, real *h, mask *until, mask *unclear);
-void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
+                                  const real *horizon, real *h, unsigned *unclear);
+unsigned LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
                                   const double *tolerances, const double *terms, const real *point, const real *last,
-                                  const real *horizon, real *h, mask *until, mask *unclear) {
+                                  const real *horizon, real *h, unsigned *unclear) {
   switch (free) {
 #define CASE(n) \
-  case n: length(n, p, q, v, a, tolerances, terms, point, last, horizon, h, until, unclear); return;
+  case n: return length(n, p, q, v, a, tolerances, terms, point, last, horizon, h, unclear);
     FREE(CASE)
 #undef CASE
   }
+  return 0;
 }
 
 /* The point after tau. */
@@ -292,9 +303,9 @@ void LANES(dalembert_lane_end)(size_t free, size_t p, const real *q, const real 
 }
 
 /* Takes over numbers in some lanes. */
-void LANES(dalembert_lane_take)(size_t count, const mask *where, const real *from, real *to);
-void LANES(dalembert_lane_take)(size_t count, const mask *where, const real *from, real *to) {
-  for (size_t i = 0; i < count; ++i) to[i] = pick(truth_of(*where), from[i], to[i]);
+void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, real *to);
+void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, real *to) {
+  for (size_t i = 0; i < count; ++i) to[i] = pick(truth_of(where), from[i], to[i]);
 }
 
 /* Numbers of coefficients that are told apart. */
@@ -405,20 +416,18 @@ DALEMBERT_INLINE real first_fall_of(size_t count, const real *c) {
 /* A guard that is linear: src/hybrid/ensemble/bundle.rs. */
 struct guard {
   real factor, offset;
-  /* Whether it is zero at the start of the step: then the factor tau is divided out. */
-  mask starts_at_zero;
+  /* Lanes in which it is zero at the start of the step: there the factor tau is divided out. */
+  unsigned starts_at_zero;
 };
 
 /* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
- * `place`, a part of h, that becomes it, and `fallen` the number of the guard. c gets the coefficients in
- * powers of tau/h. Gives the lanes where that takes a closer look.
+ * `place`, a part of h, that becomes it: gives these lanes. c gets the coefficients in powers of tau/h.
+ * Unclear are lanes where that takes a closer look.
  */
-void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
-                                      const struct guard *guard, uint64_t number, real *c, real *place, mask *fallen,
-                                      mask *unclear);
-void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
-                                      const struct guard *guard, uint64_t number, real *c, real *place, mask *fallen,
-                                      mask *unclear) {
+unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+                                          const struct guard *guard, real *c, real *place, unsigned *unclear);
+unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+                                          const struct guard *guard, real *c, real *place, unsigned *unclear) {
   const size_t room = (count + 3) / 4 * 4;
   const real h2 = *h * *h;
   real power[2] = {guard->factor, guard->factor * *h};
@@ -435,18 +444,18 @@ void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *r
   const real found = first_fall_of(room, any(rises) ? rising : c);
   const truth first = at_most(found, REAL(1.0)) & below(found, *place);
   *place = pick(first, found, *place);
-  *fallen = (mask)pick(first, (real)((mask){0} + (long long)number), (real)*fallen);
-  *unclear = mask_of(~same(found, found));
+  *unclear = bits((truth)~same(found, found));
+  return bits(first);
 }
 
 /* Moves tau of some lanes on until the guard factor * (row k times tau^k) + offset is negative there: by `more`,
  * twice as much each time, but not beyond `most`.
  */
 void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
-                                 const struct guard *guard, const mask *where, const real *most, real *more, real *tau);
+                                 const struct guard *guard, unsigned where, const real *most, real *more, real *tau);
 void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
-                                 const struct guard *guard, const mask *where, const real *most, real *more, real *tau) {
-  truth moving = truth_of(*where);
+                                 const struct guard *guard, unsigned where, const real *most, real *more, real *tau) {
+  truth moving = truth_of(where);
   for (;;) {
     const real x = *row + (sum(count - 1, stride, row + stride, *tau) * *tau + *lost);
     moving &= ~below(guard->factor * x + guard->offset, REAL(0.0)) & at_most(*more, *most);

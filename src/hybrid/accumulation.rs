@@ -77,8 +77,9 @@ const ROOM: usize = Accumulation::MEMORY.next_power_of_two();
 #[derive(Debug)]
 pub struct Accumulation {
     hops: [Hop; ROOM],
-    /// When they happened, as the nearest double: what is looked at most often.
-    times: [f64; ROOM],
+    /// When they happened, as the nearest double: the last ones first, once in each half, so that
+    /// they follow each other from any place of the first half on.
+    times: [f64; 2 * ROOM],
     /// Coordinates and velocities after each of them.
     states: Box<[f64]>,
     /// Discrete states after each of them.
@@ -96,7 +97,7 @@ impl Accumulation {
     pub fn new(width: usize, discretes: usize) -> Self {
         Accumulation {
             hops: [Hop::default(); ROOM],
-            times: [0.0; ROOM],
+            times: [0.0; 2 * ROOM],
             states: vec![0.0; ROOM * width].into(),
             discretes: vec![0.0; ROOM * discretes].into(),
             count: 0,
@@ -127,7 +128,8 @@ impl Accumulation {
             impact,
             at,
         };
-        self.times[slot] = at.seconds();
+        let place = ROOM - 1 - slot;
+        (self.times[place], self.times[place + ROOM]) = (at.seconds(), at.seconds());
         let width = self.states.len() / ROOM;
         for (to, from) in self.states[slot * width..].iter_mut().zip(state) {
             *to = from;
@@ -187,24 +189,30 @@ impl Accumulation {
     /// The patterns of up to `longest` events, a bit each, whose durations may shrink geometrically, as far
     /// as plain doubles tell: hardly any pattern of most runs does.
     fn shrinking(&self, longest: usize, relative: f64) -> u32 {
-        let mut patterns = 0;
-        for p in 1..=longest {
-            let [now, b, c, d] = [0, p, 2 * p, 3 * p].map(|back| self.times[self.slot(back)]);
-            let [last, middle, first] = [now - b, b - c, c - d];
-            // Each time is off by half a place, so that a difference of durations is off by two.
-            let slack = 2.0 * f64::EPSILON * now.abs();
-            let shrinks = (last - middle <= slack) & (middle - first <= slack);
+        let times: &[f64; Self::MEMORY] = self.times[ROOM - 1 - self.slot(0)..]
+            .first_chunk()
+            .expect("all are remembered twice");
+        let now = times[0];
+        // Each time is off by half a place, so that a difference of durations is off by two.
+        let slack = 2.0 * f64::EPSILON * now.abs();
+        let relative = relative.max(f64::EPSILON);
+        let mut may_be = [false; LONGEST_PATTERN];
+        for p in 1..=LONGEST_PATTERN {
+            let last = now - times[p];
+            let middle = times[p] - times[2 * p];
+            let first = times[2 * p] - times[3 * p];
             // The limits that the last two durations and the two before foretell are as close as in
             // `series`; multiplied by the differences of the durations.
             let apart = (middle * (last * first - middle * middle)).abs();
-            let relative = relative.max(f64::EPSILON);
             let limit = now.abs() * (middle - last) + last * last;
             let allowed = relative * limit * (first - middle);
             // What the slack of each duration makes of the two, with their partial derivatives.
             let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
-            patterns |= u32::from(shrinks & (apart <= allowed + noise)) << p;
+            let shrinks = (last - middle <= slack) & (middle - first <= slack);
+            may_be[p - 1] = shrinks & (apart <= allowed + noise);
         }
-        patterns
+        let patterns = (1..=longest).map(|p| u32::from(may_be[p - 1]) << p);
+        patterns.sum()
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.

@@ -2,68 +2,75 @@
 //!
 //! What is done with them is C (codegen/lanes.c), compiled for each level of the processor.
 
+use std::ops::{BitAnd, BitOr, Not};
+
 /// A number a lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(16))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
 
-/// Yes (a word of ones) or no (zero) for each lane.
+/// Yes or no for each lane: a bit a lane, the first the lowest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(C, align(16))]
-pub struct LaneMask<const W: usize>(pub [u64; W]);
+#[repr(transparent)]
+pub struct LaneMask(pub u32);
 
-impl<const W: usize> LaneMask<W> {
+impl LaneMask {
     /// No for all lanes.
-    pub fn none() -> Self {
-        LaneMask([0; W])
-    }
-
+    pub const NONE: LaneMask = LaneMask(0);
     /// Yes for all lanes.
-    pub fn all() -> Self {
-        LaneMask([u64::MAX; W])
-    }
+    pub const ALL: LaneMask = LaneMask(u32::MAX);
 
     /// Whether it is yes for some lane.
     #[inline]
-    pub fn any(&self) -> bool {
-        self.0.iter().fold(0, |all, lane| all | lane) != 0
+    pub fn any(self) -> bool {
+        self != Self::NONE
     }
 
     /// Sets the answer of a lane.
     #[inline]
     pub fn set(&mut self, lane: usize, yes: bool) {
-        self.0[lane] = if yes { u64::MAX } else { 0 };
+        self.0 = self.0 & !(1 << lane) | u32::from(yes) << lane;
     }
 
     /// Whether it is yes for a lane.
     #[inline]
-    pub fn is(&self, lane: usize) -> bool {
-        self.0[lane] != 0
-    }
-
-    /// Yes where it is yes here and not there.
-    #[inline]
-    pub fn without(&self, other: &Self) -> Self {
-        LaneMask(std::array::from_fn(|lane| self.0[lane] & !other.0[lane]))
+    pub fn is(self, lane: usize) -> bool {
+        self.0 >> lane & 1 != 0
     }
 
     /// The lanes for which it is yes.
     #[inline]
-    pub fn lanes(&self) -> impl Iterator<Item = usize> + use<W> {
-        let all = self.0;
-        (0..W).filter(move |&lane| all[lane] != 0)
+    pub fn lanes(self) -> impl Iterator<Item = usize> {
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let lane = left.trailing_zeros();
+            left &= left.wrapping_sub(1);
+            (lane < u32::BITS).then_some(lane as usize)
+        })
     }
+}
 
-    /// Yes where it is yes here and there.
+impl BitAnd for LaneMask {
+    type Output = LaneMask;
     #[inline]
-    pub fn and(&self, other: &Self) -> Self {
-        LaneMask(std::array::from_fn(|lane| self.0[lane] & other.0[lane]))
+    fn bitand(self, other: LaneMask) -> LaneMask {
+        LaneMask(self.0 & other.0)
     }
+}
 
-    /// Yes where it is yes here or there.
+impl BitOr for LaneMask {
+    type Output = LaneMask;
     #[inline]
-    pub fn or(&self, other: &Self) -> Self {
-        LaneMask(std::array::from_fn(|lane| self.0[lane] | other.0[lane]))
+    fn bitor(self, other: LaneMask) -> LaneMask {
+        LaneMask(self.0 | other.0)
+    }
+}
+
+impl Not for LaneMask {
+    type Output = LaneMask;
+    #[inline]
+    fn not(self) -> LaneMask {
+        LaneMask(!self.0)
     }
 }
 

@@ -135,9 +135,10 @@ impl<const W: usize> LaneContext<W> {
 
     /// The same for a trajectory whose constants were loaded before.
     pub fn load_state(&mut self, lane: usize, from: &Context) {
-        let of = from.discrete.iter().chain(&from.held);
-        let into = self.discrete.iter_mut().chain(self.held.iter_mut());
-        for (into, of) in into.zip(of) {
+        for (into, of) in self.discrete.iter_mut().zip(&from.discrete) {
+            into.0[lane] = *of;
+        }
+        for (into, of) in self.held.iter_mut().zip(&from.held) {
             into.0[lane] = *of;
         }
     }
@@ -191,42 +192,8 @@ pub struct LaneGuard<const W: usize> {
     pub factor: Lanes<W>,
     /// In its own unit.
     pub offset: Lanes<W>,
-    /// Whether it is zero at the start of the step: then the factor τ is divided out.
-    pub starts_at_zero: LaneMask<W>,
-}
-
-/// The first falls of guards in a step.
-#[derive(Debug, Clone, Copy)]
-pub struct LaneFalls<const W: usize> {
-    /// Where, as parts of the step; infinite where none falls.
-    pub places: Lanes<W>,
-    /// Number of the guard that falls; [`LaneFalls::NONE`] where none does.
-    pub guards: [u64; W],
-}
-
-impl<const W: usize> LaneFalls<W> {
-    /// No guard.
-    pub const NONE: u64 = u64::MAX;
-
-    /// No fall.
-    pub fn none() -> Self {
-        LaneFalls {
-            places: Lanes::of(f64::INFINITY),
-            guards: [Self::NONE; W],
-        }
-    }
-
-    /// Lanes in which a guard falls, by its number.
-    #[inline]
-    pub fn of(&self, guard: u64) -> LaneMask<W> {
-        LaneMask(self.guards.map(|g| u64::from(g == guard).wrapping_neg()))
-    }
-
-    /// Lanes in which some guard falls.
-    #[inline]
-    pub fn any(&self) -> LaneMask<W> {
-        LaneMask(self.guards.map(|g| u64::from(g != Self::NONE).wrapping_neg()))
-    }
+    /// Lanes in which it is zero at the start of the step: there the factor τ is divided out.
+    pub starts_at_zero: LaneMask,
 }
 
 /// Rows of a series in lanes: those beyond its order are zero, and fill up fours.

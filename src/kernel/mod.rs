@@ -9,7 +9,7 @@ mod lanes;
 
 pub use context::{Context, Dimensions};
 pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneFalls, LaneGuard, LanePoint, LaneRows, LaneSeries, LaneSystem,
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LanePoint, LaneRows, LaneSeries, LaneSystem,
     processor_level,
 };
 
@@ -75,16 +75,16 @@ macro_rules! lane_functions {
         static LANE_FUNCTIONS: &[LaneFunctions] =
             &[$($(#[$only])? lane_functions!(@level $level $functions)),*];
     };
-    (@table ($($name:ident($($argument:ty),*);)*)) => {
+    (@table ($($name:ident($($argument:ty),*) $(-> $result:ty)?;)*)) => {
         struct LaneFunctions {
-            $($name: unsafe extern "C" fn($($argument),*),)*
+            $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
         }
     };
-    (@level $level:literal ($($name:ident($($argument:ty),*);)*)) => {{
+    (@level $level:literal ($($name:ident($($argument:ty),*) $(-> $result:ty)?;)*)) => {{
         unsafe extern "C" {
             $(
                 #[link_name = concat!("dalembert_lane_", stringify!($name), $level)]
-                fn $name($(_: $argument),*);
+                fn $name($(_: $argument),*) $(-> $result)?;
             )*
         }
         LaneFunctions { $($name,)* }
@@ -94,9 +94,9 @@ macro_rules! lane_functions {
 /// A number a lane, or several after each other.
 type In = *const f64;
 type Out = *mut f64;
-/// Yes or no for each lane.
-type InMask = *const u64;
-type OutMask = *mut u64;
+/// A bit a lane.
+type Bits = u32;
+type OutBits = *mut u32;
 
 lane_functions!(
     ["_v1", #[cfg(target_arch = "x86_64")] "_v3", #[cfg(target_arch = "x86_64")] "_v4"]
@@ -104,13 +104,13 @@ lane_functions!(
         sine(In, In, Out);
         sine_series(usize, usize, In, In, Out);
         antiderivative(usize, usize, In, In, Out);
-        begin(usize, In, InMask, In, Out, Out, Out, Out, OutMask);
-        unmet(usize, In, OutMask);
-        length(usize, usize, In, In, In, In, In, In, In, In, Out, OutMask, OutMask);
-        first_fall(usize, usize, In, In, In, u64, Out, Out, OutMask, OutMask);
-        cross(usize, usize, In, In, In, InMask, In, Out, Out);
+        begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
+        unmet(usize, In) -> Bits;
+        length(usize, usize, In, In, In, In, In, In, In, In, Out, OutBits) -> Bits;
+        first_fall(usize, usize, In, In, In, Out, Out, OutBits) -> Bits;
+        cross(usize, usize, In, In, In, Bits, In, Out, Out);
         end(usize, usize, In, In, In, In, In, Out);
-        take(usize, InMask, In, Out);
+        take(usize, Bits, In, Out);
     )
 );
 
@@ -180,43 +180,41 @@ pub fn lane_antiderivative<const W: usize>(
 }
 
 /// Inverts the mass matrices, sets the accelerations (those of `point` where a segment starts) and the
-/// rows of the series that follow from them. Gives the inverses, and in `unclear` the lanes that have no
-/// positive pivots.
+/// rows of the series that follow from them. Gives the inverses, and the lanes that have no positive
+/// pivots.
 #[inline]
 pub fn lane_begin<const F: usize, const W: usize>(
     level: usize,
     point: &LanePoint<F, W>,
-    at_start: &LaneMask<W>,
+    at_start: LaneMask,
     system: &LaneSystem<F, W>,
     series: &mut LaneSeries<F, W>,
-    unclear: &mut LaneMask<W>,
-) -> [[Lanes<W>; F]; F] {
+) -> ([[Lanes<W>; F]; F], LaneMask) {
     let mut inverse = [[Lanes::of(0.0); F]; F];
     let [q, v, a] = [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
     let begin = lane_functions::<W>(level).begin;
     // SAFETY: a point and a system of F coordinates, room for F × F numbers, three rows of each series.
-    unsafe {
+    let unclear = unsafe {
         begin(
             F,
             (&raw const *point).cast(),
-            at_start.0.as_ptr(),
+            at_start.0,
             (&raw const *system).cast(),
             inverse.as_mut_ptr().cast(),
             q,
             v,
             a,
-            unclear.0.as_mut_ptr(),
         )
     };
-    inverse
+    (inverse, LaneMask(unclear))
 }
 
-/// Marks the lanes in which not all of some numbers are positive.
+/// The lanes in which not all of some numbers are positive.
 #[inline]
-pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>], marked: &mut LaneMask<W>) {
+pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>]) -> LaneMask {
     let unmet = lane_functions::<W>(level).unmet;
     // SAFETY: as many numbers a lane.
-    unsafe { unmet(numbers.len(), numbers.as_ptr().cast(), marked.0.as_mut_ptr()) };
+    LaneMask(unsafe { unmet(numbers.len(), numbers.as_ptr().cast()) })
 }
 
 /// What limits the lengths of the steps of a series.
@@ -241,15 +239,15 @@ pub fn lane_length<const F: usize, const W: usize>(
     series: &LaneSeries<F, W>,
     point: &LanePoint<F, W>,
     [last, horizon]: [&Lanes<W>; 2],
-    unclear: &mut LaneMask<W>,
-) -> (Lanes<W>, LaneMask<W>) {
+    unclear: &mut LaneMask,
+) -> (Lanes<W>, LaneMask) {
     let p = limits.order;
     assert!(p >= 5 && p + 2 <= ORDERS && limits.tolerances.len() == 1 + 2 * F);
-    let (mut h, mut until) = (Lanes::of(0.0), LaneMask::none());
+    let mut h = Lanes::of(0.0);
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let length = lane_functions::<W>(level).length;
     // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
-    unsafe {
+    let until = unsafe {
         length(
             F,
             p,
@@ -262,46 +260,43 @@ pub fn lane_length<const F: usize, const W: usize>(
             (&raw const *last).cast(),
             (&raw const *horizon).cast(),
             (&raw mut h).cast(),
-            until.0.as_mut_ptr(),
-            unclear.0.as_mut_ptr(),
+            &mut unclear.0,
         )
     };
-    (h, until)
+    (h, LaneMask(until))
 }
 
-/// Looks for the first fall of guard `number`, factor · Σ `rows[k][i]` τᵏ + offset, on 0 < τ ≤ h. Where it
-/// is before that of `first`, it takes its place. `coefficients` get those in powers of τ/h. Gives the
-/// lanes where that takes a closer look.
+/// Looks for the first fall of a guard, factor · Σ `rows[k][i]` τᵏ + offset, on 0 < τ ≤ h. Where it is
+/// before `place`, a part of h, that becomes it. `coefficients` get those in powers of τ/h. Gives the
+/// lanes with such a fall, and those where it takes a closer look.
 #[inline]
 pub fn lane_first_fall<const F: usize, const W: usize>(
     level: usize,
     (rows, i): (&[[Lanes<W>; F]], usize),
     h: &Lanes<W>,
-    (guard, number): (&LaneGuard<W>, u64),
+    guard: &LaneGuard<W>,
     coefficients: &mut [Lanes<W>; ORDERS],
-    first: &mut LaneFalls<W>,
-) -> LaneMask<W> {
+    place: &mut Lanes<W>,
+) -> [LaneMask; 2] {
     assert!(i < F && (2..=ORDERS).contains(&rows.len()));
-    let mut unclear = LaneMask::none();
+    let mut unclear = 0;
     let row = rows.as_flattened()[i..].as_ptr().cast();
     let first_fall = lane_functions::<W>(level).first_fall;
     // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
     // coefficients; the rest is one number a lane each, and a guard.
-    unsafe {
+    let first = unsafe {
         first_fall(
             rows.len(),
             F,
             row,
             (&raw const *h).cast(),
             (&raw const *guard).cast(),
-            number,
             coefficients.as_mut_ptr().cast(),
-            (&raw mut first.places).cast(),
-            first.guards.as_mut_ptr(),
-            unclear.0.as_mut_ptr(),
+            (&raw mut *place).cast(),
+            &mut unclear,
         )
     };
-    unclear
+    [LaneMask(first), LaneMask(unclear)]
 }
 
 /// Moves `tau` (s) of some lanes on until the guard factor · Σ `rows[k][i]` τᵏ + offset, of `count` rows, is
@@ -314,7 +309,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
     count: usize,
     lost: &Lanes<W>,
     guard: &LaneGuard<W>,
-    lanes: &LaneMask<W>,
+    lanes: LaneMask,
     [tau, more, most]: [&mut Lanes<W>; 3],
 ) {
     assert!(i < F && (1..=ORDERS).contains(&count));
@@ -325,7 +320,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
     let cross = lane_functions::<W>(level).cross;
     // SAFETY: rows 1 … 32 are there, up to which a sum of `count` − 1 is filled up; the rest is one number
     // a lane each, and a guard.
-    unsafe { cross(count, F, row, lost, guard, lanes.0.as_ptr(), most, more, tau) };
+    unsafe { cross(count, F, row, lost, guard, lanes.0, most, more, tau) };
 }
 
 /// The points to which series of order `p` lead from a point in the durations `tau` (s).
@@ -350,10 +345,10 @@ pub fn lane_end<const F: usize, const W: usize>(
 impl<const F: usize, const W: usize> LanePoint<F, W> {
     /// Takes over those of some lanes.
     #[inline]
-    pub fn take(&mut self, level: usize, lanes: &LaneMask<W>, from: &Self) {
+    pub fn take(&mut self, level: usize, lanes: LaneMask, from: &Self) {
         let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
         // SAFETY: a point has as many numbers a lane, one after the other.
-        unsafe { (lane_functions::<W>(level).take)(5 * F + 2, lanes.0.as_ptr(), from, to) };
+        unsafe { (lane_functions::<W>(level).take)(5 * F + 2, lanes.0, from, to) };
     }
 }
 

@@ -49,7 +49,7 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub here: LanePoint<F, W>,
     /// Where the step under way leads to.
     pub next: LanePoint<F, W>,
-    pub at_start: LaneMask<W>,
+    pub at_start: LaneMask,
     /// Where inputs are not smooth, or the end, s.
     pub last: Lanes<W>,
     /// Time after which the inputs are analytic, s.
@@ -62,7 +62,7 @@ pub(super) struct Group<const F: usize, const W: usize> {
     /// Steps made in each lane since it was loaded.
     pub steps: [u64; W],
     /// Which lanes hold a trajectory.
-    pub occupied: LaneMask<W>,
+    pub occupied: LaneMask,
 }
 
 impl<const F: usize, const W: usize> Group<F, W> {
@@ -84,7 +84,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 linear: LaneGuard {
                     factor: Lanes::of(1.0),
                     offset: Lanes::of(0.0),
-                    starts_at_zero: LaneMask::none(),
+                    starts_at_zero: LaneMask::NONE,
                 },
                 coefficients: [Lanes::of(0.0); ORDERS],
             }
@@ -101,14 +101,14 @@ impl<const F: usize, const W: usize> Group<F, W> {
             guards: guards.collect(),
             here: LanePoint::zero(),
             next: LanePoint::zero(),
-            at_start: LaneMask::all(),
+            at_start: LaneMask::ALL,
             last: Lanes::of(f64::INFINITY),
             analytic_from: analytic_from(&problem.signals),
             requirements: LaneRows::zeros(mode.requirements.len()),
             unchecked: true,
             outcomes: [Outcome::Unclear; W],
             steps: [0; W],
-            occupied: LaneMask::none(),
+            occupied: LaneMask::NONE,
         };
         for lane in 0..W {
             group.load(lane, like);

@@ -7,41 +7,60 @@ use super::super::roots::{Kind, Watch};
 use super::group::{Group, Outcome};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes, ORDERS};
-use crate::kernel::{LaneFalls, lane_unmet};
+use crate::kernel::lane_unmet;
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
 /// [`super::super::locate`].
 const FARTHEST: f64 = 3.8e-6;
 
+/// The first falls of guards in a step.
+struct Falls<const W: usize> {
+    /// Lanes with one.
+    lanes: LaneMask,
+    /// Which of the watched guards falls there.
+    guards: [usize; W],
+    /// Where, as parts of the step; infinite where none falls.
+    places: Lanes<W>,
+}
+
+impl<const W: usize> Falls<W> {
+    /// The lanes in which a watched guard is the first.
+    fn of(&self, guard: usize) -> LaneMask {
+        let own = self.lanes.lanes().filter(|&lane| self.guards[lane] == guard);
+        own.fold(LaneMask::NONE, |lanes, lane| lanes | LaneMask(1 << lane))
+    }
+}
+
 impl<const F: usize, const W: usize> Group<F, W> {
     /// Makes a step in each occupied lane; gives the lanes that do not simply go on.
-    pub fn step(&mut self, signals: &Signals) -> LaneMask<W> {
+    pub fn step(&mut self, signals: &Signals) -> LaneMask {
         let (t, horizon) = self.pieces(signals);
-        let mut unclear = LaneMask::none();
-        self.expand(signals, &t, &mut unclear);
+        let mut unclear = self.expand(signals, &t);
         let limits = [&self.last, &horizon];
         let (h, reached) = self.taylor.length(&self.here, limits, &mut unclear);
         let falls = self.first_falls(&h, &mut unclear);
-        self.land(&h, &falls, &mut unclear);
-        let until = reached.without(&falls.any());
-        self.check_end(signals, &until, &mut unclear);
+        unclear = unclear | self.land(&h, &falls);
+        let until = reached & !falls.lanes;
+        unclear = unclear | self.unmet_at_end(signals) & !until;
 
-        let made = self.occupied.without(&unclear);
-        self.here.take(self.level, &made, &self.next);
-        self.at_start = self.at_start.without(&made);
+        let made = self.occupied & !unclear;
+        self.here.take(self.level, made, &self.next);
+        self.at_start = self.at_start & !made;
         for guard in &mut self.guards {
             let zero = &mut guard.linear.starts_at_zero;
-            *zero = zero.without(&made);
+            *zero = *zero & !made;
         }
-        for lane in 0..W {
-            self.steps[lane] += made.0[lane] & 1;
+        for lane in made.lanes() {
+            self.steps[lane] += 1;
         }
-        let ended = falls.any().or(&until).or(&unclear).and(&self.occupied);
+        let ended = (falls.lanes | until | unclear) & self.occupied;
         for lane in ended.lanes() {
-            self.outcomes[lane] = match falls.guards[lane] {
-                _ if unclear.is(lane) => Outcome::Unclear,
-                LaneFalls::<W>::NONE => Outcome::Until,
-                number => Outcome::Event(self.guards[number as usize].guard),
+            self.outcomes[lane] = if unclear.is(lane) {
+                Outcome::Unclear
+            } else if falls.lanes.is(lane) {
+                Outcome::Event(self.guards[falls.guards[lane]].guard)
+            } else {
+                Outcome::Until
             };
         }
         ended
@@ -60,8 +79,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
         (t, durations)
     }
 
-    /// Expands the motion as a series.
-    fn expand(&mut self, signals: &Signals, t: &Lanes<W>, unclear: &mut LaneMask<W>) {
+    /// Expands the motion as a series; gives the lanes in which that is not as usual.
+    fn expand(&mut self, signals: &Signals, t: &Lanes<W>) -> LaneMask {
         let order = self.taylor.order();
         let context = &mut self.context;
         if !self.quiet {
@@ -74,79 +93,92 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let series = &mut self.taylor.series;
         (series.q[0], series.v[0]) = (self.here.q, self.here.v);
         let system = self.kernel.lane_series_start(which, context, series);
-        let (here, at_start) = (&self.here, &self.at_start);
-        let inverse = self.taylor.begin(here, at_start, &system, unclear);
+        let begun = self.taylor.begin(&self.here, self.at_start, &system);
+        let (inverse, mut unclear) = begun;
         let series = &mut self.taylor.series;
         if std::mem::take(&mut self.unchecked) && !self.requirements.is_empty() {
             let at = [&series.q[0], &series.v[0], &series.a[0]];
             let requirements = &mut self.requirements;
             self.kernel
                 .lane_requirements(self.level, context, at, requirements);
-            lane_unmet(self.level, requirements, unclear);
+            unclear = unclear | lane_unmet(self.level, requirements);
         }
         self.kernel
             .lane_series_run(which, context, order, &inverse, series);
+        unclear
     }
 
     /// The first fall of a guard in each lane.
-    fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask<W>) -> LaneFalls<W> {
-        let mut first = LaneFalls::none();
-        for (number, guard) in (0..).zip(&mut self.guards) {
-            let (linear, coefficients) = ((&guard.linear, number), &mut guard.coefficients);
+    fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask) -> Falls<W> {
+        let mut falls = Falls {
+            lanes: LaneMask::NONE,
+            guards: [0; W],
+            places: Lanes::of(f64::INFINITY),
+        };
+        for (number, guard) in self.guards.iter_mut().enumerate() {
+            let (linear, coefficients) = (&guard.linear, &mut guard.coefficients);
+            let places = &mut falls.places;
             let found = self
                 .taylor
-                .first_fall(guard.of, h, linear, coefficients, &mut first);
-            let (look, count) = found;
-            for lane in look.and(&self.occupied).without(unclear).lanes() {
+                .first_fall(guard.of, h, linear, coefficients, places);
+            let ([mut first, look], count) = found;
+            for lane in (look & self.occupied & !*unclear).lanes() {
                 let dormant = guard.linear.starts_at_zero.is(lane);
                 match search(&guard.coefficients[..count], lane, dormant) {
-                    Some(place) if place < first.places.0[lane] => {
-                        (first.guards[lane], first.places.0[lane]) = (number, place);
+                    Some(place) if place < places.0[lane] => {
+                        places.0[lane] = place;
+                        first.set(lane, true);
                     }
                     Some(_) => {}
                     None => unclear.set(lane, true),
                 }
             }
+            for lane in first.lanes() {
+                falls.guards[lane] = number;
+            }
+            falls.lanes = falls.lanes | first;
         }
-        first
+        falls
     }
 
-    /// The end of the step, in `next`: for a fall the first state on its far side.
-    fn land(&mut self, h: &Lanes<W>, falls: &LaneFalls<W>, unclear: &mut LaneMask<W>) {
+    /// Goes to the end of the step, in `next`: for a fall to the first state on its far side. Gives the
+    /// lanes that have none.
+    fn land(&mut self, h: &Lanes<W>, falls: &Falls<W>) -> LaneMask {
         // A guard that all but fell at the end of the step before does so within the rounding of the start.
         let tau = |lane: usize| h.0[lane] * falls.places.0[lane].min(1.0);
         let mut tau = Lanes::from_fn(|lane| tau(lane).max(f64::MIN_POSITIVE));
+        let mut unclear = LaneMask::NONE;
+        if !falls.lanes.any() {
+            self.taylor.end(&self.here, &tau, &mut self.next);
+            return unclear;
+        }
         let mut more = Lanes(tau.0.map(|tau| tau * f64::EPSILON));
         let mut most = Lanes(h.0.map(|h| h * FARTHEST));
-        for (number, guard) in (0..).zip(&self.guards) {
-            let lanes = falls.of(number);
-            if lanes.any() {
-                let durations = [&mut tau, &mut more, &mut most];
-                (self.taylor).cross(&self.here, guard.of, &guard.linear, &lanes, durations);
-            }
+        for (number, guard) in self.guards.iter().enumerate() {
+            let (linear, lanes) = (&guard.linear, falls.of(number));
+            let durations = [&mut tau, &mut more, &mut most];
+            (self.taylor).cross(&self.here, guard.of, linear, lanes, durations);
         }
         self.taylor.end(&self.here, &tau, &mut self.next);
-        // The guards' own values decide: an offset may be rounded in another way there.
-        for (number, guard) in (0..).zip(&self.guards) {
-            let lanes = falls.of(number);
-            if lanes.any() {
-                let at = [&self.next.q, &self.next.v, &self.next.a];
-                let (kernel, context) = (self.kernel, &self.context);
-                let value = kernel.lane_guard(self.level, context, guard.guard, at);
-                for lane in lanes.lanes() {
-                    // Beyond the rounding of the polynomial there is no such state.
-                    if !(value.0[lane] < 0.0 && tau.0[lane] <= h.0[lane]) {
-                        unclear.set(lane, true);
-                    }
-                }
+        // The guards' own values decide: they may round an offset in another way.
+        for (number, guard) in self.guards.iter().enumerate() {
+            let at = [&self.next.q, &self.next.v, &self.next.a];
+            let (kernel, context) = (self.kernel, &self.context);
+            let value = kernel.lane_guard(self.level, context, guard.guard, at);
+            for lane in falls.of(number).lanes() {
+                // Beyond the rounding of the polynomial there is no such state.
+                let crossed = value.0[lane] < 0.0 && tau.0[lane] <= h.0[lane];
+                unclear.set(lane, !crossed);
             }
         }
+        unclear
     }
 
-    /// What the mode requires must hold at the end of the step; at the end of a segment the caller looks.
-    fn check_end(&mut self, signals: &Signals, until: &LaneMask<W>, unclear: &mut LaneMask<W>) {
+    /// The lanes in which something that the mode requires does not hold at the end of the step; at the
+    /// end of a segment the caller looks.
+    fn unmet_at_end(&mut self, signals: &Signals) -> LaneMask {
         if self.requirements.is_empty() {
-            return;
+            return LaneMask::NONE;
         }
         let context = &mut self.context;
         if !self.quiet {
@@ -157,9 +189,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let requirements = &mut self.requirements;
         self.kernel
             .lane_requirements(self.level, context, at, requirements);
-        let mut unmet = LaneMask::none();
-        lane_unmet(self.level, requirements, &mut unmet);
-        *unclear = unclear.or(&unmet.without(until));
+        lane_unmet(self.level, requirements)
     }
 }
 

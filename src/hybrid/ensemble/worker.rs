@@ -15,7 +15,7 @@ trait AnyGroup<const W: usize> {
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
-    fn step(&mut self, signals: &Signals) -> LaneMask<W>;
+    fn step(&mut self, signals: &Signals) -> LaneMask;
     fn outcome(&self, lane: usize) -> Outcome;
 }
 
@@ -32,7 +32,7 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
     }
-    fn step(&mut self, signals: &Signals) -> LaneMask<W> {
+    fn step(&mut self, signals: &Signals) -> LaneMask {
         Group::step(self, signals)
     }
     fn outcome(&self, lane: usize) -> Outcome {

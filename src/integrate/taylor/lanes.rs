@@ -5,7 +5,7 @@ use super::super::tolerances::Tolerances;
 use super::length;
 use super::series::ORDERS;
 use crate::kernel::{
-    LANE_ROWS, LaneFalls, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
+    LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
     lane_cross, lane_end, lane_first_fall, lane_length,
 };
 
@@ -60,18 +60,10 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     pub fn begin(
         &mut self,
         point: &LanePoint<F, W>,
-        at_start: &LaneMask<W>,
+        at_start: LaneMask,
         system: &LaneSystem<F, W>,
-        unclear: &mut LaneMask<W>,
-    ) -> [[Lanes<W>; F]; F] {
-        lane_begin(
-            self.level,
-            point,
-            at_start,
-            system,
-            &mut self.series,
-            unclear,
-        )
+    ) -> ([[Lanes<W>; F]; F], LaneMask) {
+        lane_begin(self.level, point, at_start, system, &mut self.series)
     }
 
     /// The length of the step, as a step of [`super::Taylor`]: see [`lane_length`].
@@ -80,8 +72,8 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         &self,
         point: &LanePoint<F, W>,
         limits: [&Lanes<W>; 2],
-        unclear: &mut LaneMask<W>,
-    ) -> (Lanes<W>, LaneMask<W>) {
+        unclear: &mut LaneMask,
+    ) -> (Lanes<W>, LaneMask) {
         lane_length(
             self.level,
             &self.limits,
@@ -105,16 +97,16 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         &self,
         (index, rate): (usize, bool),
         h: &Lanes<W>,
-        guard: (&LaneGuard<W>, u64),
+        guard: &LaneGuard<W>,
         coefficients: &mut [Lanes<W>; ORDERS],
-        first: &mut LaneFalls<W>,
-    ) -> (LaneMask<W>, usize) {
+        place: &mut Lanes<W>,
+    ) -> ([LaneMask; 2], usize) {
         let rows = match rate {
             false => &self.series.q[..self.order() + 2],
             true => &self.series.v[..self.order() + 1],
         };
-        let unclear = lane_first_fall(self.level, (rows, index), h, guard, coefficients, first);
-        (unclear, rows.len())
+        let found = lane_first_fall(self.level, (rows, index), h, guard, coefficients, place);
+        (found, rows.len())
     }
 
     /// Moves the end of the step, from `point`, beyond the zero of such a guard in some lanes: see
@@ -125,7 +117,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         point: &LanePoint<F, W>,
         (index, rate): (usize, bool),
         guard: &LaneGuard<W>,
-        lanes: &LaneMask<W>,
+        lanes: LaneMask,
         durations: [&mut Lanes<W>; 3],
     ) {
         let (rows, count) = match rate {
