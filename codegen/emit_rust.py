@@ -232,8 +232,8 @@ def _mode(variant, i, equations):
 
 
 def _series(function, level=""):
-    (start, run), (lead, row) = function.symbol, function.workspace
-    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row} }}"
+    (start, run), (lead, row, convolutions) = function.symbol, function.workspace
+    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row}, convolutions: {convolutions} }}"
 
 
 def _lanes(variant, i, functions):
@@ -304,7 +304,7 @@ def _signals(model):
 
 
 def _expanded(variants):
-    """Of each signal, whether some Taylor series depends on it."""
+    """Of each signal, whether the equations of motion or the guards of some mode depend on it."""
     outputs = [f.output for v in variants for slot, f in v.functions.items() if slot[1] in SERIES]
     present = {s.element_hash() for output in outputs for s in ca.symvar(output)}
     return [s.element_hash() in present for s in _signals(variants[0].model)]

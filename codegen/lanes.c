@@ -68,6 +68,13 @@ DALEMBERT_INLINE real two_sum_of(real a, real b, real *sum) {
 /* Numbers of free coordinates that are told apart: MOST_FREE in src/kernel/mod.rs. */
 #define FREE(with) with(0) with(1) with(2) with(3) with(4) with(5) with(6)
 
+void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine);
+void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine) {
+  const struct dalembert_sin_cos pair = dalembert_sin_cos(*x);
+  *sine = pair.sin;
+  *cosine = pair.cos;
+}
+
 /* A sine, as Sine in src/input/sine.rs lays it out. */
 struct sine { double amplitude, angular_frequency, start, end, sin_phase, cos_phase, of_integral, of_double_integral; };
 
@@ -103,18 +110,19 @@ void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *je
   jet[3] = double_integral + integral * pick(below(end, *t), *t - end, zero);
 }
 
-/* Rows of the Taylor coefficients of a sine, from its value and rate. factors: what each is of the last
- * but one.
+/* Rows of the Taylor coefficients of a sine, from its value and rate: each is factor * inverses[k] times the
+ * last but one.
  */
-void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, const double *factors, const real *jet, real *row);
-void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, const double *factors, const real *jet, real *row) {
-  real even = jet[1], odd = jet[0];
-  for (size_t k = 0; k < count; k += 2) {
-    row[k * stride] = even;
-    even *= factors[k];
-    if (k + 1 == count) return;
-    row[(k + 1) * stride] = odd;
-    odd *= factors[k + 1];
+void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, double factor, const double *inverses,
+                                       const real *jet, real *row);
+void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, double factor, const double *inverses,
+                                       const real *jet, real *row) {
+  real now = jet[1], next = jet[0];
+  for (size_t k = 0; k < count; ++k) {
+    row[k * stride] = now;
+    const real after = now * (factor * inverses[k]);
+    now = next;
+    next = after;
   }
 }
 
@@ -210,25 +218,31 @@ DALEMBERT_INLINE real inverse_power(real x) {
   return 0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
-/* x^(-1/n) for positive normal x, and infinity for zero, as there; given 1/n. */
-DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
+/* A number > 0 as its exponent and the rest of its binary logarithm, in [0, 1): as there. */
+struct logarithm { real exponent, fraction; };
+DALEMBERT_INLINE struct logarithm binary_logarithm(real x) {
   const word pattern = (word)x;
-  const real exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
   const real mantissa = (real)((pattern & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
-  const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
+  struct logarithm out;
+  out.exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
+  out.fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
+  return out;
+}
+
+/* 2^(-x/n) for a number x that is so given, and 1/n. */
+DALEMBERT_INLINE real inverse_root(struct logarithm x, real n, real inverse) {
   /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
-  const word whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, word);
-  const real rest = exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
+  const word whole = __builtin_convertvector((x.exponent + (1024.0 * n + 0.5)) * inverse, word);
+  const real rest = x.exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
   const real power = (real)((1023 + 1024 - whole) << 52);
-  const real root = power * inverse_power((rest + fraction) * inverse);
-  return pick(at_most(REAL(0x1p-1022), x), root, REAL(INFINITY));
+  return power * inverse_power((rest + x.fraction) * inverse);
 }
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
  * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
  * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
- * p - 3 and p - 2, their inverses, and the factors of the lengths that they tell:
- * src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
+ * p - 3 and p - 2, their inverses, the factors of the lengths that they tell, and their
+ * logarithms, which tell the shortest: src/integrate/logarithm.rs, src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
  * those whose series is not finite or whose time would not advance.
  */
 DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
@@ -251,9 +265,21 @@ DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *
     sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
     finite &= below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
-  real longest = *horizon;
+  struct logarithm of_shortest = {REAL(0.0), REAL(0.0)};
+  real shortest = REAL(-INFINITY), n = REAL(1.0), inverse = REAL(1.0), factor = REAL(INFINITY);
 #pragma GCC unroll 5
-  for (int k = 0; k < 5; ++k) longest = smaller(terms[10 + k] * inverse_root(sizes[k], terms[k], terms[5 + k]), longest);
+  for (int k = 0; k < 5; ++k) {
+    const struct logarithm own = binary_logarithm(sizes[k]);
+    const real logarithm = (own.exponent + own.fraction) * terms[5 + k] - terms[15 + k];
+    const truth shorter = below(shortest, logarithm) & at_most(REAL(0x1p-1022), sizes[k]);
+    shortest = pick(shorter, logarithm, shortest);
+    of_shortest.exponent = pick(shorter, own.exponent, of_shortest.exponent);
+    of_shortest.fraction = pick(shorter, own.fraction, of_shortest.fraction);
+    n = pick(shorter, REAL(terms[k]), n);
+    inverse = pick(shorter, REAL(terms[5 + k]), inverse);
+    factor = pick(shorter, REAL(terms[10 + k]), factor);
+  }
+  const real longest = smaller(factor * inverse_root(of_shortest, n, inverse), *horizon);
   const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
   *h = pick(at_most(remaining, longest), remaining, half);
   *unclear |= bits((truth)~finite | same(now + *h, now));

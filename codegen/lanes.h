@@ -13,7 +13,8 @@
 
 typedef double real __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
 #define DALEMBERT_INLINE static inline __attribute__((always_inline))
-#define DALEMBERT_UNROLL
+#define DALEMBERT_CLONES
+#define DALEMBERT_WIDTH(n) (n)
 #define DALEMBERT_JOIN(name, level) DALEMBERT_JOINED(name, level)
 #define DALEMBERT_JOINED(name, level) name##level
 #define LANES(name) DALEMBERT_JOIN(name, DALEMBERT_LEVEL)

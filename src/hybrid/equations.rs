@@ -25,13 +25,17 @@ pub(super) struct Clock<'a> {
 impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
     fn set(&self, tau: f64, context: &mut Context) {
-        if tau < self.until.0 {
-            let t = self.start.plus(tau).seconds();
-            context.set_signals(self.signals, t, Side::Right);
-        } else {
-            context.set_signals(self.signals, self.until.1, Side::Left);
-        }
+        let (t, side) = self.instant(tau);
+        context.set_signals(self.signals, t, side);
         self.set_held(tau, context);
+    }
+
+    /// Absolute time that local time `tau` stands for, and the side of it.
+    fn instant(&self, tau: f64) -> (f64, Side) {
+        match tau < self.until.0 {
+            true => (self.start.plus(tau).seconds(), Side::Right),
+            false => (self.until.1, Side::Left),
+        }
     }
 
     fn set_held(&self, tau: f64, context: &mut Context) {
@@ -83,6 +87,8 @@ pub(super) struct Equations<'a, const F: usize> {
     scale: SVector<f64, F>,
     /// Local time for which the context is set; NaN: none.
     set_for: f64,
+    /// Local times for which the equations' signals are known ahead; NaN: none.
+    ahead: [f64; Context::MOST_AHEAD],
     /// Local time about which the guards were last expanded; NaN: none.
     guards_expanded_at: f64,
     /// The piece of the inputs in which the last expansion was.
@@ -104,6 +110,7 @@ impl<'a, const F: usize> Equations<'a, F> {
             tolerance,
             scale,
             set_for: f64::NAN,
+            ahead: [f64::NAN; Context::MOST_AHEAD],
             guards_expanded_at: f64::NAN,
             // None yet: it has ended before all times.
             piece: Piece {
@@ -119,6 +126,19 @@ impl<'a, const F: usize> Equations<'a, F> {
         if tau != self.set_for {
             self.clock.set(tau, self.context);
             self.set_for = tau;
+        }
+    }
+
+    /// Sets the context to local time `tau` as far as the equations of motion need it.
+    #[inline]
+    fn at_stage(&mut self, tau: f64) {
+        match self.ahead.iter().position(|&ahead| ahead == tau) {
+            Some(index) if tau != self.set_for => {
+                self.context.set_foreseen_signals(index);
+                self.clock.set_held(tau, self.context);
+                self.set_for = f64::NAN;
+            }
+            _ => self.at(tau),
         }
     }
 
@@ -169,6 +189,18 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         self.kernel.is_linear()
     }
 
+    fn foresee(&mut self, times: &[f64]) {
+        self.ahead.fill(f64::NAN);
+        let clock = &self.clock;
+        let mut at = [(0.0, Side::Right); Context::MOST_AHEAD];
+        for (at, &tau) in at.iter_mut().zip(times) {
+            *at = clock.instant(tau);
+        }
+        if self.context.foresee_signals(clock.signals, &at) {
+            self.ahead[..times.len()].copy_from_slice(times);
+        }
+    }
+
     fn resolution(&self, t: f64) -> f64 {
         let clock = &self.clock;
         clock.signals.resolution(clock.start.plus(t).seconds())
@@ -183,7 +215,7 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         a: &SVector<f64, F>,
         r: &mut SVector<f64, F>,
     ) {
-        self.at(t);
+        self.at_stage(t);
         self.kernel.residual(self.context, Free { q, v, a }, r);
     }
 

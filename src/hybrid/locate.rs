@@ -70,14 +70,9 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                     state: end,
                     beyond: 0.0,
                 },
-                false => beyond_the_crossing(
-                    equations,
-                    conditions,
-                    guard,
-                    &end,
-                    0.0,
-                    window - start,
-                ),
+                false => {
+                    beyond_the_crossing(equations, conditions, guard, &end, 0.0, window - start)
+                }
             });
         }
         let rate = rate_at(equations, guard, &end);

@@ -79,25 +79,27 @@ impl Function {
             .fold(Jet::default(), |sum, term| sum + term.at(t, side))
     }
 
-    /// Fills `out` with the coefficients of f(t + τ) in powers of τ, of the function that acts just
-    /// before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in `out[k]`. They are those of
-    /// one analytic function up to [`Function::next_knot`]. `known` are value and rate, which
-    /// [`Function::at`] gave.
+    /// The values alone at several instants.
+    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
+        match &self.terms[..] {
+            [Term::Sine(sine)] => sine.values(at),
+            _ => at.map(|(t, side)| self.at(t, side).value),
+        }
+    }
+
+    /// Fills every `stride`-th entry of `out` with the coefficients of f(t + τ) in powers of τ, of the
+    /// function that acts just before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in
+    /// `out[stride · k]`. They are those of one analytic function up to [`Function::next_knot`]. `known`
+    /// are value and rate, which [`Function::at`] gave.
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] of them.
     #[inline]
-    pub fn series<'a>(
-        &self,
-        t: f64,
-        side: Side,
-        known: [f64; 2],
-        out: impl ExactSizeIterator<Item = &'a mut f64>,
-    ) {
+    pub fn series(&self, t: f64, side: Side, known: [f64; 2], stride: usize, out: &mut [f64]) {
         if let [Term::Sine(sine)] = &self.terms[..] {
-            out.zip(sine.series(known)).for_each(|(out, c)| *out = c);
-            return;
+            return sine.fill_series(known, stride, out);
         }
+        let out = out.iter_mut().step_by(stride);
         let mut room = [0.0; Signals::MOST_ORDERS];
         let room = &mut room[..out.len()];
         for term in &self.terms {
@@ -127,18 +129,18 @@ impl Function {
         level: usize,
         t: &Lanes<W>,
         jet: &LaneJet<W>,
-        rows: &mut [Lanes<W>],
         stride: usize,
+        rows: &mut [Lanes<W>],
     ) {
         if let [Term::Sine(sine)] = &self.terms[..] {
-            return sine.series_of_lanes(level, jet, rows, stride);
+            return sine.fill_series_of_lanes(level, jet, stride, rows);
         }
         let mut room = [0.0; Signals::MOST_ORDERS];
         let room = &mut room[..rows.len().div_ceil(stride)];
         let [rate, value, ..] = jet.0;
         for lane in 0..W {
             let known = [value, rate].map(|x| x.0[lane]);
-            self.series(t.0[lane], Side::Right, known, room.iter_mut());
+            self.series(t.0[lane], Side::Right, known, 1, room);
             for (row, value) in rows.iter_mut().step_by(stride).zip(&*room) {
                 row.0[lane] = *value;
             }
@@ -214,8 +216,9 @@ impl Term {
             }
             Term::Sine(sine) => {
                 let jet = sine.at(t, side);
-                let coefficients = sine.series([jet.value, jet.rate]);
-                (out.iter_mut().zip(coefficients)).for_each(|(out, c)| *out += c);
+                let mut room = [0.0; Signals::MOST_ORDERS];
+                sine.fill_series([jet.value, jet.rate], 1, &mut room[..out.len()]);
+                (out.iter_mut().zip(room)).for_each(|(out, c)| *out += c);
             }
             Term::Table(table) => table.add_series(t, side, out),
         }

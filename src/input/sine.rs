@@ -1,9 +1,20 @@
 //! A sine that may start late and end early.
 
 use super::lanes::LaneJet;
-use super::{INVERSES, Jet, Side, Signals};
+use super::{Jet, Side, Signals};
 use crate::integrate::Lanes;
-use crate::kernel::{lane_sine, lane_sine_series, sin_cos};
+use crate::kernel::{lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
+
+/// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
+const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
+    let mut inverses = [0.0; Signals::MOST_ORDERS];
+    let mut k = 0;
+    while k < inverses.len() {
+        inverses[k] = (1.0 / (k + 1) as f64) * (1.0 / (k + 2) as f64);
+        k += 1;
+    }
+    inverses
+};
 
 /// A·sin(ω (t − start) + φ) for start ≤ t < end, and zero outside.
 ///
@@ -19,8 +30,6 @@ pub struct Sine {
     cos_phase: f64,
     /// Amplitudes of the antiderivatives, A/ω and A/ω².
     of_integrals: [f64; 2],
-    /// Of the Taylor coefficients: that of order k + 2 is −ω²/((k + 1)(k + 2)) times that of order k.
-    factors: [f64; Signals::MOST_ORDERS],
 }
 
 impl Sine {
@@ -40,9 +49,6 @@ impl Sine {
                 amplitude / angular_frequency,
                 amplitude / (angular_frequency * angular_frequency),
             ],
-            factors: std::array::from_fn(|k| {
-                -(angular_frequency * angular_frequency) * (INVERSES[k + 1] * INVERSES[k + 2])
-            }),
         }
     }
 
@@ -58,47 +64,40 @@ impl Sine {
     /// A/ω · 2 sin(y/2 + φ) sin(y/2) and A/ω² (cos φ (y − sin y) + 2 sin φ sin²(y/2)), so that
     /// nothing cancels near the start.
     pub fn at(&self, t: f64, side: Side) -> Jet {
-        let y = self.angular_frequency * (t.clamp(self.start, self.end) - self.start);
-        let (sin, cos) = sin_cos(0.5 * y);
-        let acts = match side {
-            Side::Right => self.start <= t && t < self.end,
-            Side::Left => self.start < t && t <= self.end,
-        };
-        let (amplitude, omega) = (self.amplitude, self.angular_frequency);
-        let sin_shifted = sin * self.cos_phase + cos * self.sin_phase;
-        let cos_shifted = cos * self.cos_phase - sin * self.sin_phase;
-        let [first, second] = self.of_integrals;
-        let integral = first * 2.0 * sin_shifted * sin;
-        let double_integral = second
-            * (self.cos_phase * less_its_sine(y, 2.0 * sin * cos)
-                + 2.0 * self.sin_phase * sin * sin);
-        let (rate, value) = if acts {
-            (
-                amplitude * omega * (cos_shifted * cos - sin_shifted * sin),
-                amplitude * (sin_shifted * cos + cos_shifted * sin),
-            )
-        } else {
-            (0.0, 0.0)
-        };
-        // After the end the integral stays and its own integral goes on.
-        let after = if t > self.end { t - self.end } else { 0.0 };
-        Jet {
-            rate,
-            value,
-            integral,
-            double_integral: double_integral + integral * after,
-        }
+        let y = self.angle(t);
+        self.jet(t, side, y, sin_cos(0.5 * y))
     }
 
-    /// The Taylor coefficients about the time at which value and rate are those given.
-    #[inline]
-    pub(super) fn series(&self, [value, rate]: [f64; 2]) -> impl Iterator<Item = f64> {
-        let steps = self.factors.iter();
-        steps.scan((value, rate), |(now, next), factor| {
-            let coefficient = *now;
-            (*now, *next) = (*next, coefficient * factor);
-            Some(coefficient)
+    /// sin(y/2 + φ) and cos(y/2 + φ) from those of y/2.
+    #[inline(always)]
+    fn shifted(&self, (sin, cos): (f64, f64)) -> (f64, f64) {
+        (
+            sin * self.cos_phase + cos * self.sin_phase,
+            cos * self.cos_phase - sin * self.sin_phase,
+        )
+    }
+
+    /// The value alone at each of several instants.
+    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
+        let [sines, cosines] = sin_cos_of_eight(&at.map(|(t, _)| 0.5 * self.angle(t)));
+        std::array::from_fn(|i| {
+            let (t, side) = at[i];
+            let (sin, cos) = (sines[i], cosines[i]);
+            let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
+            match self.acts(t, side) {
+                true => self.amplitude * (sin_shifted * cos + cos_shifted * sin),
+                false => 0.0,
+            }
         })
+    }
+
+    /// Whether it acts at an instant.
+    #[inline(always)]
+    fn acts(&self, t: f64, side: Side) -> bool {
+        match side {
+            Side::Right => self.start <= t && t < self.end,
+            Side::Left => self.start < t && t <= self.end,
+        }
     }
 
     /// [`Sine::at`] on the right of each of several times (codegen/lanes.c).
@@ -123,16 +122,67 @@ impl Sine {
         lane_sine(level, &numbers, t, &mut jet.0);
     }
 
-    /// [`Sine::series`] for each of several times, into every `stride`-th of `rows`.
+    /// y = ω s while the sine acts.
+    #[inline(always)]
+    fn angle(&self, t: f64) -> f64 {
+        self.angular_frequency * (t.clamp(self.start, self.end) - self.start)
+    }
+
+    /// What [`Sine::at`] gives, with sin(y/2) and cos(y/2).
+    #[inline(always)]
+    fn jet(&self, t: f64, side: Side, y: f64, (sin, cos): (f64, f64)) -> Jet {
+        let (amplitude, omega) = (self.amplitude, self.angular_frequency);
+        let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
+        let [first, second] = self.of_integrals;
+        let integral = first * 2.0 * sin_shifted * sin;
+        let double_integral = second
+            * (self.cos_phase * less_its_sine(y, 2.0 * sin * cos)
+                + 2.0 * self.sin_phase * sin * sin);
+        let (rate, value) = if self.acts(t, side) {
+            (
+                amplitude * omega * (cos_shifted * cos - sin_shifted * sin),
+                amplitude * (sin_shifted * cos + cos_shifted * sin),
+            )
+        } else {
+            (0.0, 0.0)
+        };
+        // After the end the integral stays and its own integral goes on.
+        let after = if t > self.end { t - self.end } else { 0.0 };
+        Jet {
+            rate,
+            value,
+            integral,
+            double_integral: double_integral + integral * after,
+        }
+    }
+
+    /// Fills every `stride`-th entry of `out` with the Taylor coefficients about the time at which value
+    /// and rate are those given; each is −ω²/(k (k − 1)) times the last but one.
     #[inline]
-    pub(super) fn series_of_lanes<const W: usize>(
+    pub(super) fn fill_series(
+        &self,
+        [mut now, mut next]: [f64; 2],
+        stride: usize,
+        out: &mut [f64],
+    ) {
+        let factor = -(self.angular_frequency * self.angular_frequency);
+        for (out, inverse) in out.chunks_mut(stride).zip(&INVERSES_OF_PAIRS) {
+            out[0] = now;
+            (now, next) = (next, now * (factor * inverse));
+        }
+    }
+
+    /// [`Sine::fill_series`] for each of several times.
+    #[inline]
+    pub(super) fn fill_series_of_lanes<const W: usize>(
         &self,
         level: usize,
         jet: &LaneJet<W>,
-        rows: &mut [Lanes<W>],
         stride: usize,
+        out: &mut [Lanes<W>],
     ) {
-        lane_sine_series(level, &self.factors, &jet.0, rows, stride);
+        let factor = -(self.angular_frequency * self.angular_frequency);
+        lane_sine_series(level, (factor, &INVERSES_OF_PAIRS), &jet.0, stride, out);
     }
 
     /// Start and end, if they are after `t`.

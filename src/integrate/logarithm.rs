@@ -58,6 +58,88 @@ pub(super) fn root(x: f64, n: usize) -> f64 {
     power * inverse_power((rest as f64 + fraction) / n as f64)
 }
 
+/// A factor of a length, with its logarithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Factor {
+    value: f64,
+    logarithm: f64,
+}
+
+impl Factor {
+    const ONE: Factor = Factor {
+        value: 1.0,
+        logarithm: 0.0,
+    };
+
+    /// A factor > 0.
+    pub fn new(value: f64) -> Self {
+        Factor {
+            value,
+            logarithm: binary_logarithm(value),
+        }
+    }
+
+    /// The factor itself.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// log₂ of it.
+    pub fn logarithm(&self) -> f64 {
+        self.logarithm
+    }
+}
+
+/// The shortest of lengths, each a [`root`] times a factor. Logarithms tell which it is, so that only one
+/// root is taken.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shortest {
+    /// Its logarithm, less its sign.
+    logarithm: f64,
+    x: f64,
+    n: usize,
+    factor: f64,
+}
+
+impl Shortest {
+    /// None yet: infinite.
+    pub fn new() -> Self {
+        Shortest {
+            logarithm: f64::NEG_INFINITY,
+            x: 0.0,
+            n: 1,
+            factor: 1.0,
+        }
+    }
+
+    /// Adds the length x^(−1/n).
+    #[inline(always)]
+    pub fn add(&mut self, x: f64, n: usize) {
+        self.add_scaled(x, n, &Factor::ONE);
+    }
+
+    /// Adds `factor` times the length x^(−1/n).
+    #[inline(always)]
+    pub fn add_scaled(&mut self, x: f64, n: usize, factor: &Factor) {
+        let logarithm = binary_logarithm(x) / n as f64 - factor.logarithm;
+        if logarithm > self.logarithm && x >= f64::MIN_POSITIVE {
+            let factor = factor.value;
+            *self = Shortest {
+                logarithm,
+                x,
+                n,
+                factor,
+            };
+        }
+    }
+
+    /// The shortest length.
+    #[inline(always)]
+    pub fn length(&self) -> f64 {
+        self.factor * root(self.x, self.n)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -20,7 +20,7 @@ pub struct Dimensions {
     pub parameters: usize,
     /// Constants computed from the parameters.
     pub constants: usize,
-    /// Of each signal, whether Taylor series depend on it.
+    /// Of each signal, whether the equations of motion or the guards of some mode depend on it.
     pub expanded: &'static [bool],
 }
 
@@ -42,6 +42,8 @@ pub struct Context {
     pub held: Box<[f64]>,
     /// Taylor coefficients of the signals, one row an order.
     pub(super) signal_series: Box<[f64]>,
+    /// Signals at instants that will be asked for soon, a row each; antiderivatives are not among them.
+    ahead: Box<[f64]>,
     pub(super) constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub guard_series: Box<[f64]>,
@@ -69,6 +71,7 @@ impl Context {
             quiet: false,
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
+            ahead: vec![0.0; Self::MOST_AHEAD * dimensions.signals].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             constants: {
                 let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
@@ -107,6 +110,33 @@ impl Context {
             signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
             self.signals_at = (t, side);
         }
+    }
+
+    /// Number of instants of [`Context::foresee_signals`].
+    pub const MOST_AHEAD: usize = 8;
+
+    /// Computes the signals at several instants side by side, for [`Context::set_foreseen_signals`]: as
+    /// far as the equations of motion depend on them. Gives false where that is not possible.
+    pub fn foresee_signals(
+        &mut self,
+        signals: &Signals,
+        at: &[(f64, Side); Self::MOST_AHEAD],
+    ) -> bool {
+        let possible = !self.quiet && !signals.want_antiderivatives(self.dimensions.expanded);
+        if possible {
+            signals.values(at, &mut self.ahead);
+        }
+        possible
+    }
+
+    /// Sets the signals to those of an instant that was foreseen, by its index: enough for the equations
+    /// of motion, and for nothing else.
+    #[inline]
+    pub fn set_foreseen_signals(&mut self, index: usize) {
+        let width = self.signals.len();
+        let row = &self.ahead[index * width..][..width];
+        self.signals.copy_from_slice(row);
+        self.signals_at.0 = f64::NAN;
     }
 
     /// Sets signals and their rates to those of a lane, as they are right after its time.

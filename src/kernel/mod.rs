@@ -101,8 +101,9 @@ type OutBits = *mut u32;
 lane_functions!(
     ["_v1", #[cfg(target_arch = "x86_64")] "_v3", #[cfg(target_arch = "x86_64")] "_v4"]
     (
+        sin_cos(In, Out, Out);
         sine(In, In, Out);
-        sine_series(usize, usize, In, In, Out);
+        sine_series(usize, usize, f64, In, In, Out);
         antiderivative(usize, usize, In, In, Out);
         begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
         unmet(usize, In) -> Bits;
@@ -124,11 +125,40 @@ fn lane_functions<const W: usize>(level: usize) -> &'static LaneFunctions {
     &LANE_FUNCTIONS[level]
 }
 
-/// Rate, value, integral and double integral of a sine at times of lanes (s), on their right; the numbers
-/// of a sine are those of [`crate::input::Sine`].
+/// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
 ///
 /// # Panics
 /// If `W` is not the number of lanes of the level; so do the other functions for lanes.
+#[inline]
+pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
+    let (mut sin, mut cos) = (x, x);
+    let (to_sin, to_cos) = ((&raw mut sin).cast(), (&raw mut cos).cast());
+    // SAFETY: one number a lane each.
+    unsafe { (lane_functions::<W>(level).sin_cos)((&raw const x).cast(), to_sin, to_cos) };
+    (sin, cos)
+}
+
+/// Sines and cosines of eight angles (rad), side by side in lanes of this processor.
+pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
+    fn in_lanes<const W: usize>(level: usize, x: &[f64; 8]) -> [[f64; 8]; 2] {
+        let [mut sines, mut cosines] = [[0.0; 8]; 2];
+        for from in (0..8).step_by(W) {
+            let (sin, cos) = lane_sin_cos(level, Lanes::<W>::from_fn(|lane| x[from + lane]));
+            sines[from..from + W].copy_from_slice(&sin.0);
+            cosines[from..from + W].copy_from_slice(&cos.0);
+        }
+        [sines, cosines]
+    }
+    let level = processor_level();
+    match LANES_OF_LEVELS[level] {
+        8 => in_lanes::<8>(level, x),
+        4 => in_lanes::<4>(level, x),
+        _ => in_lanes::<2>(level, x),
+    }
+}
+
+/// Rate, value, integral and double integral of a sine at times of lanes (s), on their right; the numbers
+/// of a sine are those of [`crate::input::Sine`].
 #[inline]
 pub fn lane_sine<const W: usize>(
     level: usize,
@@ -141,22 +171,22 @@ pub fn lane_sine<const W: usize>(
     unsafe { (lane_functions::<W>(level).sine)(sine.as_ptr(), t, jet) };
 }
 
-/// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet; `factors`:
-/// what each coefficient is of the last but one.
+/// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet. Each is the
+/// last but one times the factor and its inverse.
 #[inline]
 pub fn lane_sine_series<const W: usize>(
     level: usize,
-    factors: &[f64],
+    (factor, inverses): (f64, &[f64]),
     jet: &[Lanes<W>; 4],
-    rows: &mut [Lanes<W>],
     stride: usize,
+    rows: &mut [Lanes<W>],
 ) {
     let count = rows.len().div_ceil(stride);
-    assert!(factors.len() >= count);
+    assert!(inverses.len() >= count);
     let (row, jet) = (rows.as_mut_ptr().cast(), jet.as_ptr().cast());
     let series = lane_functions::<W>(level).sine_series;
-    // SAFETY: the last of the rows is (count − 1) · stride < their number; factors are as many.
-    unsafe { series(count, stride, factors.as_ptr(), jet, row) };
+    // SAFETY: the last of the rows is (count − 1) · stride < their number; inverses are as many.
+    unsafe { series(count, stride, factor, inverses.as_ptr(), jet, row) };
 }
 
 /// Rows of the Taylor coefficients of an antiderivative into every `stride`-th of `rows` from the second
@@ -224,9 +254,9 @@ pub struct LaneLimits {
     pub order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     pub tolerances: Box<[f64]>,
-    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; and
-    /// the factors of the lengths that they tell.
-    pub terms: [[f64; 5]; 3],
+    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
+    /// factors of the lengths that they tell, and their logarithms.
+    pub terms: [[f64; 5]; 4],
 }
 
 /// The length at which the last terms of a series equal the tolerance, as it fits into what remains up
@@ -526,6 +556,8 @@ struct SeriesKernel {
     lead: usize,
     /// Doubles of the workspace for each order.
     row: usize,
+    /// Convolutions that an order takes.
+    convolutions: usize,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -589,7 +621,8 @@ impl<const F: usize> ModeKernel<F> {
     /// Convolutions of an order of the Taylor series of the motion.
     pub fn convolutions(&self, x: &Context) -> usize {
         // Each has a left and a right factor in the workspace.
-        self.motion_series(x).map_or(0, |series| series.row / 2)
+        self.motion_series(x)
+            .map_or(0, |series| series.convolutions)
     }
 
     #[inline]
