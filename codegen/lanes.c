@@ -415,11 +415,8 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   truth moving = falls;
   for (int i = 0; i < MOST_ITERATIONS && any(moving); ++i) {
     const struct local at = local(n, c, s);
-    /* The root of the parabola at s that a falling piece leads to, or Newton's. */
-    const real discriminant = at.slope * at.slope - 4.0 * at.half_curvature * at.value;
-    const truth parabola = below(REAL(0.0), discriminant) & below(at.slope, REAL(0.0));
-    const real root = sqrt(pick(parabola, discriminant, REAL(1.0)));
-    const real step = pick(parabola, 2.0 * at.value, -at.value) / pick(parabola, root - at.slope, at.slope);
+    /* Halley's step, of third order too. */
+    const real step = -at.value * at.slope / (at.slope * at.slope - at.half_curvature * at.value);
     const real next = s + step;
     const truth ended = at_most(size_of(step), LAST_STEP * next);
     s = pick(moving, next, s);

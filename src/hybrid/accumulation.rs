@@ -7,6 +7,7 @@
 //! the run.
 
 use super::instant::Instant;
+use std::array::from_fn;
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 pub const LONGEST_PATTERN: usize = 8;
@@ -196,11 +197,14 @@ impl Accumulation {
         // Each time is off by half a place, so that a difference of durations is off by two.
         let slack = 2.0 * f64::EPSILON * now.abs();
         let relative = relative.max(f64::EPSILON);
-        let mut may_be = [false; LONGEST_PATTERN];
-        for p in 1..=LONGEST_PATTERN {
-            let last = now - times[p];
-            let middle = times[p] - times[2 * p];
-            let first = times[2 * p] - times[3 * p];
+        // Durations of the last three patterns of each length; arrays, so that lengths go side by side.
+        let before = |patterns: usize| from_fn(|i| times[patterns * (i + 1)]);
+        let [one, two, three]: [[f64; LONGEST_PATTERN]; 3] = [before(1), before(2), before(3)];
+        let last: [f64; LONGEST_PATTERN] = from_fn(|i| now - one[i]);
+        let middle: [f64; LONGEST_PATTERN] = from_fn(|i| one[i] - two[i]);
+        let first: [f64; LONGEST_PATTERN] = from_fn(|i| two[i] - three[i]);
+        let may_be: [bool; LONGEST_PATTERN] = from_fn(|i| {
+            let (last, middle, first) = (last[i], middle[i], first[i]);
             // The limits that the last two durations and the two before foretell are as close as in
             // `series`; multiplied by the differences of the durations.
             let apart = (middle * (last * first - middle * middle)).abs();
@@ -208,9 +212,8 @@ impl Accumulation {
             let allowed = relative * limit * (first - middle);
             // What the slack of each duration makes of the two, with their partial derivatives.
             let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
-            let shrinks = (last - middle <= slack) & (middle - first <= slack);
-            may_be[p - 1] = shrinks & (apart <= allowed + noise);
-        }
+            (last - middle <= slack) & (middle - first <= slack) & (apart <= allowed + noise)
+        });
         let patterns = (1..=longest).map(|p| u32::from(may_be[p - 1]) << p);
         patterns.sum()
     }

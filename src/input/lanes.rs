@@ -69,12 +69,12 @@ impl<const W: usize> LaneSignals<W> {
     /// What [`Signals::jets`] gives for the time of a lane.
     pub fn of_lane(&self, lane: usize, signals: &Signals, u: &mut [f64], u_dot: &mut [f64]) {
         for (c, jet) in signals.channels.iter().zip(&self.jets) {
-            let [rate, value, integral, double_integral] = jet.0.map(|x| x.0[lane]);
+            let [rate, value, integral, double_integral] = &jet.0;
             let jet = Jet {
-                rate,
-                value,
-                integral,
-                double_integral,
+                rate: rate.0[lane],
+                value: value.0[lane],
+                integral: integral.0[lane],
+                double_integral: double_integral.0[lane],
             };
             c.set_values(&jet, u);
             c.set_rates(&jet, u_dot);
