@@ -1,5 +1,6 @@
 //! A function of time as a sum of simple terms.
 
+use super::lanes::LaneJet;
 use super::{Signals, Sine, Table};
 use crate::integrate::Lanes;
 
@@ -107,38 +108,41 @@ impl Function {
         out.zip(room).for_each(|(out, c)| *out = *c);
     }
 
-    /// [`Function::at`] for each of several times.
-    #[inline(always)]
+    /// [`Function::at`] on the right of each of several times.
+    #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
         level: usize,
-        t: &[f64; W],
-        side: Side,
-    ) -> [Jet; W] {
+        t: &Lanes<W>,
+        jet: &mut LaneJet<W>,
+    ) {
         match &self.terms[..] {
-            [Term::Sine(sine)] => sine.at_lanes(level, t, side),
-            _ => t.map(|t| self.at(t, side)),
+            [Term::Sine(sine)] => sine.at_lanes(level, t, jet),
+            _ => *jet = LaneJet::from_jets(t.0.map(|t| self.at(t, Side::Right))),
         }
     }
 
-    /// [`Function::series`] for each of several times.
-    #[inline(always)]
+    /// [`Function::series`] for each of several times, into every `stride`-th of `rows`.
+    #[inline]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,
-        t: &[f64; W],
-        known: [Lanes<W>; 2],
-        out: &mut [Lanes<W>],
+        level: usize,
+        t: &Lanes<W>,
+        jet: &LaneJet<W>,
+        stride: usize,
+        rows: &mut [Lanes<W>],
     ) {
         if let [Term::Sine(sine)] = &self.terms[..] {
-            return sine.fill_series_of_lanes(known, out);
+            return sine.fill_series_of_lanes(level, jet, stride, rows);
         }
         let mut room = [0.0; Signals::MOST_ORDERS];
-        let room = &mut room[..out.len()];
+        let room = &mut room[..rows.len().div_ceil(stride)];
+        let [rate, value, ..] = jet.0;
         for lane in 0..W {
-            let known = known.map(|x| x.0[lane]);
-            self.series(t[lane], Side::Right, known, 1, room);
-            for (out, value) in out.iter_mut().zip(&*room) {
-                out.0[lane] = *value;
+            let known = [value, rate].map(|x| x.0[lane]);
+            self.series(t.0[lane], Side::Right, known, 1, room);
+            for (row, value) in rows.iter_mut().step_by(stride).zip(&*room) {
+                row.0[lane] = *value;
             }
         }
     }

@@ -1,8 +1,9 @@
 //! A sine that may start late and end early.
 
+use super::lanes::LaneJet;
 use super::{Jet, Side, Signals};
 use crate::integrate::Lanes;
-use crate::kernel::{lane_sin_cos, sin_cos, sin_cos_of_eight};
+use crate::kernel::{lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
 
 /// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
 const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
@@ -99,21 +100,26 @@ impl Sine {
         }
     }
 
-    /// [`Sine::at`] for each of several times.
-    #[inline(always)]
+    /// [`Sine::at`] on the right of each of several times (codegen/lanes.c).
+    #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
         level: usize,
-        t: &[f64; W],
-        side: Side,
-    ) -> [Jet; W] {
-        let y: Lanes<W> = Lanes::from_fn(|i| self.angle(t[i]));
-        let (sin, cos) = lane_sin_cos(level, y * 0.5);
-        let mut jets = [Jet::default(); W];
-        for i in 0..W {
-            jets[i] = self.jet(t[i], side, y.0[i], (sin.0[i], cos.0[i]));
-        }
-        jets
+        t: &Lanes<W>,
+        jet: &mut LaneJet<W>,
+    ) {
+        let [of_integral, of_double_integral] = self.of_integrals;
+        let numbers = [
+            self.amplitude,
+            self.angular_frequency,
+            self.start,
+            self.end,
+            self.sin_phase,
+            self.cos_phase,
+            of_integral,
+            of_double_integral,
+        ];
+        lane_sine(level, &numbers, t, &mut jet.0);
     }
 
     /// y = ω s while the sine acts.
@@ -167,18 +173,16 @@ impl Sine {
     }
 
     /// [`Sine::fill_series`] for each of several times.
-    #[inline(always)]
+    #[inline]
     pub(super) fn fill_series_of_lanes<const W: usize>(
         &self,
-        [value, rate]: [Lanes<W>; 2],
+        level: usize,
+        jet: &LaneJet<W>,
+        stride: usize,
         out: &mut [Lanes<W>],
     ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut now, mut next) = (value, rate);
-        for (out, inverse) in out.iter_mut().zip(&INVERSES_OF_PAIRS) {
-            *out = now;
-            (now, next) = (next, now * (factor * inverse));
-        }
+        lane_sine_series(level, (factor, &INVERSES_OF_PAIRS), &jet.0, stride, out);
     }
 
     /// Start and end, if they are after `t`.

@@ -1,7 +1,7 @@
 //! What generated functions need besides the free coordinates.
 
 use crate::input::{LaneSignals, Side, Signals};
-use crate::integrate::{Lanes, ORDERS};
+use crate::integrate::ORDERS;
 use crate::model::Model;
 use crate::with_kernel;
 
@@ -139,24 +139,15 @@ impl Context {
         self.signals_at.0 = f64::NAN;
     }
 
-    /// Sets signals and their rates to those of a lane at time `t` (s), as they are right after it;
-    /// `from` are its signals.
+    /// Sets signals and their rates to those of a lane, as they are right after its time.
     pub fn set_signals_of_lane<const W: usize>(
         &mut self,
         of: &LaneSignals<W>,
         lane: usize,
         signals: &Signals,
-        t: f64,
-        from: &[Lanes<W>],
     ) {
-        of.of_lane(
-            lane,
-            signals,
-            from,
-            &mut self.signals,
-            &mut self.signal_rates,
-        );
-        self.signals_at = (t, Side::Right);
+        of.of_lane(lane, signals, &mut self.signals, &mut self.signal_rates);
+        self.signals_at = (of.time(lane), Side::Right);
     }
 
     /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
