@@ -174,7 +174,9 @@ fn error(ends: &[[f64; 2]]) -> f64 {
         let end = ends[member["member"].as_u64().expect("it has a number") as usize];
         let exact = member["end"].as_array().expect("it has an end");
         let exact = exact.iter().filter_map(|x| x.as_str()?.parse::<f64>().ok());
-        end.into_iter().zip(exact).map(|(x, exact)| (x - exact).abs())
+        end.into_iter()
+            .zip(exact)
+            .map(|(x, exact)| (x - exact).abs())
     });
     errors.fold(0.0, f64::max)
 }

@@ -66,6 +66,12 @@ pub(super) struct Factor {
 }
 
 impl Factor {
+    /// One.
+    pub const ONE: Factor = Factor {
+        value: 1.0,
+        logarithm: 0.0,
+    };
+
     /// A factor > 0.
     pub fn new(value: f64) -> Self {
         Factor {
@@ -85,31 +91,19 @@ impl Factor {
     }
 }
 
-/// What the binary logarithms of two lengths, each right to 2 %, may differ by where the lengths are equal.
-const SLACK: f64 = 0.06;
-
-/// The shortest of the lengths x^(−1/n) for `terms` (x, n), and of those times a factor for `scaled`: to
-/// the bit what the least of all [`root`]s is. Logarithms tell which ones need not be taken.
+/// The shortest of lengths, each a factor times the [`root`] of (x, n). Logarithms tell which it is, so
+/// that one root is taken.
 #[inline(always)]
-pub(super) fn shortest(terms: [(f64, usize); 3], scaled: [(f64, usize, Factor); 2]) -> f64 {
-    let logarithm = |x: f64, n: usize| match x < f64::MIN_POSITIVE {
-        true => f64::NEG_INFINITY,
-        false => binary_logarithm(x) / n as f64,
-    };
-    let (mut largest, mut chosen) = (f64::NEG_INFINITY, (0.0, 1));
-    for (x, n) in terms {
-        let logarithm = logarithm(x, n);
-        if logarithm > largest {
-            (largest, chosen) = (logarithm, (x, n));
+pub(super) fn shortest(terms: [(f64, usize, Factor); 5]) -> f64 {
+    let (mut largest, mut length) = (f64::NEG_INFINITY, (0.0, 1, 1.0));
+    for (x, n, factor) in terms {
+        let logarithm = binary_logarithm(x) / n as f64 - factor.logarithm;
+        if logarithm > largest && x >= f64::MIN_POSITIVE {
+            (largest, length) = (logarithm, (x, n, factor.value));
         }
     }
-    let mut length = root(chosen.0, chosen.1);
-    for (x, n, factor) in scaled {
-        if logarithm(x, n) - factor.logarithm > largest - SLACK {
-            length = length.min(factor.value * root(x, n));
-        }
-    }
-    length
+    let (x, n, factor) = length;
+    factor * root(x, n)
 }
 
 #[cfg(test)]
@@ -131,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shortest_length_is_the_least_of_all_roots() {
+    fn the_shortest_length_is_that_of_a_root() {
         let mut state = 1_u64;
         let mut draw = |most: f64| {
             // Numerical Recipes' multiplier: any scatter will do.
@@ -143,19 +137,20 @@ mod tests {
         for _ in 0..100_000 {
             let length = 10f64.powf(draw(6.0) - 3.0);
             let mut term = |n: usize| (length * (1.0 + 0.1 * draw(1.0))).powi(-(n as i32));
-            let terms = [(term(12), 12), (term(13), 13), (term(14), 14)];
-            let scaled = [10, 11].map(|n| (term(n), n, Factor::new(0.9 + 0.02 * n as f64 / 10.0)));
-            let plain = terms.map(|(x, n)| root(x, n));
-            let least = (plain.into_iter())
-                .chain(scaled.map(|(x, n, factor)| factor.value * root(x, n)))
-                .fold(f64::INFINITY, f64::min);
-            assert_eq!(shortest(terms, scaled), least);
+            let terms = [10, 11, 12, 13, 14].map(|n| {
+                let factor = if n < 12 {
+                    0.9 + 0.02 * n as f64 / 10.0
+                } else {
+                    1.0
+                };
+                (term(n), n, Factor::new(factor))
+            });
+            let all = terms.map(|(x, n, factor)| factor.value * root(x, n));
+            let least = all.into_iter().fold(f64::INFINITY, f64::min);
+            // Each of the two is right to 2 %.
+            assert!(all.contains(&shortest(terms)) && shortest(terms) < 1.04 * least);
         }
-        let none = [(0.0, 1); 3];
-        assert_eq!(
-            shortest(none, [(0.0, 2, Factor::new(0.5)); 2]),
-            f64::INFINITY
-        );
+        assert_eq!(shortest([(0.0, 2, Factor::new(0.5)); 5]), f64::INFINITY);
     }
 
     #[test]

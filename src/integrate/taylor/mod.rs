@@ -21,7 +21,7 @@ pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;
-use super::logarithm::{root, shortest};
+use super::logarithm::{Factor, root, shortest};
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
@@ -328,14 +328,16 @@ impl<const F: usize> Taylor<F> {
         let of_q = |power: usize| largest(&q[power], &of_q);
         let of_v = |power: usize| largest(&v[power], &of_v);
         let p = self.order;
-        let last = [
-            (of_v(p - 1), p - 1),
-            (f64::max(of_v(p), of_q(p)), p),
-            (of_q(p + 1), p + 1),
+        let [first, second] = self.earlier;
+        let terms = [
+            (of_v(p - 1), p - 1, Factor::ONE),
+            (f64::max(of_v(p), of_q(p)), p, Factor::ONE),
+            (of_q(p + 1), p + 1, Factor::ONE),
+            (of_v(first.power), first.power, first.factor),
+            (of_v(second.power), second.power, second.factor),
         ];
-        let earlier = (self.earlier).map(|term| (of_v(term.power), term.power, term.factor));
         let Implicit { power, error } = self.implicit;
-        [shortest(last, earlier), root(of_v(power) * error, power)]
+        [shortest(terms), root(of_v(power) * error, power)]
     }
 
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
