@@ -35,6 +35,19 @@ pub(super) const fn place(node: usize) -> f64 {
     }
 }
 
+/// Where a search on a window of length 1 looks first: at the samples of degree 4, and at two more of
+/// those of degree 8.
+pub const FIRST_PLACES: [f64; 8] = [
+    place(0),
+    place(DEGREE / 4),
+    place(DEGREE / 2),
+    place(3 * DEGREE / 4),
+    place(DEGREE),
+    place(Interpolant::test_sample(4)),
+    place(DEGREE / 8),
+    place(5 * DEGREE / 8),
+];
+
 /// cos(jπ/16).
 const fn cosine(j: usize) -> f64 {
     let j = j % 32;
