@@ -120,9 +120,7 @@ fn a_smooth_ensemble_is_within_its_tolerance_of_solutions_of_forty_digits() {
     for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
         let mut pendulum = problem("forced_pendulum", &[("g", 4.84)]);
         let drive = Sine::new(1.0, 3.0 * std::f64::consts::PI, 0.0);
-        pendulum
-            .set_input("moment", Function::from(drive))
-            .unwrap();
+        pendulum.set_input("moment", Function::from(drive)).unwrap();
         pendulum.end.time = 10.0;
         set_size(&mut pendulum, tolerance, 1.0, 1.0);
         let pendulums: Vec<_> = (members.iter())

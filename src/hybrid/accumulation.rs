@@ -164,7 +164,8 @@ impl Accumulation {
     /// Whether two events are the same but for time and state.
     fn are_alike(&self, one: usize, other: usize) -> bool {
         let bits = |x: &f64| x.to_bits();
-        let [one_after, other_after] = [one, other].map(|back| self.discrete(back).iter().map(bits));
+        let [one_after, other_after] =
+            [one, other].map(|back| self.discrete(back).iter().map(bits));
         self.hop(one).signature == self.hop(other).signature && one_after.eq(other_after)
     }
 

@@ -93,7 +93,8 @@ impl<const W: usize> LaneSignals<W> {
         let width = wanted.len();
         for (c, jet) in signals.channels.iter().zip(&self.jets) {
             let own = &mut rows[c.signal..];
-            c.function.series_of_lanes(self.level, &self.t, jet, width, own);
+            c.function
+                .series_of_lanes(self.level, &self.t, jet, width, own);
             if wanted[c.antiderivatives()].contains(&true) {
                 let [_, _, integral, double_integral] = jet.0;
                 for (before, value) in [integral, double_integral].iter().enumerate() {

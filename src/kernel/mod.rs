@@ -9,13 +9,13 @@ mod lanes;
 
 pub use context::{Context, Dimensions};
 pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LanePoint, LaneRows, LaneSeries, LaneSystem,
-    processor_level,
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LanePoint, LaneRows, LaneSeries,
+    LaneSystem, processor_level,
 };
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
-use lanes::Block;
 use crate::model::Model;
+use lanes::Block;
 use nalgebra::{SMatrix, SVector};
 
 /// Context of a call, as C sees it: signals, their rates, discrete states, held coordinates,
@@ -221,7 +221,8 @@ pub fn lane_begin<const F: usize, const W: usize>(
     series: &mut LaneSeries<F, W>,
 ) -> ([[Lanes<W>; F]; F], LaneMask) {
     let mut inverse = [[Lanes::of(0.0); F]; F];
-    let [q, v, a] = [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
+    let [q, v, a] =
+        [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
     let begin = lane_functions::<W>(level).begin;
     // SAFETY: a point and a system of F coordinates, room for F × F numbers, three rows of each series.
     let unclear = unsafe {

@@ -26,7 +26,10 @@ struct Falls<const W: usize> {
 impl<const W: usize> Falls<W> {
     /// The lanes in which a watched guard is the first.
     fn of(&self, guard: usize) -> LaneMask {
-        let own = self.lanes.lanes().filter(|&lane| self.guards[lane] == guard);
+        let own = self
+            .lanes
+            .lanes()
+            .filter(|&lane| self.guards[lane] == guard);
         own.fold(LaneMask::NONE, |lanes, lane| lanes | LaneMask(1 << lane))
     }
 }

@@ -5,8 +5,8 @@ use super::super::tolerances::Tolerances;
 use super::length;
 use super::series::ORDERS;
 use crate::kernel::{
-    LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
-    lane_cross, lane_end, lane_first_fall, lane_length,
+    LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_cross,
+    lane_end, lane_first_fall, lane_length,
 };
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
