@@ -227,7 +227,8 @@ impl Accumulation {
         }
         let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
-        if !(0.0 < last && last < middle && middle < first) {
+        // The last may be shorter than the resolution of an instant.
+        if !(0.0 <= last && last < middle && middle < first) {
             return None;
         }
         let (ratio, ratio_before) = (last / middle, middle / first);

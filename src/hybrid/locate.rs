@@ -71,7 +71,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                     beyond: 0.0,
                 },
                 false => {
-                    beyond_the_crossing(equations, conditions, guard, &end, 0.0, window - start)
+                    beyond_the_crossing(equations, conditions, guard, &end, 0.0, (start, window))
                 }
             });
         }
@@ -87,8 +87,8 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 false => Landing::Short,
             });
         }
-        let step = window - start;
-        if correction.abs() <= TAYLOR * step {
+        let step = (start, window);
+        if correction.abs() <= TAYLOR * (window - start) {
             return Ok(beyond_the_crossing(
                 equations, conditions, guard, &end, correction, step,
             ));
@@ -113,21 +113,29 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 
 /// The first state on the far side, from the end of the step on by about `correction`.
 ///
-/// The guard's own values decide. Its rounding may keep them at or above zero at the computed
-/// root: the move is lengthened by the last place of the length of the `step`, in which a motion over
-/// its own size passes the rounding of that, doubled each time, until it is strictly crossed; after
-/// `smooth` the Taylor polynomial ends.
+/// The guard's own values decide. Its rounding may keep them at or above zero at the computed root: the
+/// move is lengthened by as much as that takes, doubled each time, until it is strictly crossed; after
+/// `smooth` the Taylor polynomial ends. What is tried first is the last place of the time in which the
+/// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
+/// of all of that where the guard is no coordinate.
 fn beyond_the_crossing<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: &Guard,
     end: &State<F>,
     correction: f64,
-    step: f64,
+    step: (f64, f64),
 ) -> Landing<F> {
     let of_accelerations = depends_on_accelerations(conditions, guard);
-    let smooth = TAYLOR * step;
-    let mut place = (f64::EPSILON * step).max(f64::MIN_POSITIVE);
+    let smooth = TAYLOR * (step.1 - step.0);
+    let elapsed = end.t - step.0;
+    let own_size = match guard.shape {
+        GuardShape::Linear { index, rate, .. } if rate => (end.v[index] / end.a[index]).abs(),
+        GuardShape::Linear { index, .. } => (end.q[index] / end.v[index]).abs(),
+        GuardShape::General { .. } => elapsed,
+    };
+    let passed = own_size.min(elapsed).max(TAYLOR * elapsed);
+    let mut place = (f64::EPSILON * passed.max(correction.abs())).max(f64::MIN_POSITIVE);
     let mut beyond = correction;
     loop {
         let mut state = moved(end, beyond);

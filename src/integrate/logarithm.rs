@@ -66,11 +66,6 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    const ONE: Factor = Factor {
-        value: 1.0,
-        logarithm: 0.0,
-    };
-
     /// A factor > 0.
     pub fn new(value: f64) -> Self {
         Factor {
@@ -90,54 +85,31 @@ impl Factor {
     }
 }
 
-/// The shortest of lengths, each a [`root`] times a factor. Logarithms tell which it is, so that only one
-/// root is taken.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Shortest {
-    /// Its logarithm, less its sign.
-    logarithm: f64,
-    x: f64,
-    n: usize,
-    factor: f64,
-}
+/// What the binary logarithms of two lengths, each right to 2 %, may differ by where the lengths are equal.
+const SLACK: f64 = 0.06;
 
-impl Shortest {
-    /// None yet: infinite.
-    pub fn new() -> Self {
-        Shortest {
-            logarithm: f64::NEG_INFINITY,
-            x: 0.0,
-            n: 1,
-            factor: 1.0,
+/// The shortest of the lengths x^(−1/n) for `terms` (x, n), and of those times a factor for `scaled`: to
+/// the bit what the least of all [`root`]s is. Logarithms tell which ones need not be taken.
+#[inline(always)]
+pub(super) fn shortest(terms: [(f64, usize); 3], scaled: [(f64, usize, Factor); 2]) -> f64 {
+    let logarithm = |x: f64, n: usize| match x < f64::MIN_POSITIVE {
+        true => f64::NEG_INFINITY,
+        false => binary_logarithm(x) / n as f64,
+    };
+    let (mut largest, mut chosen) = (f64::NEG_INFINITY, (0.0, 1));
+    for (x, n) in terms {
+        let logarithm = logarithm(x, n);
+        if logarithm > largest {
+            (largest, chosen) = (logarithm, (x, n));
         }
     }
-
-    /// Adds the length x^(−1/n).
-    #[inline(always)]
-    pub fn add(&mut self, x: f64, n: usize) {
-        self.add_scaled(x, n, &Factor::ONE);
-    }
-
-    /// Adds `factor` times the length x^(−1/n).
-    #[inline(always)]
-    pub fn add_scaled(&mut self, x: f64, n: usize, factor: &Factor) {
-        let logarithm = binary_logarithm(x) / n as f64 - factor.logarithm;
-        if logarithm > self.logarithm && x >= f64::MIN_POSITIVE {
-            let factor = factor.value;
-            *self = Shortest {
-                logarithm,
-                x,
-                n,
-                factor,
-            };
+    let mut length = root(chosen.0, chosen.1);
+    for (x, n, factor) in scaled {
+        if logarithm(x, n) - factor.logarithm > largest - SLACK {
+            length = length.min(factor.value * root(x, n));
         }
     }
-
-    /// The shortest length.
-    #[inline(always)]
-    pub fn length(&self) -> f64 {
-        self.factor * root(self.x, self.n)
-    }
+    length
 }
 
 #[cfg(test)]
@@ -156,6 +128,34 @@ mod tests {
             }
         }
         assert_eq!(root(0.0, 7), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_shortest_length_is_the_least_of_all_roots() {
+        let mut state = 1_u64;
+        let mut draw = |most: f64| {
+            // Numerical Recipes' multiplier: any scatter will do.
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 * most
+        };
+        for _ in 0..100_000 {
+            let length = 10f64.powf(draw(6.0) - 3.0);
+            let mut term = |n: usize| (length * (1.0 + 0.1 * draw(1.0))).powi(-(n as i32));
+            let terms = [(term(12), 12), (term(13), 13), (term(14), 14)];
+            let scaled = [10, 11].map(|n| (term(n), n, Factor::new(0.9 + 0.02 * n as f64 / 10.0)));
+            let plain = terms.map(|(x, n)| root(x, n));
+            let least = (plain.into_iter())
+                .chain(scaled.map(|(x, n, factor)| factor.value * root(x, n)))
+                .fold(f64::INFINITY, f64::min);
+            assert_eq!(shortest(terms, scaled), least);
+        }
+        let none = [(0.0, 1); 3];
+        assert_eq!(
+            shortest(none, [(0.0, 2, Factor::new(0.5)); 2]),
+            f64::INFINITY
+        );
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;
-use super::logarithm::{Shortest, root};
+use super::logarithm::{root, shortest};
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
@@ -328,15 +328,14 @@ impl<const F: usize> Taylor<F> {
         let of_q = |power: usize| largest(&q[power], &of_q);
         let of_v = |power: usize| largest(&v[power], &of_v);
         let p = self.order;
-        let mut shortest = Shortest::new();
-        shortest.add(of_v(p - 1), p - 1);
-        shortest.add(f64::max(of_v(p), of_q(p)), p);
-        shortest.add(of_q(p + 1), p + 1);
-        for term in &self.earlier {
-            shortest.add_scaled(of_v(term.power), term.power, &term.factor);
-        }
+        let last = [
+            (of_v(p - 1), p - 1),
+            (f64::max(of_v(p), of_q(p)), p),
+            (of_q(p + 1), p + 1),
+        ];
+        let earlier = (self.earlier).map(|term| (of_v(term.power), term.power, term.factor));
         let Implicit { power, error } = self.implicit;
-        [shortest.length(), root(of_v(power) * error, power)]
+        [shortest(last, earlier), root(of_v(power) * error, power)]
     }
 
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
