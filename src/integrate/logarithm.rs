@@ -78,11 +78,6 @@ impl Factor {
     pub fn value(&self) -> f64 {
         self.value
     }
-
-    /// log₂ of it.
-    pub fn logarithm(&self) -> f64 {
-        self.logarithm
-    }
 }
 
 /// What the binary logarithms of two lengths, each right to 2 %, may differ by where the lengths are equal.

@@ -255,9 +255,9 @@ pub struct LaneLimits {
     pub order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     pub tolerances: Box<[f64]>,
-    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
-    /// factors of the lengths that they tell, and their logarithms.
-    pub terms: [[f64; 5]; 4],
+    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; and
+    /// the factors of the lengths that they tell.
+    pub terms: [[f64; 5]; 3],
 }
 
 /// The length at which the last terms of a series equal the tolerance, as it fits into what remains up

@@ -28,9 +28,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let order = length::order(relative, convolutions, F);
         let earlier = length::earlier_terms(relative, order, convolutions);
-        let factors = earlier.map(|term| term.factor);
-        let [first, second] = factors.map(|factor| factor.value());
-        let logarithms = factors.map(|factor| factor.logarithm());
+        let [first, second] = earlier.map(|term| term.factor.value());
         let orders = [order - 1, order, order + 1, order - 3, order - 2].map(|n| n as f64);
         LaneTaylor {
             series: LaneSeries {
@@ -46,7 +44,6 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
                     orders,
                     orders.map(|n| 1.0 / n),
                     [1.0, 1.0, 1.0, first, second],
-                    [0.0, 0.0, 0.0, logarithms[0], logarithms[1]],
                 ],
             },
         }
