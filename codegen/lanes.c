@@ -218,25 +218,31 @@ DALEMBERT_INLINE real inverse_power(real x) {
   return 0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
-/* x^(-1/n) for positive normal x, and infinity for zero, as there; given 1/n. */
-DALEMBERT_INLINE real inverse_root(real x, double n, double inverse) {
+/* A number > 0 as its exponent and the rest of its binary logarithm, in [0, 1): as there. */
+struct logarithm { real exponent, fraction; };
+DALEMBERT_INLINE struct logarithm binary_logarithm(real x) {
   const word pattern = (word)x;
-  const real exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
   const real mantissa = (real)((pattern & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
-  const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
+  struct logarithm out;
+  out.exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
+  out.fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
+  return out;
+}
+
+/* 2^(-x/n) for a number x that is so given, and 1/n. */
+DALEMBERT_INLINE real inverse_root(struct logarithm x, real n, real inverse) {
   /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
-  const word whole = __builtin_convertvector((exponent + (1024.0 * n + 0.5)) * inverse, word);
-  const real rest = exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
+  const word whole = __builtin_convertvector((x.exponent + (1024.0 * n + 0.5)) * inverse, word);
+  const real rest = x.exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
   const real power = (real)((1023 + 1024 - whole) << 52);
-  const real root = power * inverse_power((rest + fraction) * inverse);
-  return pick(at_most(REAL(0x1p-1022), x), root, REAL(INFINITY));
+  return power * inverse_power((rest + x.fraction) * inverse);
 }
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
  * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
  * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
- * p - 3 and p - 2, their inverses, and the factors of the lengths that they tell:
- * src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
+ * p - 3 and p - 2, their inverses, the factors of the lengths that they tell, and their
+ * logarithms, which tell the shortest: src/integrate/logarithm.rs, src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
  * those whose series is not finite or whose time would not advance.
  */
 DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
@@ -259,11 +265,21 @@ DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *
     sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
     finite &= below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
-  real lengths[5];
+  struct logarithm of_shortest = {REAL(0.0), REAL(0.0)};
+  real shortest = REAL(-INFINITY), n = REAL(1.0), inverse = REAL(1.0), factor = REAL(INFINITY);
 #pragma GCC unroll 5
-  for (int k = 0; k < 5; ++k) lengths[k] = terms[10 + k] * inverse_root(sizes[k], terms[k], terms[5 + k]);
-  const real last_terms = smaller(smaller(lengths[0], lengths[1]), lengths[2]);
-  const real longest = smaller(smaller(last_terms, smaller(lengths[3], lengths[4])), *horizon);
+  for (int k = 0; k < 5; ++k) {
+    const struct logarithm own = binary_logarithm(sizes[k]);
+    const real logarithm = (own.exponent + own.fraction) * terms[5 + k] - terms[15 + k];
+    const truth shorter = below(shortest, logarithm) & at_most(REAL(0x1p-1022), sizes[k]);
+    shortest = pick(shorter, logarithm, shortest);
+    of_shortest.exponent = pick(shorter, own.exponent, of_shortest.exponent);
+    of_shortest.fraction = pick(shorter, own.fraction, of_shortest.fraction);
+    n = pick(shorter, REAL(terms[k]), n);
+    inverse = pick(shorter, REAL(terms[5 + k]), inverse);
+    factor = pick(shorter, REAL(terms[10 + k]), factor);
+  }
+  const real longest = smaller(factor * inverse_root(of_shortest, n, inverse), *horizon);
   const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
   *h = pick(at_most(remaining, longest), remaining, half);
   *unclear |= bits((truth)~finite | same(now + *h, now));

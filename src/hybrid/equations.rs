@@ -39,7 +39,7 @@ impl Clock<'_> {
     }
 
     fn set_held(&self, tau: f64, context: &mut Context) {
-        for ((h, q), rate) in context.held.iter_mut().zip(self.held).zip(self.drift) {
+        for ((h, q), rate) in context.held_mut().iter_mut().zip(self.held).zip(self.drift) {
             *h = q + rate * tau;
         }
     }

@@ -46,15 +46,19 @@ impl Conditions<'_> {
         if !transition.conditional {
             return reduce(&[]);
         }
-        let n = context.held.len();
+        let n = context.held().len();
         let target = &self.variant.modes[transition.target];
-        context.held.swap_with_slice(&mut self.next[..n]);
-        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
+        context.held_mut().swap_with_slice(&mut self.next[..n]);
+        context
+            .discrete_mut()
+            .swap_with_slice(&mut self.next[2 * n..]);
         let condition = with_kernel!(&target.kernels, k => {
             conditions_in(k, context, transition, target.free, &self.next[n..2 * n], reduce)
         });
-        context.held.swap_with_slice(&mut self.next[..n]);
-        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
+        context.held_mut().swap_with_slice(&mut self.next[..n]);
+        context
+            .discrete_mut()
+            .swap_with_slice(&mut self.next[2 * n..]);
         condition
     }
 
@@ -81,7 +85,7 @@ fn conditions_in<const F: usize>(
     rates: &[f64],
     reduce: impl Fn(&[f64]) -> f64,
 ) -> f64 {
-    let q = SVector::<f64, F>::from_fn(|i, _| context.held[free[i]]);
+    let q = SVector::<f64, F>::from_fn(|i, _| context.held()[free[i]]);
     let v = SVector::<f64, F>::from_fn(|i, _| rates[free[i]]);
     let system = kernel.system(context, &q, &v);
     let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
@@ -239,7 +243,7 @@ fn search_linear<const F: usize>(
     else {
         unreachable!("the caller has asked for its shape")
     };
-    let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
+    let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete()[d]);
     let mut coefficients = [0.0; ORDERS];
     let count = dense.polynomial(index, rate, &mut coefficients);
     if factor != 1.0 {

@@ -210,7 +210,7 @@ fn rate_at<const F: usize>(equations: &mut Equations<F>, guard: &Guard, state: &
         ..
     } = guard.shape
     {
-        let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
+        let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete()[d]);
         return factor * if rate { state.a[index] } else { state.v[index] };
     }
     equations.at(state.t);

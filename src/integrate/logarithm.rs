@@ -7,7 +7,7 @@ pub(super) fn natural_logarithm(x: f64) -> f64 {
 }
 
 /// log₂ x to 0.01, for normal x > 0.
-fn binary_logarithm(x: f64) -> f64 {
+pub(super) fn binary_logarithm(x: f64) -> f64 {
     let (exponent, fraction) = split(x);
     exponent as f64 + fraction
 }
@@ -58,55 +58,6 @@ pub(super) fn root(x: f64, n: usize) -> f64 {
     power * inverse_power((rest as f64 + fraction) / n as f64)
 }
 
-/// A factor of a length, with its logarithm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Factor {
-    value: f64,
-    logarithm: f64,
-}
-
-impl Factor {
-    /// A factor > 0.
-    pub fn new(value: f64) -> Self {
-        Factor {
-            value,
-            logarithm: binary_logarithm(value),
-        }
-    }
-
-    /// The factor itself.
-    pub fn value(&self) -> f64 {
-        self.value
-    }
-}
-
-/// What the binary logarithms of two lengths, each right to 2 %, may differ by where the lengths are equal.
-const SLACK: f64 = 0.06;
-
-/// The shortest of the lengths x^(−1/n) for `terms` (x, n), and of those times a factor for `scaled`: to
-/// the bit what the least of all [`root`]s is. Logarithms tell which ones need not be taken.
-#[inline(always)]
-pub(super) fn shortest(terms: [(f64, usize); 3], scaled: [(f64, usize, Factor); 2]) -> f64 {
-    let logarithm = |x: f64, n: usize| match x < f64::MIN_POSITIVE {
-        true => f64::NEG_INFINITY,
-        false => binary_logarithm(x) / n as f64,
-    };
-    let (mut largest, mut chosen) = (f64::NEG_INFINITY, (0.0, 1));
-    for (x, n) in terms {
-        let logarithm = logarithm(x, n);
-        if logarithm > largest {
-            (largest, chosen) = (logarithm, (x, n));
-        }
-    }
-    let mut length = root(chosen.0, chosen.1);
-    for (x, n, factor) in scaled {
-        if logarithm(x, n) - factor.logarithm > largest - SLACK {
-            length = length.min(factor.value * root(x, n));
-        }
-    }
-    length
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,34 +74,6 @@ mod tests {
             }
         }
         assert_eq!(root(0.0, 7), f64::INFINITY);
-    }
-
-    #[test]
-    fn the_shortest_length_is_the_least_of_all_roots() {
-        let mut state = 1_u64;
-        let mut draw = |most: f64| {
-            // Numerical Recipes' multiplier: any scatter will do.
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 * most
-        };
-        for _ in 0..100_000 {
-            let length = 10f64.powf(draw(6.0) - 3.0);
-            let mut term = |n: usize| (length * (1.0 + 0.1 * draw(1.0))).powi(-(n as i32));
-            let terms = [(term(12), 12), (term(13), 13), (term(14), 14)];
-            let scaled = [10, 11].map(|n| (term(n), n, Factor::new(0.9 + 0.02 * n as f64 / 10.0)));
-            let plain = terms.map(|(x, n)| root(x, n));
-            let least = (plain.into_iter())
-                .chain(scaled.map(|(x, n, factor)| factor.value * root(x, n)))
-                .fold(f64::INFINITY, f64::min);
-            assert_eq!(shortest(terms, scaled), least);
-        }
-        let none = [(0.0, 1); 3];
-        assert_eq!(
-            shortest(none, [(0.0, 2, Factor::new(0.5)); 2]),
-            f64::INFINITY
-        );
     }
 
     #[test]

@@ -255,9 +255,9 @@ pub struct LaneLimits {
     pub order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     pub tolerances: Box<[f64]>,
-    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; and
-    /// the factors of the lengths that they tell.
-    pub terms: [[f64; 5]; 3],
+    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
+    /// factors of the lengths that they tell, and their logarithms.
+    pub terms: [[f64; 5]; 4],
 }
 
 /// The length at which the last terms of a series equal the tolerance, as it fits into what remains up
@@ -427,16 +427,11 @@ impl Context {
     /// The context as C sees it.
     ///
     /// # Panics
-    /// If it was made for another model, or an array has lost its length.
+    /// If it was made for another model. Its arrays have their lengths since it was made.
     #[inline(always)]
     fn raw(&self, dimensions: &'static Dimensions, j: *const f64) -> RawContext {
         assert!(
-            std::ptr::eq(self.dimensions, dimensions)
-                && self.signals.len() == dimensions.signals
-                && self.signal_rates.len() == dimensions.signals
-                && self.signal_series.len() == ORDERS * dimensions.signals
-                && self.discrete.len() == dimensions.discretes
-                && self.held.len() == dimensions.coordinates,
+            std::ptr::eq(self.dimensions, dimensions),
             "a context is used with the functions of the model it was made for"
         );
         RawContext {
