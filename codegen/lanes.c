@@ -35,7 +35,8 @@ DALEMBERT_INLINE truth truth_of(unsigned bits) {
   return (own & (long long)bits) != 0;
 }
 DALEMBERT_INLINE unsigned bits(truth x) {
-#if defined(__AVX2__)
+  /* A level may be compiled for a processor that has more. */
+#if DALEMBERT_LANES == 4
   return (unsigned)_mm256_movemask_pd((__m256d)x);
 #elif defined(__x86_64__)
   return (unsigned)_mm_movemask_pd((__m128d)x);
