@@ -151,8 +151,19 @@ pub(super) fn motion<const F: usize>(
     tau: f64,
     accelerations: bool,
 ) -> [SVector<f64, F>; 3] {
-    let (q, v, mut a) = dense.at(tau);
     equations.at(tau);
+    motion_at_stage(equations, dense, tau, accelerations)
+}
+
+/// The same, with the context set as far as the equations of motion need it.
+fn motion_at_stage<const F: usize>(
+    equations: &mut Equations<F>,
+    dense: &impl Motion<F>,
+    tau: f64,
+    accelerations: bool,
+) -> [SVector<f64, F>; 3] {
+    let (q, v, mut a) = dense.at(tau);
+    equations.at_stage(tau);
     if accelerations && equations.acceleration(tau, &q, &v, &mut a).is_err() {
         a.fill(f64::NAN);
     }
@@ -187,8 +198,16 @@ pub(super) fn search<const F: usize>(
                     ..
                 }
             );
+            // Conditions may depend on more of the inputs than the equations of motion do.
+            let own = watched.condition.is_none() && !conditions.are_part_of(guard);
+            if own {
+                equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
+            }
             let evaluate = |tau: f64| {
-                let [q, v, a] = motion(equations, dense, tau, accelerations);
+                let [q, v, a] = match own {
+                    true => motion_at_stage(equations, dense, tau, accelerations),
+                    false => motion(equations, dense, tau, accelerations),
+                };
                 let at = Free {
                     q: &q,
                     v: &v,
@@ -208,15 +227,19 @@ pub(super) fn search<const F: usize>(
     }
 }
 
+/// Local time at a part of a window.
+fn at_part(s: f64, (from, to): (f64, f64)) -> f64 {
+    if s < 1.0 { from + s * (to - from) } else { to }
+}
+
 /// Searches a function of local time, as one of s = (τ − start)/length of the window: so the search, which
 /// counts doubles, does not depend on the unit of time.
 fn search_function(
     mut evaluate: impl FnMut(f64) -> f64,
-    (from, to): (f64, f64),
+    window: (f64, f64),
     watch: Watch,
 ) -> Search {
-    let length = to - from;
-    let local = |s: f64| if s < 1.0 { from + s * length } else { to };
+    let local = |s: f64| at_part(s, window);
     let mut search = roots::search(|s| evaluate(local(s)), 0.0, 1.0, watch, 0.0);
     if let Some(crossing) = &mut search.crossing {
         crossing.inside = local(crossing.inside);
