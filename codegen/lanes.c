@@ -35,7 +35,8 @@ DALEMBERT_INLINE truth truth_of(unsigned bits) {
   return (own & (long long)bits) != 0;
 }
 DALEMBERT_INLINE unsigned bits(truth x) {
-#if defined(__AVX2__)
+  /* A level may be compiled for a processor that has more. */
+#if DALEMBERT_LANES == 4
   return (unsigned)_mm256_movemask_pd((__m256d)x);
 #elif defined(__x86_64__)
   return (unsigned)_mm_movemask_pd((__m128d)x);
@@ -337,24 +338,25 @@ void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, 
 /* Numbers of coefficients that are told apart. */
 #define DEGREES(with) with(4) with(8) with(12) with(16) with(20) with(24) with(28) with(32)
 
-/* Steps to a root: the third order needs three from half a window away; more where it is nearly
- * tangent. LAST_STEP is a relative step after which the iteration has ended, since it leaves the cube of
- * its last step: the cube root of the unit roundoff.
+/* Steps to a root: the fourth order needs two from a tenth of the window away; more where it is nearly
+ * tangent. LAST_STEP is a relative step after which the iteration has ended, since it leaves the fourth
+ * power of its last step: the fourth root of the unit roundoff.
  */
 enum { MOST_ITERATIONS = 8 };
-static const double LAST_STEP = 4.8e-6;
+static const double LAST_STEP = 1.0e-4;
 
-/* A polynomial at s, with its first derivative and half its second. */
-struct local { real value, slope, half_curvature; };
+/* A polynomial about s: its first Taylor coefficients there. */
+struct local { real value, slope, second, third; };
 
 /* The sum of c[k] s^k, k < n with even n, from its even and its odd part side by side. */
 DALEMBERT_INLINE struct local local(const int n, const real *c, real s) {
   const real x = s * s;
-  real value[2] = {c[n - 2], c[n - 1]}, slope[2] = {{0}}, half_curvature[2] = {{0}};
+  real value[2] = {c[n - 2], c[n - 1]}, slope[2] = {{0}}, second[2] = {{0}}, third[2] = {{0}};
 #pragma GCC unroll 32
   for (int k = n - 4; k >= 0; k -= 2) {
     for (int odd = 0; odd < 2; ++odd) {
-      half_curvature[odd] = half_curvature[odd] * x + slope[odd];
+      third[odd] = third[odd] * x + second[odd];
+      second[odd] = second[odd] * x + slope[odd];
       slope[odd] = slope[odd] * x + value[odd];
       value[odd] = value[odd] * x + c[k + odd];
     }
@@ -363,7 +365,8 @@ DALEMBERT_INLINE struct local local(const int n, const real *c, real s) {
   struct local at;
   at.value = value[0] + s * value[1];
   at.slope = 2.0 * s * (slope[0] + s * slope[1]) + value[1];
-  at.half_curvature = 4.0 * x * (half_curvature[0] + s * half_curvature[1]) + (slope[0] + 3.0 * s * slope[1]);
+  at.second = 4.0 * x * (second[0] + s * second[1]) + (slope[0] + 3.0 * s * slope[1]);
+  at.third = 8.0 * x * (second[1] + s * third[0] + x * third[1]) + (slope[1] + 4.0 * s * second[0]);
   return at;
 }
 
@@ -397,26 +400,24 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   }
   /* Whether all are certainly positive up to some place and certainly negative from there on. */
   truth positive = below(margin, b[0]), once = positive;
-  real before = REAL(0.0), above = REAL(0.0), below_it = REAL(-1.0);
+  real changes = REAL(0.5); /* in the middle between the last positive one and the first negative one */
 #pragma GCC unroll 32
   for (int k = 1; k < n; ++k) {
-    const truth still = positive & below(margin, b[k]), negative = below(b[k], -margin), here = positive & negative;
-    once &= still | negative;
-    before = pick(here, REAL((double)(k - 1)), before);
-    above = pick(here, b[k - 1], above);
-    below_it = pick(here, b[k], below_it);
-    positive = still;
+    positive &= below(margin, b[k]);
+    once &= positive | below(b[k], -margin);
+    changes = pick(positive, changes + 1.0, changes);
   }
   const truth falls = once & ~positive;
   real found = pick(positive, none, REAL(NAN));
   if (!any(falls)) return found;
-  /* Where the polygon of the coefficients falls through zero. */
-  real s = (before + above / (above - below_it)) * (1.0 / (n - 1));
+  real s = changes * (1.0 / (n - 1));
   truth moving = falls;
   for (int i = 0; i < MOST_ITERATIONS && any(moving); ++i) {
     const struct local at = local(n, c, s);
-    /* Halley's step, of third order too. */
-    const real step = -at.value * at.slope / (at.slope * at.slope - at.half_curvature * at.value);
+    /* Householder's step of fourth order (Householder 1970, section 4.4). */
+    const real slope2 = at.slope * at.slope, product = at.value * at.second;
+    const real step = -at.value * (slope2 - product)
+                      / (at.slope * (slope2 - 2.0 * product) + at.value * at.value * at.third);
     const real next = s + step;
     const truth ended = at_most(size_of(step), LAST_STEP * next);
     s = pick(moving, next, s);

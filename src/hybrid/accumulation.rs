@@ -194,7 +194,8 @@ impl Accumulation {
         let times: &[f64; Self::MEMORY] = self.times[ROOM - 1 - self.slot(0)..]
             .first_chunk()
             .expect("all are remembered twice");
-        let now = times[0];
+        // The same as `times[0]`, which has just been stored.
+        let now = self.hop(0).at.seconds();
         // Each time is off by half a place, so that a difference of durations is off by two.
         let slack = 2.0 * f64::EPSILON * now.abs();
         let relative = relative.max(f64::EPSILON);
@@ -215,8 +216,8 @@ impl Accumulation {
             let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
             (last - middle <= slack) & (middle - first <= slack) & (apart <= allowed + noise)
         });
-        let patterns = (1..=longest).map(|p| u32::from(may_be[p - 1]) << p);
-        patterns.sum()
+        let bits = (1..=LONGEST_PATTERN).map(|p| u32::from(may_be[p - 1]) << p);
+        bits.sum::<u32>() & ((2 << longest) - 1)
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
