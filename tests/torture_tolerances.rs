@@ -105,6 +105,36 @@ fn stick_and_slip_repeat() {
     });
 }
 
+/// A lower mass that sticks for half a microsecond at a time. The elongation of the spring is a hundred
+/// thousandth of the size that the model states, and an error of that size would be a hundred thousand
+/// times the friction.
+#[test]
+fn stick_phases_below_a_microsecond_need_no_tolerances_of_their_own() {
+    let make = |tolerance| {
+        let parameters = [("k", 1.05e10), ("c", 6.42e6)];
+        let mut problem = problem("sliding_oscillator", &parameters);
+        let shaking = Sine::new(20.0, 7.0 * TAU, 0.0);
+        problem
+            .set_input("ground_acceleration", shaking.into())
+            .unwrap();
+        problem.end.time = 0.4;
+        problem.set_tolerance(tolerance);
+        problem
+    };
+    let better = run(&make(1e-14));
+    let mut expected = vec!["slip"];
+    expected.extend(["stick", "slip"].repeat(5));
+    assert_eq!(transitions(&better), expected);
+    everywhere(make, |at, run| {
+        assert_eq!(transitions(run), expected, "{at}");
+        let tolerance: f64 = at.rsplit(' ').next().unwrap().parse().unwrap();
+        for (event, exact) in run.events.iter().zip(&better.events) {
+            let late = (event.t - exact.t).abs();
+            assert!(late <= tolerance * exact.t, "{at}: {late:e} at {}", exact.t);
+        }
+    });
+}
+
 #[test]
 fn two_crossings_are_told_from_none() {
     for d in [1e-2, 1e-6, 1e-10] {

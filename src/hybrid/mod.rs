@@ -26,6 +26,7 @@ mod simulation;
 mod simulator;
 mod solvers;
 mod stiffness;
+mod typical;
 mod visited;
 mod work;
 
