@@ -54,6 +54,7 @@ fn blank<const G: usize>() -> [Search; G] {
         crossing: None,
         watch: Watch::Dormant,
         resolved: false,
+        turn: f64::NAN,
     }; G]
 }
 
@@ -302,7 +303,8 @@ fn curved_guards_leave_zero_of_any_order() {
                     Search {
                         crossing: None,
                         watch: Watch::Armed,
-                        resolved: true
+                        resolved: true,
+                        turn: f64::INFINITY,
                     }
                 );
             } else {
@@ -359,6 +361,7 @@ fn a_touch_from_below_and_an_inflection_are_told_apart() {
         crossing: None,
         watch: Watch::Violated,
         resolved: true,
+        turn: f64::INFINITY,
     };
     assert_eq!(p.search(0.0, 1.0, Watch::Violated, 0.0), quiet);
     let p: Polynomial<4> = product(&[&[0.5, -1.0], &[0.5, -1.0], &[0.5, -1.0]]);

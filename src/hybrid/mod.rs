@@ -7,6 +7,7 @@
 
 mod accumulation;
 mod crossing;
+mod doubt;
 mod ensemble;
 mod enter;
 mod equations;

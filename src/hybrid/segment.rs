@@ -1,6 +1,7 @@
 //! From one event to the next: steps, crossings on their dense output, samples and ledger.
 
 use super::crossing::{Cut, cut};
+use super::doubt::Searched;
 use super::equations::{Clock, Equations};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
@@ -123,7 +124,7 @@ impl Simulation<'_> {
         let relative = problem.accuracy.relative;
 
         loop {
-            method.step(&mut equations, until)?;
+            let error = method.step(&mut equations, until)?.error;
 
             let cut = cut(
                 method,
@@ -133,6 +134,17 @@ impl Simulation<'_> {
                 watched,
                 &mut self.signs,
             )?;
+            let searched = Searched {
+                index: self.here.mode,
+                mode,
+                watched,
+                watches: &self.signs.watches,
+                found: &self.signs.found,
+                accuracy: &problem.accuracy,
+                error,
+            };
+            self.doubts
+                .look(&searched, method, &mut equations, &mut conditions);
             let event = match cut {
                 Cut::Nothing => None,
                 Cut::Event {

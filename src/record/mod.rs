@@ -31,6 +31,7 @@ mod report;
 mod run;
 pub mod summary;
 pub mod table;
+mod uncertain;
 
 pub use files::{OVERVIEW, PHASE};
 pub use folder::{FolderError, OutputFolder};
@@ -46,3 +47,4 @@ pub use run::{
     Solver, Subject, Trajectory,
 };
 pub use summary::Summary;
+pub use uncertain::{Doubt, Question, Uncertain};

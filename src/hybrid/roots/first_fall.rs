@@ -84,13 +84,14 @@ pub(super) fn first_fall<const N: usize>(
     let margin = Polynomial::<N>::ROUNDING * size;
     // The first coefficient that is not certainly positive, and whether all are negative from it on.
     let falls = bernstein.iter().position(|b| b.is_nan() || *b <= margin);
+    let least = bernstein.iter().copied().fold(f64::INFINITY, f64::min);
     let Some(falls) = falls else {
-        return Some(Search::quiet(Watch::Armed));
+        return Some(Search::above(least));
     };
     if falls > 0 && bernstein[falls..].iter().all(|b| *b < -margin) {
         let at_end = polynomial.value(to);
         if at_end >= 0.0 {
-            return Some(Search::quiet(Watch::Armed));
+            return Some(Search::above(least));
         }
         // Where the polygon of the coefficients falls through zero.
         let (before, after) = (bernstein[falls - 1], bernstein[falls]);
@@ -103,7 +104,11 @@ pub(super) fn first_fall<const N: usize>(
             false => None,
         };
     }
-    by_certified_steps(polynomial, from, to)
+    let search = by_certified_steps(polynomial, from, to)?;
+    Some(match search.crossing {
+        None => Search::above(least),
+        Some(_) => search,
+    })
 }
 
 /// The same where more than one root is possible.
@@ -167,6 +172,7 @@ fn root<const N: usize>(
 ) -> Option<Search> {
     let (mut l, mut r) = (left, right);
     let mut value = polynomial.value(s);
+    let mut turn = f64::NEG_INFINITY;
     for _ in 0..MOST_ITERATIONS {
         if value < 0.0 {
             r = (s, value)
@@ -175,6 +181,11 @@ fn root<const N: usize>(
         }
         let (slope, curvature) = polynomial.slope_and_curvature(s);
         let discriminant = slope * slope - 2.0 * curvature * value;
+        // The bottom of the parabola at s.
+        turn = match curvature > 0.0 {
+            true => value - slope * slope / (2.0 * curvature),
+            false => f64::NEG_INFINITY,
+        };
         // The root of the parabola at s that a falling piece leads to, or Newton's.
         let step = match discriminant > 0.0 && slope < 0.0 {
             true => 2.0 * value / (discriminant.sqrt() - slope),
@@ -215,5 +226,5 @@ fn root<const N: usize>(
         }
     }
     let (l, r) = close(&mut own, l, r);
-    Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated))
+    Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated).turning(turn))
 }

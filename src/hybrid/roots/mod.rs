@@ -134,6 +134,10 @@ pub struct Search {
     /// Whether the guard could be resolved. If not, single values decided, and an event between
     /// them may have been missed; a shorter window or a `noise` bound helps.
     pub resolved: bool,
+    /// How near to zero the guard turns, in its unit. With an event: the value at which it would turn
+    /// back (0 for a touch), −∞ where it does not turn, as far as the window or its slope and curvature
+    /// tell. Without one, of a guard that stays armed: a value that it does not turn below; ∞ of others.
+    pub turn: f64,
 }
 
 impl Search {
@@ -143,6 +147,15 @@ impl Search {
             crossing: None,
             watch,
             resolved: true,
+            turn: f64::INFINITY,
+        }
+    }
+
+    /// No event; the guard is armed and does not turn below `turn`.
+    pub(crate) fn above(turn: f64) -> Self {
+        Self {
+            turn,
+            ..Self::quiet(Watch::Armed)
         }
     }
 
@@ -156,6 +169,27 @@ impl Search {
             }),
             watch,
             resolved: true,
+            turn: match kind {
+                Kind::Touch => 0.0,
+                _ => f64::NEG_INFINITY,
+            },
         }
+    }
+
+    /// What was found of the guard divided by a power of the time since its zero: the events are the
+    /// same, the values are not.
+    pub(crate) fn of_quotient(self) -> Self {
+        Self {
+            turn: match self.crossing {
+                Some(_) => f64::NEG_INFINITY,
+                None => f64::INFINITY,
+            },
+            ..self
+        }
+    }
+
+    /// The same event, of a guard that would turn back at the value `turn`.
+    pub(crate) fn turning(self, turn: f64) -> Self {
+        Self { turn, ..self }
     }
 }

@@ -1,0 +1,342 @@
+//! Where a run cannot tell whether a guard falls through zero.
+//!
+//! A guard that turns close to zero may have crossed it or not: the errors of the steps decide. What
+//! they may amount to is known from the tolerances. A step errs by the part of the tolerance that its
+//! error estimate tells; these parts add up, and with one tolerance for the initial state they give the
+//! error of every coordinate and rate, in units of its tolerance. (Errors that the motion amplifies are
+//! larger: `dalembert precision` tells.) What such an error changes the guard by is found by making it.
+//!
+//! The search for the guard's zero bounds how near to zero it turns, at no cost. Only where this is within
+//! the error is the minimum looked for.
+
+use super::equations::Equations;
+use super::guards::{Conditions, motion, watched_value};
+use super::plan::Watched;
+use super::problem::Accuracy;
+use super::roots::{Search, Watch};
+use crate::integrate::{OneStep, State, System};
+use crate::kernel::Free;
+use crate::model::{Guard, GuardShape, Mode};
+use crate::record::{Doubt, Question, Uncertain};
+use nalgebra::SVector;
+
+/// Parts of a step among which its least value is looked for. Steps resolve the motion, so that a guard
+/// turns once or twice in one.
+const PARTS: u32 = 16;
+
+/// Halvings, by the golden section, of the part with the least value: the value there is off by the
+/// square of the place, and half of a double's digits are enough for that.
+const NARROWINGS: u32 = 38;
+
+/// What was found out about the errors of guards, and the doubts.
+#[derive(Debug, Default)]
+pub(super) struct Doubts {
+    /// Sum of the estimated errors of all steps so far, in units of the tolerance.
+    spent: f64,
+    /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
+    /// was at the first step in the mode. Empty: no step yet.
+    errors: Vec<Vec<f64>>,
+    /// The doubts.
+    pub uncertain: Uncertain,
+}
+
+/// A step and what was found of the guards in it.
+pub(super) struct Searched<'s> {
+    /// Index of the mode.
+    pub index: usize,
+    pub mode: &'static Mode,
+    pub watched: &'s [Watched],
+    /// Signs at the start of the step.
+    pub watches: &'s [Watch],
+    pub found: &'s [Search],
+    pub accuracy: &'s Accuracy,
+    /// Estimated error of the step, in units of the tolerance.
+    pub error: f64,
+}
+
+impl Doubts {
+    /// Nothing is known, of a problem with so many modes.
+    pub fn new(modes: usize) -> Self {
+        Doubts {
+            errors: vec![Vec::new(); modes],
+            ..Doubts::default()
+        }
+    }
+
+    /// Forgets the doubts, for the next run.
+    pub fn clear(&mut self) {
+        self.spent = 0.0;
+        self.uncertain = Uncertain::default();
+    }
+
+    /// Looks for doubts in a step that was searched, up to its end or its first event.
+    #[inline]
+    pub fn look<'a, const F: usize>(
+        &mut self,
+        step: &Searched,
+        method: &impl OneStep<F, Equations<'a, F>>,
+        equations: &mut Equations<'a, F>,
+        conditions: &mut Conditions,
+    ) {
+        self.spent += step.error;
+        if std::env::var("DBG").is_ok() { for f in step.found { eprintln!("t {:.3}..{:.3} spent {:.2} turn {:.3e} cross {:?} {:?} err {:?}", method.start().t, method.state().t, self.spent, f.turn, f.crossing.is_some(), f.watch, self.errors[step.index]); } }
+        let tolerances = 1.0 + self.spent;
+        let errors = &self.errors[step.index];
+        let certain =
+            |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * tolerances);
+        let known = errors.len() == step.found.len();
+        if !(known && step.found.iter().zip(errors).all(certain)) {
+            self.examine(step, method, equations, conditions);
+        }
+    }
+
+    #[cold]
+    fn examine<'a, const F: usize>(
+        &mut self,
+        step: &Searched,
+        method: &impl OneStep<F, Equations<'a, F>>,
+        equations: &mut Equations<'a, F>,
+        conditions: &mut Conditions,
+    ) {
+        let tolerances = 1.0 + self.spent;
+        if self.errors[step.index].len() != step.found.len() {
+            let start = method.start();
+            let error = |&watched: &Watched| {
+                let mut guard = step.guard(watched, equations, conditions);
+                guard.error(start.t, &start.q, &start.v) + guard.rounding(start)
+            };
+            self.errors[step.index] = step.watched.iter().map(error).collect();
+        }
+        for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
+            let near = is_near(found, self.errors[step.index][i] * tolerances);
+            if !near && found.resolved {
+                continue;
+            }
+            let mut guard = step.guard(watched, equations, conditions);
+            let end = method.state();
+            let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
+            let (t, what, value) = if !found.resolved {
+                let value = guard.value(end.t, &end.q, &end.v);
+                (end.t, Question::Unresolved, value)
+            } else if found.crossing.is_some() {
+                (end.t, Question::Graze, found.turn)
+            } else if let Some((t, value)) = armed.then(|| guard.turn(method)).flatten() {
+                (t, Question::NearMiss, value)
+            } else {
+                continue;
+            };
+            let dense = method.dense().expect("a step was made");
+            let [q, v, a] = motion(guard.equations, dense, t, true);
+            let error = guard.error(t, &q, &v) * tolerances;
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            if what != Question::Unresolved && (value.abs() > error || !guard.matters(at)) {
+                continue;
+            }
+            let t = guard.equations.clock.start.plus(t).seconds();
+            self.uncertain
+                .add(|| step.doubt(watched, t, what, value, error));
+        }
+    }
+}
+
+/// Whether a guard turns, or would have turned, within `error` of zero.
+fn is_near(found: &Search, error: f64) -> bool {
+    match found.crossing {
+        Some(_) => -found.turn <= error,
+        None => found.turn <= error,
+    }
+}
+
+impl Searched<'_> {
+    fn guard<'e, 'a, 'c, const F: usize>(
+        &'e self,
+        watched: Watched,
+        equations: &'e mut Equations<'a, F>,
+        conditions: &'e mut Conditions<'c>,
+    ) -> WatchedGuard<'e, 'a, 'c, F> {
+        WatchedGuard {
+            step: self,
+            guard: &self.mode.guards[watched.guard],
+            watched,
+            equations,
+            conditions,
+        }
+    }
+
+    fn doubt(&self, watched: Watched, t: f64, what: Question, value: f64, error: f64) -> Doubt {
+        let guard = &self.mode.guards[watched.guard];
+        let (name, unit) = match watched.condition {
+            None => (guard.name.to_owned(), guard.unit.to_owned()),
+            Some((transition, _)) => {
+                let name = guard.transitions[transition].name;
+                (format!("condition of {name}"), String::new())
+            }
+        };
+        Doubt {
+            t,
+            mode: self.mode.name.to_owned(),
+            guard: name,
+            what,
+            value,
+            error,
+            unit,
+        }
+    }
+}
+
+/// What is watched, with what it is evaluated by.
+struct WatchedGuard<'e, 'a, 'c, const F: usize> {
+    step: &'e Searched<'e>,
+    guard: &'static Guard,
+    watched: Watched,
+    equations: &'e mut Equations<'a, F>,
+    conditions: &'e mut Conditions<'c>,
+}
+
+impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
+    /// Its value in a state at local time `t`.
+    fn value(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>) -> f64 {
+        let mut a = SVector::zeros();
+        if self.equations.acceleration(t, q, v, &mut a).is_err() {
+            return f64::NAN;
+        }
+        let at = Free { q, v, a: &a };
+        let (kernel, context) = (self.equations.kernel, &mut *self.equations.context);
+        watched_value(
+            kernel,
+            context,
+            self.conditions,
+            self.guard,
+            self.watched,
+            at,
+        )
+    }
+
+    /// What errors of one tolerance in every coordinate and rate change it by; 0 where it has no value.
+    fn error(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>) -> f64 {
+        let accuracy = self.step.accuracy;
+        let value = self.value(t, q, v);
+        let mut sum = 0.0;
+        for (i, &full) in self.step.mode.free.iter().enumerate() {
+            let (mut moved, mut faster) = (*q, *v);
+            moved[i] += accuracy.q_absolute[full] + accuracy.relative * q[i].abs();
+            faster[i] += accuracy.v_absolute[full] + accuracy.relative * v[i].abs();
+            sum += (self.value(t, &moved, v) - value).abs();
+            sum += (self.value(t, q, &faster) - value).abs();
+        }
+        // What the mode holds has its errors from the modes before.
+        for i in (0..accuracy.q_absolute.len()).filter(|i| !self.step.mode.free.contains(i)) {
+            let held = self.equations.context.held[i];
+            let tolerance = accuracy.q_absolute[i] + accuracy.relative * held.abs();
+            self.equations.context.held[i] = held + tolerance;
+            sum += (self.value(t, q, v) - value).abs();
+            self.equations.context.held[i] = held;
+        }
+        // Not a number: there it has no value.
+        sum.max(0.0)
+    }
+
+    /// A tolerance of its own terms, which bounds what its error changes by while it comes to zero.
+    fn rounding(&self, state: &State<F>) -> f64 {
+        if self.watched.condition.is_some() {
+            return 0.0;
+        }
+        let at = Free {
+            q: &state.q,
+            v: &state.v,
+            a: &state.a,
+        };
+        let (kernel, context) = (self.equations.kernel, &*self.equations.context);
+        let magnitude = kernel.guard_magnitude(context, &self.guard.kernel, at);
+        self.step.accuracy.relative * magnitude
+    }
+
+    /// Place and value of its least value inside the last step; `None` if that is at an end.
+    fn turn(&mut self, method: &impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
+        let (start, end) = (method.start(), method.state());
+        if let (
+            GuardShape::Linear {
+                index,
+                rate,
+                factor,
+                discrete,
+                ..
+            },
+            None,
+        ) = (self.guard.shape, self.watched.condition)
+        {
+            let factor = factor * discrete.map_or(1.0, |d| self.equations.context.discrete[d]);
+            let slope = |at: &State<F>| factor * if rate { at.a[index] } else { at.v[index] };
+            if slope(start) >= 0.0 || slope(end) <= 0.0 {
+                return None;
+            }
+        }
+        let dense = method.dense().expect("a step was made");
+        let mut own = |t: f64| {
+            let [q, v, _] = motion(self.equations, dense, t, false);
+            self.value(t, &q, &v)
+        };
+        let part = (end.t - start.t) / f64::from(PARTS);
+        let place = |k: u32| {
+            if k < PARTS {
+                start.t + f64::from(k) * part
+            } else {
+                end.t
+            }
+        };
+        let values: Vec<f64> = (0..=PARTS).map(|k| own(place(k))).collect();
+        let least =
+            (0..=PARTS).min_by(|&i, &j| values[i as usize].total_cmp(&values[j as usize]))?;
+        let (mut low, mut high) = (
+            place(least.saturating_sub(1)),
+            place((least + 1).min(PARTS)),
+        );
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let inner =
+            |low: f64, high: f64| [high - golden * (high - low), low + golden * (high - low)];
+        let mut at = inner(low, high);
+        let mut found = at.map(&mut own);
+        for _ in 0..NARROWINGS {
+            if found[0] <= found[1] {
+                high = at[1];
+                (at[1], found[1]) = (at[0], found[0]);
+                at[0] = inner(low, high)[0];
+                found[0] = own(at[0]);
+            } else {
+                low = at[0];
+                (at[0], found[0]) = (at[1], found[1]);
+                at[1] = inner(low, high)[1];
+                found[1] = own(at[1]);
+            }
+        }
+        let (t, value) = if found[0] <= found[1] {
+            (at[0], found[0])
+        } else {
+            (at[1], found[1])
+        };
+        (value < values[0] && value < values[PARTS as usize]).then_some((t, value))
+    }
+
+    /// Whether its fall would be an event: one that acts together with conditions needs the other part.
+    fn matters(&mut self, at: Free<F>) -> bool {
+        if !self.conditions.are_part_of(self.guard) {
+            return true;
+        }
+        let (kernel, context) = (self.equations.kernel, &mut *self.equations.context);
+        if self.watched.condition.is_some() {
+            return kernel.guard(context, &self.guard.kernel, at) < 0.0;
+        }
+        let conditions = &mut *self.conditions;
+        let allowed = conditions.plan;
+        let mut admissible = self
+            .guard
+            .transitions
+            .iter()
+            .filter(|t| allowed.allowed[t.target]);
+        admissible.any(|t| conditions.least(kernel, context, t, at) >= 0.0)
+    }
+}
