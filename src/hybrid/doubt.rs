@@ -36,6 +36,8 @@ pub(super) struct Doubts {
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
     errors: Vec<Vec<f64>>,
+    /// Guards that were near zero at the end of the last step and still came nearer.
+    left: Vec<(&'static Guard, Doubt)>,
     /// The doubts.
     pub uncertain: Uncertain,
 }
@@ -66,6 +68,7 @@ impl Doubts {
     /// Forgets the doubts, for the next run.
     pub fn clear(&mut self) {
         self.spent = 0.0;
+        self.left.clear();
         self.uncertain = Uncertain::default();
     }
 
@@ -79,12 +82,11 @@ impl Doubts {
         conditions: &mut Conditions,
     ) {
         self.spent += step.error;
-        if std::env::var("DBG").is_ok() { for f in step.found { eprintln!("t {:.3}..{:.3} spent {:.2} turn {:.3e} cross {:?} {:?} err {:?}", method.start().t, method.state().t, self.spent, f.turn, f.crossing.is_some(), f.watch, self.errors[step.index]); } }
         let tolerances = 1.0 + self.spent;
         let errors = &self.errors[step.index];
         let certain =
             |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * tolerances);
-        let known = errors.len() == step.found.len();
+        let known = errors.len() == step.found.len() && self.left.is_empty();
         if !(known && step.found.iter().zip(errors).all(certain)) {
             self.examine(step, method, equations, conditions);
         }
@@ -107,39 +109,58 @@ impl Doubts {
             };
             self.errors[step.index] = step.watched.iter().map(error).collect();
         }
+        let left = std::mem::take(&mut self.left);
         for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
-            let near = is_near(found, self.errors[step.index][i] * tolerances);
-            if !near && found.resolved {
-                continue;
-            }
             let mut guard = step.guard(watched, equations, conditions);
             let end = method.state();
-            let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
-            let (t, what, value) = if !found.resolved {
+            if !found.resolved {
                 let value = guard.value(end.t, &end.q, &end.v);
-                (end.t, Question::Unresolved, value)
-            } else if found.crossing.is_some() {
-                (end.t, Question::Graze, found.turn)
-            } else if let Some((t, value)) = armed.then(|| guard.turn(method)).flatten() {
-                (t, Question::NearMiss, value)
-            } else {
-                continue;
-            };
-            let dense = method.dense().expect("a step was made");
-            let [q, v, a] = motion(guard.equations, dense, t, true);
-            let error = guard.error(t, &q, &v) * tolerances;
-            let at = Free {
-                q: &q,
-                v: &v,
-                a: &a,
-            };
-            if what != Question::Unresolved && (value.abs() > error || !guard.matters(at)) {
+                let doubt = guard.doubt(end.t, Question::Unresolved, value, f64::NAN);
+                self.uncertain.add(doubt);
                 continue;
             }
-            let t = guard.equations.clock.start.plus(t).seconds();
-            self.uncertain
-                .add(|| step.doubt(watched, t, what, value, error));
+            if !is_near(found, self.errors[step.index][i] * tolerances) {
+                continue;
+            }
+            let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
+            let (t, what, value) = match found.crossing {
+                Some(_) => (end.t, Question::Graze, found.turn),
+                None if !armed => continue,
+                None => match guard.turn(method) {
+                    Some((t, value)) => (t, Question::NearMiss, value),
+                    None => (
+                        end.t,
+                        Question::NearMiss,
+                        guard.value(end.t, &end.q, &end.v),
+                    ),
+                },
+            };
+            let error = guard.error_at(t, method) * tolerances;
+            if value.abs() > error || !guard.matters(t, method) {
+                continue;
+            }
+            let doubt = guard.doubt(t, what, value, error);
+            match what == Question::NearMiss && t == end.t {
+                true => self.left.push((guard.guard, doubt)),
+                false => self.uncertain.add(doubt),
+            }
         }
+        // What was near zero at the end of the step before has turned there, unless it is so again.
+        for (guard, doubt) in left {
+            let falls = |(found, watched): (&Search, &Watched)| {
+                let other = &step.mode.guards[watched.guard];
+                found.crossing.is_some() && other.name == guard.name
+            };
+            let again = self.left.iter().any(|(other, _)| other.name == guard.name);
+            if !again && !step.found.iter().zip(step.watched).any(falls) {
+                self.uncertain.add(doubt);
+            }
+        }
+    }
+
+    /// Takes note of a transition: what its guard was near to has happened.
+    pub fn happened(&mut self, guard: &'static Guard) {
+        self.left.retain(|(other, _)| other.name != guard.name);
     }
 }
 
@@ -166,26 +187,12 @@ impl Searched<'_> {
             conditions,
         }
     }
+}
 
-    fn doubt(&self, watched: Watched, t: f64, what: Question, value: f64, error: f64) -> Doubt {
-        let guard = &self.mode.guards[watched.guard];
-        let (name, unit) = match watched.condition {
-            None => (guard.name.to_owned(), guard.unit.to_owned()),
-            Some((transition, _)) => {
-                let name = guard.transitions[transition].name;
-                (format!("condition of {name}"), String::new())
-            }
-        };
-        Doubt {
-            t,
-            mode: self.mode.name.to_owned(),
-            guard: name,
-            what,
-            value,
-            error,
-            unit,
-        }
-    }
+fn dense_of<'m, 'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &'m M,
+) -> &'m M::Motion {
+    method.dense().expect("a step was made")
 }
 
 /// What is watched, with what it is evaluated by.
@@ -275,7 +282,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
                 return None;
             }
         }
-        let dense = method.dense().expect("a step was made");
+        let dense = dense_of(method);
         let mut own = |t: f64| {
             let [q, v, _] = motion(self.equations, dense, t, false);
             self.value(t, &q, &v)
@@ -321,11 +328,44 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         (value < values[0] && value < values[PARTS as usize]).then_some((t, value))
     }
 
-    /// Whether its fall would be an event: one that acts together with conditions needs the other part.
-    fn matters(&mut self, at: Free<F>) -> bool {
+    /// The same where the last step is at local time `t`.
+    fn error_at(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
+        let [q, v, _] = motion(self.equations, dense_of(method), t, false);
+        self.error(t, &q, &v)
+    }
+
+    /// The doubt about it at local time `t`.
+    fn doubt(&self, t: f64, what: Question, value: f64, error: f64) -> Doubt {
+        let (guard, unit) = match self.watched.condition {
+            None => (self.guard.name.to_owned(), self.guard.unit.to_owned()),
+            Some((transition, _)) => {
+                let name = self.guard.transitions[transition].name;
+                (format!("condition of {name}"), String::new())
+            }
+        };
+        Doubt {
+            t: self.equations.clock.start.plus(t).seconds(),
+            mode: self.step.mode.name.to_owned(),
+            guard,
+            what,
+            value,
+            error,
+            unit,
+        }
+    }
+
+    /// Whether its fall would be an event where the last step is at local time `t`: one that acts
+    /// together with conditions needs the other part.
+    fn matters(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> bool {
         if !self.conditions.are_part_of(self.guard) {
             return true;
         }
+        let [q, v, a] = motion(self.equations, dense_of(method), t, true);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
         let (kernel, context) = (self.equations.kernel, &mut *self.equations.context);
         if self.watched.condition.is_some() {
             return kernel.guard(context, &self.guard.kernel, at) < 0.0;

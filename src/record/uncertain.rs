@@ -25,7 +25,7 @@ pub struct Doubt {
     /// Least value of the guard nearby, in `unit`; of a guard that was not resolved, its value at the
     /// end of the step.
     pub value: f64,
-    /// Error of that value that the tolerances allow, in `unit`.
+    /// Error of that value that the tolerances allow, in `unit`; not a number where it was not resolved.
     pub error: f64,
     /// Unit of the guard.
     pub unit: String,
@@ -48,10 +48,10 @@ impl Uncertain {
     pub const MOST: usize = 20;
 
     /// Counts a place, and lists it while there is room.
-    pub fn add(&mut self, doubt: impl FnOnce() -> Doubt) {
+    pub fn add(&mut self, doubt: Doubt) {
         self.total += 1;
         if self.first.len() < Self::MOST {
-            self.first.push(doubt());
+            self.first.push(doubt);
         }
     }
 }
