@@ -11,10 +11,11 @@
 
 use super::equations::Equations;
 use super::guards::{Conditions, motion, watched_value};
+use super::locate::rate_at;
 use super::plan::Watched;
 use super::problem::Accuracy;
 use super::roots::{Search, Watch};
-use crate::integrate::{OneStep, State, System};
+use crate::integrate::{Motion, ORDERS, OneStep, State, System};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
 use crate::record::{Doubt, Question, Uncertain};
@@ -36,8 +37,9 @@ pub(super) struct Doubts {
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
     errors: Vec<Vec<f64>>,
-    /// Guards that were near zero at the end of the last step and still came nearer.
-    left: Vec<(&'static Guard, Doubt)>,
+    /// Guards that were near zero at the end of the last step; with a doubt if they fell so steeply that
+    /// it is one only if they do not fall through zero right after it.
+    left: Vec<(&'static Guard, Option<Doubt>)>,
     /// The doubts.
     pub uncertain: Uncertain,
 }
@@ -82,7 +84,7 @@ impl Doubts {
         conditions: &mut Conditions,
     ) {
         self.spent += step.error;
-        let tolerances = 1.0 + self.spent;
+        let tolerances = 1.0 + self.spent + method.looseness();
         let errors = &self.errors[step.index];
         let certain =
             |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * tolerances);
@@ -101,6 +103,7 @@ impl Doubts {
         conditions: &mut Conditions,
     ) {
         let tolerances = 1.0 + self.spent;
+        let within = tolerances + method.looseness();
         if self.errors[step.index].len() != step.found.len() {
             let start = method.start();
             let error = |&watched: &Watched| {
@@ -119,12 +122,12 @@ impl Doubts {
                 self.uncertain.add(doubt);
                 continue;
             }
-            if !is_near(found, self.errors[step.index][i] * tolerances) {
+            if !is_near(found, self.errors[step.index][i] * within) {
                 continue;
             }
             let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
             let (t, what, value) = match found.crossing {
-                Some(_) => (end.t, Question::Graze, found.turn),
+                Some(_) => (end.t, Question::Graze, guard.would_turn(method, found.turn)),
                 None if !armed => continue,
                 None => match guard.turn(method) {
                     Some((t, value)) => (t, Question::NearMiss, value),
@@ -135,30 +138,45 @@ impl Doubts {
                     ),
                 },
             };
-            let error = guard.error_at(t, method) * tolerances;
+            let inside = t < end.t;
+            let error = guard.error_at(t, method) * tolerances
+                + if inside {
+                    guard.error_of_dense_output(t, method)
+                } else {
+                    0.0
+                };
             if value.abs() > error || !guard.matters(t, method) {
                 continue;
             }
             let doubt = guard.doubt(t, what, value, error);
-            match what == Question::NearMiss && t == end.t {
-                true => self.left.push((guard.guard, doubt)),
-                false => self.uncertain.add(doubt),
+            let at_end = what == Question::NearMiss && !inside;
+            let turns = !at_end || guard.would_turn(method, found.turn).abs() <= error;
+            if at_end {
+                let unless_it_falls = (!turns).then(|| doubt.clone());
+                self.left.push((guard.guard, unless_it_falls));
+            }
+            // It may turn in the next step, where it was near zero at the end of this one.
+            if turns && !left.iter().any(|(other, _)| other.name == guard.guard.name) {
+                self.uncertain.add(doubt);
             }
         }
-        // What was near zero at the end of the step before has turned there, unless it is so again.
+        // What fell towards zero at the end of the step before did not come there, unless it does now.
         for (guard, doubt) in left {
             let falls = |(found, watched): (&Search, &Watched)| {
                 let other = &step.mode.guards[watched.guard];
                 found.crossing.is_some() && other.name == guard.name
             };
             let again = self.left.iter().any(|(other, _)| other.name == guard.name);
-            if !again && !step.found.iter().zip(step.watched).any(falls) {
+            if let Some(doubt) = doubt
+                && !again
+                && !step.found.iter().zip(step.watched).any(falls)
+            {
                 self.uncertain.add(doubt);
             }
         }
     }
 
-    /// Takes note of a transition: what its guard was near to has happened.
+    /// Takes note of a transition: what its guard fell to has happened.
     pub fn happened(&mut self, guard: &'static Guard) {
         self.left.retain(|(other, _)| other.name != guard.name);
     }
@@ -332,6 +350,63 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     fn error_at(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
         let [q, v, _] = motion(self.equations, dense_of(method), t, false);
         self.error(t, &q, &v)
+    }
+
+    /// What it is off by at local time `t` because the dense output is not as accurate as the end of the
+    /// step. There its accelerations differ from those that the equations ask for; the difference swings
+    /// from side to side between the places where they agree, one more than the degree in them, so that
+    /// in half that distance it makes a rate, and the rate a coordinate.
+    fn error_of_dense_output(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
+        let (start, end, dense) = (method.start().t, method.state().t, dense_of(method));
+        let mut defect = SVector::<f64, F>::zeros();
+        for k in 0..PARTS {
+            let place = start + (f64::from(k) + 0.5) / f64::from(PARTS) * (end - start);
+            let (q, v, a) = dense.at(place);
+            let mut exact = a;
+            if self
+                .equations
+                .acceleration(place, &q, &v, &mut exact)
+                .is_ok()
+            {
+                defect = defect.zip_map(&(exact - a), |most, part| most.max(part.abs()));
+            }
+        }
+        let mut coefficients = [0.0; ORDERS];
+        let swings = (0..F)
+            .map(|i| dense.polynomial(i, false, &mut coefficients))
+            .max();
+        let time = dense.length() / (2 * swings.unwrap_or(1)) as f64;
+        let [q, v, _] = motion(self.equations, dense, t, false);
+        let value = self.value(t, &q, &v);
+        let mut sum = 0.0;
+        for i in 0..F {
+            let (mut moved, mut faster) = (q, v);
+            faster[i] += defect[i] * time;
+            moved[i] += defect[i] * (time * time);
+            sum += (self.value(t, &moved, &v) - value).abs();
+            sum += (self.value(t, &q, &faster) - value).abs();
+        }
+        sum.max(0.0)
+    }
+
+    /// The value at which it would turn back after the end of the last step, by its slope and curvature
+    /// there, which are more accurate than what the search has `found` on the dense output.
+    fn would_turn(&mut self, method: &impl OneStep<F, Equations<'a, F>>, found: f64) -> f64 {
+        let (start, end) = (method.start(), method.state());
+        if self.watched.condition.is_some() || found == 0.0 {
+            return found;
+        }
+        let before = end.t - (end.t - start.t) / f64::from(PARTS);
+        let [q, v, a] = motion(self.equations, dense_of(method), before, true);
+        let before = State { t: before, q, v, a };
+        let [earlier, slope] =
+            [&before, end].map(|state| rate_at(self.equations, self.guard, state));
+        let curvature = (slope - earlier) / (end.t - before.t);
+        let value = self.value(end.t, &end.q, &end.v);
+        match curvature > 0.0 {
+            true => value - slope * slope / (2.0 * curvature),
+            false => f64::NEG_INFINITY,
+        }
     }
 
     /// The doubt about it at local time `t`.
