@@ -353,9 +353,9 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     }
 
     /// What it is off by at local time `t` because the dense output is not as accurate as the end of the
-    /// step. There its accelerations differ from those that the equations ask for; the difference swings
-    /// from side to side between the places where they agree, one more than the degree in them, so that
-    /// in half that distance it makes a rate, and the rate a coordinate.
+    /// step. There its accelerations differ from those that the equations ask for; the difference changes
+    /// its sign as often as there are coefficients in them, and makes its rate and its change of a
+    /// coordinate in the time between two such places.
     fn error_of_dense_output(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
         let (start, end, dense) = (method.start().t, method.state().t, dense_of(method));
         let mut defect = SVector::<f64, F>::zeros();
@@ -372,17 +372,15 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
             }
         }
         let mut coefficients = [0.0; ORDERS];
-        let swings = (0..F)
-            .map(|i| dense.polynomial(i, false, &mut coefficients))
-            .max();
-        let time = dense.length() / (2 * swings.unwrap_or(1)) as f64;
+        let in_rate = (0..F).map(|i| dense.polynomial(i, true, &mut coefficients));
+        let time = dense.length() / (in_rate.max().unwrap_or(2) - 1) as f64;
         let [q, v, _] = motion(self.equations, dense, t, false);
         let value = self.value(t, &q, &v);
         let mut sum = 0.0;
         for i in 0..F {
             let (mut moved, mut faster) = (q, v);
             faster[i] += defect[i] * time;
-            moved[i] += defect[i] * (time * time);
+            moved[i] += 0.5 * defect[i] * (time * time);
             sum += (self.value(t, &moved, &v) - value).abs();
             sum += (self.value(t, &q, &faster) - value).abs();
         }
