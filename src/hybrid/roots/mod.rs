@@ -134,9 +134,8 @@ pub struct Search {
     /// Whether the guard could be resolved. If not, single values decided, and an event between
     /// them may have been missed; a shorter window or a `noise` bound helps.
     pub resolved: bool,
-    /// How near to zero the guard turns, in its unit. With an event: the value at which it would turn
-    /// back (0 for a touch), −∞ where it does not turn, as far as the window or its slope and curvature
-    /// tell. Without one, of a guard that stays armed: a value that it does not turn below; ∞ of others.
+    /// How near to zero the guard turns, in its unit. With an event: a value down to which it falls (0
+    /// for a touch), in the window or as its slope and curvature tell; −∞ where it does not turn. Without one, of a guard that stays armed: a value that it stays above; ∞ of others.
     pub turn: f64,
 }
 
@@ -151,7 +150,7 @@ impl Search {
         }
     }
 
-    /// No event; the guard is armed and does not turn below `turn`.
+    /// No event; the guard is armed and stays above `turn`, or at it.
     pub(crate) fn above(turn: f64) -> Self {
         Self {
             turn,

@@ -85,13 +85,11 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
                     let kind = pieces.kind(l, r);
                     let event = Search::found(l.0, r.0, kind, Watch::Violated);
                     return Some(match kind {
-                        Kind::Fall if inner => event.turning(right.1),
+                        Kind::Fall => event.turning(right.1),
                         _ => event,
                     });
                 }
-                if inner {
-                    least = least.min(right.1);
-                }
+                least = least.min(right.1);
             }
             _ => {}
         }
