@@ -14,25 +14,21 @@ use super::guards::{Conditions, motion, watched_value};
 use super::locate::rate_at;
 use super::plan::Watched;
 use super::problem::Accuracy;
-use super::roots::{Search, Watch};
+use super::roots::{Search, Watch, minimum};
 use crate::integrate::{Motion, ORDERS, OneStep, State, System};
 use crate::kernel::Free;
-use crate::model::{Guard, GuardShape, Mode};
+use crate::model::{Guard, Mode};
 use crate::record::{Doubt, Question, Uncertain};
 use nalgebra::SVector;
 
 /// Parts of a step among which its least value is looked for. Steps resolve the motion, so that a guard
 /// turns once or twice in one.
-const PARTS: u32 = 16;
-
-/// Halvings, by the golden section, of the part with the least value: the value there is off by the
-/// square of the place, and half of a double's digits are enough for that.
-const NARROWINGS: u32 = 38;
+const PARTS: usize = 8;
 
 /// What was found out about the errors of guards, and the doubts.
 #[derive(Debug, Default)]
 pub(super) struct Doubts {
-    /// Sum of the estimated errors of all steps so far, in units of the tolerance.
+    /// Sum of the squares of the estimated errors of all steps so far, in units of the tolerance.
     spent: f64,
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
@@ -83,11 +79,11 @@ impl Doubts {
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
-        self.spent += step.error;
-        let tolerances = 1.0 + self.spent + method.looseness();
+        self.spent += step.error * step.error;
+        let within = self.tolerances() + method.looseness();
         let errors = &self.errors[step.index];
         let certain =
-            |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * tolerances);
+            |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * within);
         let known = errors.len() == step.found.len() && self.left.is_empty();
         if !(known && step.found.iter().zip(errors).all(certain)) {
             self.examine(step, method, equations, conditions);
@@ -95,6 +91,7 @@ impl Doubts {
     }
 
     #[cold]
+    #[inline(never)]
     fn examine<'a, const F: usize>(
         &mut self,
         step: &Searched,
@@ -102,7 +99,7 @@ impl Doubts {
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
-        let tolerances = 1.0 + self.spent;
+        let tolerances = self.tolerances();
         let within = tolerances + method.looseness();
         if self.errors[step.index].len() != step.found.len() {
             let start = method.start();
@@ -174,6 +171,11 @@ impl Doubts {
                 self.uncertain.add(doubt);
             }
         }
+    }
+
+    /// Error of every coordinate and rate, in units of its tolerance.
+    fn tolerances(&self) -> f64 {
+        1.0 + self.spent.sqrt()
     }
 
     /// Takes note of a transition: what its guard fell to has happened.
@@ -282,68 +284,21 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
 
     /// Place and value of its least value inside the last step; `None` if that is at an end.
     fn turn(&mut self, method: &impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
-        let (start, end) = (method.start(), method.state());
-        if let (
-            GuardShape::Linear {
-                index,
-                rate,
-                factor,
-                discrete,
-                ..
-            },
-            None,
-        ) = (self.guard.shape, self.watched.condition)
-        {
-            let factor = factor * discrete.map_or(1.0, |d| self.equations.context.discrete[d]);
-            let slope = |at: &State<F>| factor * if rate { at.a[index] } else { at.v[index] };
-            if slope(start) >= 0.0 || slope(end) <= 0.0 {
-                return None;
-            }
-        }
-        let dense = dense_of(method);
+        let (start, end, dense) = (method.start(), method.state(), dense_of(method));
         let mut own = |t: f64| {
             let [q, v, _] = motion(self.equations, dense, t, false);
             self.value(t, &q, &v)
         };
-        let part = (end.t - start.t) / f64::from(PARTS);
-        let place = |k: u32| {
-            if k < PARTS {
-                start.t + f64::from(k) * part
-            } else {
-                end.t
-            }
+        let length = end.t - start.t;
+        let place = |k: usize| match k {
+            PARTS => end.t,
+            k => start.t + k as f64 / PARTS as f64 * length,
         };
-        let values: Vec<f64> = (0..=PARTS).map(|k| own(place(k))).collect();
-        let least =
-            (0..=PARTS).min_by(|&i, &j| values[i as usize].total_cmp(&values[j as usize]))?;
-        let (mut low, mut high) = (
-            place(least.saturating_sub(1)),
-            place((least + 1).min(PARTS)),
-        );
-        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-        let inner =
-            |low: f64, high: f64| [high - golden * (high - low), low + golden * (high - low)];
-        let mut at = inner(low, high);
-        let mut found = at.map(&mut own);
-        for _ in 0..NARROWINGS {
-            if found[0] <= found[1] {
-                high = at[1];
-                (at[1], found[1]) = (at[0], found[0]);
-                at[0] = inner(low, high)[0];
-                found[0] = own(at[0]);
-            } else {
-                low = at[0];
-                (at[0], found[0]) = (at[1], found[1]);
-                at[1] = inner(low, high)[1];
-                found[1] = own(at[1]);
-            }
-        }
-        let (t, value) = if found[0] <= found[1] {
-            (at[0], found[0])
-        } else {
-            (at[1], found[1])
-        };
-        (value < values[0] && value < values[PARTS as usize]).then_some((t, value))
+        let values: [f64; PARTS + 1] = std::array::from_fn(|k| own(place(k)));
+        let least = (0..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
+        let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
+        let (t, value) = minimum(&mut own, (place(low), place(high)));
+        (value < values[0] && value < values[PARTS]).then_some((t, value))
     }
 
     /// The same where the last step is at local time `t`.
@@ -360,7 +315,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         let (start, end, dense) = (method.start().t, method.state().t, dense_of(method));
         let mut defect = SVector::<f64, F>::zeros();
         for k in 0..PARTS {
-            let place = start + (f64::from(k) + 0.5) / f64::from(PARTS) * (end - start);
+            let place = start + (k as f64 + 0.5) / PARTS as f64 * (end - start);
             let (q, v, a) = dense.at(place);
             let mut exact = a;
             if self
@@ -394,7 +349,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         if self.watched.condition.is_some() || found == 0.0 {
             return found;
         }
-        let before = end.t - (end.t - start.t) / f64::from(PARTS);
+        let before = end.t - (end.t - start.t) / PARTS as f64;
         let [q, v, a] = motion(self.equations, dense_of(method), before, true);
         let before = State { t: before, q, v, a };
         let [earlier, slope] =

@@ -84,14 +84,13 @@ pub(super) fn first_fall<const N: usize>(
     let margin = Polynomial::<N>::ROUNDING * size;
     // The first coefficient that is not certainly positive, and whether all are negative from it on.
     let falls = bernstein.iter().position(|b| b.is_nan() || *b <= margin);
-    let least = bernstein.iter().copied().fold(f64::INFINITY, f64::min);
     let Some(falls) = falls else {
-        return Some(Search::above(least));
+        return Some(Search::above(least(&bernstein)));
     };
     if falls > 0 && bernstein[falls..].iter().all(|b| *b < -margin) {
         let at_end = polynomial.value(to);
         if at_end >= 0.0 {
-            return Some(Search::above(least));
+            return Some(Search::above(least(&bernstein)));
         }
         // Where the polygon of the coefficients falls through zero.
         let (before, after) = (bernstein[falls - 1], bernstein[falls]);
@@ -106,9 +105,24 @@ pub(super) fn first_fall<const N: usize>(
     }
     let search = by_certified_steps(polynomial, from, to)?;
     Some(match search.crossing {
-        None => Search::above(least),
+        None => Search::above(least(&bernstein)),
         Some(_) => search,
     })
+}
+
+/// The least Bernstein coefficient, which the polynomial does not fall below; four side by side, since
+/// each comparison waits for the one before.
+fn least<const N: usize>(bernstein: &[f64; N]) -> f64 {
+    let lower = |a: f64, b: f64| if b < a { b } else { a };
+    let (fours, rest) = bernstein.as_chunks::<4>();
+    let mut least = [f64::INFINITY; 4];
+    for four in fours {
+        for (least, &b) in least.iter_mut().zip(four) {
+            *least = lower(*least, b);
+        }
+    }
+    let all = least.iter().chain(rest);
+    all.fold(f64::INFINITY, |least, &b| lower(least, b))
 }
 
 /// The same where more than one root is possible.
@@ -172,7 +186,7 @@ fn root<const N: usize>(
 ) -> Option<Search> {
     let (mut l, mut r) = (left, right);
     let mut value = polynomial.value(s);
-    let mut turn = f64::NEG_INFINITY;
+    let mut parabola = (value, 0.0, 0.0);
     for _ in 0..MOST_ITERATIONS {
         if value < 0.0 {
             r = (s, value)
@@ -181,11 +195,7 @@ fn root<const N: usize>(
         }
         let (slope, curvature) = polynomial.slope_and_curvature(s);
         let discriminant = slope * slope - 2.0 * curvature * value;
-        // The bottom of the parabola at s.
-        turn = match curvature > 0.0 {
-            true => value - slope * slope / (2.0 * curvature),
-            false => f64::NEG_INFINITY,
-        };
+        parabola = (value, slope, curvature);
         // The root of the parabola at s that a falling piece leads to, or Newton's.
         let step = match discriminant > 0.0 && slope < 0.0 {
             true => 2.0 * value / (discriminant.sqrt() - slope),
@@ -226,5 +236,12 @@ fn root<const N: usize>(
         }
     }
     let (l, r) = close(&mut own, l, r);
-    Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated).turning(turn))
+    let event = Search::found(l.0, r.0, Kind::Fall, Watch::Violated);
+    Some(match parabola {
+        // The bottom of the parabola where the iteration has ended.
+        (value, slope, curvature) if curvature > 0.0 => {
+            event.turning(value - slope * slope / (2.0 * curvature))
+        }
+        _ => event,
+    })
 }

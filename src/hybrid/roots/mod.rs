@@ -68,6 +68,7 @@ mod function;
 mod polynomial;
 mod walk;
 
+pub(super) use bracket::minimum;
 pub use earliest::{Earliest, earliest};
 pub use function::search;
 pub use polynomial::Polynomial;
