@@ -124,7 +124,7 @@ impl Simulation<'_> {
         let relative = problem.accuracy.relative;
 
         loop {
-            let error = method.step(&mut equations, until)?.error;
+            method.step(&mut equations, until)?;
 
             let cut = cut(
                 method,
@@ -141,7 +141,6 @@ impl Simulation<'_> {
                 watches: &self.signs.watches,
                 found: &self.signs.found,
                 accuracy: &problem.accuracy,
-                error,
             };
             self.doubts
                 .look(&searched, method, &mut equations, &mut conditions);
