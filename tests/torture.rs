@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use dalembert::hybrid::Problem;
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
-use dalembert::record::Run;
+use dalembert::record::{Doubt, Question, Run, Uncertain};
 use serde_json::Value;
 
 /// An item of the reference by name.
@@ -332,6 +332,10 @@ fn a_guard_that_is_zero_throughout_does_not_fire_without_end() {
             assert!((at_end(&run, name) - number(&item[name])).abs() < 1e-13);
         }
         assert!(run.events.len() < 10, "{} events", run.events.len());
+        let doubts = run.uncertain;
+        assert!(doubts.total > 0 && doubts.first.len() <= Uncertain::MOST);
+        let unresolved = |doubt: &Doubt| doubt.what == Question::Unresolved;
+        assert!(doubts.first.iter().any(unresolved), "{doubts:?}");
     });
 }
 

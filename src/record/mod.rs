@@ -21,6 +21,7 @@
 mod files;
 pub mod folder;
 mod layout;
+mod looks;
 mod number;
 mod peaks;
 pub mod plot;
@@ -36,6 +37,7 @@ mod uncertain;
 pub use files::{OVERVIEW, PHASE};
 pub use folder::{FolderError, OutputFolder};
 pub use layout::{Layout, Quantity, Recorded};
+pub(crate) use looks::Looks;
 pub(crate) use number::{exact, rounded};
 pub use peaks::{Peak, peaks};
 pub use progress::{Progress, ProgressLine, Silent};
