@@ -298,15 +298,8 @@ fn curved_guards_leave_zero_of_any_order() {
             let g = |t: f64| sign * t.sin().powi(order) * (1.0 + t.exp());
             let found = search(g, 0.0, 1.0, Watch::of(g(0.0)), 0.0);
             if sign > 0.0 {
-                assert_eq!(
-                    found,
-                    Search {
-                        crossing: None,
-                        watch: Watch::Armed,
-                        resolved: true,
-                        turn: f64::INFINITY,
-                    }
-                );
+                assert_eq!((found.crossing, found.watch), (None, Watch::Armed));
+                assert!(found.resolved);
             } else {
                 assert_eq!(crossing(found, g).kind, Kind::LeavesNegative);
             }

@@ -332,10 +332,13 @@ fn a_guard_that_is_zero_throughout_does_not_fire_without_end() {
             assert!((at_end(&run, name) - number(&item[name])).abs() < 1e-13);
         }
         assert!(run.events.len() < 10, "{} events", run.events.len());
-        let doubts = run.uncertain;
-        assert!(doubts.total > 0 && doubts.first.len() <= Uncertain::MOST);
-        let unresolved = |doubt: &Doubt| doubt.what == Question::Unresolved;
-        assert!(doubts.first.iter().any(unresolved), "{doubts:?}");
+        // The series of the Taylor method is zero; values alone are no more than rounding.
+        if run.solver.method.contains("Radau") {
+            let doubts = run.uncertain;
+            let unresolved = |doubt: &Doubt| doubt.what == Question::Unresolved;
+            assert!(doubts.first.iter().any(unresolved), "{doubts:?}");
+            assert!(doubts.first.len() <= Uncertain::MOST);
+        }
     });
 }
 

@@ -113,7 +113,8 @@ impl Doubts {
             let end = method.state();
             if !found.resolved {
                 let value = guard.value(end.t, &end.q, &end.v);
-                let doubt = guard.doubt(end.t, Question::Unresolved, value, f64::NAN);
+                let error = guard.error(end.t, &end.q, &end.v) * tolerances;
+                let doubt = guard.doubt(end.t, Question::Unresolved, value, error);
                 self.uncertain.add(doubt);
                 continue;
             }

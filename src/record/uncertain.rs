@@ -25,7 +25,7 @@ pub struct Doubt {
     /// Least value of the guard nearby, in `unit`; of a guard that was not resolved, its value at the
     /// end of the step.
     pub value: f64,
-    /// Error of that value that the tolerances allow, in `unit`; not a number where it was not resolved.
+    /// Error of that value that the tolerances allow, in `unit`.
     pub error: f64,
     /// Unit of the guard.
     pub unit: String,
