@@ -1,12 +1,20 @@
-//! Throughput of an ensemble in lanes against single runs, on one core: `cargo bench --bench ensemble`.
+//! Throughput of ensembles in lanes against single runs, on one core: `cargo bench --bench ensemble`.
 //!
-//! The rocking block on shaken ground of `benches/peers` (P2: 28 impacts in 10 s), each member with a
-//! half diagonal of its own. A single run is the fastest of several of each member, prepared before.
+//! * `blocks`: the rocking block on shaken ground of `benches/peers` (P2: 28 impacts in 10 s), each
+//!   member with a half diagonal of its own.
+//! * `pendulums`: driven pendulums, each with an initial state of its own; no event. Their errors are
+//!   against the solutions in `tests/data/forced_pendulum.json`.
+//!
+//! A single run is the fastest of several of each member, prepared before. With the name of an ensemble
+//! only that one is run; with `--rows`, too, plain numbers are printed for the widest lanes and more
+//! tolerances: tolerance, time of a trajectory in s, largest error.
 
 use dalembert::hybrid::{Ensemble, Member, Problem, Simulator};
 use dalembert::input::{Function, Sine};
 use dalembert::kernel::{LANES_OF_LEVELS, MODELS, processor_level};
 use dalembert::record::Silent;
+use serde_json::Value;
+use std::f64::consts::PI;
 use std::time::Instant;
 
 const MEMBERS: usize = 512;
@@ -15,65 +23,110 @@ const MEMBERS: usize = 512;
 const REPEATS: usize = 20;
 
 fn main() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
-    let pool = pool.build().expect("a thread can be started");
-    println!(
-        "{:>10}{:>14}{:>7}{:>14}{:>8}{:>9}   largest difference",
-        "tolerance", "single / µs", "lanes", "ensemble / µs", "ratio", "impacts"
-    );
-    for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
-        let problems = problems(tolerance);
-        let mut single = 0.0;
-        let mut ends = Vec::new();
-        for problem in &problems {
-            let mut simulator = Simulator::new(problem).expect("it can be started");
-            single += fastest(|| simulator.run(&mut Silent).expect("it comes to its end"));
-            ends.push((simulator.q()[0], simulator.events().len()));
-        }
-        let members: Vec<_> = problems.iter().map(Member::from).collect();
-        for (level, lanes) in LANES_OF_LEVELS
-            .iter()
-            .enumerate()
-            .take(processor_level() + 1)
-        {
-            let ensemble = Ensemble::new(&problems[0])
-                .expect("it can be started")
-                .at_level(level);
-            let mut found = Vec::new();
-            let together = fastest(|| {
-                let run = || ensemble.run(&members, |_, end| (end.q()[0], end.events().len()));
-                found = pool.install(run);
-            });
-            let pairs = || found.iter().zip(&ends);
-            assert!(pairs().all(|(a, b)| a.1 == b.1), "the events are the same");
-            let difference = pairs().map(|(a, b)| (a.0 - b.0).abs()).fold(0.0, f64::max);
-            let impacts: usize = found.iter().map(|end| end.1).sum();
-            let each = |seconds: f64| seconds / MEMBERS as f64 * 1e6;
-            println!(
-                "{tolerance:10.0e}{:14.1}{lanes:7}{:14.1}{:8.2}{:9.1}   {difference:.0e} rad",
-                each(single),
-                each(together),
-                single / together,
-                impacts as f64 / MEMBERS as f64
-            );
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let is_wanted = |name: &str| {
+        let names = ["blocks", "pendulums"];
+        let named = arguments.iter().any(|a| names.contains(&a.as_str()));
+        !named || arguments.iter().any(|a| a == name)
+    };
+    let rows = arguments.iter().any(|a| a == "--rows");
+    if !rows {
+        println!(
+            "{:>10}{:>10}{:>12}{:>7}{:>14}{:>8}{:>9}{:>12}{:>10}",
+            "ensemble",
+            "tolerance",
+            "single / µs",
+            "lanes",
+            "ensemble / µs",
+            "ratio",
+            "events",
+            "difference",
+            "error"
+        );
+    }
+    let ensembles: [(&str, fn(f64) -> Vec<Problem>); 2] =
+        [("blocks", blocks), ("pendulums", pendulums)];
+    for (name, problems) in ensembles.into_iter().filter(|(name, _)| is_wanted(name)) {
+        for digits in (3..=14).step_by(if rows { 1 } else { 3 }) {
+            let tolerance = 10f64.powi(-digits);
+            compare(name, tolerance, &problems(tolerance), rows);
         }
     }
 }
 
-/// Members of the ensemble.
-fn problems(tolerance: f64) -> Vec<Problem> {
-    let model = MODELS.iter().find(|m| m.name == "rocking_block");
+/// Runs an ensemble in lanes and its members one by one, and prints what it took.
+fn compare(name: &str, tolerance: f64, problems: &[Problem], rows: bool) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let pool = pool.build().expect("a thread can be started");
+    let each = |seconds: f64| seconds / MEMBERS as f64;
+    let mut single = 0.0;
+    let mut ends = Vec::new();
+    for problem in problems.iter().filter(|_| !rows) {
+        let mut simulator = Simulator::new(problem).expect("it can be started");
+        single += fastest(|| simulator.run(&mut Silent).expect("it comes to its end"));
+        ends.push((simulator.q()[0], simulator.events().len()));
+    }
+    let members: Vec<_> = problems.iter().map(Member::from).collect();
+    let levels = LANES_OF_LEVELS.iter().enumerate();
+    for (level, lanes) in levels.take(processor_level() + 1) {
+        if rows && level < processor_level() {
+            continue;
+        }
+        let ensemble = Ensemble::new(&problems[0]).expect("it can be started");
+        let ensemble = ensemble.at_level(level);
+        let mut found = Vec::new();
+        let together = fastest(|| {
+            let run = || {
+                ensemble.run(&members, |_, end| {
+                    ([end.q()[0], end.v()[0]], end.events().len())
+                })
+            };
+            found = pool.install(run);
+        });
+        let error = match name {
+            "pendulums" => Some(error(&found.iter().map(|end| end.0).collect::<Vec<_>>())),
+            _ => None,
+        };
+        if rows {
+            let error = error.expect("the ensemble has a reference");
+            println!("{tolerance:e} {:e} {error:e}", each(together));
+            continue;
+        }
+        let pairs = || found.iter().zip(&ends);
+        assert!(pairs().all(|(a, b)| a.1 == b.1), "the events are the same");
+        let difference = pairs()
+            .map(|(a, b)| (a.0[0] - b.0).abs())
+            .fold(0.0, f64::max);
+        let events: usize = found.iter().map(|end| end.1).sum();
+        println!(
+            "{name:>10}{tolerance:10.0e}{:12.1}{lanes:7}{:14.1}{:8.2}{:9.1}{difference:12.0e}{:>10}",
+            each(single) * 1e6,
+            each(together) * 1e6,
+            single / together,
+            events as f64 / MEMBERS as f64,
+            error.map_or("–".into(), |error| format!("{error:.1e}"))
+        );
+    }
+}
+
+fn model(name: &str) -> Problem {
+    let model = MODELS.iter().find(|m| m.name == name);
     let mut problem = Problem::new(model.expect("the model is there"));
-    let shake = Sine::new(-0.35 * 9.81, 3.0 * std::f64::consts::PI, 0.3);
+    problem.end.time = 10.0;
+    problem.record.ledger = false;
+    problem.record.event_states = false;
+    problem
+}
+
+fn blocks(tolerance: f64) -> Vec<Problem> {
+    let mut problem = model("rocking_block");
+    let shake = Sine::new(-0.35 * 9.81, 3.0 * PI, 0.3);
     problem
         .set_input("ground_acceleration", Function::from(shake))
         .expect("the model has the input");
-    problem.end.time = 10.0;
     problem.set_tolerance(tolerance);
     problem.accuracy.q_absolute[0] = tolerance * 0.2;
     problem.accuracy.v_absolute[0] = tolerance * 0.5;
-    problem.record.ledger = false;
-    problem.record.event_states = false;
     let member = |i: usize| {
         let mut own = problem.clone();
         let diagonal = 1.5 + 0.05 * i as f64 / MEMBERS as f64;
@@ -85,6 +138,47 @@ fn problems(tolerance: f64) -> Vec<Problem> {
         own
     };
     (0..MEMBERS).map(member).collect()
+}
+
+fn pendulums(tolerance: f64) -> Vec<Problem> {
+    let mut problem = model("forced_pendulum");
+    let known = "the model has it";
+    problem.set_parameter("g", 4.84).expect(known);
+    let drive = Sine::new(1.0, 3.0 * PI, 0.0);
+    problem
+        .set_input("moment", Function::from(drive))
+        .expect(known);
+    problem.set_tolerance(tolerance);
+    problem.accuracy.q_absolute[0] = tolerance;
+    problem.accuracy.v_absolute[0] = tolerance;
+    let member = |i: usize| {
+        let mut own = problem.clone();
+        let (angle, rate) = (
+            i as f64 * 0.6180339887498949 % 1.0,
+            i as f64 * 0.41421356237309515 % 1.0,
+        );
+        own.set_initial("theta", 3.0 * angle - 1.5).expect(known);
+        own.set_initial("theta.rate", 2.0 * rate - 1.0)
+            .expect(known);
+        own
+    };
+    (0..MEMBERS).map(member).collect()
+}
+
+/// Largest error of the pendulums whose solution is known, rad and rad/s.
+fn error(ends: &[[f64; 2]]) -> f64 {
+    let text = include_str!("../tests/data/forced_pendulum.json");
+    let reference: Value = serde_json::from_str(text).expect("the reference is JSON");
+    let members = reference["members"].as_array().expect("it has members");
+    let errors = members.iter().flat_map(|member| {
+        let end = ends[member["member"].as_u64().expect("it has a number") as usize];
+        let exact = member["end"].as_array().expect("it has an end");
+        let exact = exact.iter().filter_map(|x| x.as_str()?.parse::<f64>().ok());
+        end.into_iter()
+            .zip(exact)
+            .map(|(x, exact)| (x - exact).abs())
+    });
+    errors.fold(0.0, f64::max)
 }
 
 /// Least time of repeats, s.

@@ -198,6 +198,8 @@ impl Level {
             .define("DALEMBERT_LANES", self.lanes.to_string().as_str())
             // Both branches of a choice may be computed, of which a lane takes one.
             .flag_if_supported("-fno-trapping-math")
+            // Roots of several numbers are one instruction, which tells no error.
+            .flag_if_supported("-fno-math-errno")
             // No vector is passed between functions that are not inlined.
             .flag_if_supported("-Wno-psabi");
         for flag in self.flags {

@@ -19,6 +19,9 @@ static const double P1 = 0x1.921fb54p+0, P2 = 0x1.10b461p-30, P3 = 0x1.a62633p-5
 /* Up to here n has 26 bits, and its products with the parts of pi/2 are exact. */
 static const double DIRECT = 0x1p26;
 
+/* Up to here, pi/4, nothing is to be reduced. */
+static const double NEAR = 0x1.921fb54442d18p-1;
+
 /* a + b = sum + what is returned, exactly (Knuth). */
 static inline double two_sum(double a, double b, double *sum) {
   const double s = a + b, from_a = s - b, from_b = s - from_a;
@@ -28,7 +31,7 @@ static inline double two_sum(double a, double b, double *sum) {
 
 /* For 0 <= x <= DIRECT (Cody and Waite 1980). */
 static inline struct angle reduced(double x) {
-  if (x <= 0x1.921fb54442d18p-1) { /* pi/4: what follows gives the same, later. */
+  if (x <= NEAR) { /* What follows gives the same, later. */
     const struct angle itself = {x, 0.0, 0};
     return itself;
   }

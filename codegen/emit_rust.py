@@ -41,7 +41,7 @@ def goes_in_lanes(variant, i):
 def model_text(name, variants, constants_symbol, constants_count, for_tests):
     """The Rust fragment of a model."""
     model = variants[0].model
-    signals = sum(len(i.signals) for i in model.inputs)
+    signals = len(_signals(model))
     functions = [(slot, f) for v in variants for slot, f in v.functions.items()]
     externs = sorted({f.symbol for slot, f in functions if slot[1] not in SERIES} | {constants_symbol})
     series = [f.symbol for slot, f in functions if slot[1] in SERIES and f.symbol]
@@ -64,7 +64,8 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     lines += ["}", "", "static DIMENSIONS: Dimensions = Dimensions {",
               f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
               f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
-              f"    parameters: {len(model.parameters)},", f"    constants: {constants_count},", "};", ""]
+              f"    parameters: {len(model.parameters)},", f"    constants: {constants_count},",
+              f"    expanded: &[{', '.join(map(_bool, _expanded(variants)))}],", "};", ""]
     lines += [f"/// {model.title}.", f"pub static {name.upper()}: Model = Model {{"]
     lines += [
         f"    name: {_text(name)},", f"    title: {_text(model.title)},", f"    source: {_text(model.source)},",
@@ -232,8 +233,8 @@ def _mode(variant, i, equations):
 
 
 def _series(function, level=""):
-    (start, run), (lead, row) = function.symbol, function.workspace
-    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row} }}"
+    (start, run), (lead, row, convolutions) = function.symbol, function.workspace
+    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row}, convolutions: {convolutions} }}"
 
 
 def _lanes(variant, i, functions):
@@ -301,6 +302,13 @@ def _moving(model, equations):
 
 def _signals(model):
     return [s for i in model.inputs for s in i.signals]
+
+
+def _expanded(variants):
+    """Of each signal, whether the equations of motion or the guards of some mode depend on it."""
+    outputs = [f.output for v in variants for slot, f in v.functions.items() if slot[1] in SERIES]
+    present = {s.element_hash() for output in outputs for s in ca.symvar(output)}
+    return [s.element_hash() in present for s in _signals(variants[0].model)]
 
 
 def _present(symbols, *columns):

@@ -12,14 +12,15 @@ right factors of the interiors are two tables in the workspace, one row an order
 the middle outwards, so that the coefficients that were computed last enter last: what an order has
 to wait for is one product and one sum.
 
-Few interiors are unrolled: an order with its number known is straight-line code without loops.
+Without interiors the orders are unrolled: one with its number known is straight-line code. With them
+that hinders the vectors.
 
 Nodes that are constant in time are recognised: a constant times a series is one product an order.
 """
 
 import casadi as ca
 
-from .emit_c import SIN_COS, literal, operation, parenthesized, sin_cos
+from .emit_c import MOST_ORDERS, SIN_COS, literal, operation, parenthesized, sin_cos
 
 
 class NotAnalytic(Exception):
@@ -339,58 +340,50 @@ class Series:
         """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
         right factors of the interiors."""
         graph, count = self.graph, len(self.graph.interiors)
-        self.lead, self.row = graph.slots, 2 * count
+        self.lead, self.row = graph.slots, 2 * (count + (count % 4 == 3))
         self.operations = len(graph.next)
-        self.order = ["  const double order = (double)k, inverse_k = 1.0 / order;", "  (void)inverse_k;"]
+        self.order = ["  const double order = (double)k, inverse_k = dalembert_inverses[k];", "  (void)order, (void)inverse_k;"]
         if not count:
             self.order += graph.next
             return
-        late = [f"  row[{self.row} * (k - 1) + {count + n}] = {text};" for n, text in graph.late.items()]
+        late = [f"  row[2 * width * (k - 1) + width + {n}] = {text};" for n, text in graph.late.items()]
         now = []
         for (left, right), n in graph.interiors.items():
             now.append(f"  now[{n}] = {left};")
             if n not in graph.late:
-                now.append(f"  now[{count + n}] = {right};")
-        product = f"row[{self.row} * %s + n] * row[{self.row} * %s + {count} + n]"
+                now.append(f"  now[width + {n}] = {right};")
+        product = "row[2 * width * %s + n] * row[2 * width * %s + width + n]"
         self.order += [
-            f"  real *const row = w + {self.lead}, *const now = row + {self.row} * k;",
+            f"  enum {{ width = DALEMBERT_WIDTH({count}) }};",
+            f"  real *const row = w + {self.lead}, *const now = row + 2 * width * k;",
             *late,
-            f"  real y[{count}], z[{count}];",
-            f"  for (size_t n = 0; n < {count}; ++n) {{",
+            "  real y[width], z[width];",
+            "  for (size_t n = 0; n < width; ++n) {",
             f"    y[n] = k % 2 == 0 ? {product % ('(k / 2)', '(k / 2)')} : REAL(0.0);",
             "    z[n] = REAL(0.0);",
             "  }",
-            "  DALEMBERT_UNROLL",
             "  for (size_t j = (k - 1) / 2; j >= 1; --j) {",
-            f"    for (size_t n = 0; n < {count}; ++n) {{",
+            "    for (size_t n = 0; n < width; ++n) {",
             f"      y[n] += {product % ('j', '(k - j)')};",
             f"      z[n] += {product % ('(k - j)', 'j')};",
             "    }",
             "  }",
-            f"  for (size_t n = 0; n < {count}; ++n) y[n] += z[n];",
+            "  for (size_t n = 0; n < width; ++n) y[n] += z[n];",
             *graph.next, *now,
         ]
 
     def add_to(self, source, name):
         """Adds both functions to a `Source`; returns the names under which they can be called."""
         start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start))
-        order = source.add_text(f"{name}_order", f"const size_t k, {_SIGNATURE}", _text(self.order), inline=True)
+        order = source.add_text(f"{name}_order", f"const size_t k, {_SIGNATURE}", _text(self.order), "DALEMBERT_INLINE")
         call = f"{order}(%s, q, v, a, u, x, w, out);"
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
-        if len(self.graph.interiors) <= MOST_UNROLLED:
+        if not self.graph.interiors:
             unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
             # A vector of eight lanes fills the processor without.
             orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]
-        run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders))
+        run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders), "DALEMBERT_CLONES")
         return start, run
-
-
-MOST_ORDERS = 32
-"""Coefficients of a series, the one of order 0 included: `ORDERS` in src/integrate/taylor/series.rs."""
-
-MOST_UNROLLED = 4
-"""Interiors up to which the orders are unrolled: each takes about 32²/2 products, 10 kB of code, and
-the whole should hardly exceed the instruction cache of 32 kB or more."""
 
 
 class Outputs(Series):
@@ -423,10 +416,10 @@ class Equations(Series):
             lines.append(f"  const real r{i} = REAL({' + '.join(terms) or '0.0'});")
         for i in range(free):
             row = " + ".join(f"out[{free * j + i}] * r{j}" for j in range(free))
-            lines.append(f"  const real a{i} = -({row}), v{i} = a{i} * (1.0 / (order + 1.0));")
+            lines.append(f"  const real a{i} = -({row}), v{i} = a{i} * dalembert_inverses[k + 1];")
             lines.append(f"  a[{free} * k + {i}] = a{i};")
             lines.append(f"  v[{free} * (k + 1) + {i}] = v{i};")
-            lines.append(f"  q[{free} * (k + 2) + {i}] = v{i} * (1.0 / (order + 2.0));")
+            lines.append(f"  q[{free} * (k + 2) + {i}] = v{i} * dalembert_inverses[k + 2];")
         self.finish()
 
     def _late(self, mass, j, free):

@@ -1,25 +1,72 @@
-/* What trajectories side by side need in every mode: sines for their inputs, lengths of steps, values of
- * series, and the first falls of guards. The formulas are those of src/input, src/integrate/taylor and
- * src/hybrid/roots, which have the reasons; src/kernel/mod.rs calls the functions.
+/* What trajectories side by side need in every mode: sines for their inputs, accelerations, lengths of
+ * steps, the first falls of guards, and ends of steps. The formulas are those of src/input,
+ * src/integrate and src/hybrid/roots, which have the reasons; src/kernel/mod.rs calls the functions.
  *
- * Arrays of series have one row an order, `stride` numbers a row.
+ * Arrays of series have one row an order, `stride` numbers a row. A point of the motion is, one after
+ * the other, the coordinates, velocities and accelerations, what rounding has lost of coordinates and of
+ * velocities, and the time as a sum of two doubles.
  */
 #include "lanes.h"
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
 
-/* All bits of a lane for true, none for false: what a comparison gives. */
-typedef long long truth __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
+/* The bits of a number. */
+typedef long long word __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
 
+/* Yes or no for each lane, in registers: a bit a lane where the processor compares so, else all bits of a
+ * lane or none. Between functions it is a bit a lane.
+ */
+#if DALEMBERT_LANES == 8
+typedef __mmask8 truth;
+DALEMBERT_INLINE truth truth_of(unsigned bits) { return (truth)bits; }
+DALEMBERT_INLINE unsigned bits(truth x) { return x; }
+DALEMBERT_INLINE real pick(truth where, real yes, real no) {
+  return (real)_mm512_mask_blend_pd(where, (__m512d)no, (__m512d)yes);
+}
+DALEMBERT_INLINE truth below(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LT_OQ); }
+DALEMBERT_INLINE truth at_most(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LE_OQ); }
+DALEMBERT_INLINE truth same(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_EQ_OQ); }
+#else
+typedef word truth;
+DALEMBERT_INLINE truth truth_of(unsigned bits) {
+  word own;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) own[i] = 1LL << i;
+  return (own & (long long)bits) != 0;
+}
+DALEMBERT_INLINE unsigned bits(truth x) {
+#if defined(__AVX2__)
+  return (unsigned)_mm256_movemask_pd((__m256d)x);
+#elif defined(__x86_64__)
+  return (unsigned)_mm_movemask_pd((__m128d)x);
+#else
+  unsigned all = 0;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) all |= (unsigned)(x[i] != 0) << i;
+  return all;
+#endif
+}
 DALEMBERT_INLINE real pick(truth where, real yes, real no) {
   return (real)(((truth)yes & where) | ((truth)no & ~where));
 }
-DALEMBERT_INLINE real size_of(real x) { return (real)((truth)x & 0x7fffffffffffffff); }
-DALEMBERT_INLINE real greater(real x, real y) { return pick(x > y, x, y); }
-DALEMBERT_INLINE real smaller(real x, real y) { return pick(x < y, x, y); }
-DALEMBERT_INLINE int any(truth x) {
-  long long all = 0;
-  for (int i = 0; i < DALEMBERT_LANES; ++i) all |= x[i];
-  return all != 0;
+DALEMBERT_INLINE truth below(real x, real y) { return x < y; }
+DALEMBERT_INLINE truth at_most(real x, real y) { return x <= y; }
+DALEMBERT_INLINE truth same(real x, real y) { return x == y; }
+#endif
+DALEMBERT_INLINE int any(truth x) { return bits(x) != 0; }
+
+DALEMBERT_INLINE real size_of(real x) { return (real)((word)x & 0x7fffffffffffffff); }
+DALEMBERT_INLINE real greater(real x, real y) { return pick(below(y, x), x, y); }
+DALEMBERT_INLINE real smaller(real x, real y) { return pick(below(x, y), x, y); }
+
+/* a + b = sum + what is returned, exactly (Knuth). */
+DALEMBERT_INLINE real two_sum_of(real a, real b, real *sum) {
+  const real s = a + b, from_a = s - b, from_b = s - from_a;
+  *sum = s;
+  return (a - from_a) + (b - from_b);
 }
+
+/* Numbers of free coordinates that are told apart: MOST_FREE in src/kernel/mod.rs. */
+#define FREE(with) with(0) with(1) with(2) with(3) with(4) with(5) with(6)
 
 void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine);
 void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine) {
@@ -28,57 +75,185 @@ void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine) {
   *cosine = pair.cos;
 }
 
-/* Sum of row k times tau to the power k, for k < count: in powers of tau^4 for every fourth. */
+/* A sine, as Sine in src/input/sine.rs lays it out. */
+struct sine { double amplitude, angular_frequency, start, end, sin_phase, cos_phase, of_integral, of_double_integral; };
+
+/* y - sin y for y >= 0, as there. */
+DALEMBERT_INLINE real less_its_sine(real y, real sin_y) {
+  const truth near = below(y, REAL(1.0));
+  const real far = y - sin_y;
+  if (!any(near)) return far;
+  const real y2 = y * y;
+  real tail = REAL(1.0);
+  for (int n = 9; n >= 2; --n) tail = 1.0 - y2 / (2.0 * n * (2.0 * n + 1.0)) * tail;
+  return pick(near, y * y2 / 6.0 * tail, far);
+}
+
+/* Rate, value, integral and double integral of a sine just after the times t. */
+void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *jet);
+void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *jet) {
+  const double amplitude = sine->amplitude, omega = sine->angular_frequency;
+  const real start = REAL(sine->start), end = REAL(sine->end);
+  const real acting = pick(below(*t, start), start, smaller(end, *t));
+  const real y = omega * (acting - start);
+  const struct dalembert_sin_cos half = dalembert_sin_cos(0.5 * y);
+  const real sin_shifted = half.sin * sine->cos_phase + half.cos * sine->sin_phase;
+  const real cos_shifted = half.cos * sine->cos_phase - half.sin * sine->sin_phase;
+  const real integral = sine->of_integral * 2.0 * sin_shifted * half.sin;
+  const real double_integral = sine->of_double_integral * (sine->cos_phase * less_its_sine(y, 2.0 * half.sin * half.cos)
+                                                           + 2.0 * sine->sin_phase * half.sin * half.sin);
+  const truth acts = at_most(start, *t) & below(*t, end);
+  const real zero = REAL(0.0);
+  jet[0] = pick(acts, amplitude * omega * (cos_shifted * half.cos - sin_shifted * half.sin), zero);
+  jet[1] = pick(acts, amplitude * (sin_shifted * half.cos + cos_shifted * half.sin), zero);
+  jet[2] = integral;
+  jet[3] = double_integral + integral * pick(below(end, *t), *t - end, zero);
+}
+
+/* Rows of the Taylor coefficients of a sine, from its value and rate: each is factor * inverses[k] times the
+ * last but one.
+ */
+void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, double factor, const double *inverses,
+                                       const real *jet, real *row);
+void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, double factor, const double *inverses,
+                                       const real *jet, real *row) {
+  real now = jet[1], next = jet[0];
+  for (size_t k = 0; k < count; ++k) {
+    row[k * stride] = now;
+    const real after = now * (factor * inverses[k]);
+    now = next;
+    next = after;
+  }
+}
+
+/* Rows of the Taylor coefficients of an antiderivative, from its value and those of its derivative, which are
+ * in the entries before. inverses: of k.
+ */
+void LANES(dalembert_lane_antiderivative)(size_t count, size_t stride, const double *inverses, const real *value,
+                                          real *row);
+void LANES(dalembert_lane_antiderivative)(size_t count, size_t stride, const double *inverses, const real *value,
+                                          real *row) {
+  row[0] = *value;
+  for (size_t k = 1; k < count; ++k) row[k * stride] = row[(k - 1) * stride - 1] * inverses[k];
+}
+
+/* Inverse of a mass matrix by elimination without exchanges, and the accelerations, which are given where a
+ * segment starts; with them the first rows of the series. system: the matrix by columns, then the load.
+ * Gives the lanes in which not all pivots are positive. A pivot within the rounding of its own sum is not
+ * told from zero.
+ */
+DALEMBERT_INLINE unsigned begin(const size_t free, const real *point, unsigned at_start, const real *system,
+                                real *inverse, real *q, real *v, real *a) {
+  const double rounding = ((double)free + 1.0) * 0x1p-52;
+  real m[6 * 6];
+  truth unclear = truth_of(0);
+  for (size_t k = 0; k < free * free; ++k) {
+    m[k] = system[k];
+    inverse[k] = REAL(k % (free + 1) == 0 ? 1.0 : 0.0);
+  }
+  /* Columns: m[free j + i] is the entry of row i. */
+  for (size_t k = 0; k < free; ++k) {
+    const real pivot = m[free * k + k];
+    unclear |= ~below(rounding * size_of(system[free * k + k]), pivot);
+    for (size_t j = 0; j < free; ++j) {
+      if (j > k) m[free * j + k] /= pivot;
+      inverse[free * j + k] /= pivot;
+    }
+    for (size_t i = 0; i < free; ++i) {
+      if (i == k) continue;
+      const real factor = m[free * k + i];
+      for (size_t j = 0; j < free; ++j) {
+        if (j > k) m[free * j + i] -= factor * m[free * j + k];
+        inverse[free * j + i] -= factor * inverse[free * j + k];
+      }
+    }
+  }
+  const truth given = truth_of(at_start);
+  for (size_t i = 0; i < free; ++i) {
+    real acceleration = REAL(0.0);
+    for (size_t j = 0; j < free; ++j) acceleration -= inverse[free * j + i] * system[free * free + j];
+    acceleration = pick(given, point[2 * free + i], acceleration);
+    a[i] = acceleration;
+    v[free + i] = acceleration;
+    q[free + i] = v[i];
+    q[2 * free + i] = 0.5 * acceleration;
+  }
+  return bits(unclear);
+}
+
+unsigned LANES(dalembert_lane_begin)(size_t free, const real *point, unsigned at_start, const real *system,
+                                     real *inverse, real *q, real *v, real *a);
+unsigned LANES(dalembert_lane_begin)(size_t free, const real *point, unsigned at_start, const real *system,
+                                     real *inverse, real *q, real *v, real *a) {
+  switch (free) {
+#define CASE(n) case n: return begin(n, point, at_start, system, inverse, q, v, a);
+    FREE(CASE)
+#undef CASE
+  }
+  return 0;
+}
+
+/* The lanes in which not all numbers are positive. */
+unsigned LANES(dalembert_lane_unmet)(size_t count, const real *x);
+unsigned LANES(dalembert_lane_unmet)(size_t count, const real *x) {
+  truth met = truth_of(~0U);
+  for (size_t i = 0; i < count; ++i) met &= below(REAL(0.0), x[i]);
+  return bits((truth)~met);
+}
+
+/* Sum of row k times tau to the power k, for k < count: in powers of tau^4 for every fourth. Rows that fill
+ * up the last four are zero.
+ */
 DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau) {
   const real tau2 = tau * tau, tau4 = tau2 * tau2;
   real sums[4] = {{0}};
-  size_t k = count / 4 * 4;
-  for (size_t i = 0; k + i < count; ++i) sums[i] = row[(k + i) * stride];
-  while (k > 0) {
-    k -= 4;
-    for (size_t i = 0; i < 4; ++i) sums[i] = sums[i] * tau4 + row[(k + i) * stride];
-  }
+  for (size_t k = (count + 3) / 4 * 4; k > 0; k -= 4)
+    for (size_t i = 0; i < 4; ++i) sums[i] = sums[i] * tau4 + row[(k - 4 + i) * stride];
   return (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2;
 }
 
-void LANES(dalembert_lane_sum)(size_t count, size_t stride, const real *row, const real *tau, real *out);
-void LANES(dalembert_lane_sum)(size_t count, size_t stride, const real *row, const real *tau, real *out) {
-  *out = sum(count, stride, row, *tau);
+/* 2^(-x) to a percent for 0 <= x <= 1: src/integrate/logarithm.rs. */
+DALEMBERT_INLINE real inverse_power(real x) {
+  const real fraction = 1.0 - x;
+  return 0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
-/* 2^x to a percent: src/integrate/logarithm.rs. */
-DALEMBERT_INLINE real binary_power(real x) {
-  const real exponent = x + 1023.0;
-  const truth whole = __builtin_convertvector(exponent, truth);
-  const real fraction = exponent - __builtin_convertvector(whole, real);
-  return (real)(whole << 52) * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
+/* A number > 0 as its exponent and the rest of its binary logarithm, in [0, 1): as there. */
+struct logarithm { real exponent, fraction; };
+DALEMBERT_INLINE struct logarithm binary_logarithm(real x) {
+  const word pattern = (word)x;
+  const real mantissa = (real)((pattern & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
+  struct logarithm out;
+  out.exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
+  out.fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
+  return out;
 }
 
-/* x^(-1/n) for positive normal x, and infinity for zero, as there. */
-DALEMBERT_INLINE real inverse_root(real x, double n) {
-  const truth bits = (truth)x;
-  const real exponent = __builtin_convertvector(bits >> 52, real) - 1023.0;
-  const real mantissa = (real)((bits & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
-  const real fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
-  /* exponent = n whole + rest with 0 <= rest < n; the first guess is off by one at most. */
-  real whole = __builtin_convertvector(__builtin_convertvector(exponent / n, truth), real);
-  whole = pick(exponent - n * whole < 0.0, whole - 1.0, whole);
-  const real rest = exponent - n * whole;
-  const real power = (real)((1023 - __builtin_convertvector(whole, truth)) << 52);
-  const real root = power * binary_power(-(rest + fraction) / n);
-  return pick(x >= 0x1p-1022, root, REAL(INFINITY));
+/* 2^(-x/n) for a number x that is so given, and 1/n. */
+DALEMBERT_INLINE real inverse_root(struct logarithm x, real n, real inverse) {
+  /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
+  const word whole = __builtin_convertvector((x.exponent + (1024.0 * n + 0.5)) * inverse, word);
+  const real rest = x.exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
+  const real power = (real)((1023 + 1024 - whole) << 52);
+  return power * inverse_power((rest + x.fraction) * inverse);
 }
 
-/* Length at which the last terms of a series of order p equal the tolerance, as it fits into what
- * remains and is not more than the horizon. tolerances: relative, then absolute ones of the coordinates,
- * then of the velocities. The terms of order p - 3 and p - 2 limit it, too, times their factors:
- * src/integrate/taylor/length.rs.
+/* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
+ * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
+ * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
+ * p - 3 and p - 2, their inverses, the factors of the lengths that they tell, and their
+ * logarithms, which tell the shortest: src/integrate/logarithm.rs, src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
+ * those whose series is not finite or whose time would not advance.
  */
-void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const double *tolerances,
-                                  const double *factors, const real *remaining, const real *horizon, real *out);
-void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const double *tolerances,
-                                  const double *factors, const real *remaining, const real *horizon, real *out) {
-  real sizes[3] = {{0}}, earlier[2] = {{0}};
+DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
+                             const double *tolerances, const double *terms, const real *point, const real *last,
+                             const real *horizon, real *h, unsigned *unclear) {
+  const real now = point[5 * free], rest = point[5 * free + 1];
+  real remaining;
+  const real error = two_sum_of(*last, -now, &remaining);
+  remaining += error - rest;
+  real sizes[5] = {{0}};
+  truth finite = truth_of(~0U);
   for (size_t i = 0; i < free; ++i) {
     const real of_q = 1.0 / (tolerances[1 + i] + tolerances[0] * size_of(q[i]));
     const real of_v = 1.0 / (tolerances[1 + free + i] + tolerances[0] * size_of(v[i]));
@@ -86,13 +261,77 @@ void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const re
     sizes[1] = greater(size_of(v[p * free + i]) * of_v, sizes[1]);
     sizes[1] = greater(size_of(q[p * free + i]) * of_q, sizes[1]);
     sizes[2] = greater(size_of(q[(p + 1) * free + i]) * of_q, sizes[2]);
-    for (size_t k = 0; k < 2; ++k) earlier[k] = greater(size_of(v[(p - 3 + k) * free + i]) * of_v, earlier[k]);
+    sizes[3] = greater(size_of(v[(p - 3) * free + i]) * of_v, sizes[3]);
+    sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
+    finite &= below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
-  real length = *horizon;
-  for (size_t k = 0; k < 3; ++k) length = smaller(inverse_root(sizes[k], (double)(p + k - 1)), length);
-  for (size_t k = 0; k < 2; ++k) length = smaller(factors[k] * inverse_root(earlier[k], (double)(p - 3 + k)), length);
-  const real half = pick(2.0 * length > *remaining, 0.5 * *remaining, length);
-  *out = pick(length >= *remaining, *remaining, half);
+  struct logarithm of_shortest = {REAL(0.0), REAL(0.0)};
+  real shortest = REAL(-INFINITY), n = REAL(1.0), inverse = REAL(1.0), factor = REAL(INFINITY);
+#pragma GCC unroll 5
+  for (int k = 0; k < 5; ++k) {
+    const struct logarithm own = binary_logarithm(sizes[k]);
+    const real logarithm = (own.exponent + own.fraction) * terms[5 + k] - terms[15 + k];
+    const truth shorter = below(shortest, logarithm) & at_most(REAL(0x1p-1022), sizes[k]);
+    shortest = pick(shorter, logarithm, shortest);
+    of_shortest.exponent = pick(shorter, own.exponent, of_shortest.exponent);
+    of_shortest.fraction = pick(shorter, own.fraction, of_shortest.fraction);
+    n = pick(shorter, REAL(terms[k]), n);
+    inverse = pick(shorter, REAL(terms[5 + k]), inverse);
+    factor = pick(shorter, REAL(terms[10 + k]), factor);
+  }
+  const real longest = smaller(factor * inverse_root(of_shortest, n, inverse), *horizon);
+  const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
+  *h = pick(at_most(remaining, longest), remaining, half);
+  *unclear |= bits((truth)~finite | same(now + *h, now));
+  return bits(same(*h, remaining));
+}
+
+unsigned LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
+                                  const double *tolerances, const double *terms, const real *point, const real *last,
+                                  const real *horizon, real *h, unsigned *unclear);
+unsigned LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
+                                  const double *tolerances, const double *terms, const real *point, const real *last,
+                                  const real *horizon, real *h, unsigned *unclear) {
+  switch (free) {
+#define CASE(n) \
+  case n: return length(n, p, q, v, a, tolerances, terms, point, last, horizon, h, unclear);
+    FREE(CASE)
+#undef CASE
+  }
+  return 0;
+}
+
+/* The point after tau. */
+DALEMBERT_INLINE void end(const size_t free, const size_t p, const real *q, const real *v, const real *a,
+                          const real *point, const real *tau, real *to) {
+  const real s = *tau;
+  for (size_t i = 0; i < free; ++i) {
+    const real change_of_q = sum(p + 1, free, q + free + i, s) * s + point[3 * free + i];
+    const real change_of_v = sum(p, free, v + free + i, s) * s + point[4 * free + i];
+    to[3 * free + i] = two_sum_of(point[i], change_of_q, &to[i]);
+    to[4 * free + i] = two_sum_of(point[free + i], change_of_v, &to[free + i]);
+    to[2 * free + i] = sum(p, free, a + i, s);
+  }
+  real now;
+  const real error = two_sum_of(point[5 * free], s, &now);
+  to[5 * free + 1] = two_sum_of(now, error + point[5 * free + 1], &to[5 * free]);
+}
+
+void LANES(dalembert_lane_end)(size_t free, size_t p, const real *q, const real *v, const real *a, const real *point,
+                               const real *tau, real *to);
+void LANES(dalembert_lane_end)(size_t free, size_t p, const real *q, const real *v, const real *a, const real *point,
+                               const real *tau, real *to) {
+  switch (free) {
+#define CASE(n) case n: end(n, p, q, v, a, point, tau, to); return;
+    FREE(CASE)
+#undef CASE
+  }
+}
+
+/* Takes over numbers in some lanes. */
+void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, real *to);
+void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, real *to) {
+  for (size_t i = 0; i < count; ++i) to[i] = pick(truth_of(where), from[i], to[i]);
 }
 
 /* Numbers of coefficients that are told apart. */
@@ -105,23 +344,48 @@ void LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const re
 enum { MOST_ITERATIONS = 8 };
 static const double LAST_STEP = 4.8e-6;
 
+/* A polynomial at s, with its first derivative and half its second. */
+struct local { real value, slope, half_curvature; };
+
+/* The sum of c[k] s^k, k < n with even n, from its even and its odd part side by side. */
+DALEMBERT_INLINE struct local local(const int n, const real *c, real s) {
+  const real x = s * s;
+  real value[2] = {c[n - 2], c[n - 1]}, slope[2] = {{0}}, half_curvature[2] = {{0}};
+#pragma GCC unroll 32
+  for (int k = n - 4; k >= 0; k -= 2) {
+    for (int odd = 0; odd < 2; ++odd) {
+      half_curvature[odd] = half_curvature[odd] * x + slope[odd];
+      slope[odd] = slope[odd] * x + value[odd];
+      value[odd] = value[odd] * x + c[k + odd];
+    }
+  }
+  /* e(s^2) + s o(s^2), by the chain rule. */
+  struct local at;
+  at.value = value[0] + s * value[1];
+  at.slope = 2.0 * s * (slope[0] + s * slope[1]) + value[1];
+  at.half_curvature = 4.0 * x * (half_curvature[0] + s * half_curvature[1]) + (slope[0] + 3.0 * s * slope[1]);
+  return at;
+}
+
 /* The first fall on 0 < s <= 1 of the sum of c[k] s^k, k < n. Certain are lanes without a fall (place:
  * infinite) and those in which the Bernstein coefficients change their sign once (place: a root, to
  * rounding); of all others the place is not a number.
  */
 DALEMBERT_INLINE real first_fall(const int n, const real *c) {
-  real size = size_of(c[0]), least = c[0];
-  for (int k = 1; k < n; ++k) {
-    size += size_of(c[k]);
-    least += smaller(c[k], REAL(0.0));
+  real sizes[2] = {size_of(c[0]), size_of(c[1])}, least[2] = {c[0], smaller(c[1], REAL(0.0))};
+#pragma GCC unroll 32
+  for (int k = 2; k < n; ++k) {
+    sizes[k % 2] += size_of(c[k]);
+    least[k % 2] += smaller(c[k], REAL(0.0));
   }
   /* Each Bernstein coefficient is a sum of n terms, none larger than its power's. */
-  const real margin = size * (n * 0x1p-52);
+  const real margin = (sizes[0] + sizes[1]) * (n * 0x1p-52);
   const real none = REAL(INFINITY);
   /* Where the negative terms cannot outweigh the first there is no fall. */
-  if (!any(~(least > margin))) return none;
+  if (!any((truth)~below(margin, least[0] + least[1]))) return none;
   real b[32];
   double binomial = 1.0; /* n - 1 over k */
+#pragma GCC unroll 32
   for (int k = 0; k < n; ++k) {
     b[k] = c[k] * (1.0 / binomial);
     binomial = binomial * (n - 1 - k) / (k + 1);
@@ -132,63 +396,94 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
     for (int k = n - 1; k >= first; --k) b[k] += b[k - 1];
   }
   /* Whether all are certainly positive up to some place and certainly negative from there on. */
-  truth positive = b[0] > margin, once = positive;
-  real place = REAL(0.0);
+  truth positive = below(margin, b[0]), once = positive;
+  real before = REAL(0.0), above = REAL(0.0), below_it = REAL(-1.0);
 #pragma GCC unroll 32
   for (int k = 1; k < n; ++k) {
-    const truth still = positive & (b[k] > margin), below = b[k] < -margin;
-    once &= still | below;
-    /* Where the polygon of the coefficients falls through zero. */
-    const real fall = ((double)(k - 1) + b[k - 1] / (b[k - 1] - b[k])) * (1.0 / (n - 1));
-    place = pick(positive & below, fall, place);
+    const truth still = positive & below(margin, b[k]), negative = below(b[k], -margin), here = positive & negative;
+    once &= still | negative;
+    before = pick(here, REAL((double)(k - 1)), before);
+    above = pick(here, b[k - 1], above);
+    below_it = pick(here, b[k], below_it);
     positive = still;
   }
   const truth falls = once & ~positive;
   real found = pick(positive, none, REAL(NAN));
   if (!any(falls)) return found;
-  real s = place;
+  /* Where the polygon of the coefficients falls through zero. */
+  real s = (before + above / (above - below_it)) * (1.0 / (n - 1));
   truth moving = falls;
   for (int i = 0; i < MOST_ITERATIONS && any(moving); ++i) {
-    real value = c[n - 1], slope = REAL(0.0), half_curvature = REAL(0.0);
-#pragma GCC unroll 32
-    for (int k = n - 2; k >= 0; --k) {
-      half_curvature = half_curvature * s + slope;
-      slope = slope * s + value;
-      value = value * s + c[k];
-    }
-    /* The root of the parabola at s that a falling piece leads to, or Newton's. */
-    const real discriminant = slope * slope - 4.0 * half_curvature * value;
-    const truth parabola = (discriminant > 0.0) & (slope < 0.0);
-    const real root = sqrt(pick(parabola, discriminant, REAL(1.0)));
-    const real step = pick(parabola, 2.0 * value, -value) / pick(parabola, root - slope, slope);
+    const struct local at = local(n, c, s);
+    /* Halley's step, of third order too. */
+    const real step = -at.value * at.slope / (at.slope * at.slope - at.half_curvature * at.value);
     const real next = s + step;
-    const truth ended = size_of(step) <= LAST_STEP * next;
+    const truth ended = at_most(size_of(step), LAST_STEP * next);
     s = pick(moving, next, s);
     moving &= ~ended;
   }
   /* A step that has left the window, or has not ended, leads to no root. */
-  return pick(falls & ~moving & (s > 0.0) & (s <= 1.0), s, found);
+  return pick(falls & ~moving & below(REAL(0.0), s) & at_most(s, REAL(1.0)), s, found);
 }
 
-/* The first fall of factor * (row k times tau^k) + offset on 0 < tau <= h, as a part of h. Of those that
- * start at zero the factor tau is divided out. c gets the coefficients in powers of tau/h.
+DALEMBERT_INLINE real first_fall_of(size_t count, const real *c) {
+  /* With their number known the compiler keeps all of them in registers. */
+  switch (count) {
+#define CASE(n) case n: return first_fall(n, c);
+    DEGREES(CASE)
+#undef CASE
+  }
+  return REAL(NAN);
+}
+
+/* A guard that is linear: src/hybrid/ensemble/bundle.rs. */
+struct guard {
+  real factor, offset;
+  /* Lanes in which it is zero at the start of the step: there the factor tau is divided out. */
+  unsigned starts_at_zero;
+};
+
+/* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
+ * `place`, a part of h, that becomes it: gives these lanes. c gets the coefficients in powers of tau/h.
+ * Unclear are lanes where that takes a closer look.
  */
-void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h, const real *factor,
-                                      const real *offset, const truth *starts_at_zero, real *c, real *out);
-void LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h, const real *factor,
-                                      const real *offset, const truth *starts_at_zero, real *c, real *out) {
+unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+                                          const struct guard *guard, real *c, real *place, unsigned *unclear);
+unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+                                          const struct guard *guard, real *c, real *place, unsigned *unclear) {
   const size_t room = (count + 3) / 4 * 4;
-  real power = *factor, rising[32];
+  const real h2 = *h * *h;
+  real power[2] = {guard->factor, guard->factor * *h};
   for (size_t k = 0; k < count; ++k) {
-    c[k] = row[k * stride] * power;
-    power *= *h;
+    c[k] = row[k * stride] * power[k % 2];
+    power[k % 2] *= h2;
   }
   for (size_t k = count; k < room; ++k) c[k] = REAL(0.0);
-  c[0] += *offset;
-  for (size_t k = 0; k < room; ++k) rising[k] = pick(*starts_at_zero, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
-  /* With their number known the compiler keeps all of them in registers. */
-  switch (room) {
-#define CASE(n) case n: *out = first_fall(n, rising); return;
-    DEGREES(CASE)
+  c[0] += guard->offset;
+  const truth rises = truth_of(guard->starts_at_zero);
+  real rising[32];
+  if (any(rises))
+    for (size_t k = 0; k < room; ++k) rising[k] = pick(rises, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
+  const real found = first_fall_of(room, any(rises) ? rising : c);
+  const truth first = at_most(found, REAL(1.0)) & below(found, *place);
+  *place = pick(first, found, *place);
+  *unclear = bits((truth)~same(found, found));
+  return bits(first);
+}
+
+/* Moves tau of some lanes on until the guard factor * (row k times tau^k) + offset is negative there: by `more`,
+ * twice as much each time, but not beyond `most`.
+ */
+void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
+                                 const struct guard *guard, unsigned where, const real *most, real *more, real *tau);
+void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
+                                 const struct guard *guard, unsigned where, const real *most, real *more, real *tau) {
+  truth moving = truth_of(where);
+  for (;;) {
+    const real x = *row + (sum(count - 1, stride, row + stride, *tau) * *tau + *lost);
+    moving &= ~below(guard->factor * x + guard->offset, REAL(0.0)) & at_most(*more, *most);
+    if (!any(moving)) return;
+    *tau = pick(moving, *tau + *more, *tau);
+    *more = pick(moving, 2.0 * *more, *more);
   }
 }

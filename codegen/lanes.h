@@ -13,7 +13,8 @@
 
 typedef double real __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
 #define DALEMBERT_INLINE static inline __attribute__((always_inline))
-#define DALEMBERT_UNROLL
+#define DALEMBERT_CLONES
+#define DALEMBERT_WIDTH(n) (n)
 #define DALEMBERT_JOIN(name, level) DALEMBERT_JOINED(name, level)
 #define DALEMBERT_JOINED(name, level) name##level
 #define LANES(name) DALEMBERT_JOIN(name, DALEMBERT_LEVEL)
@@ -59,29 +60,36 @@ DALEMBERT_BY_LANE_OF_TWO(hypot)
 #define hypot(x, y) dalembert_lanes_hypot(x, y)
 
 
-/* Sine and cosine with the bits of elementary.c: the loop becomes one of vectors where no angle needs
- * the long reduction.
+/* Sine and cosine with the bits of elementary.c: the loops become ones of vectors where no angle needs the
+ * long reduction, and short ones where none needs any.
  */
 struct dalembert_pair dalembert_sin_cos(double x);
 struct dalembert_sin_cos { real sin, cos; };
 DALEMBERT_INLINE struct dalembert_sin_cos dalembert_lanes_sin_cos(real x) {
   double angle[DALEMBERT_LANES], sin[DALEMBERT_LANES], cos[DALEMBERT_LANES];
   memcpy(angle, &x, sizeof x);
-  int direct = 1;
-  for (int i = 0; i < DALEMBERT_LANES; ++i) direct &= angle[i] <= DIRECT && angle[i] >= -DIRECT;
-  if (direct) {
-    for (int i = 0; i < DALEMBERT_LANES; ++i) {
-      const uint64_t sign = bits_of(angle[i]) & (uint64_t)1 << 63;
-      const struct dalembert_pair pair = sin_cos_of(reduced(of_bits(bits_of(angle[i]) ^ sign)), sign);
-      sin[i] = pair.sin;
-      cos[i] = pair.cos;
-    }
-  } else {
-    for (int i = 0; i < DALEMBERT_LANES; ++i) {
-      const struct dalembert_pair pair = dalembert_sin_cos(angle[i]);
-      sin[i] = pair.sin;
-      cos[i] = pair.cos;
-    }
+  int near = 1, direct = 1;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) {
+    near &= angle[i] <= NEAR && angle[i] >= -NEAR;
+    direct &= angle[i] <= DIRECT && angle[i] >= -DIRECT;
+  }
+  for (int i = 0; near && i < DALEMBERT_LANES; ++i) {
+    const uint64_t sign = bits_of(angle[i]) & (uint64_t)1 << 63;
+    const struct angle itself = {of_bits(bits_of(angle[i]) ^ sign), 0.0, 0};
+    const struct dalembert_pair pair = sin_cos_of(itself, sign);
+    sin[i] = pair.sin;
+    cos[i] = pair.cos;
+  }
+  for (int i = 0; !near && direct && i < DALEMBERT_LANES; ++i) {
+    const uint64_t sign = bits_of(angle[i]) & (uint64_t)1 << 63;
+    const struct dalembert_pair pair = sin_cos_of(reduced(of_bits(bits_of(angle[i]) ^ sign)), sign);
+    sin[i] = pair.sin;
+    cos[i] = pair.cos;
+  }
+  for (int i = 0; !near && !direct && i < DALEMBERT_LANES; ++i) {
+    const struct dalembert_pair pair = dalembert_sin_cos(angle[i]);
+    sin[i] = pair.sin;
+    cos[i] = pair.cos;
   }
   struct dalembert_sin_cos out;
   memcpy(&out.sin, sin, sizeof sin);

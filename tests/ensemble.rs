@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::problem;
+use common::{numbers, problem, reference};
 use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
 use dalembert::input::{Function, Sine};
 use dalembert::kernel::processor_level;
@@ -108,6 +108,45 @@ fn each_trajectory_of_an_ensemble_is_a_single_run() {
         let difference = difference(&alone(&blocks), &together(&blocks, processor_level(), 2));
         // The two take the same steps, with other roundings; the motion amplifies them a hundredfold.
         assert!(difference < 1e-12, "{tolerance:e}: {difference:e}");
+    }
+}
+
+#[test]
+fn a_smooth_ensemble_is_within_its_tolerance_of_solutions_of_forty_digits() {
+    // Driven pendulums, of which some nearly turn over: errors grow along their motion, at most so much.
+    const AMPLIFICATION: f64 = 100.0;
+    let reference = reference("forced_pendulum");
+    let members = reference["members"].as_array().unwrap();
+    for tolerance in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let mut pendulum = problem("forced_pendulum", &[("g", 4.84)]);
+        let drive = Sine::new(1.0, 3.0 * std::f64::consts::PI, 0.0);
+        pendulum.set_input("moment", Function::from(drive)).unwrap();
+        pendulum.end.time = 10.0;
+        set_size(&mut pendulum, tolerance, 1.0, 1.0);
+        let pendulums: Vec<_> = (members.iter())
+            .map(|member| {
+                let mut own = pendulum.clone();
+                let start = numbers(&member["start"]);
+                own.set_initial("theta", start[0]).unwrap();
+                own.set_initial("theta.rate", start[1]).unwrap();
+                own
+            })
+            .collect();
+        let ends = together(&pendulums, processor_level(), 1);
+        for (member, end) in members.iter().zip(&ends) {
+            for (x, exact) in end.state.iter().zip(numbers(&member["end"])) {
+                let error = (x - exact).abs();
+                assert!(
+                    error < AMPLIFICATION * tolerance,
+                    "{tolerance:e}, {member}: {error:e}"
+                );
+            }
+        }
+        // They take the same steps alone, with other roundings.
+        assert!(difference(&alone(&pendulums), &ends) < 1e-13);
+        for level in 0..processor_level() {
+            assert_eq!(together(&pendulums, level, 2), ends, "level {level}");
+        }
     }
 }
 

@@ -103,11 +103,21 @@ class Peers:
     def ivp(self):
         return [self.crates(), "ivp"]
 
+    def heyoka_ensemble(self):
+        self.venv()
+        return [self.python, "-B", HERE / "heyoka_ensemble.py"]
+
     def dalembert(self):
+        return self.bench("peers")
+
+    def dalembert_ensemble(self):
+        return [*self.bench("ensemble"), "pendulums", "--rows"]
+
+    def bench(self, name):
         # For the processor it runs on, as the peers.
         os.environ |= {"RUSTFLAGS": "-C target-cpu=native", "CFLAGS": "-march=native", "CARGO_TARGET_DIR": str(self.scratch / "target")}
-        call(["cargo", "bench", "--no-run", "--bench", "peers"], cwd=ROOT)
-        return ["cargo", "bench", "--quiet", "--bench", "peers", "--"]
+        call(["cargo", "bench", "--no-run", "--bench", name], cwd=ROOT)
+        return ["cargo", "bench", "--quiet", "--bench", name, "--"]
 
 
 RUNNABLE = ["sundials", "fortran", "heyoka", "casadi", "diffsol", "ivp", "dalembert"]

@@ -2,6 +2,7 @@
 
 import unittest
 
+import ensemble
 from rows import best, collect, frontier, merged, table, with_summary
 from run import is_there
 
@@ -73,6 +74,14 @@ class Best(unittest.TestCase):
 
     def test_the_frontier_leaves_out_what_is_both_slower_and_less_accurate(self):
         self.assertEqual(frontier([(1e-3, 5.0), (1e-6, 4.0), (1e-9, 9.0), (1e-2, 1.0)]), [(1e-9, 9.0), (1e-6, 4.0), (1e-2, 1.0)])
+
+
+class Ensemble(unittest.TestCase):
+    def test_the_fastest_that_reaches_the_error_counts(self):
+        ours, heyoka = [[1e-3, 2e-6, 1e-2], [1e-6, 4e-6, 1e-7]], [[1e-3, 8, 9e-6, 1e-5], [1e-3, 16, 8e-6, 1e-5]]
+        lines = ensemble.table(ours, heyoka).splitlines()
+        self.assertEqual(lines[2], "| 0.001 | 4.00 (error 1e-07) | 8.00 (error 1e-05) | 0.50 |")
+        self.assertEqual(lines[3], "| 1e-06 | 4.00 (error 1e-07) | – | – |")
 
 
 class Resume(unittest.TestCase):

@@ -7,6 +7,7 @@
 //! the run.
 
 use super::instant::Instant;
+use std::array::from_fn;
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 pub const LONGEST_PATTERN: usize = 8;
@@ -27,26 +28,14 @@ pub struct Signature {
     pub mode: usize,
 }
 
-/// What is remembered of an event.
-#[derive(Debug, Clone, Default)]
+/// What is remembered of an event, besides the states after it.
+#[derive(Debug, Clone, Copy, Default)]
 struct Hop {
     signature: Signature,
-    /// Discrete states after the event.
-    discrete: Vec<f64>,
     /// Whether it was an impact.
     impact: bool,
     /// When it happened.
     at: Instant,
-    /// State after the event: all coordinates, then all velocities.
-    state: Vec<f64>,
-}
-
-impl Hop {
-    fn is_like(&self, other: &Hop) -> bool {
-        let bits = |x: &f64| x.to_bits();
-        self.signature == other.signature
-            && (self.discrete.iter().map(bits)).eq(other.discrete.iter().map(bits))
-    }
 }
 
 /// Limit of an accumulation.
@@ -82,12 +71,20 @@ impl Series {
     }
 }
 
+/// Room for events: a power of two.
+const ROOM: usize = Accumulation::MEMORY.next_power_of_two();
+
 /// The last events of a run.
 #[derive(Debug)]
 pub struct Accumulation {
-    hops: Vec<Hop>,
-    /// Times of the last events, the latest first, s.
-    times: [f64; Self::MEMORY],
+    hops: [Hop; ROOM],
+    /// When they happened, as the nearest double: the last ones first, once in each half, so that
+    /// they follow each other from any place of the first half on.
+    times: [f64; 2 * ROOM],
+    /// Coordinates and velocities after each of them.
+    states: Box<[f64]>,
+    /// Discrete states after each of them.
+    discretes: Box<[f64]>,
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
@@ -99,14 +96,11 @@ impl Accumulation {
 
     /// No events yet; `width` is the number of coordinates and velocities.
     pub fn new(width: usize, discretes: usize) -> Self {
-        let hop = Hop {
-            state: vec![0.0; width],
-            discrete: vec![0.0; discretes],
-            ..Hop::default()
-        };
         Accumulation {
-            hops: vec![hop; Self::MEMORY],
-            times: [0.0; Self::MEMORY],
+            hops: [Hop::default(); ROOM],
+            times: [0.0; 2 * ROOM],
+            states: vec![0.0; ROOM * width].into(),
+            discretes: vec![0.0; ROOM * discretes].into(),
             count: 0,
             still: 0,
         }
@@ -127,24 +121,52 @@ impl Accumulation {
         state: impl Iterator<Item = f64>,
         discrete: &[f64],
     ) {
-        let still = self.count > 0 && hardly_moved(before.zip(self.hop(0).state.iter().copied()));
+        let still = self.count > 0 && hardly_moved(before.zip(self.state(0).iter().copied()));
         self.still = if still { self.still + 1 } else { 0 };
-        let slot = self.count % Self::MEMORY;
-        let hop = &mut self.hops[slot];
-        hop.signature = signature;
-        hop.impact = impact;
-        hop.at = at;
-        for (to, from) in hop.state.iter_mut().zip(state) {
+        let slot = self.count % ROOM;
+        self.hops[slot] = Hop {
+            signature,
+            impact,
+            at,
+        };
+        let place = ROOM - 1 - slot;
+        (self.times[place], self.times[place + ROOM]) = (at.seconds(), at.seconds());
+        let width = self.states.len() / ROOM;
+        for (to, from) in self.states[slot * width..].iter_mut().zip(state) {
             *to = from;
         }
-        hop.discrete.copy_from_slice(discrete);
-        self.times.copy_within(..Self::MEMORY - 1, 1);
-        self.times[0] = at.seconds();
+        let to = &mut self.discretes[slot * discrete.len()..];
+        for (to, from) in to.iter_mut().zip(discrete) {
+            *to = *from;
+        }
         self.count += 1;
     }
 
+    /// Slot of the event so many before the last.
+    fn slot(&self, back: usize) -> usize {
+        (self.count - 1 - back) % ROOM
+    }
+
     fn hop(&self, back: usize) -> &Hop {
-        &self.hops[(self.count - 1 - back) % Self::MEMORY]
+        &self.hops[self.slot(back)]
+    }
+
+    fn state(&self, back: usize) -> &[f64] {
+        let width = self.states.len() / ROOM;
+        &self.states[self.slot(back) * width..][..width]
+    }
+
+    fn discrete(&self, back: usize) -> &[f64] {
+        let width = self.discretes.len() / ROOM;
+        &self.discretes[self.slot(back) * width..][..width]
+    }
+
+    /// Whether two events are the same but for time and state.
+    fn are_alike(&self, one: usize, other: usize) -> bool {
+        let bits = |x: &f64| x.to_bits();
+        let [one_after, other_after] =
+            [one, other].map(|back| self.discrete(back).iter().map(bits));
+        self.hop(one).signature == self.hop(other).signature && one_after.eq(other_after)
     }
 
     /// The limit, if the last events accumulate and what is left of the series moves no component
@@ -152,42 +174,67 @@ impl Accumulation {
     /// the limit's time.
     pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
         let longest = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
-        let mut p = 1;
-        while p <= longest {
-            if self.may_shrink(p)
-                && let Some(series) = self.series(p, relative)
-            {
+        let mut patterns = self.shrinking(longest, relative);
+        while patterns != 0 {
+            let p = patterns.trailing_zeros() as usize;
+            if let Some(series) = self.series(p, relative) {
                 // What repeats after p events repeats after a multiple of p, and leaves as much.
                 return self
                     .is_negligible(&series, tolerance)
                     .then(|| self.end_of(&series));
             }
-            p += 1;
+            patterns &= patterns - 1;
         }
         None
     }
 
-    /// Whether the durations of a pattern of `p` events may shrink, as far as plain doubles tell: most
-    /// patterns of most runs do not.
-    fn may_shrink(&self, p: usize) -> bool {
-        let [a, b, c, d] = [0, p, 2 * p, 3 * p].map(|k| self.times[k]);
+    /// The patterns of up to `longest` events, a bit each, whose durations may shrink geometrically, as far
+    /// as plain doubles tell: hardly any pattern of most runs does.
+    fn shrinking(&self, longest: usize, relative: f64) -> u32 {
+        let times: &[f64; Self::MEMORY] = self.times[ROOM - 1 - self.slot(0)..]
+            .first_chunk()
+            .expect("all are remembered twice");
+        let now = times[0];
         // Each time is off by half a place, so that a difference of durations is off by two.
-        let slack = 2.0 * f64::EPSILON * a.abs();
-        (a - b) - (b - c) <= slack && (b - c) - (c - d) <= slack
+        let slack = 2.0 * f64::EPSILON * now.abs();
+        let relative = relative.max(f64::EPSILON);
+        // Durations of the last three patterns of each length; arrays, so that lengths go side by side.
+        let before = |patterns: usize| from_fn(|i| times[patterns * (i + 1)]);
+        let [one, two, three]: [[f64; LONGEST_PATTERN]; 3] = [before(1), before(2), before(3)];
+        let last: [f64; LONGEST_PATTERN] = from_fn(|i| now - one[i]);
+        let middle: [f64; LONGEST_PATTERN] = from_fn(|i| one[i] - two[i]);
+        let first: [f64; LONGEST_PATTERN] = from_fn(|i| two[i] - three[i]);
+        let may_be: [bool; LONGEST_PATTERN] = from_fn(|i| {
+            let (last, middle, first) = (last[i], middle[i], first[i]);
+            // The limits that the last two durations and the two before foretell are as close as in
+            // `series`; multiplied by the differences of the durations.
+            let apart = (middle * (last * first - middle * middle)).abs();
+            let limit = now.abs() * (middle - last) + last * last;
+            let allowed = relative * limit * (first - middle);
+            // What the slack of each duration makes of the two, with their partial derivatives.
+            let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
+            (last - middle <= slack) & (middle - first <= slack) & (apart <= allowed + noise)
+        });
+        let patterns = (1..=longest).map(|p| u32::from(may_be[p - 1]) << p);
+        patterns.sum()
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
+        if !self.are_alike(0, p) {
+            return None;
+        }
         let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
-        if !(0.0 < last && last < middle && middle < first) {
+        // The last may be shorter than the resolution of an instant.
+        if !(0.0 <= last && last < middle && middle < first) {
             return None;
         }
         let (ratio, ratio_before) = (last / middle, middle / first);
         if ratio >= LARGEST_RATIO || ratio_before >= LARGEST_RATIO {
             return None;
         }
-        let repeats = (0..2 * p).all(|i| self.hop(i).is_like(self.hop(i + p)));
+        let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
         // Only impacts come to rest; stick and slip alone have modes of their own.
         if !repeats || !(0..p).any(|i| self.hop(i).impact) {
             return None;
@@ -213,12 +260,12 @@ impl Accumulation {
             return true;
         }
         let p = series.pattern;
-        let (now, before) = (&self.hop(0).state, &self.hop(p).state);
+        let (now, before) = (self.state(0), self.state(p));
         (0..now.len()).all(|i| {
             let change = (now[i] - before[i]) * series.factor();
             // The largest departure within the pattern is seen between its events: bound it by
             // what the events of the last pattern differ by.
-            let spread = (0..p).map(|k| (self.hop(k).state[i] - now[i]).abs());
+            let spread = (0..p).map(|k| (self.state(k)[i] - now[i]).abs());
             spread.fold(change.abs(), f64::max) <= tolerance(i, now[i])
         })
     }
@@ -226,8 +273,8 @@ impl Accumulation {
     /// Where a series ends.
     fn end_of(&self, series: &Series) -> Limit {
         let p = series.pattern;
-        let [now, before, earlier] = [0, p, 2 * p].map(|back| &self.hop(back).state);
-        let mut state = now.clone();
+        let [now, before, earlier] = [0, p, 2 * p].map(|back| self.state(back));
+        let mut state = now.to_vec();
         for (i, value) in state.iter_mut().enumerate() {
             let factor_before = series.ratio_before / (1.0 - series.ratio_before);
             let limit_before = before[i] + (before[i] - earlier[i]) * factor_before;

@@ -25,13 +25,17 @@ pub(super) struct Clock<'a> {
 impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
     fn set(&self, tau: f64, context: &mut Context) {
-        if tau < self.until.0 {
-            let t = self.start.plus(tau).seconds();
-            context.set_signals(self.signals, t, Side::Right);
-        } else {
-            context.set_signals(self.signals, self.until.1, Side::Left);
-        }
+        let (t, side) = self.instant(tau);
+        context.set_signals(self.signals, t, side);
         self.set_held(tau, context);
+    }
+
+    /// Absolute time that local time `tau` stands for, and the side of it.
+    fn instant(&self, tau: f64) -> (f64, Side) {
+        match tau < self.until.0 {
+            true => (self.start.plus(tau).seconds(), Side::Right),
+            false => (self.until.1, Side::Left),
+        }
     }
 
     fn set_held(&self, tau: f64, context: &mut Context) {
@@ -40,33 +44,36 @@ impl Clock<'_> {
         }
     }
 
-    /// Absolute time from which on the inputs are the analytic functions that act just after local
-    /// time `tau`, and the local time until which they are.
+    /// The piece that acts just after local time `tau`, and the absolute time at which it does.
     ///
     /// A knot belongs to the piece after it, even if its local time is rounded to an instant before.
-    fn piece(&self, tau: f64) -> (f64, f64) {
+    /// `last` is the piece found before, for an earlier time.
+    fn piece(&self, tau: f64, last: Piece) -> (f64, Piece) {
         let mut t = self.start.plus(tau).seconds();
+        if t < last.knot && tau < last.limit {
+            return (t, last);
+        }
         loop {
             let knot = self.signals.next_knot(t);
-            if knot == f64::INFINITY {
-                return (t, knot);
-            }
-            let limit = Instant::new(knot).since(self.start);
+            let limit = match knot == f64::INFINITY {
+                true => knot,
+                false => Instant::new(knot).since(self.start),
+            };
             if limit > tau {
-                return (t, limit);
+                return (t, Piece { knot, limit });
             }
             t = knot;
         }
     }
+}
 
-    /// Sets the Taylor coefficients of the signals about local time `tau`, and everything else as
-    /// `set` does.
-    fn expand(&self, tau: f64, orders: usize, context: &mut Context) {
-        self.set_held(tau, context);
-        if !context.quiet {
-            context.expand_signals(self.signals, self.piece(tau).0, orders);
-        }
-    }
+/// A stretch of time within which all inputs are analytic.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    /// Absolute time at which it ends, s.
+    knot: f64,
+    /// The same in local time.
+    limit: f64,
 }
 
 /// The reduced system of a mode.
@@ -80,8 +87,12 @@ pub(super) struct Equations<'a, const F: usize> {
     scale: SVector<f64, F>,
     /// Local time for which the context is set; NaN: none.
     set_for: f64,
+    /// Local times for which the equations' signals are known ahead; NaN: none.
+    ahead: [f64; Context::MOST_AHEAD],
     /// Local time about which the guards were last expanded; NaN: none.
     guards_expanded_at: f64,
+    /// The piece of the inputs in which the last expansion was.
+    piece: Piece,
 }
 
 impl<'a, const F: usize> Equations<'a, F> {
@@ -99,7 +110,13 @@ impl<'a, const F: usize> Equations<'a, F> {
             tolerance,
             scale,
             set_for: f64::NAN,
+            ahead: [f64::NAN; Context::MOST_AHEAD],
             guards_expanded_at: f64::NAN,
+            // None yet: it has ended before all times.
+            piece: Piece {
+                knot: f64::NEG_INFINITY,
+                limit: f64::NEG_INFINITY,
+            },
         }
     }
 
@@ -109,6 +126,19 @@ impl<'a, const F: usize> Equations<'a, F> {
         if tau != self.set_for {
             self.clock.set(tau, self.context);
             self.set_for = tau;
+        }
+    }
+
+    /// Sets the context to local time `tau` as far as the equations of motion need it.
+    #[inline]
+    fn at_stage(&mut self, tau: f64) {
+        match self.ahead.iter().position(|&ahead| ahead == tau) {
+            Some(index) if tau != self.set_for => {
+                self.context.set_foreseen_signals(index);
+                self.clock.set_held(tau, self.context);
+                self.set_for = f64::NAN;
+            }
+            _ => self.at(tau),
         }
     }
 
@@ -159,6 +189,18 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         self.kernel.is_linear()
     }
 
+    fn foresee(&mut self, times: &[f64]) {
+        self.ahead.fill(f64::NAN);
+        let clock = &self.clock;
+        let mut at = [(0.0, Side::Right); Context::MOST_AHEAD];
+        for (at, &tau) in at.iter_mut().zip(times) {
+            *at = clock.instant(tau);
+        }
+        if self.context.foresee_signals(clock.signals, &at) {
+            self.ahead[..times.len()].copy_from_slice(times);
+        }
+    }
+
     fn resolution(&self, t: f64) -> f64 {
         let clock = &self.clock;
         clock.signals.resolution(clock.start.plus(t).seconds())
@@ -173,7 +215,7 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         a: &SVector<f64, F>,
         r: &mut SVector<f64, F>,
     ) {
-        self.at(t);
+        self.at_stage(t);
         self.kernel.residual(self.context, Free { q, v, a }, r);
     }
 
@@ -218,7 +260,13 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
         order: usize,
         series: &Series<F>,
     ) -> (SMatrix<f64, F, F>, SVector<f64, F>) {
-        self.clock.expand(t, order + 1, self.context);
+        self.clock.set_held(t, self.context);
+        if !self.context.quiet {
+            let (from, piece) = self.clock.piece(t, self.piece);
+            self.piece = piece;
+            let signals = self.clock.signals;
+            self.context.expand_signals(signals, from, order + 1);
+        }
         self.set_for = t;
         let system = self.kernel.series_start(self.context, series);
         (system.mass, system.load)
@@ -236,7 +284,7 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
     fn horizon(&self, t: f64) -> f64 {
         match self.context.quiet {
             true => f64::INFINITY,
-            false => self.clock.piece(t).1,
+            false => self.clock.piece(t, self.piece).1.limit,
         }
     }
 }

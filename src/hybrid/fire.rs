@@ -103,8 +103,7 @@ impl Simulation<'_> {
         if let Some(before) = before {
             self.states_at_jumps.push([before, self.snapshot()]);
         }
-        let state = self.here.q.iter().chain(&self.here.v);
-        let state = state.chain(&self.context.discrete).copied();
+        let state = [&*self.here.q, &self.here.v, &self.context.discrete];
         let modes = self.problem.variant.modes;
         match self.visited.add((name, from, target), state, modes) {
             Some(cycle) => Err(Reason::Cycle { cycle }),

@@ -16,6 +16,16 @@ impl Instant {
         Instant { hi: t, lo: 0.0 }
     }
 
+    /// The sum of two doubles, as [`Instant::parts`] gives them.
+    pub fn of_parts([hi, lo]: [f64; 2]) -> Self {
+        Instant { hi, lo }
+    }
+
+    /// The nearest double and the rest.
+    pub fn parts(self) -> [f64; 2] {
+        [self.hi, self.lo]
+    }
+
     /// The nearest double.
     pub fn seconds(self) -> f64 {
         self.hi

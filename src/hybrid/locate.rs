@@ -70,14 +70,9 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                     state: end,
                     beyond: 0.0,
                 },
-                false => beyond_the_crossing(
-                    equations,
-                    conditions,
-                    guard,
-                    &end,
-                    0.0,
-                    TAYLOR * (window - start),
-                ),
+                false => {
+                    beyond_the_crossing(equations, conditions, guard, &end, 0.0, (start, window))
+                }
             });
         }
         let rate = rate_at(equations, guard, &end);
@@ -92,10 +87,10 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 false => Landing::Short,
             });
         }
-        let smooth = TAYLOR * (window - start);
-        if correction.abs() <= smooth {
+        let step = (start, window);
+        if correction.abs() <= TAYLOR * (window - start) {
             return Ok(beyond_the_crossing(
-                equations, conditions, guard, &end, correction, smooth,
+                equations, conditions, guard, &end, correction, step,
             ));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {
@@ -118,20 +113,29 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 
 /// The first state on the far side, from the end of the step on by about `correction`.
 ///
-/// The guard's own values decide. Its rounding may keep them at or above zero at the computed
-/// root: the move is lengthened by its last place, or by that of `smooth` if it is hardly a move at
-/// all, doubled each time, until it is strictly crossed; after `smooth` the Taylor polynomial ends.
+/// The guard's own values decide. Its rounding may keep them at or above zero at the computed root: the
+/// move is lengthened by as much as that takes, doubled each time, until it is strictly crossed; after
+/// `smooth` the Taylor polynomial ends. What is tried first is the last place of the time in which the
+/// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
+/// of all of that where the guard is no coordinate.
 fn beyond_the_crossing<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: &Guard,
     end: &State<F>,
     correction: f64,
-    smooth: f64,
+    step: (f64, f64),
 ) -> Landing<F> {
     let of_accelerations = depends_on_accelerations(conditions, guard);
-    let least = (f64::EPSILON * smooth).max(f64::MIN_POSITIVE);
-    let mut place = (f64::EPSILON * correction.abs()).max(least);
+    let smooth = TAYLOR * (step.1 - step.0);
+    let elapsed = end.t - step.0;
+    let own_size = match guard.shape {
+        GuardShape::Linear { index, rate, .. } if rate => (end.v[index] / end.a[index]).abs(),
+        GuardShape::Linear { index, .. } => (end.q[index] / end.v[index]).abs(),
+        GuardShape::General { .. } => elapsed,
+    };
+    let passed = own_size.min(elapsed).max(TAYLOR * elapsed);
+    let mut place = (f64::EPSILON * passed.max(correction.abs())).max(f64::MIN_POSITIVE);
     let mut beyond = correction;
     loop {
         let mut state = moved(end, beyond);

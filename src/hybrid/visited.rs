@@ -24,27 +24,30 @@ impl Visited {
     /// Adds the state that a step led to: the cycle in words, if it was seen before.
     pub fn add(
         &mut self,
-        step: Step,
-        state: impl Iterator<Item = f64>,
+        (name, from, to): Step,
+        state: [&[f64]; 3],
         modes: &[Mode],
     ) -> Option<String> {
         let before = self.states.len();
-        self.states.extend(state);
+        for part in state {
+            self.states.extend_from_slice(part);
+        }
         let (seen, new) = self.states.split_at(before);
         let bits = |x: &f64| x.to_bits();
         let mut visits = self.steps.iter().enumerate();
         let first = visits.find(|(i, (_, _, mode))| {
             let state = &seen[i * new.len()..(i + 1) * new.len()];
-            *mode == step.2 && state.iter().map(bits).eq(new.iter().map(bits))
+            *mode == to && state.iter().map(bits).eq(new.iter().map(bits))
         });
         let cycle = first.map(|(first, _)| {
-            let steps = self.steps[first + 1..].iter().chain([&step]);
+            let last = (name, from, to);
+            let steps = self.steps[first + 1..].iter().chain([&last]);
             let text = steps.map(|(name, from, to)| {
                 format!("{name} ({} → {})", modes[*from].name, modes[*to].name)
             });
             text.collect::<Vec<_>>().join(", ")
         });
-        self.steps.push(step);
+        self.steps.push((name, from, to));
         cycle
     }
 }

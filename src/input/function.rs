@@ -1,5 +1,6 @@
 //! A function of time as a sum of simple terms.
 
+use super::lanes::LaneJet;
 use super::{Signals, Sine, Table};
 use crate::integrate::Lanes;
 
@@ -78,51 +79,70 @@ impl Function {
             .fold(Jet::default(), |sum, term| sum + term.at(t, side))
     }
 
-    /// Fills `out` with the coefficients of f(t + τ) in powers of τ, of the function that acts just
-    /// before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in `out[k]`. They are those of
-    /// one analytic function up to [`Function::next_knot`]. `known` are value and rate, which
-    /// [`Function::at`] gave.
-    pub fn series(&self, t: f64, side: Side, known: [f64; 2], out: &mut [f64]) {
-        out.fill(0.0);
-        if let [Term::Sine(sine)] = &self.terms[..] {
-            return sine.add_series(known, out);
-        }
-        for term in &self.terms {
-            term.add_series(t, side, out);
+    /// The values alone at several instants.
+    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
+        match &self.terms[..] {
+            [Term::Sine(sine)] => sine.values(at),
+            _ => at.map(|(t, side)| self.at(t, side).value),
         }
     }
 
-    /// [`Function::at`] for each of several times.
-    #[inline(always)]
+    /// Fills every `stride`-th entry of `out` with the coefficients of f(t + τ) in powers of τ, of the
+    /// function that acts just before or after `t` (s): that of τᵏ, in the unit of f over sᵏ, in
+    /// `out[stride · k]`. They are those of one analytic function up to [`Function::next_knot`]. `known`
+    /// are value and rate, which [`Function::at`] gave.
+    ///
+    /// # Panics
+    /// If there are more than [`Signals::MOST_ORDERS`] of them.
+    #[inline]
+    pub fn series(&self, t: f64, side: Side, known: [f64; 2], stride: usize, out: &mut [f64]) {
+        if let [Term::Sine(sine)] = &self.terms[..] {
+            return sine.fill_series(known, stride, out);
+        }
+        let out = out.iter_mut().step_by(stride);
+        let mut room = [0.0; Signals::MOST_ORDERS];
+        let room = &mut room[..out.len()];
+        for term in &self.terms {
+            term.add_series(t, side, room);
+        }
+        out.zip(room).for_each(|(out, c)| *out = *c);
+    }
+
+    /// [`Function::at`] on the right of each of several times.
+    #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
         level: usize,
-        t: &[f64; W],
-        side: Side,
-    ) -> [Jet; W] {
+        t: &Lanes<W>,
+        jet: &mut LaneJet<W>,
+    ) {
         match &self.terms[..] {
-            [Term::Sine(sine)] => sine.at_lanes(level, t, side),
-            _ => t.map(|t| self.at(t, side)),
+            [Term::Sine(sine)] => sine.at_lanes(level, t, jet),
+            _ => *jet = LaneJet::from_jets(t.0.map(|t| self.at(t, Side::Right))),
         }
     }
 
-    /// [`Function::series`] for each of several times.
-    #[inline(always)]
+    /// [`Function::series`] for each of several times, into every `stride`-th of `rows`.
+    #[inline]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,
-        t: &[f64; W],
-        known: [Lanes<W>; 2],
-        out: &mut [Lanes<W>],
+        level: usize,
+        t: &Lanes<W>,
+        jet: &LaneJet<W>,
+        stride: usize,
+        rows: &mut [Lanes<W>],
     ) {
         if let [Term::Sine(sine)] = &self.terms[..] {
-            return sine.fill_series(known, out);
+            return sine.fill_series_of_lanes(level, jet, stride, rows);
         }
         let mut room = [0.0; Signals::MOST_ORDERS];
-        let room = &mut room[..out.len()];
+        let room = &mut room[..rows.len().div_ceil(stride)];
+        let [rate, value, ..] = jet.0;
         for lane in 0..W {
-            self.series(t[lane], Side::Right, known.map(|x| x.0[lane]), room);
-            for (out, value) in out.iter_mut().zip(&*room) {
-                out.0[lane] = *value;
+            let known = [value, rate].map(|x| x.0[lane]);
+            self.series(t.0[lane], Side::Right, known, 1, room);
+            for (row, value) in rows.iter_mut().step_by(stride).zip(&*room) {
+                row.0[lane] = *value;
             }
         }
     }
@@ -196,7 +216,9 @@ impl Term {
             }
             Term::Sine(sine) => {
                 let jet = sine.at(t, side);
-                sine.add_series([jet.value, jet.rate], out);
+                let mut room = [0.0; Signals::MOST_ORDERS];
+                sine.fill_series([jet.value, jet.rate], 1, &mut room[..out.len()]);
+                (out.iter_mut().zip(room)).for_each(|(out, c)| *out += c);
             }
             Term::Table(table) => table.add_series(t, side, out),
         }

@@ -1,8 +1,28 @@
 //! Signals of trajectories side by side.
 
-use super::{INVERSES, Side, Signals};
+use super::{INVERSES, Jet, Signals};
 use crate::integrate::Lanes;
+use crate::kernel::lane_antiderivative;
 use crate::model::InputKind;
+
+/// Value, rate and antiderivatives of a function at times of its own for each lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LaneJet<const W: usize>(
+    /// As C has them: rate, value, integral, double integral.
+    pub [Lanes<W>; 4],
+);
+
+impl<const W: usize> LaneJet<W> {
+    /// Jets of each lane.
+    pub fn from_jets(jets: [Jet; W]) -> Self {
+        LaneJet([
+            Lanes::from_fn(|i| jets[i].rate),
+            Lanes::from_fn(|i| jets[i].value),
+            Lanes::from_fn(|i| jets[i].integral),
+            Lanes::from_fn(|i| jets[i].double_integral),
+        ])
+    }
+}
 
 /// The signals of several trajectories, each at its own time.
 #[derive(Debug, Clone)]
@@ -10,91 +30,76 @@ pub struct LaneSignals<const W: usize> {
     /// Level of the processor, as in [`crate::kernel::LANES_OF_LEVELS`].
     level: usize,
     /// Times that the signals are set for, s; NaN: none.
-    t: [f64; W],
-    /// Rate of the function of each channel.
-    rates: Box<[Lanes<W>]>,
+    t: Lanes<W>,
+    /// Of each channel.
+    jets: Box<[LaneJet<W>]>,
 }
 
 impl<const W: usize> LaneSignals<W> {
     /// Not set for any time yet.
     pub fn new(level: usize, signals: &Signals) -> Self {
+        let zero = LaneJet([Lanes::of(0.0); 4]);
         LaneSignals {
             level,
-            t: [f64::NAN; W],
-            rates: vec![Lanes::of(0.0); signals.channels.len()].into(),
+            t: Lanes::of(f64::NAN),
+            jets: vec![zero; signals.channels.len()].into(),
         }
     }
 
     /// Fills `u` with the signals right after the times `t` (s), unless it was for the same times
     /// before.
-    #[inline(always)]
-    pub fn set(&mut self, signals: &Signals, t: &[f64; W], u: &mut [Lanes<W>]) {
-        if self.t == *t {
+    #[inline]
+    pub fn set(&mut self, signals: &Signals, t: &Lanes<W>, u: &mut [Lanes<W>]) {
+        let known = self.t.0.iter().zip(&t.0).all(|(known, t)| known == t);
+        if known {
             return;
         }
         self.t = *t;
-        for (c, rate) in signals.channels.iter().zip(&mut self.rates) {
-            let jets = c.function.at_lanes(self.level, t, Side::Right);
-            *rate = Lanes::from_fn(|i| jets[i].rate);
-            u[c.signal] = Lanes::from_fn(|i| jets[i].value);
+        for (c, jet) in signals.channels.iter().zip(&mut self.jets) {
+            c.function.at_lanes(self.level, t, jet);
+            let [_, value, integral, double_integral] = jet.0;
+            u[c.signal] = value;
             if c.kind == InputKind::Acceleration {
-                u[c.signal + 1] = Lanes::from_fn(|i| jets[i].integral);
-                u[c.signal + 2] = Lanes::from_fn(|i| jets[i].double_integral);
+                u[c.signal + 1] = integral;
+                u[c.signal + 2] = double_integral;
             }
         }
     }
 
-    /// What [`Signals::jets`] gives for the time of a lane; `u` was set with it.
-    pub fn of_lane(
-        &self,
-        lane: usize,
-        signals: &Signals,
-        from: &[Lanes<W>],
-        u: &mut [f64],
-        u_dot: &mut [f64],
-    ) {
-        for (u, from) in u.iter_mut().zip(from) {
-            *u = from.0[lane];
-        }
-        for (c, rate) in signals.channels.iter().zip(&self.rates) {
-            u_dot[c.signal] = rate.0[lane];
-            if c.kind == InputKind::Acceleration {
-                u_dot[c.signal + 1] = u[c.signal];
-                u_dot[c.signal + 2] = u[c.signal + 1];
-            }
+    /// What [`Signals::jets`] gives for the time of a lane.
+    pub fn of_lane(&self, lane: usize, signals: &Signals, u: &mut [f64], u_dot: &mut [f64]) {
+        for (c, jet) in signals.channels.iter().zip(&self.jets) {
+            let [rate, value, integral, double_integral] = &jet.0;
+            let jet = Jet {
+                rate: rate.0[lane],
+                value: value.0[lane],
+                integral: integral.0[lane],
+                double_integral: double_integral.0[lane],
+            };
+            c.set_values(&jet, u);
+            c.set_rates(&jet, u_dot);
         }
     }
 
     /// Time that the signals of a lane are set for, s; NaN: none.
     pub fn time(&self, lane: usize) -> f64 {
-        self.t[lane]
+        self.t.0[lane]
     }
 
-    /// Fills `rows` with the Taylor coefficients of the signals about the times that `u` was set for.
-    /// As [`Signals::series`].
-    #[inline(always)]
-    pub fn series(&self, signals: &Signals, u: &[Lanes<W>], rows: &mut [Lanes<W>]) {
-        let width = u.len();
-        if width == 0 {
-            return;
-        }
-        let orders = rows.len() / width;
-        let mut room = [Lanes::of(0.0); Signals::MOST_ORDERS];
-        for (c, rate) in signals.channels.iter().zip(&self.rates) {
-            let coefficients = &mut room[..orders];
-            let known = [u[c.signal], *rate];
-            c.function.series_of_lanes(&self.t, known, coefficients);
-            for (row, value) in rows.chunks_exact_mut(width).zip(&*coefficients) {
-                row[c.signal] = *value;
-            }
-            if c.kind == InputKind::Acceleration {
-                rows[c.signal + 1] = u[c.signal + 1];
-                rows[c.signal + 2] = u[c.signal + 2];
-                for k in 1..orders {
-                    for antiderivative in [c.signal + 1, c.signal + 2] {
-                        rows[k * width + antiderivative] =
-                            rows[(k - 1) * width + antiderivative - 1] * INVERSES[k];
-                    }
+    /// Fills `rows` with the Taylor coefficients of the signals about the times that they were set for:
+    /// one row an order. As [`Signals::series`].
+    #[inline]
+    pub fn series(&self, signals: &Signals, wanted: &[bool], rows: &mut [Lanes<W>]) {
+        let width = wanted.len();
+        for (c, jet) in signals.channels.iter().zip(&self.jets) {
+            let own = &mut rows[c.signal..];
+            c.function
+                .series_of_lanes(self.level, &self.t, jet, width, own);
+            if wanted[c.antiderivatives()].contains(&true) {
+                let [_, _, integral, double_integral] = jet.0;
+                for (before, value) in [integral, double_integral].iter().enumerate() {
+                    let rows = &mut own[before..];
+                    lane_antiderivative(self.level, &INVERSES, value, rows, width);
                 }
             }
         }

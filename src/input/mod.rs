@@ -99,6 +99,22 @@ impl Signals {
         }
     }
 
+    /// Fills a row of `rows` with the signals of each of eight instants, as [`Signals::jets`] does,
+    /// antiderivatives left out.
+    pub fn values(&self, at: &[(f64, Side); 8], rows: &mut [f64]) {
+        let width = rows.len() / at.len();
+        for c in &self.channels {
+            for (i, value) in c.function.values(at).into_iter().enumerate() {
+                rows[width * i + c.signal] = value;
+            }
+        }
+    }
+
+    /// Whether an antiderivative is among the signals that are `wanted`.
+    pub fn want_antiderivatives(&self, wanted: &[bool]) -> bool {
+        (self.channels.iter()).any(|c| wanted[c.antiderivatives()].contains(&true))
+    }
+
     /// The first time after `t` at which some input is not smooth (a jump, a kink, the start or
     /// the end of a pulse), in s; infinite if there is none.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
@@ -129,25 +145,18 @@ impl Signals {
     /// Fills `rows` with the Taylor coefficients of the signals about `t` (s), as they go on after
     /// it: one row an order, with the layout of [`Signals::evaluate`]. They hold until
     /// [`Signals::next_knot`]. `u` and `u_dot` are what [`Signals::jets`] gives on the right of `t`.
+    /// The antiderivatives of an acceleration are filled in where one of them is `wanted`.
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] rows.
-    pub fn series(&self, t: f64, u: &[f64], u_dot: &[f64], rows: &mut [f64]) {
+    pub fn series(&self, t: f64, [u, u_dot]: [&[f64]; 2], wanted: &[bool], rows: &mut [f64]) {
         let width = u.len();
-        if width == 0 {
-            return;
-        }
-        let orders = rows.len() / width;
-        let mut room = [0.0; Self::MOST_ORDERS];
         for c in &self.channels {
-            let coefficients = &mut room[..orders];
-            let (rate, value) = (u_dot[c.signal], u[c.signal]);
-            c.function
-                .series(t, Side::Right, [value, rate], coefficients);
-            for (row, value) in rows.chunks_exact_mut(width).zip(&*coefficients) {
-                row[c.signal] = *value;
-            }
-            if c.kind == InputKind::Acceleration {
+            let known = [u[c.signal], u_dot[c.signal]];
+            let column = &mut rows[c.signal..];
+            c.function.series(t, Side::Right, known, width, column);
+            if wanted[c.antiderivatives()].contains(&true) {
+                let orders = rows.len() / width;
                 rows[c.signal + 1] = u[c.signal + 1];
                 rows[c.signal + 2] = u[c.signal + 2];
                 for k in 1..orders {
@@ -177,6 +186,11 @@ impl Signals {
 }
 
 impl Channel {
+    /// Signals beside the function itself.
+    fn antiderivatives(&self) -> std::ops::Range<usize> {
+        self.signal + 1..self.signal + self.kind.signals()
+    }
+
     fn set_values(&self, jet: &Jet, u: &mut [f64]) {
         match self.kind {
             InputKind::Acceleration => u[self.signal..self.signal + 3].copy_from_slice(&[
@@ -200,9 +214,9 @@ impl Channel {
     }
 }
 
-/// 1/k; the first is not used. A few more than [`Signals::MOST_ORDERS`], as a sine looks ahead.
-const INVERSES: [f64; Signals::MOST_ORDERS + 3] = {
-    let mut inverses = [f64::INFINITY; Signals::MOST_ORDERS + 3];
+/// 1/k; the first is not used.
+const INVERSES: [f64; Signals::MOST_ORDERS] = {
+    let mut inverses = [f64::INFINITY; Signals::MOST_ORDERS];
     let mut k = 1;
     while k < inverses.len() {
         inverses[k] = 1.0 / k as f64;

@@ -1,8 +1,20 @@
 //! A sine that may start late and end early.
 
-use super::{INVERSES, Jet, Side};
+use super::lanes::LaneJet;
+use super::{Jet, Side, Signals};
 use crate::integrate::Lanes;
-use crate::kernel::{lane_sin_cos, sin_cos};
+use crate::kernel::{lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
+
+/// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
+const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
+    let mut inverses = [0.0; Signals::MOST_ORDERS];
+    let mut k = 0;
+    while k < inverses.len() {
+        inverses[k] = (1.0 / (k + 1) as f64) * (1.0 / (k + 2) as f64);
+        k += 1;
+    }
+    inverses
+};
 
 /// A·sin(ω (t − start) + φ) for start ≤ t < end, and zero outside.
 ///
@@ -56,21 +68,58 @@ impl Sine {
         self.jet(t, side, y, sin_cos(0.5 * y))
     }
 
-    /// [`Sine::at`] for each of several times.
+    /// sin(y/2 + φ) and cos(y/2 + φ) from those of y/2.
     #[inline(always)]
+    fn shifted(&self, (sin, cos): (f64, f64)) -> (f64, f64) {
+        (
+            sin * self.cos_phase + cos * self.sin_phase,
+            cos * self.cos_phase - sin * self.sin_phase,
+        )
+    }
+
+    /// The value alone at each of several instants.
+    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
+        let [sines, cosines] = sin_cos_of_eight(&at.map(|(t, _)| 0.5 * self.angle(t)));
+        std::array::from_fn(|i| {
+            let (t, side) = at[i];
+            let (sin, cos) = (sines[i], cosines[i]);
+            let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
+            match self.acts(t, side) {
+                true => self.amplitude * (sin_shifted * cos + cos_shifted * sin),
+                false => 0.0,
+            }
+        })
+    }
+
+    /// Whether it acts at an instant.
+    #[inline(always)]
+    fn acts(&self, t: f64, side: Side) -> bool {
+        match side {
+            Side::Right => self.start <= t && t < self.end,
+            Side::Left => self.start < t && t <= self.end,
+        }
+    }
+
+    /// [`Sine::at`] on the right of each of several times (codegen/lanes.c).
+    #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
         level: usize,
-        t: &[f64; W],
-        side: Side,
-    ) -> [Jet; W] {
-        let y: Lanes<W> = Lanes::from_fn(|i| self.angle(t[i]));
-        let (sin, cos) = lane_sin_cos(level, y * 0.5);
-        let mut jets = [Jet::default(); W];
-        for i in 0..W {
-            jets[i] = self.jet(t[i], side, y.0[i], (sin.0[i], cos.0[i]));
-        }
-        jets
+        t: &Lanes<W>,
+        jet: &mut LaneJet<W>,
+    ) {
+        let [of_integral, of_double_integral] = self.of_integrals;
+        let numbers = [
+            self.amplitude,
+            self.angular_frequency,
+            self.start,
+            self.end,
+            self.sin_phase,
+            self.cos_phase,
+            of_integral,
+            of_double_integral,
+        ];
+        lane_sine(level, &numbers, t, &mut jet.0);
     }
 
     /// y = ω s while the sine acts.
@@ -82,19 +131,14 @@ impl Sine {
     /// What [`Sine::at`] gives, with sin(y/2) and cos(y/2).
     #[inline(always)]
     fn jet(&self, t: f64, side: Side, y: f64, (sin, cos): (f64, f64)) -> Jet {
-        let acts = match side {
-            Side::Right => self.start <= t && t < self.end,
-            Side::Left => self.start < t && t <= self.end,
-        };
         let (amplitude, omega) = (self.amplitude, self.angular_frequency);
-        let sin_shifted = sin * self.cos_phase + cos * self.sin_phase;
-        let cos_shifted = cos * self.cos_phase - sin * self.sin_phase;
+        let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
         let [first, second] = self.of_integrals;
         let integral = first * 2.0 * sin_shifted * sin;
         let double_integral = second
             * (self.cos_phase * less_its_sine(y, 2.0 * sin * cos)
                 + 2.0 * self.sin_phase * sin * sin);
-        let (rate, value) = if acts {
+        let (rate, value) = if self.acts(t, side) {
             (
                 amplitude * omega * (cos_shifted * cos - sin_shifted * sin),
                 amplitude * (sin_shifted * cos + cos_shifted * sin),
@@ -112,40 +156,33 @@ impl Sine {
         }
     }
 
-    /// Adds the Taylor coefficients about the time at which value and rate are those given; each is
-    /// −ω²/(k (k − 1)) times the last but one.
-    pub(super) fn add_series(&self, [value, rate]: [f64; 2], out: &mut [f64]) {
+    /// Fills every `stride`-th entry of `out` with the Taylor coefficients about the time at which value
+    /// and rate are those given; each is −ω²/(k (k − 1)) times the last but one.
+    #[inline]
+    pub(super) fn fill_series(
+        &self,
+        [mut now, mut next]: [f64; 2],
+        stride: usize,
+        out: &mut [f64],
+    ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (value, rate);
-        for (k, pair) in out.chunks_mut(2).enumerate() {
-            let inverse = |n: usize| INVERSES[2 * k + n];
-            pair[0] += even;
-            even *= factor * (inverse(1) * inverse(2));
-            if let Some(out) = pair.get_mut(1) {
-                *out += odd;
-                odd *= factor * (inverse(2) * inverse(3));
-            }
+        for (out, inverse) in out.chunks_mut(stride).zip(&INVERSES_OF_PAIRS) {
+            out[0] = now;
+            (now, next) = (next, now * (factor * inverse));
         }
     }
 
-    /// [`Sine::add_series`] for each of several times, to rows of zeros.
-    #[inline(always)]
-    pub(super) fn fill_series<const W: usize>(
+    /// [`Sine::fill_series`] for each of several times.
+    #[inline]
+    pub(super) fn fill_series_of_lanes<const W: usize>(
         &self,
-        [value, rate]: [Lanes<W>; 2],
+        level: usize,
+        jet: &LaneJet<W>,
+        stride: usize,
         out: &mut [Lanes<W>],
     ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        let (mut even, mut odd) = (value, rate);
-        for (k, pair) in out.chunks_mut(2).enumerate() {
-            let inverse = |n: usize| INVERSES[2 * k + n];
-            pair[0] = even;
-            even = even * (factor * (inverse(1) * inverse(2)));
-            if let Some(out) = pair.get_mut(1) {
-                *out = odd;
-                odd = odd * (factor * (inverse(2) * inverse(3)));
-            }
-        }
+        lane_sine_series(level, (factor, &INVERSES_OF_PAIRS), &jet.0, stride, out);
     }
 
     /// Start and end, if they are after `t`.

@@ -71,11 +71,16 @@ impl Controller {
         // The estimate is of order h^(S + 1).
         let mut factor = SAFETY / (1.0 + effort) * root(error, S + 1);
         if let Some((last_h, last_error)) = self.last {
-            // The error behaves as it did from the last step to this one.
-            let trend = SAFETY * (h / last_h) * root(error * error / last_error, S + 1);
-            factor = factor.min(trend);
+            // The error behaves as it did from the last step to this one. A longer step than the order
+            // allows is taken only where errors fall although steps grow: a transient decays.
+            let floor = last_error.max(SMALLEST_ERROR);
+            let trend = SAFETY * (h / last_h) * root(error * error / floor, S + 1);
+            let decays = error < last_error && h > last_h;
+            if trend < factor || decays {
+                factor = trend;
+            }
         }
-        self.last = Some((h, error.max(SMALLEST_ERROR)));
+        self.last = Some((h, error));
         let mut factor = factor.min(CONTRACTION / rate).clamp(SHRINKAGE, GROWTH);
         if discarded {
             factor = factor.min(1.0);

@@ -1,90 +1,89 @@
 //! Numbers of several trajectories side by side.
 //!
-//! What is worth vector instructions is C (codegen/lanes.c): here are the few operations between.
+//! What is done with them is C (codegen/lanes.c), compiled for each level of the processor.
 
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::{BitAnd, BitOr, Not};
 
-/// A number a lane. The operations are those of each lane by itself, rounding included.
+/// A number a lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(16))]
 pub struct Lanes<const W: usize>(pub [f64; W]);
 
-/// Yes (a word of ones) or no (zero) for each lane.
+/// Yes or no for each lane: a bit a lane, the first the lowest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(C, align(16))]
-pub struct LaneMask<const W: usize>(pub [u64; W]);
+#[repr(transparent)]
+pub struct LaneMask(pub u32);
 
-impl<const W: usize> LaneMask<W> {
+impl LaneMask {
     /// No for all lanes.
-    pub fn none() -> Self {
-        LaneMask([0; W])
+    pub const NONE: LaneMask = LaneMask(0);
+    /// Yes for all lanes.
+    pub const ALL: LaneMask = LaneMask(u32::MAX);
+
+    /// Whether it is yes for some lane.
+    #[inline]
+    pub fn any(self) -> bool {
+        self != Self::NONE
     }
 
     /// Sets the answer of a lane.
+    #[inline]
     pub fn set(&mut self, lane: usize, yes: bool) {
-        self.0[lane] = if yes { u64::MAX } else { 0 };
+        self.0 = self.0 & !(1 << lane) | u32::from(yes) << lane;
     }
 
     /// Whether it is yes for a lane.
-    pub fn is(&self, lane: usize) -> bool {
-        self.0[lane] != 0
+    #[inline]
+    pub fn is(self, lane: usize) -> bool {
+        self.0 >> lane & 1 != 0
+    }
+
+    /// The lanes for which it is yes.
+    #[inline]
+    pub fn lanes(self) -> impl Iterator<Item = usize> {
+        let mut left = self.0;
+        std::iter::from_fn(move || {
+            let lane = left.trailing_zeros();
+            left &= left.wrapping_sub(1);
+            (lane < u32::BITS).then_some(lane as usize)
+        })
+    }
+}
+
+impl BitAnd for LaneMask {
+    type Output = LaneMask;
+    #[inline]
+    fn bitand(self, other: LaneMask) -> LaneMask {
+        LaneMask(self.0 & other.0)
+    }
+}
+
+impl BitOr for LaneMask {
+    type Output = LaneMask;
+    #[inline]
+    fn bitor(self, other: LaneMask) -> LaneMask {
+        LaneMask(self.0 | other.0)
+    }
+}
+
+impl Not for LaneMask {
+    type Output = LaneMask;
+    #[inline]
+    fn not(self) -> LaneMask {
+        LaneMask(!self.0)
     }
 }
 
 impl<const W: usize> Lanes<W> {
     /// The same number in all lanes.
-    #[inline(always)]
+    #[inline]
     pub fn of(x: f64) -> Self {
         Lanes([x; W])
     }
 
     /// What `f` gives for each lane.
-    #[inline(always)]
+    #[inline]
     pub fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
         Lanes(std::array::from_fn(f))
     }
-
-    /// `f` of each number.
-    #[inline(always)]
-    pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        let mut out = self;
-        for i in 0..W {
-            out.0[i] = f(self.0[i]);
-        }
-        out
-    }
-
-    /// `f` of each pair of numbers.
-    #[inline(always)]
-    pub fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        let mut out = self;
-        for i in 0..W {
-            out.0[i] = f(self.0[i], other.0[i]);
-        }
-        out
-    }
 }
-
-macro_rules! by_lane {
-    ($trait:ident, $method:ident, $operator:tt) => {
-        impl<const W: usize> $trait for Lanes<W> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                self.with(other, |x, y| x $operator y)
-            }
-        }
-        impl<const W: usize> $trait<f64> for Lanes<W> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: f64) -> Self {
-                self.map(|x| x $operator other)
-            }
-        }
-    };
-}
-
-by_lane!(Add, add, +);
-by_lane!(Sub, sub, -);
-by_lane!(Mul, mul, *);
-by_lane!(Div, div, /);

@@ -187,9 +187,11 @@ where
         };
         self.remaining = (self.remaining * self.remaining.sqrt()).sqrt();
 
+        let times = Stages::<S, F>::times(start.t, h, t_end);
+        system.foresee(&times);
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
         for iteration in 1..=limit {
-            let residual = stages.residual(system, start.t, h, t_end);
+            let residual = stages.residual(system, &times);
             counters.residual_evaluations += S as u64;
             counters.newton_iterations += 1;
             let norm = self.correct(&residual, stages, &weight);
@@ -343,23 +345,19 @@ where
         }
     }
 
-    #[inline(always)]
-    fn residual<Y: System<F>>(
-        &self,
-        system: &mut Y,
-        t0: f64,
-        h: f64,
-        t_end: f64,
-    ) -> [SVector<f64, F>; S] {
+    /// Times of the stages of a step of length `h` from `t0` to `t_end`.
+    fn times(t0: f64, h: f64, t_end: f64) -> [f64; S] {
         let tableau = RadauIia::<S>::TABLEAU;
+        let mut times = tableau.c.map(|c| t0 + c * h);
+        times[S - 1] = t_end;
+        times
+    }
+
+    #[inline(always)]
+    fn residual<Y: System<F>>(&self, system: &mut Y, times: &[f64; S]) -> [SVector<f64, F>; S] {
         let mut r = [SVector::zeros(); S];
         for i in 0..S {
-            let t = if i == S - 1 {
-                t_end
-            } else {
-                t0 + tableau.c[i] * h
-            };
-            system.residual(t, &self.q[i], &self.v[i], &self.a[i], &mut r[i]);
+            system.residual(times[i], &self.q[i], &self.v[i], &self.a[i], &mut r[i]);
         }
         r
     }

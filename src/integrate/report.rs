@@ -32,7 +32,7 @@ pub struct StepReport {
     /// Length, s.
     pub h: f64,
     /// Estimated local error in units of the tolerance of the estimate, below 1; NaN for a step of
-    /// exact length, whose error is not estimated again.
+    /// exact length, whose error is not estimated again, and of the Taylor method.
     pub error: f64,
     /// Newton iterations of the accepted attempt.
     pub iterations: u32,

@@ -56,6 +56,10 @@ pub trait System<const F: usize> {
         Ok(())
     }
 
+    /// Says at which times residuals will be asked for next, so that what depends on time alone may be
+    /// computed for all of them side by side.
+    fn foresee(&mut self, _times: &[f64]) {}
+
     /// Longest step from time `t`, s, in which the few points where a step looks at the equations
     /// cannot miss what they do in between; infinite where nothing limits it.
     fn resolution(&self, _t: f64) -> f64 {

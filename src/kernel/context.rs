@@ -1,7 +1,7 @@
 //! What generated functions need besides the free coordinates.
 
 use crate::input::{LaneSignals, Side, Signals};
-use crate::integrate::{Lanes, ORDERS};
+use crate::integrate::ORDERS;
 use crate::model::Model;
 use crate::with_kernel;
 
@@ -20,6 +20,8 @@ pub struct Dimensions {
     pub parameters: usize,
     /// Constants computed from the parameters.
     pub constants: usize,
+    /// Of each signal, whether the equations of motion or the guards of some mode depend on it.
+    pub expanded: &'static [bool],
 }
 
 /// What a generated function needs besides the free coordinates.
@@ -40,6 +42,8 @@ pub struct Context {
     pub held: Box<[f64]>,
     /// Taylor coefficients of the signals, one row an order.
     pub(super) signal_series: Box<[f64]>,
+    /// Signals at instants that will be asked for soon, a row each; antiderivatives are not among them.
+    ahead: Box<[f64]>,
     pub(super) constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub guard_series: Box<[f64]>,
@@ -67,6 +71,7 @@ impl Context {
             quiet: false,
             discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
             held: vec![0.0; dimensions.coordinates].into(),
+            ahead: vec![0.0; Self::MOST_AHEAD * dimensions.signals].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             constants: {
                 let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
@@ -107,24 +112,42 @@ impl Context {
         }
     }
 
-    /// Sets signals and their rates to those of a lane at time `t` (s), as they are right after it;
-    /// `from` are its signals.
+    /// Number of instants of [`Context::foresee_signals`].
+    pub const MOST_AHEAD: usize = 8;
+
+    /// Computes the signals at several instants side by side, for [`Context::set_foreseen_signals`]: as
+    /// far as the equations of motion depend on them. Gives false where that is not possible.
+    pub fn foresee_signals(
+        &mut self,
+        signals: &Signals,
+        at: &[(f64, Side); Self::MOST_AHEAD],
+    ) -> bool {
+        let possible = !self.quiet && !signals.want_antiderivatives(self.dimensions.expanded);
+        if possible {
+            signals.values(at, &mut self.ahead);
+        }
+        possible
+    }
+
+    /// Sets the signals to those of an instant that was foreseen, by its index: enough for the equations
+    /// of motion, and for nothing else.
+    #[inline]
+    pub fn set_foreseen_signals(&mut self, index: usize) {
+        let width = self.signals.len();
+        let row = &self.ahead[index * width..][..width];
+        self.signals.copy_from_slice(row);
+        self.signals_at.0 = f64::NAN;
+    }
+
+    /// Sets signals and their rates to those of a lane, as they are right after its time.
     pub fn set_signals_of_lane<const W: usize>(
         &mut self,
         of: &LaneSignals<W>,
         lane: usize,
         signals: &Signals,
-        t: f64,
-        from: &[Lanes<W>],
     ) {
-        of.of_lane(
-            lane,
-            signals,
-            from,
-            &mut self.signals,
-            &mut self.signal_rates,
-        );
-        self.signals_at = (t, Side::Right);
+        of.of_lane(lane, signals, &mut self.signals, &mut self.signal_rates);
+        self.signals_at = (of.time(lane), Side::Right);
     }
 
     /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
@@ -133,7 +156,8 @@ impl Context {
         if !self.quiet {
             self.set_signals(signals, t, Side::Right);
             let rows = &mut self.signal_series[..orders * self.signals.len()];
-            signals.series(t, &self.signals, &self.signal_rates, rows);
+            let known = [&*self.signals, &self.signal_rates];
+            signals.series(t, known, self.dimensions.expanded, rows);
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use super::ModeKernel;
 use super::context::{Context, Dimensions};
-use crate::integrate::{Lanes, ORDERS};
+use crate::integrate::{LaneMask, Lanes, ORDERS};
+use std::ops::{Deref, DerefMut};
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
 /// build/compile.rs.
@@ -34,26 +35,69 @@ pub fn processor_level() -> usize {
     0
 }
 
+/// As many lanes as fill some lines of the cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Block<const W: usize>([Lanes<W>; Block::<0>::LANES]);
+
+impl<const W: usize> Block<W> {
+    /// Numbers a lane.
+    pub const LANES: usize = 8;
+}
+
+/// An array of lanes that begins with a line of the cache: a vector of a whole line is read at once.
+#[derive(Debug, Clone)]
+pub struct LaneRows<const W: usize> {
+    blocks: Box<[Block<W>]>,
+    count: usize,
+}
+
+impl<const W: usize> LaneRows<W> {
+    /// So many zeros.
+    pub fn zeros(count: usize) -> Self {
+        let block = Block([Lanes::of(0.0); Block::<0>::LANES]);
+        LaneRows {
+            blocks: vec![block; count.div_ceil(Block::<0>::LANES)].into(),
+            count,
+        }
+    }
+}
+
+impl<const W: usize> Deref for LaneRows<W> {
+    type Target = [Lanes<W>];
+    #[inline]
+    fn deref(&self) -> &[Lanes<W>] {
+        &super::lanes_of(&self.blocks)[..self.count]
+    }
+}
+
+impl<const W: usize> DerefMut for LaneRows<W> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [Lanes<W>] {
+        &mut super::lanes_of_mut(&mut self.blocks)[..self.count]
+    }
+}
+
 /// What generated functions need besides the free coordinates, for `W` trajectories side by side: as
 /// [`Context`], each entry a number a lane.
 #[derive(Debug, Clone)]
 pub struct LaneContext<const W: usize> {
     pub(super) dimensions: &'static Dimensions,
     /// Signals of the inputs.
-    pub signals: Box<[Lanes<W>]>,
+    pub signals: LaneRows<W>,
     /// Taylor coefficients of the signals, one row an order.
-    pub signal_series: Box<[Lanes<W>]>,
-    pub(super) discrete: Box<[Lanes<W>]>,
-    pub(super) held: Box<[Lanes<W>]>,
-    pub(super) constants: Box<[Lanes<W>]>,
-    pub(super) workspace: Box<[Lanes<W>]>,
+    pub signal_series: LaneRows<W>,
+    pub(super) discrete: LaneRows<W>,
+    pub(super) held: LaneRows<W>,
+    pub(super) constants: LaneRows<W>,
+    pub(super) workspace: LaneRows<W>,
 }
 
 impl<const W: usize> LaneContext<W> {
     /// A context for a mode, with the discrete states, held coordinates and constants of `like` in all
     /// lanes.
     pub fn new<const F: usize>(kernel: &ModeKernel<F>, like: &Context) -> Self {
-        let zeros = |count: usize| vec![Lanes::of(0.0); count].into_boxed_slice();
+        let zeros = LaneRows::zeros;
         let mut context = LaneContext {
             dimensions: like.dimensions,
             signals: zeros(like.signals.len()),
@@ -69,6 +113,11 @@ impl<const W: usize> LaneContext<W> {
         context
     }
 
+    /// Of each signal, whether Taylor series depend on it.
+    pub fn expanded(&self) -> &'static [bool] {
+        self.dimensions.expanded
+    }
+
     /// Takes over discrete states, held coordinates and constants of a trajectory.
     ///
     /// # Panics
@@ -78,7 +127,7 @@ impl<const W: usize> LaneContext<W> {
         let of = [&from.discrete, &from.held, &from.constants];
         let into = [&mut self.discrete, &mut self.held, &mut self.constants];
         for (into, of) in into.into_iter().zip(of) {
-            for (into, of) in into.iter_mut().zip(of) {
+            for (into, of) in into.iter_mut().zip(&**of) {
                 into.0[lane] = *of;
             }
         }
@@ -86,9 +135,10 @@ impl<const W: usize> LaneContext<W> {
 
     /// The same for a trajectory whose constants were loaded before.
     pub fn load_state(&mut self, lane: usize, from: &Context) {
-        let of = from.discrete.iter().chain(&from.held);
-        let into = self.discrete.iter_mut().chain(&mut self.held);
-        for (into, of) in into.zip(of) {
+        for (into, of) in self.discrete.iter_mut().zip(&from.discrete) {
+            into.0[lane] = *of;
+        }
+        for (into, of) in self.held.iter_mut().zip(&from.held) {
             into.0[lane] = *of;
         }
     }
@@ -104,14 +154,59 @@ pub struct LaneSystem<const F: usize, const W: usize> {
     pub load: [Lanes<W>; F],
 }
 
+/// Where trajectories are.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct LanePoint<const F: usize, const W: usize> {
+    /// Coordinates.
+    pub q: [Lanes<W>; F],
+    /// Velocities.
+    pub v: [Lanes<W>; F],
+    /// Accelerations.
+    pub a: [Lanes<W>; F],
+    /// What rounding has lost of coordinates and of velocities.
+    pub lost: [[Lanes<W>; F]; 2],
+    /// Time as a sum of two doubles, as in [`crate::hybrid`]'s instants, s.
+    pub t: [Lanes<W>; 2],
+}
+
+impl<const F: usize, const W: usize> LanePoint<F, W> {
+    /// All at rest at zero.
+    pub fn zero() -> Self {
+        let zero = [Lanes::of(0.0); F];
+        LanePoint {
+            q: zero,
+            v: zero,
+            a: zero,
+            lost: [zero; 2],
+            t: [Lanes::of(0.0); 2],
+        }
+    }
+}
+
+/// A guard that is factor · (a coordinate or rate) + offset.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct LaneGuard<const W: usize> {
+    /// ±1, or what the model says.
+    pub factor: Lanes<W>,
+    /// In its own unit.
+    pub offset: Lanes<W>,
+    /// Lanes in which it is zero at the start of the step: there the factor τ is divided out.
+    pub starts_at_zero: LaneMask,
+}
+
+/// Rows of a series in lanes: those beyond its order are zero, and fill up fours.
+pub const LANE_ROWS: usize = ORDERS + 1;
+
 /// [`crate::integrate::Series`] in lanes.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub struct LaneSeries<const F: usize, const W: usize> {
     /// Of the coordinates.
-    pub q: [[Lanes<W>; F]; ORDERS],
+    pub q: [[Lanes<W>; F]; LANE_ROWS],
     /// Of the velocities.
-    pub v: [[Lanes<W>; F]; ORDERS],
+    pub v: [[Lanes<W>; F]; LANE_ROWS],
     /// Of the accelerations.
-    pub a: [[Lanes<W>; F]; ORDERS],
+    pub a: [[Lanes<W>; F]; LANE_ROWS],
 }

@@ -8,10 +8,14 @@ mod context;
 mod lanes;
 
 pub use context::{Context, Dimensions};
-pub use lanes::{LANES_OF_LEVELS, LaneContext, LaneSeries, LaneSystem, processor_level};
+pub use lanes::{
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LanePoint, LaneRows, LaneSeries,
+    LaneSystem, processor_level,
+};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
+use lanes::Block;
 use nalgebra::{SMatrix, SVector};
 
 /// Context of a call, as C sees it: signals, their rates, discrete states, held coordinates,
@@ -63,94 +67,53 @@ unsafe extern "C" {
     safe fn dalembert_sin_cos(x: f64) -> SinCos;
 }
 
-/// What codegen/lanes.c has for every mode, at a level of the processor.
-struct LaneFunctions {
-    sin_cos: unsafe extern "C" fn(*const f64, *mut f64, *mut f64),
-    sum: unsafe extern "C" fn(usize, usize, *const f64, *const f64, *mut f64),
-    length: unsafe extern "C" fn(
-        usize,
-        usize,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *mut f64,
-    ),
-    first_fall: unsafe extern "C" fn(
-        usize,
-        usize,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const f64,
-        *const u64,
-        *mut f64,
-        *mut f64,
-    ),
-}
-
+/// What codegen/lanes.c has for every mode, at each level of the processor.
 macro_rules! lane_functions {
-    ($sin_cos:ident, $sum:ident, $length:ident, $first_fall:ident) => {{
+    ([$($(#[$only:meta])? $level:literal),*] $functions:tt) => {
+        lane_functions!(@table $functions);
+        /// By level.
+        static LANE_FUNCTIONS: &[LaneFunctions] =
+            &[$($(#[$only])? lane_functions!(@level $level $functions)),*];
+    };
+    (@table ($($name:ident($($argument:ty),*) $(-> $result:ty)?;)*)) => {
+        struct LaneFunctions {
+            $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
+        }
+    };
+    (@level $level:literal ($($name:ident($($argument:ty),*) $(-> $result:ty)?;)*)) => {{
         unsafe extern "C" {
-            fn $sin_cos(x: *const f64, sin: *mut f64, cos: *mut f64);
-            fn $sum(count: usize, stride: usize, row: *const f64, tau: *const f64, out: *mut f64);
-            fn $length(
-                free: usize,
-                p: usize,
-                q: *const f64,
-                v: *const f64,
-                tolerances: *const f64,
-                factors: *const f64,
-                remaining: *const f64,
-                horizon: *const f64,
-                out: *mut f64,
-            );
-            fn $first_fall(
-                count: usize,
-                stride: usize,
-                row: *const f64,
-                h: *const f64,
-                factor: *const f64,
-                offset: *const f64,
-                starts_at_zero: *const u64,
-                c: *mut f64,
-                out: *mut f64,
-            );
+            $(
+                #[link_name = concat!("dalembert_lane_", stringify!($name), $level)]
+                fn $name($(_: $argument),*) $(-> $result)?;
+            )*
         }
-        LaneFunctions {
-            sin_cos: $sin_cos,
-            sum: $sum,
-            length: $length,
-            first_fall: $first_fall,
-        }
+        LaneFunctions { $($name,)* }
     }};
 }
 
-/// By level.
-static LANE_FUNCTIONS: &[LaneFunctions] = &[
-    lane_functions!(
-        dalembert_lane_sin_cos_v1,
-        dalembert_lane_sum_v1,
-        dalembert_lane_length_v1,
-        dalembert_lane_first_fall_v1
-    ),
-    #[cfg(target_arch = "x86_64")]
-    lane_functions!(
-        dalembert_lane_sin_cos_v3,
-        dalembert_lane_sum_v3,
-        dalembert_lane_length_v3,
-        dalembert_lane_first_fall_v3
-    ),
-    #[cfg(target_arch = "x86_64")]
-    lane_functions!(
-        dalembert_lane_sin_cos_v4,
-        dalembert_lane_sum_v4,
-        dalembert_lane_length_v4,
-        dalembert_lane_first_fall_v4
-    ),
-];
+/// A number a lane, or several after each other.
+type In = *const f64;
+type Out = *mut f64;
+/// A bit a lane.
+type Bits = u32;
+type OutBits = *mut u32;
+
+lane_functions!(
+    ["_v1", #[cfg(target_arch = "x86_64")] "_v3", #[cfg(target_arch = "x86_64")] "_v4"]
+    (
+        sin_cos(In, Out, Out);
+        sine(In, In, Out);
+        sine_series(usize, usize, f64, In, In, Out);
+        antiderivative(usize, usize, In, In, Out);
+        begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
+        unmet(usize, In) -> Bits;
+        length(usize, usize, In, In, In, In, In, In, In, In, Out, OutBits) -> Bits;
+        first_fall(usize, usize, In, In, In, Out, Out, OutBits) -> Bits;
+        cross(usize, usize, In, In, In, Bits, In, Out, Out);
+        end(usize, usize, In, In, In, In, In, Out);
+        take(usize, Bits, In, Out);
+    )
+);
 
 /// The functions of a level.
 ///
@@ -175,88 +138,263 @@ pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lan
     (sin, cos)
 }
 
-/// Σ `rows[k][i]` τᵏ.
-#[inline]
-pub fn lane_sum<const F: usize, const W: usize>(
-    level: usize,
-    rows: &[[Lanes<W>; F]],
-    i: usize,
-    tau: &Lanes<W>,
-) -> Lanes<W> {
-    assert!(i < F);
-    let mut out = Lanes::of(0.0);
-    let row = rows.as_flattened()[i..].as_ptr().cast();
-    let (tau, to) = ((&raw const *tau).cast(), (&raw mut out).cast());
-    // SAFETY: as many rows of F entries are there, of which entry i is read.
-    unsafe { (lane_functions::<W>(level).sum)(rows.len(), F, row, tau, to) };
-    out
+/// Sines and cosines of eight angles (rad), side by side in lanes of this processor.
+pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
+    fn in_lanes<const W: usize>(level: usize, x: &[f64; 8]) -> [[f64; 8]; 2] {
+        let [mut sines, mut cosines] = [[0.0; 8]; 2];
+        for from in (0..8).step_by(W) {
+            let (sin, cos) = lane_sin_cos(level, Lanes::<W>::from_fn(|lane| x[from + lane]));
+            sines[from..from + W].copy_from_slice(&sin.0);
+            cosines[from..from + W].copy_from_slice(&cos.0);
+        }
+        [sines, cosines]
+    }
+    let level = processor_level();
+    match LANES_OF_LEVELS[level] {
+        8 => in_lanes::<8>(level, x),
+        4 => in_lanes::<4>(level, x),
+        _ => in_lanes::<2>(level, x),
+    }
 }
 
-/// The length at which the last terms of a series of order `p` equal the tolerance, as it fits into what
-/// is `remaining` and not more than `horizon`. `tolerances` are the relative one and the absolute ones
-/// of coordinates and velocities, `factors` those of the terms of order p − 3 and p − 2.
+/// Rate, value, integral and double integral of a sine at times of lanes (s), on their right; the numbers
+/// of a sine are those of [`crate::input::Sine`].
+#[inline]
+pub fn lane_sine<const W: usize>(
+    level: usize,
+    sine: &[f64; 8],
+    t: &Lanes<W>,
+    jet: &mut [Lanes<W>; 4],
+) {
+    let (t, jet) = ((&raw const *t).cast(), jet.as_mut_ptr().cast());
+    // SAFETY: eight numbers, one number a lane, four a lane.
+    unsafe { (lane_functions::<W>(level).sine)(sine.as_ptr(), t, jet) };
+}
+
+/// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet. Each is the
+/// last but one times the factor and its inverse.
+#[inline]
+pub fn lane_sine_series<const W: usize>(
+    level: usize,
+    (factor, inverses): (f64, &[f64]),
+    jet: &[Lanes<W>; 4],
+    stride: usize,
+    rows: &mut [Lanes<W>],
+) {
+    let count = rows.len().div_ceil(stride);
+    assert!(inverses.len() >= count);
+    let (row, jet) = (rows.as_mut_ptr().cast(), jet.as_ptr().cast());
+    let series = lane_functions::<W>(level).sine_series;
+    // SAFETY: the last of the rows is (count − 1) · stride < their number; inverses are as many.
+    unsafe { series(count, stride, factor, inverses.as_ptr(), jet, row) };
+}
+
+/// Rows of the Taylor coefficients of an antiderivative into every `stride`-th of `rows` from the second
+/// on, given its value; the entries before are those of its derivative. `inverses`: 1/k.
+#[inline]
+pub fn lane_antiderivative<const W: usize>(
+    level: usize,
+    inverses: &[f64],
+    value: &Lanes<W>,
+    rows: &mut [Lanes<W>],
+    stride: usize,
+) {
+    let own = &mut rows[1..];
+    let count = own.len().div_ceil(stride);
+    assert!(inverses.len() >= count);
+    let (row, value) = (own.as_mut_ptr().cast(), (&raw const *value).cast());
+    let antiderivative = lane_functions::<W>(level).antiderivative;
+    // SAFETY: the last of the rows is (count − 1) · stride < their number, and one entry is before each;
+    // the inverses are as many.
+    unsafe { antiderivative(count, stride, inverses.as_ptr(), value, row) };
+}
+
+/// Inverts the mass matrices, sets the accelerations (those of `point` where a segment starts) and the
+/// rows of the series that follow from them. Gives the inverses, and the lanes that have no positive
+/// pivots.
+#[inline]
+pub fn lane_begin<const F: usize, const W: usize>(
+    level: usize,
+    point: &LanePoint<F, W>,
+    at_start: LaneMask,
+    system: &LaneSystem<F, W>,
+    series: &mut LaneSeries<F, W>,
+) -> ([[Lanes<W>; F]; F], LaneMask) {
+    let mut inverse = [[Lanes::of(0.0); F]; F];
+    let [q, v, a] =
+        [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
+    let begin = lane_functions::<W>(level).begin;
+    // SAFETY: a point and a system of F coordinates, room for F × F numbers, three rows of each series.
+    let unclear = unsafe {
+        begin(
+            F,
+            (&raw const *point).cast(),
+            at_start.0,
+            (&raw const *system).cast(),
+            inverse.as_mut_ptr().cast(),
+            q,
+            v,
+            a,
+        )
+    };
+    (inverse, LaneMask(unclear))
+}
+
+/// The lanes in which not all of some numbers are positive.
+#[inline]
+pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>]) -> LaneMask {
+    let unmet = lane_functions::<W>(level).unmet;
+    // SAFETY: as many numbers a lane.
+    LaneMask(unsafe { unmet(numbers.len(), numbers.as_ptr().cast()) })
+}
+
+/// What limits the lengths of the steps of a series.
+#[derive(Debug, Clone)]
+pub struct LaneLimits {
+    /// Order p of the series.
+    pub order: usize,
+    /// The relative tolerance, and the absolute ones of coordinates and velocities.
+    pub tolerances: Box<[f64]>,
+    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
+    /// factors of the lengths that they tell, and their logarithms.
+    pub terms: [[f64; 5]; 4],
+}
+
+/// The length at which the last terms of a series equal the tolerance, as it fits into what remains up
+/// to the times `last` and not more than `horizon`. Gives the lanes in which it reaches `last`; marks
+/// those that are `unclear`, as their series is not finite or their time does not advance.
 #[inline]
 pub fn lane_length<const F: usize, const W: usize>(
     level: usize,
-    p: usize,
+    limits: &LaneLimits,
     series: &LaneSeries<F, W>,
-    (tolerances, factors): (&[f64], &[f64; 2]),
-    [remaining, horizon]: [&Lanes<W>; 2],
-) -> Lanes<W> {
-    assert!(p >= 5 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
-    let mut out = Lanes::of(0.0);
-    let [q, v] = [&series.q, &series.v].map(|rows| rows.as_ptr().cast());
-    let [remaining, horizon] = [remaining, horizon].map(|x| (&raw const *x).cast());
+    point: &LanePoint<F, W>,
+    [last, horizon]: [&Lanes<W>; 2],
+    unclear: &mut LaneMask,
+) -> (Lanes<W>, LaneMask) {
+    let p = limits.order;
+    assert!(p >= 5 && p + 2 <= ORDERS && limits.tolerances.len() == 1 + 2 * F);
+    let mut h = Lanes::of(0.0);
+    let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let length = lane_functions::<W>(level).length;
     // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
-    unsafe {
+    let until = unsafe {
         length(
             F,
             p,
             q,
             v,
-            tolerances.as_ptr(),
-            factors.as_ptr(),
-            remaining,
-            horizon,
-            (&raw mut out).cast(),
+            a,
+            limits.tolerances.as_ptr(),
+            limits.terms.as_ptr().cast(),
+            (&raw const *point).cast(),
+            (&raw const *last).cast(),
+            (&raw const *horizon).cast(),
+            (&raw mut h).cast(),
+            &mut unclear.0,
         )
     };
-    out
+    (h, LaneMask(until))
 }
 
-/// The first fall of factor · Σ `rows[k][i]` τᵏ + offset on 0 < τ ≤ h, as a part of h: infinite where
-/// there is none, not a number where that takes a closer look. Of those that start at zero (a word of
-/// ones in their lane) the factor τ is divided out. `coefficients` get those in powers of τ/h.
+/// Looks for the first fall of a guard, factor · Σ `rows[k][i]` τᵏ + offset, on 0 < τ ≤ h. Where it is
+/// before `place`, a part of h, that becomes it. `coefficients` get those in powers of τ/h. Gives the
+/// lanes with such a fall, and those where it takes a closer look.
 #[inline]
 pub fn lane_first_fall<const F: usize, const W: usize>(
     level: usize,
     (rows, i): (&[[Lanes<W>; F]], usize),
-    [h, factor, offset]: [&Lanes<W>; 3],
-    starts_at_zero: &LaneMask<W>,
+    h: &Lanes<W>,
+    guard: &LaneGuard<W>,
     coefficients: &mut [Lanes<W>; ORDERS],
-) -> Lanes<W> {
-    assert!(i < F && (1..=ORDERS).contains(&rows.len()));
-    let mut out = Lanes::of(0.0);
+    place: &mut Lanes<W>,
+) -> [LaneMask; 2] {
+    assert!(i < F && (2..=ORDERS).contains(&rows.len()));
+    let mut unclear = 0;
     let row = rows.as_flattened()[i..].as_ptr().cast();
-    let [h, factor, offset] = [h, factor, offset].map(|x| (&raw const *x).cast());
     let first_fall = lane_functions::<W>(level).first_fall;
     // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
-    // coefficients; the rest is one number a lane each.
-    unsafe {
+    // coefficients; the rest is one number a lane each, and a guard.
+    let first = unsafe {
         first_fall(
             rows.len(),
             F,
             row,
-            h,
-            factor,
-            offset,
-            starts_at_zero.0.as_ptr(),
+            (&raw const *h).cast(),
+            (&raw const *guard).cast(),
             coefficients.as_mut_ptr().cast(),
-            (&raw mut out).cast(),
+            (&raw mut *place).cast(),
+            &mut unclear,
         )
     };
-    out
+    [LaneMask(first), LaneMask(unclear)]
+}
+
+/// Moves `tau` (s) of some lanes on until the guard factor · Σ `rows[k][i]` τᵏ + offset, of `count` rows, is
+/// negative there: by `more`, twice as much each time, but not beyond `most`. `lost` is what rounding has lost of the first
+/// row.
+#[inline]
+pub fn lane_cross<const F: usize, const W: usize>(
+    level: usize,
+    (rows, i): (&[[Lanes<W>; F]; LANE_ROWS], usize),
+    count: usize,
+    lost: &Lanes<W>,
+    guard: &LaneGuard<W>,
+    lanes: LaneMask,
+    [tau, more, most]: [&mut Lanes<W>; 3],
+) {
+    assert!(i < F && (1..=ORDERS).contains(&count));
+    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let lost = (&raw const *lost).cast();
+    let [tau, more, most] = [tau, more, most].map(|x| (&raw mut *x).cast());
+    let guard = (&raw const *guard).cast();
+    let cross = lane_functions::<W>(level).cross;
+    // SAFETY: rows 1 … 32 are there, up to which a sum of `count` − 1 is filled up; the rest is one number
+    // a lane each, and a guard.
+    unsafe { cross(count, F, row, lost, guard, lanes.0, most, more, tau) };
+}
+
+/// The points to which series of order `p` lead from a point in the durations `tau` (s).
+#[inline]
+pub fn lane_end<const F: usize, const W: usize>(
+    level: usize,
+    p: usize,
+    series: &LaneSeries<F, W>,
+    point: &LanePoint<F, W>,
+    tau: &Lanes<W>,
+    to: &mut LanePoint<F, W>,
+) {
+    assert!(p + 2 <= ORDERS);
+    let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
+    let (point, tau) = ((&raw const *point).cast(), (&raw const *tau).cast());
+    let end = lane_functions::<W>(level).end;
+    // SAFETY: rows 1 … 32 are there, up to which a sum of p + 1 ≤ 31 rows is filled up; the points are
+    // those of F coordinates.
+    unsafe { end(F, p, q, v, a, point, tau, (&raw mut *to).cast()) };
+}
+
+impl<const F: usize, const W: usize> LanePoint<F, W> {
+    /// Takes over those of some lanes.
+    #[inline]
+    pub fn take(&mut self, level: usize, lanes: LaneMask, from: &Self) {
+        let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
+        // SAFETY: a point has as many numbers a lane, one after the other.
+        unsafe { (lane_functions::<W>(level).take)(5 * F + 2, lanes.0, from, to) };
+    }
+}
+
+/// The numbers of blocks.
+fn lanes_of<const W: usize>(blocks: &[Block<W>]) -> &[Lanes<W>] {
+    let count = blocks.len() * Block::<W>::LANES;
+    // SAFETY: a block is nothing but so many numbers a lane, without gaps: its size is a multiple of 64.
+    unsafe { std::slice::from_raw_parts(blocks.as_ptr().cast(), count) }
+}
+
+/// The same to write to.
+fn lanes_of_mut<const W: usize>(blocks: &mut [Block<W>]) -> &mut [Lanes<W>] {
+    let count = blocks.len() * Block::<W>::LANES;
+    // SAFETY: as in `lanes_of`; the blocks are borrowed for as long.
+    unsafe { std::slice::from_raw_parts_mut(blocks.as_mut_ptr().cast(), count) }
 }
 
 /// Sine and cosine of `x` (rad), by the same function as in generated code: by the same bits on every
@@ -419,6 +557,8 @@ struct SeriesKernel {
     lead: usize,
     /// Doubles of the workspace for each order.
     row: usize,
+    /// Convolutions that an order takes.
+    convolutions: usize,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -482,7 +622,8 @@ impl<const F: usize> ModeKernel<F> {
     /// Convolutions of an order of the Taylor series of the motion.
     pub fn convolutions(&self, x: &Context) -> usize {
         // Each has a left and a right factor in the workspace.
-        self.motion_series(x).map_or(0, |series| series.row / 2)
+        self.motion_series(x)
+            .map_or(0, |series| series.convolutions)
     }
 
     #[inline]
@@ -851,8 +992,7 @@ impl<const F: usize> ModeKernel<F> {
     /// other functions for lanes.
     pub fn lane_series_start<const W: usize>(
         &self,
-        level: usize,
-        quiet: bool,
+        (level, quiet): (usize, bool),
         x: &mut LaneContext<W>,
         at: &mut LaneSeries<F, W>,
     ) -> LaneSystem<F, W> {

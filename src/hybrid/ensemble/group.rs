@@ -1,22 +1,19 @@
 //! Trajectories of one mode side by side, from one event of each to its next.
 
 use super::super::crossing::Signs;
-use super::super::guards;
 use super::super::instant::Instant;
-use super::super::roots::{Kind, Watch};
+use super::super::roots::Watch;
 use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
-use crate::kernel::{Free, LaneContext, ModeKernel};
+use crate::kernel::{Free, LaneContext, LaneGuard, LanePoint, LaneRows, ModeKernel};
 use crate::model::{GuardShape, Mode};
 use nalgebra::SVector;
 
 /// What became of a lane in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Outcome {
-    /// It goes on.
-    GoesOn,
     /// It has come to where its inputs are not smooth, or to the end.
     Until,
     /// A guard, by its index in the mode, has fallen.
@@ -25,50 +22,47 @@ pub(super) enum Outcome {
     Unclear,
 }
 
-/// A guard of the mode: factor · (a coordinate or rate) + offset.
-struct LaneGuard<const W: usize> {
+/// A guard of the mode that is watched.
+pub(super) struct WatchedGuard<const W: usize> {
     /// Index in the mode.
-    guard: usize,
-    index: usize,
-    rate: bool,
-    factor: Lanes<W>,
-    offset: Lanes<W>,
-    /// Whether it is zero at the start of the step.
-    starts_at_zero: LaneMask<W>,
+    pub guard: usize,
+    /// Index of the coordinate, and whether it is its rate.
+    pub of: (usize, bool),
+    pub linear: LaneGuard<W>,
+    /// In powers of a part of the last step.
+    pub coefficients: [Lanes<W>; ORDERS],
 }
 
 /// Up to `W` trajectories in one mode.
 pub(super) struct Group<const F: usize, const W: usize> {
-    kernel: &'static ModeKernel<F>,
+    pub kernel: &'static ModeKernel<F>,
     mode: &'static Mode,
     /// Level of the processor.
-    level: usize,
+    pub level: usize,
     /// Whether no input ever acts.
-    quiet: bool,
-    taylor: LaneTaylor<F, W>,
-    context: LaneContext<W>,
-    signals: LaneSignals<W>,
-    guards: Vec<LaneGuard<W>>,
-    /// Coordinates and velocities, and what rounding has lost of them.
-    state: [[Lanes<W>; F]; 2],
-    lost: [[Lanes<W>; F]; 2],
-    /// Accelerations, where the segment starts.
-    given: [Lanes<W>; F],
-    at_start: [bool; W],
-    now: [Instant; W],
+    pub quiet: bool,
+    pub taylor: LaneTaylor<F, W>,
+    pub context: LaneContext<W>,
+    pub signals: LaneSignals<W>,
+    pub guards: Vec<WatchedGuard<W>>,
+    /// Where the trajectories are. Accelerations are given where a segment starts.
+    pub here: LanePoint<F, W>,
+    /// Where the step under way leads to.
+    pub next: LanePoint<F, W>,
+    pub at_start: LaneMask,
     /// Where inputs are not smooth, or the end, s.
-    last: [f64; W],
+    pub last: Lanes<W>,
     /// Time after which the inputs are analytic, s.
-    analytic_from: f64,
-    requirements: Vec<Lanes<W>>,
+    pub analytic_from: f64,
+    pub requirements: LaneRows<W>,
     /// Whether a lane has just been set: what the mode requires has not been looked at.
-    unchecked: bool,
-    /// What became of each lane in the last step.
+    pub unchecked: bool,
+    /// What became of each lane that does not go on.
     pub outcomes: [Outcome; W],
     /// Steps made in each lane since it was loaded.
     pub steps: [u64; W],
     /// Which lanes hold a trajectory.
-    pub occupied: [bool; W],
+    pub occupied: LaneMask,
 }
 
 impl<const F: usize, const W: usize> Group<F, W> {
@@ -80,18 +74,19 @@ impl<const F: usize, const W: usize> Group<F, W> {
         like: &Simulation,
     ) -> Self {
         let (problem, mode) = (like.problem, like.mode());
-        let zero = [Lanes::of(0.0); F];
         let guards = like.plan.watched[like.here.mode].iter().map(|watched| {
             let GuardShape::Linear { index, rate, .. } = mode.guards[watched.guard].shape else {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
             };
-            LaneGuard {
+            WatchedGuard {
                 guard: watched.guard,
-                index,
-                rate,
-                factor: Lanes::of(1.0),
-                offset: Lanes::of(0.0),
-                starts_at_zero: LaneMask::none(),
+                of: (index, rate),
+                linear: LaneGuard {
+                    factor: Lanes::of(1.0),
+                    offset: Lanes::of(0.0),
+                    starts_at_zero: LaneMask::NONE,
+                },
+                coefficients: [Lanes::of(0.0); ORDERS],
             }
         });
         let convolutions = kernel.convolutions(&like.context);
@@ -104,23 +99,21 @@ impl<const F: usize, const W: usize> Group<F, W> {
             context: LaneContext::new(kernel, &like.context),
             signals: LaneSignals::new(level, &problem.signals),
             guards: guards.collect(),
-            state: [zero; 2],
-            lost: [zero; 2],
-            given: zero,
-            at_start: [true; W],
-            now: [Instant::default(); W],
-            last: [f64::INFINITY; W],
+            here: LanePoint::zero(),
+            next: LanePoint::zero(),
+            at_start: LaneMask::ALL,
+            last: Lanes::of(f64::INFINITY),
             analytic_from: analytic_from(&problem.signals),
-            requirements: vec![Lanes::of(0.0); mode.requirements.len()],
+            requirements: LaneRows::zeros(mode.requirements.len()),
             unchecked: true,
-            outcomes: [Outcome::GoesOn; W],
+            outcomes: [Outcome::Unclear; W],
             steps: [0; W],
-            occupied: [false; W],
+            occupied: LaneMask::NONE,
         };
         for lane in 0..W {
             group.load(lane, like);
+            group.vacate(lane);
         }
-        group.occupied = [false; W];
         group
     }
 
@@ -134,12 +127,16 @@ impl<const F: usize, const W: usize> Group<F, W> {
         self.context.load(lane, &from.context);
         self.set(lane, from);
         for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
-            guard.starts_at_zero.set(lane, *watch == Watch::Dormant);
+            let dormant = *watch == Watch::Dormant;
+            guard.linear.starts_at_zero.set(lane, dormant);
         }
-        self.at_start[lane] = true;
+        let problem = from.problem;
+        let breakpoint = problem.signals.next_breakpoint(from.here.now.seconds());
+        self.last.0[lane] = breakpoint.min(problem.end.time);
+        self.at_start.set(lane, true);
         self.unchecked = true;
         self.steps[lane] = 0;
-        self.occupied[lane] = true;
+        self.occupied.set(lane, true);
     }
 
     /// Goes on in the lane that a trajectory is in, after an event whose reset has led to the same mode
@@ -150,34 +147,34 @@ impl<const F: usize, const W: usize> Group<F, W> {
         self.context.load_state(lane, &from.context);
         self.set(lane, from);
         for guard in &mut self.guards {
-            let of = |state: &[Lanes<W>; F]| guard.factor.0[lane] * state[guard.index].0[lane];
-            let value = of(&self.state[guard.rate as usize]) + guard.offset.0[lane];
-            guard.starts_at_zero.set(lane, value == 0.0);
-            let leaves_upwards = !guard.rate && of(&self.state[1]) > 0.0;
+            let (index, rate) = guard.of;
+            let linear = &mut guard.linear;
+            let of = |state: &[Lanes<W>; F]| linear.factor.0[lane] * state[index].0[lane];
+            let state = if rate { &self.here.v } else { &self.here.q };
+            let value = of(state) + linear.offset.0[lane];
+            let leaves_upwards = !rate && of(&self.here.v) > 0.0;
+            linear.starts_at_zero.set(lane, value == 0.0);
             if !(value > 0.0 || value == 0.0 && leaves_upwards) {
                 return false;
             }
         }
-        self.at_start[lane] = false;
+        self.at_start.set(lane, false);
         self.unchecked = true;
         true
     }
 
     fn set(&mut self, lane: usize, from: &Simulation) {
+        let here = &mut self.here;
         let [q, v, a] = from.here.free::<F>(self.mode.free);
         for i in 0..F {
-            self.state[0][i].0[lane] = q[i];
-            self.state[1][i].0[lane] = v[i];
-            self.given[i].0[lane] = a[i];
-            self.lost[0][i].0[lane] = 0.0;
-            self.lost[1][i].0[lane] = 0.0;
+            here.q[i].0[lane] = q[i];
+            here.v[i].0[lane] = v[i];
+            here.a[i].0[lane] = a[i];
+            here.lost[0][i].0[lane] = 0.0;
+            here.lost[1][i].0[lane] = 0.0;
         }
-        self.now[lane] = from.here.now;
-        let breakpoint = from
-            .problem
-            .signals
-            .next_breakpoint(from.here.now.seconds());
-        self.last[lane] = breakpoint.min(from.problem.end.time);
+        let [high, low] = from.here.now.parts();
+        (here.t[0].0[lane], here.t[1].0[lane]) = (high, low);
         let zero = SVector::<f64, F>::zeros();
         let origin = Free {
             q: &zero,
@@ -196,38 +193,33 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
             };
             let sign = discrete.map_or(1.0, |d| from.context.discrete[d]);
-            guard.factor.0[lane] = factor * sign;
-            guard.offset.0[lane] = match offset {
+            guard.linear.factor.0[lane] = factor * sign;
+            guard.linear.offset.0[lane] = match offset {
                 true => self.kernel.guard(&from.context, &model.kernel, origin),
                 false => 0.0,
             };
         }
-        self.outcomes[lane] = Outcome::GoesOn;
+    }
+
+    /// The present instant of a lane.
+    pub fn now(&self, lane: usize) -> Instant {
+        Instant::of_parts(self.here.t.map(|part| part.0[lane]))
     }
 
     /// Takes a trajectory out of its lane, where it may be left for [`Group::go_on`].
     pub fn unload(&mut self, lane: usize, into: &mut Simulation) {
         let column = |rows: &[Lanes<W>; F]| SVector::<f64, F>::from_fn(|i, _| rows[i].0[lane]);
-        let [q, v, a] = [
-            column(&self.state[0]),
-            column(&self.state[1]),
-            column(&self.given),
-        ];
+        let here = &self.here;
+        let [q, v, a] = [column(&here.q), column(&here.v), column(&here.a)];
         into.here.set_free(self.mode.free, [&q, &v, &a]);
         into.here.now = match self.outcomes[lane] {
-            Outcome::Until => Instant::new(self.last[lane]),
-            _ => self.now[lane],
+            Outcome::Until => Instant::new(self.last.0[lane]),
+            _ => self.now(lane),
         };
         let t = into.here.now.seconds();
         if !self.quiet && self.outcomes[lane] != Outcome::Until && t == self.signals.time(lane) {
             let signals = &into.problem.signals;
-            into.context.set_signals_of_lane(
-                &self.signals,
-                lane,
-                signals,
-                t,
-                &self.context.signals,
-            );
+            (into.context).set_signals_of_lane(&self.signals, lane, signals);
         }
         into.solver.steps += self.steps[lane];
         into.solver.residual_evaluations += self.steps[lane] * self.taylor.order() as u64;
@@ -236,90 +228,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
 
     /// Leaves a lane empty.
     pub fn vacate(&mut self, lane: usize) {
-        self.occupied[lane] = false;
-    }
-
-    /// Makes a step in each occupied lane.
-    pub fn step(&mut self, signals: &Signals) {
-        step(self, signals);
-        // Outside of the vectorised part: what is rare.
-        for lane in 0..W {
-            if self.occupied[lane] && self.outcomes[lane] != Outcome::Unclear {
-                self.steps[lane] += 1;
-            }
-        }
-    }
-}
-
-/// Looks for the first fall in a lane in full: infinite if there is none, `None` if there is something
-/// else.
-#[cold]
-fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool) -> Option<f64> {
-    let mut own = [0.0; ORDERS];
-    for (own, of) in own.iter_mut().zip(coefficients) {
-        *own = of.0[lane];
-    }
-    let watch = if dormant {
-        own[0] = 0.0;
-        Watch::Dormant
-    } else {
-        Watch::Armed
-    };
-    let search = guards::search_window(&own[..coefficients.len()], (0.0, 1.0), watch);
-    match search.crossing {
-        None if search.watch == Watch::Armed => Some(f64::INFINITY),
-        Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),
-        _ => None,
-    }
-}
-
-/// The inverse of M by elimination without exchanges, where all pivots are positive: else the lane is
-/// marked.
-#[inline(always)]
-fn inverse<const F: usize, const W: usize>(
-    mass: &[[Lanes<W>; F]; F],
-    unclear: &mut [bool; W],
-) -> [[Lanes<W>; F]; F] {
-    let mut m = *mass;
-    let mut inverse = [[Lanes::of(0.0); F]; F];
-    for k in 0..F {
-        inverse[k][k] = Lanes::of(1.0);
-    }
-    // Columns: m[j][i] is the entry of row i.
-    for k in 0..F {
-        let pivot = m[k][k];
-        for lane in 0..W {
-            // A pivot within the rounding of its own sum is not told from zero.
-            let rounding = (F + 1) as f64 * f64::EPSILON * mass[k][k].0[lane].abs();
-            unclear[lane] |= pivot.0[lane].is_nan() || pivot.0[lane] <= rounding;
-        }
-        for j in 0..F {
-            if j > k {
-                m[j][k] = m[j][k] / pivot;
-            }
-            inverse[j][k] = inverse[j][k] / pivot;
-        }
-        for i in (0..F).filter(|&i| i != k) {
-            let factor = m[k][i];
-            for j in 0..F {
-                if j > k {
-                    m[j][i] = m[j][i] - factor * m[j][k];
-                }
-                inverse[j][i] = inverse[j][i] - factor * inverse[j][k];
-            }
-        }
-    }
-    inverse
-}
-
-/// Marks the lanes in which not all that is required is positive.
-#[inline(always)]
-fn unmet<const W: usize>(requirements: &[Lanes<W>], marked: &mut [bool; W]) {
-    for value in requirements {
-        for lane in 0..W {
-            let met = value.0[lane] > 0.0;
-            marked[lane] |= !met;
-        }
+        self.occupied.set(lane, false);
     }
 }
 
@@ -333,194 +242,3 @@ fn analytic_from(signals: &Signals) -> f64 {
         }
     }
 }
-
-/// Absolute time of the analytic piece that acts just after an instant, and its duration, s. As in
-/// [`super::super::equations::Clock`].
-fn piece(signals: &Signals, now: Instant) -> (f64, f64) {
-    let mut t = now.seconds();
-    loop {
-        let knot = signals.next_knot(t);
-        if knot == f64::INFINITY {
-            return (t, knot);
-        }
-        let limit = Instant::new(knot).since(now);
-        if limit > 0.0 {
-            return (t, limit);
-        }
-        t = knot;
-    }
-}
-
-/// A step of each lane. What the lanes hold does not depend on each other, nor on their number.
-fn step<const F: usize, const W: usize>(group: &mut Group<F, W>, signals: &Signals) {
-    let mut unclear = [false; W];
-    let mut t = [0.0; W];
-    let (mut remaining, mut horizon) = (Lanes::of(f64::INFINITY), Lanes::of(f64::INFINITY));
-    for lane in 0..W {
-        let now = group.now[lane];
-        remaining.0[lane] = Instant::new(group.last[lane]).since(now);
-        (t[lane], horizon.0[lane]) = match group.analytic_from <= now.seconds() {
-            true => (now.seconds(), f64::INFINITY),
-            false => piece(signals, now),
-        };
-    }
-    let order = group.taylor.order();
-    let context = &mut group.context;
-    if !group.quiet {
-        group.signals.set(signals, &t, &mut context.signals);
-        let rows = (order + 1) * context.signals.len();
-        let rows = &mut context.signal_series[..rows];
-        group.signals.series(signals, &context.signals, rows);
-    }
-
-    // The motion as a series.
-    let series = &mut group.taylor.series;
-    [series.q[0], series.v[0]] = group.state;
-    let kernel = group.kernel;
-    let system = kernel.lane_series_start(group.level, group.quiet, context, series);
-    let inverse = inverse(&system.mass, &mut unclear);
-    for i in 0..F {
-        let mut acceleration = Lanes::of(0.0);
-        for j in 0..F {
-            acceleration = acceleration - inverse[j][i] * system.load[j];
-        }
-        let given = &group.given[i];
-        series.a[0][i] = Lanes::from_fn(|lane| match group.at_start[lane] {
-            true => given.0[lane],
-            false => acceleration.0[lane],
-        });
-        series.q[1][i] = series.v[0][i];
-        series.v[1][i] = series.a[0][i];
-        series.q[2][i] = series.a[0][i] * 0.5;
-    }
-    if std::mem::take(&mut group.unchecked) && !group.requirements.is_empty() {
-        let at = [&series.q[0], &series.v[0], &series.a[0]];
-        let requirements = &mut group.requirements;
-        kernel.lane_requirements(group.level, context, at, requirements);
-        unmet(requirements, &mut unclear);
-    }
-    let which = (group.level, group.quiet);
-    kernel.lane_series_run(which, context, order, &inverse, series);
-    let h = group.taylor.length(&remaining, &horizon);
-    for lane in 0..W {
-        unclear[lane] |= !group.taylor.is_finite(lane) || t[lane] + h.0[lane] == t[lane];
-    }
-
-    // The first fall of a guard.
-    let mut fallen = [usize::MAX; W];
-    let mut place = Lanes::of(1.0);
-    for (number, guard) in group.guards.iter().enumerate() {
-        let mut coefficients = [Lanes::of(0.0); ORDERS];
-        let of = (guard.index, guard.rate);
-        let numbers = [&h, &guard.factor, &guard.offset];
-        let zero = &guard.starts_at_zero;
-        let (falls, count) = group
-            .taylor
-            .first_fall(of, numbers, zero, &mut coefficients);
-        for lane in 0..W {
-            let mut s = falls.0[lane];
-            if s.is_nan() && group.occupied[lane] && !unclear[lane] {
-                match search(&coefficients[..count], lane, zero.is(lane)) {
-                    Some(found) => s = found,
-                    None => unclear[lane] = true,
-                }
-            }
-            if s <= 1.0 && (fallen[lane] == usize::MAX || s < place.0[lane]) {
-                (fallen[lane], place.0[lane]) = (number, s);
-            }
-        }
-    }
-
-    // The end of the step: for a fall the first state on its far side.
-    let mut tau = h * place;
-    // A guard that all but fell at the end of the step before does so within the rounding of the start.
-    tau = tau.map(|tau| if tau > 0.0 { tau } else { f64::MIN_POSITIVE });
-    let mut last_place = tau * f64::EPSILON;
-    let (mut state, mut lost) = group.taylor.state(&tau, &group.lost);
-    let acceleration = group.taylor.acceleration(&tau);
-    loop {
-        let mut short = [false; W];
-        for (number, guard) in group.guards.iter().enumerate() {
-            if !fallen.contains(&number) {
-                continue;
-            }
-            let at = [&state[0], &state[1], &acceleration];
-            let value = kernel.lane_guard(group.level, &group.context, guard.guard, at);
-            for lane in 0..W {
-                let here = fallen[lane] == number && group.occupied[lane] && !unclear[lane];
-                let crossed = value.0[lane] < 0.0;
-                short[lane] |= here && !crossed;
-            }
-        }
-        if !short.contains(&true) {
-            break;
-        }
-        for lane in 0..W {
-            if short[lane] {
-                tau.0[lane] += last_place.0[lane];
-                last_place.0[lane] *= 2.0;
-                // Beyond the rounding of the polynomial there is no such state.
-                unclear[lane] |=
-                    last_place.0[lane] > FARTHEST * h.0[lane] || tau.0[lane] > h.0[lane];
-            }
-        }
-        (state, lost) = group.taylor.state(&tau, &group.lost);
-    }
-    let (mut end, mut until) = (group.now, [false; W]);
-    for lane in 0..W {
-        end[lane] = group.now[lane].plus(tau.0[lane]);
-        until[lane] = fallen[lane] == usize::MAX && h.0[lane] == remaining.0[lane];
-    }
-
-    // What the mode requires must hold there; at the end of the segment the caller looks.
-    if !group.requirements.is_empty() {
-        let context = &mut group.context;
-        if !group.quiet {
-            for lane in 0..W {
-                t[lane] = end[lane].seconds();
-            }
-            group.signals.set(signals, &t, &mut context.signals);
-        }
-        let at = [&state[0], &state[1], &acceleration];
-        let requirements = &mut group.requirements;
-        kernel.lane_requirements(group.level, context, at, requirements);
-        let mut here = [false; W];
-        unmet(requirements, &mut here);
-        for lane in 0..W {
-            unclear[lane] |= here[lane] && !until[lane];
-        }
-    }
-
-    for lane in 0..W {
-        if !group.occupied[lane] {
-            continue;
-        }
-        if unclear[lane] {
-            group.outcomes[lane] = Outcome::Unclear;
-            continue;
-        }
-        for x in 0..2 {
-            for i in 0..F {
-                group.state[x][i].0[lane] = state[x][i].0[lane];
-                group.lost[x][i].0[lane] = lost[x][i].0[lane];
-            }
-        }
-        for i in 0..F {
-            group.given[i].0[lane] = acceleration[i].0[lane];
-        }
-        group.at_start[lane] = false;
-        group.now[lane] = end[lane];
-        for guard in &mut group.guards {
-            guard.starts_at_zero.set(lane, false);
-        }
-        group.outcomes[lane] = match fallen[lane] {
-            usize::MAX if until[lane] => Outcome::Until,
-            usize::MAX => Outcome::GoesOn,
-            number => Outcome::Event(group.guards[number].guard),
-        };
-    }
-}
-
-/// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
-/// [`super::super::locate`].
-const FARTHEST: f64 = 3.8e-6;

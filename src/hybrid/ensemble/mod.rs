@@ -10,6 +10,7 @@
 //! threads: to the bit. It agrees with a single run to the accuracy, as the two take different steps.
 
 mod group;
+mod step;
 mod worker;
 
 use super::failure::Reason;

@@ -5,6 +5,7 @@ use super::super::simulation::{Simulation, Stop};
 use super::group::{Group, Outcome};
 use super::{Ensemble, Finished, Member};
 use crate::input::Signals;
+use crate::integrate::LaneMask;
 use crate::kernel::with_kernel;
 use crate::record::Silent;
 
@@ -14,8 +15,8 @@ trait AnyGroup<const W: usize> {
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
-    fn step(&mut self, signals: &Signals);
-    fn outcomes(&self) -> [Outcome; W];
+    fn step(&mut self, signals: &Signals) -> LaneMask;
+    fn outcome(&self, lane: usize) -> Outcome;
 }
 
 impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
@@ -31,11 +32,11 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
     }
-    fn step(&mut self, signals: &Signals) {
+    fn step(&mut self, signals: &Signals) -> LaneMask {
         Group::step(self, signals)
     }
-    fn outcomes(&self) -> [Outcome; W] {
-        self.outcomes
+    fn outcome(&self, lane: usize) -> Outcome {
+        self.outcomes[lane]
     }
 }
 
@@ -44,6 +45,8 @@ struct Lanes<const W: usize> {
     group: Box<dyn AnyGroup<W>>,
     /// The slot in each lane.
     slots: [Option<usize>; W],
+    /// Number of lanes with a slot.
+    occupied: usize,
 }
 
 /// A trajectory under way.
@@ -71,6 +74,8 @@ pub(super) struct Worker<'a, const W: usize> {
     slots: Vec<Slot<'a>>,
     /// The lanes of each mode, made when they are first needed.
     lanes: Vec<Option<Lanes<W>>>,
+    /// Whether a slot or a lane has become free.
+    vacancies: bool,
     quiet: bool,
 }
 
@@ -92,6 +97,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             next: 0,
             slots: (0..count).map(slot).collect(),
             lanes: (0..modes).map(|_| None).collect(),
+            vacancies: true,
             quiet: ensemble.problem.signals.is_zero(),
         }
     }
@@ -99,31 +105,29 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// Runs all of them; `take` gets each at its end.
     pub fn run(mut self, take: &mut impl FnMut(usize, Finished)) {
         loop {
-            for slot in 0..self.slots.len() {
-                while self.slots[slot].state == State::Free && self.next < self.members.len() {
-                    let (member, next) = (self.next, &self.members[self.next]);
-                    self.next += 1;
-                    let slot_ = &mut self.slots[slot];
-                    slot_.member = member;
-                    let begun = slot_.simulation.become_member(next);
-                    self.go_on(slot, begun.map(|()| true), false, take);
-                }
-                if self.slots[slot].state == State::Waiting {
-                    self.find_lane(slot);
-                }
+            if std::mem::take(&mut self.vacancies) {
+                (0..self.slots.len()).for_each(|slot| self.fill(slot, take));
             }
-            let occupied = |lanes: &Option<Lanes<W>>| {
-                let slots = lanes
-                    .as_ref()
-                    .map(|lanes| lanes.slots.iter().flatten().count());
-                slots.unwrap_or(0)
-            };
-            let fullest =
-                (0..self.lanes.len()).max_by_key(|&m| (occupied(&self.lanes[m]), usize::MAX - m));
-            let Some(mode) = fullest.filter(|&mode| occupied(&self.lanes[mode]) > 0) else {
+            let occupied = |mode: usize| self.lanes[mode].as_ref().map_or(0, |l| l.occupied);
+            let fullest = (0..self.lanes.len()).max_by_key(|&m| (occupied(m), usize::MAX - m));
+            let Some(mode) = fullest.filter(|&mode| occupied(mode) > 0) else {
                 return;
             };
             self.step(mode, take);
+        }
+    }
+
+    /// Starts members in a slot until one waits for a lane, and looks for one.
+    fn fill(&mut self, slot: usize, take: &mut impl FnMut(usize, Finished)) {
+        while self.slots[slot].state == State::Free && self.next < self.members.len() {
+            let (member, next) = (self.next, &self.members[self.next]);
+            self.next += 1;
+            self.slots[slot].member = member;
+            let begun = self.slots[slot].simulation.become_member(next);
+            self.go_on(slot, begun.map(|()| true), false, take);
+        }
+        if self.slots[slot].state == State::Waiting {
+            self.find_lane(slot);
         }
     }
 
@@ -139,11 +143,13 @@ impl<'a, const W: usize> Worker<'a, W> {
             Lanes {
                 group,
                 slots: [None; W],
+                occupied: 0,
             }
         });
         if let Some(lane) = lanes.slots.iter().position(Option::is_none) {
             lanes.group.load(lane, simulation);
             lanes.slots[lane] = Some(slot);
+            lanes.occupied += 1;
             self.slots[slot].state = State::InLane;
         }
     }
@@ -151,20 +157,15 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// A step of a group, and what follows from it.
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
-        lanes.group.step(&self.ensemble.problem.signals);
-        let outcomes = lanes.group.outcomes();
-        for lane in 0..W {
+        let ended = lanes.group.step(&self.ensemble.problem.signals);
+        for lane in ended.lanes() {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
             let Some(slot) = lanes.slots[lane] else {
                 continue;
             };
-            let outcome = outcomes[lane];
-            if outcome == Outcome::GoesOn {
-                continue;
-            }
+            let outcome = lanes.group.outcome(lane);
             let simulation = &mut self.slots[slot].simulation;
             lanes.group.unload(lane, simulation);
-            simulation.set_context();
             let (stop, unclear) = match outcome {
                 Outcome::Event(guard) => (Stop::Event(guard), false),
                 Outcome::Until
@@ -185,6 +186,8 @@ impl<'a, const W: usize> Worker<'a, W> {
             }
             lanes.group.vacate(lane);
             lanes.slots[lane] = None;
+            lanes.occupied -= 1;
+            self.vacancies = true;
             self.go_on(slot, passed, unclear, take);
             if self.slots[slot].state == State::Waiting {
                 self.find_lane(slot);

@@ -82,32 +82,30 @@ pub(super) fn first_fall<const N: usize>(
     let bernstein = polynomial.bernstein();
     let size: f64 = polynomial.coefficients.iter().map(|c| c.abs()).sum();
     let margin = Polynomial::<N>::ROUNDING * size;
-    // The first coefficient that is not certainly positive, and whether all are negative from it on.
-    let falls = bernstein.iter().position(|b| b.is_nan() || *b <= margin);
-    let Some(falls) = falls else {
-        return Some(Search::above(least(&bernstein)));
-    };
-    if falls > 0 && bernstein[falls..].iter().all(|b| *b < -margin) {
-        let at_end = polynomial.value(to);
-        if at_end >= 0.0 {
-            return Some(Search::above(least(&bernstein)));
-        }
-        // Where the polygon of the coefficients falls through zero.
-        let (before, after) = (bernstein[falls - 1], bernstein[falls]);
-        let place = (falls - 1) as f64 + before / (before - after);
-        let near = place / (N - 1) as f64;
-        let s = if from < near && near < to { near } else { from };
-        let (left, right) = ((from, polynomial.value(from)), (to, at_end));
-        return match left.1 > 0.0 {
-            true => root(polynomial, left, right, s),
-            false => None,
-        };
-    }
-    let search = by_certified_steps(polynomial, from, to)?;
-    Some(match search.crossing {
+    let changes = Changes::of(&bernstein, margin);
+    let bounded = |search: Search| match search.crossing {
         None => Search::above(least(&bernstein)),
         Some(_) => search,
-    })
+    };
+    if matches!(changes, Changes::None) {
+        return Some(bounded(Search::quiet(Watch::Armed)));
+    }
+    if let Changes::One(index) = changes {
+        return only_fall(polynomial, (&bernstein, index), (from, to), 1.0).map(bounded);
+    }
+    // Where it falls and rises again, there is one root before its lowest place.
+    let lowest = (1..N).fold(0, |lowest, i| match bernstein[i] < bernstein[lowest] {
+        true => i,
+        false => lowest,
+    });
+    let end = to.min(lowest as f64 / (N - 1) as f64);
+    if from < end && polynomial.value(end) < -margin {
+        let bernstein = polynomial.on(end).bernstein();
+        if let Changes::One(index) = Changes::of(&bernstein, margin) {
+            return only_fall(polynomial, (&bernstein, index), (from, end), end);
+        }
+    }
+    by_certified_steps(polynomial, from, to).map(bounded)
 }
 
 /// The least Bernstein coefficient, which the polynomial does not fall below; four side by side, since
@@ -123,6 +121,52 @@ fn least<const N: usize>(bernstein: &[f64; N]) -> f64 {
     }
     let all = least.iter().chain(rest);
     all.fold(f64::INFINITY, |least, &b| lower(least, b))
+}
+
+/// Sign changes of Bernstein coefficients.
+enum Changes {
+    /// All are certainly positive.
+    None,
+    /// They are positive before the one of this index, and negative from it on.
+    One(usize),
+    /// There may be others.
+    Other,
+}
+
+impl Changes {
+    /// Those of coefficients that may be off by `margin`.
+    fn of<const N: usize>(bernstein: &[f64; N], margin: f64) -> Changes {
+        let certain = |b: &f64| *b > margin;
+        match bernstein.iter().position(|b| !certain(b)) {
+            None => Changes::None,
+            Some(i) if i > 0 && bernstein[i..].iter().all(|b| *b < -margin) => Changes::One(i),
+            Some(_) => Changes::Other,
+        }
+    }
+}
+
+/// The event in `from` < s ≤ `to`, where the Bernstein coefficients on [0, `end`] change their sign once,
+/// at the one of index `falls`: there is one root.
+fn only_fall<const N: usize>(
+    polynomial: &Polynomial<N>,
+    (bernstein, falls): (&[f64; N], usize),
+    (from, to): (f64, f64),
+    end: f64,
+) -> Option<Search> {
+    let at_end = polynomial.value(to);
+    if at_end >= 0.0 {
+        return Some(Search::quiet(Watch::Armed));
+    }
+    // Where the polygon of the coefficients falls through zero.
+    let (before, after) = (bernstein[falls - 1], bernstein[falls]);
+    let place = (falls - 1) as f64 + before / (before - after);
+    let near = end * place / (N - 1) as f64;
+    let s = if from < near && near < to { near } else { from };
+    let (left, right) = ((from, polynomial.value(from)), (to, at_end));
+    match left.1 > 0.0 {
+        true => root(polynomial, left, right, s),
+        false => None,
+    }
 }
 
 /// The same where more than one root is possible.

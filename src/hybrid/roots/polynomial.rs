@@ -192,12 +192,28 @@ impl<const N: usize> Polynomial<N> {
     /// Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
     pub(super) fn bernstein(&self) -> [f64; N] {
         let mut b = [0.0; N];
-        for (coefficient, column) in self.coefficients.iter().zip(&Self::TO_BERNSTEIN) {
-            for (b, entry) in b.iter_mut().zip(column) {
-                *b += coefficient * entry;
+        // Four sums at a time, which a processor has room for; the table is triangular.
+        for (block, b) in b.chunks_mut(4).enumerate() {
+            let (from, mut sums) = (4 * block, [0.0; 4]);
+            for k in 0..N.min(from + 4) {
+                let (coefficient, column) = (self.coefficients[k], &Self::TO_BERNSTEIN[k]);
+                for (sum, entry) in sums.iter_mut().zip(&column[from..]) {
+                    *sum += coefficient * entry;
+                }
             }
+            b.copy_from_slice(&sums[..b.len()]);
         }
         b
+    }
+
+    /// The polynomial on [0, `end`], in powers of s/`end`.
+    pub(super) fn on(&self, end: f64) -> Self {
+        let (mut coefficients, mut power) = (self.coefficients, 1.0);
+        for coefficient in &mut coefficients {
+            *coefficient *= power;
+            power *= end;
+        }
+        Self { coefficients }
     }
 }
 

@@ -1,11 +1,13 @@
 //! The Taylor method for trajectories side by side: the formulas of [`super::Taylor`], lane by lane.
 
 use super::super::lanes::{LaneMask, Lanes};
-use super::super::state::add;
 use super::super::tolerances::Tolerances;
 use super::length;
 use super::series::ORDERS;
-use crate::kernel::{LaneSeries, lane_first_fall, lane_length, lane_sum};
+use crate::kernel::{
+    LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_cross,
+    lane_end, lane_first_fall, lane_length,
+};
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
 #[derive(Debug, Clone)]
@@ -14,108 +16,126 @@ pub struct LaneTaylor<const F: usize, const W: usize> {
     pub series: LaneSeries<F, W>,
     /// Level of the processor, as in [`crate::kernel::LANES_OF_LEVELS`].
     level: usize,
-    order: usize,
-    /// The relative tolerance, and the absolute ones of coordinates and velocities.
-    tolerances: Box<[f64]>,
-    /// Factors of the earlier terms.
-    factors: [f64; 2],
+    limits: LaneLimits,
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// A method of the order that [`super::Taylor::new`] chooses.
     pub fn new(level: usize, tolerances: &Tolerances<F>, convolutions: usize) -> Self {
-        let rows = [[Lanes::of(0.0); F]; ORDERS];
+        let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let order = length::order(relative, convolutions, F);
+        let earlier = length::earlier_terms(relative, order, convolutions);
+        let factors = earlier.map(|term| term.factor);
+        let [first, second] = factors.map(|factor| factor.value());
+        let logarithms = factors.map(|factor| factor.logarithm());
+        let orders = [order - 1, order, order + 1, order - 3, order - 2].map(|n| n as f64);
         LaneTaylor {
-            factors: length::earlier_terms(relative, order, convolutions).map(|term| term.factor),
             series: LaneSeries {
                 q: rows,
                 v: rows,
                 a: rows,
             },
             level,
-            order,
-            tolerances: std::iter::once(relative).chain(absolute).collect(),
+            limits: LaneLimits {
+                order,
+                tolerances: std::iter::once(relative).chain(absolute).collect(),
+                terms: [
+                    orders,
+                    orders.map(|n| 1.0 / n),
+                    [1.0, 1.0, 1.0, first, second],
+                    [0.0, 0.0, 0.0, logarithms[0], logarithms[1]],
+                ],
+            },
         }
     }
 
     /// Order of the method.
     pub fn order(&self) -> usize {
-        self.order
+        self.limits.order
     }
 
-    /// Whether the coefficients of a lane are finite.
+    /// Sets accelerations, and all that follows from the state without the series; gives the inverses of
+    /// the mass matrices. See [`lane_begin`].
     #[inline]
-    pub fn is_finite(&self, lane: usize) -> bool {
-        let last = &self.series.a[self.order - 1];
-        last.iter().all(|a| a.0[lane].is_finite())
+    pub fn begin(
+        &mut self,
+        point: &LanePoint<F, W>,
+        at_start: LaneMask,
+        system: &LaneSystem<F, W>,
+    ) -> ([[Lanes<W>; F]; F], LaneMask) {
+        lane_begin(self.level, point, at_start, system, &mut self.series)
     }
 
-    /// The length at which the last terms equal the tolerance, but not more than `remaining` and
-    /// `horizon`: as a step of [`super::Taylor`].
+    /// The length of the step, as a step of [`super::Taylor`]: see [`lane_length`].
     #[inline]
-    pub fn length(&self, remaining: &Lanes<W>, horizon: &Lanes<W>) -> Lanes<W> {
-        let limits = [remaining, horizon];
+    pub fn length(
+        &self,
+        point: &LanePoint<F, W>,
+        limits: [&Lanes<W>; 2],
+        unclear: &mut LaneMask,
+    ) -> (Lanes<W>, LaneMask) {
         lane_length(
             self.level,
-            self.order,
+            &self.limits,
             &self.series,
-            (&self.tolerances, &self.factors),
+            point,
             limits,
+            unclear,
         )
     }
 
-    /// Coordinates and velocities at τ, with what rounding lost before the step and loses in it.
+    /// The point that the step from a point leads to in the durations `tau`, s.
     #[inline]
-    pub fn state(
-        &self,
-        tau: &Lanes<W>,
-        lost: &[[Lanes<W>; F]; 2],
-    ) -> ([[Lanes<W>; F]; 2], [[Lanes<W>; F]; 2]) {
-        let LaneSeries { q, v, .. } = &self.series;
-        let p = self.order;
-        let mut state = [q[0], v[0]];
-        let mut lost_now = *lost;
-        for i in 0..F {
-            let changes = [&q[1..p + 2], &v[1..p + 1]];
-            for (x, rows) in changes.into_iter().enumerate() {
-                let change = lane_sum(self.level, rows, i, tau) * *tau;
-                for lane in 0..W {
-                    (state[x][i].0[lane], lost_now[x][i].0[lane]) =
-                        add(state[x][i].0[lane], change.0[lane], lost[x][i].0[lane]);
-                }
-            }
-        }
-        (state, lost_now)
+    pub fn end(&self, point: &LanePoint<F, W>, tau: &Lanes<W>, to: &mut LanePoint<F, W>) {
+        lane_end(self.level, self.order(), &self.series, point, tau, to);
     }
 
-    /// Accelerations at τ.
-    #[inline]
-    pub fn acceleration(&self, tau: &Lanes<W>) -> [Lanes<W>; F] {
-        let rows = &self.series.a[..self.order];
-        std::array::from_fn(|i| lane_sum(self.level, rows, i, tau))
-    }
-
-    /// The first fall of factor · x + offset on 0 < τ ≤ h, with x coordinate `index` or its rate: see
-    /// [`lane_first_fall`]. Gives the number of coefficients, too.
+    /// Looks for the first fall of a guard that is coordinate `index` or its rate times a factor and an
+    /// offset: see [`lane_first_fall`]. Gives the number of coefficients, too.
     #[inline]
     pub fn first_fall(
         &self,
         (index, rate): (usize, bool),
-        [h, factor, offset]: [&Lanes<W>; 3],
-        starts_at_zero: &LaneMask<W>,
+        h: &Lanes<W>,
+        guard: &LaneGuard<W>,
         coefficients: &mut [Lanes<W>; ORDERS],
-    ) -> (Lanes<W>, usize) {
+        place: &mut Lanes<W>,
+    ) -> ([LaneMask; 2], usize) {
         let rows = match rate {
-            false => &self.series.q[..self.order + 2],
-            true => &self.series.v[..self.order + 1],
+            false => &self.series.q[..self.order() + 2],
+            true => &self.series.v[..self.order() + 1],
         };
-        let numbers = [h, factor, offset];
-        let rows_of = (rows, index);
-        let fall = lane_first_fall(self.level, rows_of, numbers, starts_at_zero, coefficients);
-        (fall, rows.len())
+        let found = lane_first_fall(self.level, (rows, index), h, guard, coefficients, place);
+        (found, rows.len())
+    }
+
+    /// Moves the end of the step, from `point`, beyond the zero of such a guard in some lanes: see
+    /// [`lane_cross`].
+    #[inline]
+    pub fn cross(
+        &self,
+        point: &LanePoint<F, W>,
+        (index, rate): (usize, bool),
+        guard: &LaneGuard<W>,
+        lanes: LaneMask,
+        durations: [&mut Lanes<W>; 3],
+    ) {
+        let (rows, count) = match rate {
+            false => (&self.series.q, self.order() + 2),
+            true => (&self.series.v, self.order() + 1),
+        };
+        let lost = &point.lost[usize::from(rate)][index];
+        lane_cross(
+            self.level,
+            (rows, index),
+            count,
+            lost,
+            guard,
+            lanes,
+            durations,
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! Order and length of a step.
 
-use super::super::logarithm::{natural_logarithm, root};
+use super::super::logarithm::{Factor, natural_logarithm, root};
 use super::series::ORDERS;
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
@@ -54,7 +54,7 @@ pub(super) struct EarlierTerm {
     /// Power of τ in the velocity.
     pub power: usize,
     /// What the length at which this term equals the tolerance is multiplied with.
-    pub factor: f64,
+    pub factor: Factor,
 }
 
 /// The terms of order p − 3 and p − 2 of a method of order `p` ≥ 5.
@@ -72,7 +72,7 @@ pub(super) fn earlier_terms(tolerance: f64, p: usize, convolutions: usize) -> [E
         };
         EarlierTerm {
             power,
-            factor: growth * root(tolerance, power) / root(tolerance, p),
+            factor: Factor::new(growth * root(tolerance, power) / root(tolerance, p)),
         }
     })
 }

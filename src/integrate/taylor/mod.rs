@@ -21,7 +21,7 @@ pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;
-use super::logarithm::root;
+use super::logarithm::{Factor, root, shortest};
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
@@ -192,8 +192,8 @@ impl<const F: usize> Taylor<F> {
         self.expand(system, &origin)?;
         let remaining = (t_end - origin.t) - self.lost.t;
         let horizon = system.horizon(origin.t) - origin.t;
-        let length = self.length();
-        let implicit = self.implicit_length().min(system.resolution(origin.t));
+        let [length, implicit] = self.lengths();
+        let implicit = implicit.min(system.resolution(origin.t));
         self.lag = if length.is_finite() {
             implicit / length
         } else {
@@ -204,14 +204,14 @@ impl<const F: usize> Taylor<F> {
             return Err(StepError::Tolerance {
                 t: origin.t,
                 h,
-                error: self.error(h),
+                error: 1.0,
             });
         }
         let t = (h == remaining).then_some(t_end);
         self.finish(&origin, self.lost, h, t);
         self.dense.h = h;
         self.counters.steps += 1;
-        Ok(self.report(self.error(h)))
+        Ok(self.report())
     }
 
     /// Shortens the last step to the length `h`, or makes a step of it right after a restart. The
@@ -235,7 +235,7 @@ impl<const F: usize> Taylor<F> {
         }
         self.finish(&origin, self.lost_at_start, h, None);
         self.counters.retaken += 1;
-        Ok(self.report(f64::NAN))
+        Ok(self.report())
     }
 
     /// Expands the motion about `origin`.
@@ -305,66 +305,44 @@ impl<const F: usize> Taylor<F> {
         Ok(inverse)
     }
 
-    /// Sizes of the last terms in units of the tolerance, as (power, coefficient). Two orders are
-    /// looked at, since those of an even or odd motion vanish alternately.
-    fn last_terms(&self) -> [(usize, f64); 3] {
+    /// Reciprocal tolerances of coordinates and velocities at the start of the step.
+    fn weights(&self) -> [SVector<f64, F>; 2] {
         let Series { q, v, .. } = &self.dense.series;
-        let p = self.order;
-        let mut terms = [(p - 1, 0.0), (p, 0.0), (p + 1, 0.0)];
-        for i in 0..F {
-            let relative = self.tolerances.relative();
-            let of_q = 1.0 / (self.tolerances.q_absolute()[i] + relative * q[0][i].abs());
-            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
-            for (power, size) in &mut terms {
-                if *power <= p {
-                    *size = f64::max(*size, v[*power][i].abs() * of_v);
-                }
-                if *power >= p {
-                    *size = f64::max(*size, q[*power][i].abs() * of_q);
-                }
-            }
-        }
-        terms
-    }
-
-    /// The length at which the last terms equal the tolerance, as far as those before agree.
-    fn length(&self) -> f64 {
-        let last = self.last_terms();
-        let last = last.iter().map(|&(power, size)| root(size, power));
-        let earlier = self.earlier.iter();
-        let earlier =
-            earlier.map(|term| term.factor * root(self.velocity_term(term.power), term.power));
-        last.chain(earlier).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Size of the term of a power of the velocity, in units of the tolerance.
-    fn velocity_term(&self, power: usize) -> f64 {
-        let Series { v, .. } = &self.dense.series;
         let relative = self.tolerances.relative();
-        let mut size = 0.0_f64;
-        for i in 0..F {
-            let of_v = 1.0 / (self.tolerances.v_absolute()[i] + relative * v[0][i].abs());
-            size = size.max(v[power][i].abs() * of_v);
-        }
-        size
+        let weights = |absolute: &SVector<f64, F>, x: &SVector<f64, F>| {
+            SVector::from_fn(|i, _| 1.0 / (absolute[i] + relative * x[i].abs()))
+        };
+        [
+            weights(self.tolerances.q_absolute(), &q[0]),
+            weights(self.tolerances.v_absolute(), &v[0]),
+        ]
     }
 
-    /// The length of a step of Radau IIA, as the term of its error estimate allows.
-    fn implicit_length(&self) -> f64 {
+    /// The length at which the last terms equal the tolerance, as far as those before agree; and that of
+    /// a step of Radau IIA, as the term of its error estimate allows.
+    ///
+    /// Two orders are looked at, since those of an even or odd motion vanish alternately.
+    fn lengths(&self) -> [f64; 2] {
+        let Series { q, v, .. } = &self.dense.series;
+        let [of_q, of_v] = self.weights();
+        let of_q = |power: usize| largest(&q[power], &of_q);
+        let of_v = |power: usize| largest(&v[power], &of_v);
+        let p = self.order;
+        let [first, second] = self.earlier;
+        let terms = [
+            (of_v(p - 1), p - 1, Factor::ONE),
+            (f64::max(of_v(p), of_q(p)), p, Factor::ONE),
+            (of_q(p + 1), p + 1, Factor::ONE),
+            (of_v(first.power), first.power, first.factor),
+            (of_v(second.power), second.power, second.factor),
+        ];
         let Implicit { power, error } = self.implicit;
-        root(self.velocity_term(power) * error, power)
+        [shortest(terms), root(of_v(power) * error, power)]
     }
 
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
     pub fn lag(&self) -> f64 {
         self.lag
-    }
-
-    /// The largest of the last terms at τ = `h`, in units of the tolerance.
-    fn error(&self, h: f64) -> f64 {
-        self.last_terms().iter().fold(0.0, |most, &(power, size)| {
-            most.max(size * super::tolerances::power(h, power))
-        })
     }
 
     /// Ends the step from `origin` after `h`, at `t` if that is given. The acceleration is that of
@@ -414,14 +392,23 @@ impl<const F: usize> Taylor<F> {
         })
     }
 
-    fn report(&self, error: f64) -> StepReport {
+    /// The last terms have set the length: there is no other estimate of the error.
+    fn report(&self) -> StepReport {
         StepReport {
             t_start: self.start.t,
             t_end: self.end.t,
             h: self.end.t - self.start.t,
-            error,
+            error: f64::NAN,
             iterations: 0,
             discarded: 0,
         }
     }
+}
+
+/// The largest component of a coefficient, weighted.
+#[inline]
+fn largest<const F: usize>(coefficient: &SVector<f64, F>, weights: &SVector<f64, F>) -> f64 {
+    (0..F).fold(0.0, |most, i| {
+        f64::max(most, coefficient[i].abs() * weights[i])
+    })
 }

@@ -1,0 +1,235 @@
+//! A step of trajectories side by side. What the lanes hold does not depend on each other, nor on their
+//! number.
+
+use super::super::guards;
+use super::super::instant::Instant;
+use super::super::roots::{Kind, Watch};
+use super::group::{Group, Outcome};
+use crate::input::Signals;
+use crate::integrate::{LaneMask, Lanes, ORDERS};
+use crate::kernel::lane_unmet;
+
+/// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
+/// [`super::super::locate`].
+const FARTHEST: f64 = 3.8e-6;
+
+/// The first falls of guards in a step.
+struct Falls<const W: usize> {
+    /// Lanes with one.
+    lanes: LaneMask,
+    /// Which of the watched guards falls there.
+    guards: [usize; W],
+    /// Where, as parts of the step; infinite where none falls.
+    places: Lanes<W>,
+}
+
+impl<const W: usize> Falls<W> {
+    /// The lanes in which a watched guard is the first.
+    fn of(&self, guard: usize) -> LaneMask {
+        let own = self
+            .lanes
+            .lanes()
+            .filter(|&lane| self.guards[lane] == guard);
+        own.fold(LaneMask::NONE, |lanes, lane| lanes | LaneMask(1 << lane))
+    }
+}
+
+impl<const F: usize, const W: usize> Group<F, W> {
+    /// Makes a step in each occupied lane; gives the lanes that do not simply go on.
+    pub fn step(&mut self, signals: &Signals) -> LaneMask {
+        let (t, horizon) = self.pieces(signals);
+        let mut unclear = self.expand(signals, &t);
+        let limits = [&self.last, &horizon];
+        let (h, reached) = self.taylor.length(&self.here, limits, &mut unclear);
+        let falls = self.first_falls(&h, &mut unclear);
+        unclear = unclear | self.land(&h, &falls);
+        let until = reached & !falls.lanes;
+        unclear = unclear | self.unmet_at_end(signals) & !until;
+
+        let made = self.occupied & !unclear;
+        self.here.take(self.level, made, &self.next);
+        self.at_start = self.at_start & !made;
+        for guard in &mut self.guards {
+            let zero = &mut guard.linear.starts_at_zero;
+            *zero = *zero & !made;
+        }
+        for lane in made.lanes() {
+            self.steps[lane] += 1;
+        }
+        let ended = (falls.lanes | until | unclear) & self.occupied;
+        for lane in ended.lanes() {
+            self.outcomes[lane] = if unclear.is(lane) {
+                Outcome::Unclear
+            } else if falls.lanes.is(lane) {
+                Outcome::Event(self.guards[falls.guards[lane]].guard)
+            } else {
+                Outcome::Until
+            };
+        }
+        ended
+    }
+
+    /// Absolute times of the analytic pieces of the inputs that act just after the present instants, and
+    /// their durations, s. As in [`super::super::equations::Clock`].
+    fn pieces(&self, signals: &Signals) -> (Lanes<W>, Lanes<W>) {
+        let (mut t, mut durations) = (self.here.t[0], Lanes::of(f64::INFINITY));
+        if t.0.iter().any(|&t| t < self.analytic_from) {
+            for lane in 0..W {
+                let now = self.now(lane);
+                (t.0[lane], durations.0[lane]) = piece(signals, now);
+            }
+        }
+        (t, durations)
+    }
+
+    /// Expands the motion as a series; gives the lanes in which that is not as usual.
+    fn expand(&mut self, signals: &Signals, t: &Lanes<W>) -> LaneMask {
+        let order = self.taylor.order();
+        let context = &mut self.context;
+        if !self.quiet {
+            let expanded = context.expanded();
+            self.signals.set(signals, t, &mut context.signals);
+            let rows = &mut context.signal_series[..(order + 1) * expanded.len()];
+            self.signals.series(signals, expanded, rows);
+        }
+        let which = (self.level, self.quiet);
+        let series = &mut self.taylor.series;
+        (series.q[0], series.v[0]) = (self.here.q, self.here.v);
+        let system = self.kernel.lane_series_start(which, context, series);
+        let begun = self.taylor.begin(&self.here, self.at_start, &system);
+        let (inverse, mut unclear) = begun;
+        let series = &mut self.taylor.series;
+        if std::mem::take(&mut self.unchecked) && !self.requirements.is_empty() {
+            let at = [&series.q[0], &series.v[0], &series.a[0]];
+            let requirements = &mut self.requirements;
+            self.kernel
+                .lane_requirements(self.level, context, at, requirements);
+            unclear = unclear | lane_unmet(self.level, requirements);
+        }
+        self.kernel
+            .lane_series_run(which, context, order, &inverse, series);
+        unclear
+    }
+
+    /// The first fall of a guard in each lane.
+    fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask) -> Falls<W> {
+        let mut falls = Falls {
+            lanes: LaneMask::NONE,
+            guards: [0; W],
+            places: Lanes::of(f64::INFINITY),
+        };
+        for (number, guard) in self.guards.iter_mut().enumerate() {
+            let (linear, coefficients) = (&guard.linear, &mut guard.coefficients);
+            let places = &mut falls.places;
+            let found = self
+                .taylor
+                .first_fall(guard.of, h, linear, coefficients, places);
+            let ([mut first, look], count) = found;
+            for lane in (look & self.occupied & !*unclear).lanes() {
+                let dormant = guard.linear.starts_at_zero.is(lane);
+                match search(&guard.coefficients[..count], lane, dormant) {
+                    Some(place) if place < places.0[lane] => {
+                        places.0[lane] = place;
+                        first.set(lane, true);
+                    }
+                    Some(_) => {}
+                    None => unclear.set(lane, true),
+                }
+            }
+            for lane in first.lanes() {
+                falls.guards[lane] = number;
+            }
+            falls.lanes = falls.lanes | first;
+        }
+        falls
+    }
+
+    /// Goes to the end of the step, in `next`: for a fall to the first state on its far side. Gives the
+    /// lanes that have none.
+    fn land(&mut self, h: &Lanes<W>, falls: &Falls<W>) -> LaneMask {
+        // A guard that all but fell at the end of the step before does so within the rounding of the start.
+        let tau = |lane: usize| h.0[lane] * falls.places.0[lane].min(1.0);
+        let mut tau = Lanes::from_fn(|lane| tau(lane).max(f64::MIN_POSITIVE));
+        let mut unclear = LaneMask::NONE;
+        if !falls.lanes.any() {
+            self.taylor.end(&self.here, &tau, &mut self.next);
+            return unclear;
+        }
+        let mut more = Lanes(tau.0.map(|tau| tau * f64::EPSILON));
+        let mut most = Lanes(h.0.map(|h| h * FARTHEST));
+        for (number, guard) in self.guards.iter().enumerate() {
+            let (linear, lanes) = (&guard.linear, falls.of(number));
+            let durations = [&mut tau, &mut more, &mut most];
+            (self.taylor).cross(&self.here, guard.of, linear, lanes, durations);
+        }
+        self.taylor.end(&self.here, &tau, &mut self.next);
+        // The guards' own values decide: they may round an offset in another way.
+        for (number, guard) in self.guards.iter().enumerate() {
+            let at = [&self.next.q, &self.next.v, &self.next.a];
+            let (kernel, context) = (self.kernel, &self.context);
+            let value = kernel.lane_guard(self.level, context, guard.guard, at);
+            for lane in falls.of(number).lanes() {
+                // Beyond the rounding of the polynomial there is no such state.
+                let crossed = value.0[lane] < 0.0 && tau.0[lane] <= h.0[lane];
+                unclear.set(lane, !crossed);
+            }
+        }
+        unclear
+    }
+
+    /// The lanes in which something that the mode requires does not hold at the end of the step; at the
+    /// end of a segment the caller looks.
+    fn unmet_at_end(&mut self, signals: &Signals) -> LaneMask {
+        if self.requirements.is_empty() {
+            return LaneMask::NONE;
+        }
+        let context = &mut self.context;
+        if !self.quiet {
+            self.signals
+                .set(signals, &self.next.t[0], &mut context.signals);
+        }
+        let at = [&self.next.q, &self.next.v, &self.next.a];
+        let requirements = &mut self.requirements;
+        self.kernel
+            .lane_requirements(self.level, context, at, requirements);
+        lane_unmet(self.level, requirements)
+    }
+}
+
+/// Looks for the first fall in a lane in full: infinite if there is none, `None` if there is something
+/// else.
+#[cold]
+fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool) -> Option<f64> {
+    let mut own = [0.0; ORDERS];
+    for (own, of) in own.iter_mut().zip(coefficients) {
+        *own = of.0[lane];
+    }
+    let watch = if dormant {
+        own[0] = 0.0;
+        Watch::Dormant
+    } else {
+        Watch::Armed
+    };
+    let search = guards::search_window(&own[..coefficients.len()], (0.0, 1.0), watch);
+    match search.crossing {
+        None if search.watch == Watch::Armed => Some(f64::INFINITY),
+        Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),
+        _ => None,
+    }
+}
+
+/// Absolute time of the analytic piece that acts just after an instant, and its duration, s.
+fn piece(signals: &Signals, now: Instant) -> (f64, f64) {
+    let mut t = now.seconds();
+    loop {
+        let knot = signals.next_knot(t);
+        if knot == f64::INFINITY {
+            return (t, knot);
+        }
+        let limit = Instant::new(knot).since(now);
+        if limit > 0.0 {
+            return (t, limit);
+        }
+        t = knot;
+    }
+}
