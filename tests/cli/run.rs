@@ -166,8 +166,8 @@ fn a_refused_run_leaves_the_last_one() {
 fn grazing(missing: f64) -> String {
     let (omega, force, lag) = (
         0.8,
-        0.393954312071844188869848456597,
-        0.418224329579229101191171829027,
+        0.39395431207184417,
+        0.4182243295792291,
     );
     let (amplitude, phase) = (force * (1.0 - missing), lag + std::f64::consts::PI);
     format!(
