@@ -23,6 +23,7 @@ mod resume;
 pub mod roots;
 mod samples;
 mod segment;
+mod sensitivity;
 mod simulation;
 mod simulator;
 mod solvers;

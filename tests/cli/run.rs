@@ -164,11 +164,7 @@ fn a_refused_run_leaves_the_last_one() {
 
 /// A forced oscillation that reaches a stop at x = 1 but for `missing` (tests/data/07_grazing.json).
 fn grazing(missing: f64) -> String {
-    let (omega, force, lag) = (
-        0.8,
-        0.39395431207184417,
-        0.4182243295792291,
-    );
+    let (omega, force, lag) = (0.8, 0.39395431207184417, 0.4182243295792291);
     let (amplitude, phase) = (force * (1.0 - missing), lag + std::f64::consts::PI);
     format!(
         r#"{{"model": "coulomb_oscillator",
