@@ -162,8 +162,10 @@ struct Reduced<'a, const F: usize> {
 impl<'a, const F: usize> Reduced<'a, F> {
     fn new(problem: &'a Problem, stretch: &Stretch, kernel: &'static ModeKernel<F>) -> Self {
         let mut context = Context::new(problem.model, &problem.parameters);
-        context.discrete.copy_from_slice(&stretch.from.discrete);
-        context.held.copy_from_slice(&stretch.from.q);
+        context
+            .discrete_mut()
+            .copy_from_slice(&stretch.from.discrete);
+        context.held_mut().copy_from_slice(&stretch.from.q);
         Reduced {
             kernel,
             context,

@@ -42,12 +42,12 @@ impl<const F: usize> Point<F> {
             .map(|p| (p.default * (1.0 + 0.01 * random.next())).clamp(p.minimum, p.maximum))
             .collect();
         let mut context = Context::new(model, &parameters);
-        for (value, discrete) in context.discrete.iter_mut().zip(model.discretes) {
+        for (value, discrete) in context.discrete_mut().iter_mut().zip(model.discretes) {
             *value = discrete.values[usize::from(random.next() > 0.0)];
         }
         for (i, c) in model.coordinates.iter().enumerate() {
             let q = c.scale * random.next();
-            context.held[i] = mode.held_at[i].unwrap_or(c.minimum.map_or(q, |m| m + q.abs()));
+            context.held_mut()[i] = mode.held_at[i].unwrap_or(c.minimum.map_or(q, |m| m + q.abs()));
         }
         let [signals, rates] = context.signals_mut();
         signals.fill_with(|| random.next());
@@ -62,7 +62,7 @@ impl<const F: usize> Point<F> {
                 rates[input.signal + k + 1] = signals[input.signal + k];
             }
         }
-        let held = context.held.clone();
+        let held = context.held().to_vec();
         let mut drift = vec![0.0; held.len()];
         kernel.held_rates(&context, &mut drift);
         let rate = |i: usize| model.coordinates[mode.free[i]].rate_scale;
@@ -91,7 +91,7 @@ impl<const F: usize> Point<F> {
         for (u, rate) in signals.iter_mut().zip(rates) {
             *u += *rate * t;
         }
-        for (held, rate) in context.held.iter_mut().zip(&self.drift) {
+        for (held, rate) in context.held_mut().iter_mut().zip(&self.drift) {
             *held += rate * t;
         }
         Point {

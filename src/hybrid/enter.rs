@@ -164,7 +164,7 @@ impl<const F: usize> Start<'_, F> {
                 discrete,
                 ..
             } => {
-                let factor = factor * discrete.map_or(1.0, |d| context.discrete[d]);
+                let factor = factor * discrete.map_or(1.0, |d| context.discrete()[d]);
                 if !rate && v[index] != 0.0 {
                     return factor * v[index];
                 }

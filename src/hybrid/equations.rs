@@ -39,7 +39,7 @@ impl Clock<'_> {
     }
 
     fn set_held(&self, tau: f64, context: &mut Context) {
-        for ((h, q), rate) in context.held.iter_mut().zip(self.held).zip(self.drift) {
+        for ((h, q), rate) in context.held_mut().iter_mut().zip(self.held).zip(self.drift) {
             *h = q + rate * tau;
         }
     }
@@ -87,6 +87,8 @@ pub(super) struct Equations<'a, const F: usize> {
     scale: SVector<f64, F>,
     /// Local time for which the context is set; NaN: none.
     set_for: f64,
+    /// Local time for which it is set as far as the equations need it; NaN: none.
+    stage_set_for: f64,
     /// Local times for which the equations' signals are known ahead; NaN: none.
     ahead: [f64; Context::MOST_AHEAD],
     /// Local time about which the guards were last expanded; NaN: none.
@@ -110,6 +112,7 @@ impl<'a, const F: usize> Equations<'a, F> {
             tolerance,
             scale,
             set_for: f64::NAN,
+            stage_set_for: f64::NAN,
             ahead: [f64::NAN; Context::MOST_AHEAD],
             guards_expanded_at: f64::NAN,
             // None yet: it has ended before all times.
@@ -126,17 +129,22 @@ impl<'a, const F: usize> Equations<'a, F> {
         if tau != self.set_for {
             self.clock.set(tau, self.context);
             self.set_for = tau;
+            self.stage_set_for = tau;
         }
     }
 
     /// Sets the context to local time `tau` as far as the equations of motion need it.
     #[inline]
-    fn at_stage(&mut self, tau: f64) {
+    pub fn at_stage(&mut self, tau: f64) {
+        if tau == self.stage_set_for {
+            return;
+        }
         match self.ahead.iter().position(|&ahead| ahead == tau) {
             Some(index) if tau != self.set_for => {
                 self.context.set_foreseen_signals(index);
                 self.clock.set_held(tau, self.context);
                 self.set_for = f64::NAN;
+                self.stage_set_for = tau;
             }
             _ => self.at(tau),
         }
@@ -245,7 +253,7 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         v: &SVector<f64, F>,
         a: &mut SVector<f64, F>,
     ) -> Result<(), Singular> {
-        self.at(t);
+        self.at_stage(t);
         let system = self.kernel.system(self.context, q, v);
         *a = solve(&system.mass, &-system.load, &self.scale)?;
         Ok(())
@@ -267,7 +275,7 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
             let signals = self.clock.signals;
             self.context.expand_signals(signals, from, order + 1);
         }
-        self.set_for = t;
+        (self.set_for, self.stage_set_for) = (t, t);
         let system = self.kernel.series_start(self.context, series);
         (system.mass, system.load)
     }

@@ -79,7 +79,9 @@ impl Simulation<'_> {
 
         self.here.q.copy_from_slice(&self.next[..n]);
         self.here.v.copy_from_slice(&self.next[n..2 * n]);
-        self.context.discrete.copy_from_slice(&self.next[2 * n..]);
+        self.context
+            .discrete_mut()
+            .copy_from_slice(&self.next[2 * n..]);
         self.here.mode = target;
         self.here.j += 1;
         self.set_context();
@@ -103,7 +105,7 @@ impl Simulation<'_> {
         if let Some(before) = before {
             self.states_at_jumps.push([before, self.snapshot()]);
         }
-        let state = [&*self.here.q, &self.here.v, &self.context.discrete];
+        let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let modes = self.problem.variant.modes;
         match self.visited.add((name, from, target), state, modes) {
             Some(cycle) => Err(Reason::Cycle { cycle }),
@@ -171,7 +173,7 @@ impl Simulation<'_> {
             self.here.now,
             self.before.iter().copied(),
             after,
-            &self.context.discrete,
+            self.context.discrete(),
         );
         self.look_for_accumulation()
     }

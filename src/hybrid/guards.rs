@@ -46,15 +46,19 @@ impl Conditions<'_> {
         if !transition.conditional {
             return reduce(&[]);
         }
-        let n = context.held.len();
+        let n = context.held().len();
         let target = &self.variant.modes[transition.target];
-        context.held.swap_with_slice(&mut self.next[..n]);
-        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
+        context.held_mut().swap_with_slice(&mut self.next[..n]);
+        context
+            .discrete_mut()
+            .swap_with_slice(&mut self.next[2 * n..]);
         let condition = with_kernel!(&target.kernels, k => {
             conditions_in(k, context, transition, target.free, &self.next[n..2 * n], reduce)
         });
-        context.held.swap_with_slice(&mut self.next[..n]);
-        context.discrete.swap_with_slice(&mut self.next[2 * n..]);
+        context.held_mut().swap_with_slice(&mut self.next[..n]);
+        context
+            .discrete_mut()
+            .swap_with_slice(&mut self.next[2 * n..]);
         condition
     }
 
@@ -81,7 +85,7 @@ fn conditions_in<const F: usize>(
     rates: &[f64],
     reduce: impl Fn(&[f64]) -> f64,
 ) -> f64 {
-    let q = SVector::<f64, F>::from_fn(|i, _| context.held[free[i]]);
+    let q = SVector::<f64, F>::from_fn(|i, _| context.held()[free[i]]);
     let v = SVector::<f64, F>::from_fn(|i, _| rates[free[i]]);
     let system = kernel.system(context, &q, &v);
     let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
@@ -147,8 +151,19 @@ pub(super) fn motion<const F: usize>(
     tau: f64,
     accelerations: bool,
 ) -> [SVector<f64, F>; 3] {
-    let (q, v, mut a) = dense.at(tau);
     equations.at(tau);
+    motion_at_stage(equations, dense, tau, accelerations)
+}
+
+/// The same, with the context set as far as the equations of motion need it.
+fn motion_at_stage<const F: usize>(
+    equations: &mut Equations<F>,
+    dense: &impl Motion<F>,
+    tau: f64,
+    accelerations: bool,
+) -> [SVector<f64, F>; 3] {
+    let (q, v, mut a) = dense.at(tau);
+    equations.at_stage(tau);
     if accelerations && equations.acceleration(tau, &q, &v, &mut a).is_err() {
         a.fill(f64::NAN);
     }
@@ -183,8 +198,16 @@ pub(super) fn search<const F: usize>(
                     ..
                 }
             );
+            // Conditions may depend on more of the inputs than the equations of motion do.
+            let own = watched.condition.is_none() && !conditions.are_part_of(guard);
+            if own {
+                equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
+            }
             let evaluate = |tau: f64| {
-                let [q, v, a] = motion(equations, dense, tau, accelerations);
+                let [q, v, a] = match own {
+                    true => motion_at_stage(equations, dense, tau, accelerations),
+                    false => motion(equations, dense, tau, accelerations),
+                };
                 let at = Free {
                     q: &q,
                     v: &v,
@@ -204,15 +227,19 @@ pub(super) fn search<const F: usize>(
     }
 }
 
+/// Local time at a part of a window.
+fn at_part(s: f64, (from, to): (f64, f64)) -> f64 {
+    if s < 1.0 { from + s * (to - from) } else { to }
+}
+
 /// Searches a function of local time, as one of s = (τ − start)/length of the window: so the search, which
 /// counts doubles, does not depend on the unit of time.
 fn search_function(
     mut evaluate: impl FnMut(f64) -> f64,
-    (from, to): (f64, f64),
+    window: (f64, f64),
     watch: Watch,
 ) -> Search {
-    let length = to - from;
-    let local = |s: f64| if s < 1.0 { from + s * length } else { to };
+    let local = |s: f64| at_part(s, window);
     let mut search = roots::search(|s| evaluate(local(s)), 0.0, 1.0, watch, 0.0);
     if let Some(crossing) = &mut search.crossing {
         crossing.inside = local(crossing.inside);
@@ -239,7 +266,7 @@ fn search_linear<const F: usize>(
     else {
         unreachable!("the caller has asked for its shape")
     };
-    let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete[d]);
+    let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete()[d]);
     let mut coefficients = [0.0; ORDERS];
     let count = dense.polynomial(index, rate, &mut coefficients);
     if factor != 1.0 {

@@ -75,7 +75,9 @@ impl Simulation<'_> {
         self.here.mode = end.mode;
         self.here.q.copy_from_slice(&end.state.q);
         self.here.v.copy_from_slice(&end.state.v);
-        self.context.discrete.copy_from_slice(&end.state.discrete);
+        self.context
+            .discrete_mut()
+            .copy_from_slice(&end.state.discrete);
         self.ledger = energy.as_ref().map(RunningLedger::continuing);
         self.solver = solver;
         self.doubts.uncertain = uncertain;

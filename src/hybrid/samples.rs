@@ -31,7 +31,7 @@ impl Row<'_> {
         if !reactions.is_empty() {
             kernel.reactions(context, at, &mut row[reactions]);
         }
-        row[self.layout.range(Group::Discrete)].copy_from_slice(&context.discrete);
+        row[self.layout.range(Group::Discrete)].copy_from_slice(context.discrete());
         let energies = self.layout.range(Group::Energy);
         if !energies.is_empty() {
             let [kinetic, potential] = kernel.energies(context, at);

@@ -174,7 +174,7 @@ impl Simulation<'_> {
                 let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
                 let here = &mut self.here;
                 here.set_free(mode.free, [&q, &v, &a]);
-                copy_drifting(&mut here.q, mode.drifts, &equations.context.held);
+                copy_drifting(&mut here.q, mode.drifts, equations.context.held());
                 let row = Row {
                     layout: &self.layout,
                     q: &here.q,
@@ -231,7 +231,7 @@ impl Simulation<'_> {
             self.here.now = start.plus(state.t);
             self.here
                 .set_free(mode.free, [&state.q, &state.v, &state.a]);
-            copy_drifting(&mut self.here.q, mode.drifts, &equations.context.held);
+            copy_drifting(&mut self.here.q, mode.drifts, equations.context.held());
 
             if !kernel.mass_is_constant() {
                 let mass = kernel.system(equations.context, &state.q, &state.v).mass;

@@ -118,7 +118,9 @@ impl<'p> Simulation<'p> {
         let model = problem.model;
         let plan = Plan::new(problem)?;
         let mut context = Context::new(model, &problem.parameters);
-        context.discrete.copy_from_slice(&problem.initial.discrete);
+        context
+            .discrete_mut()
+            .copy_from_slice(&problem.initial.discrete);
         context.quiet = problem.signals.is_zero();
         let n = model.coordinates.len();
         let layout = Layout::new(model, problem.variant, problem.record.columns);
@@ -193,7 +195,9 @@ impl<'p> Simulation<'p> {
         self.here.q.copy_from_slice(&initial.q);
         self.here.v.copy_from_slice(&initial.v);
         self.here.a.fill(0.0);
-        self.context.discrete.copy_from_slice(&initial.discrete);
+        self.context
+            .discrete_mut()
+            .copy_from_slice(&initial.discrete);
         if initial.mode.is_some() {
             self.apply_drift();
         }
@@ -405,7 +409,7 @@ impl<'p> Simulation<'p> {
         let mode = &self.problem.variant.modes[rest];
         self.next[..n].copy_from_slice(&self.here.q);
         self.next[n..2 * n].copy_from_slice(&self.here.v);
-        self.next[2 * n..].copy_from_slice(&self.context.discrete);
+        self.next[2 * n..].copy_from_slice(self.context.discrete());
         with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
         for i in (0..n).filter(|i| !mode.free.contains(i)) {
             if let Some(value) = mode.held_at[i] {
@@ -421,7 +425,7 @@ impl<'p> Simulation<'p> {
         let t = self.here.now.seconds();
         let signals = &self.problem.signals;
         self.context.set_signals(signals, t, Side::Right);
-        self.context.held.copy_from_slice(&self.here.q);
+        self.context.held_mut().copy_from_slice(&self.here.q);
     }
 
     /// T + V here, J.
@@ -447,7 +451,7 @@ impl<'p> Simulation<'p> {
         Snapshot {
             q: self.here.q.to_vec(),
             v: self.here.v.to_vec(),
-            discrete: self.context.discrete.to_vec(),
+            discrete: self.context.discrete().to_vec(),
             reactions,
         }
     }

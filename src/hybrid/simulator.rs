@@ -61,7 +61,7 @@ impl<'p> Simulator<'p> {
 
     /// All discrete states.
     pub fn discrete(&self) -> &[f64] {
-        &self.simulation.context.discrete
+        self.simulation.context.discrete()
     }
 
     /// The transitions so far.

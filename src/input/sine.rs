@@ -166,9 +166,12 @@ impl Sine {
         out: &mut [f64],
     ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
-        for (out, inverse) in out.chunks_mut(stride).zip(&INVERSES_OF_PAIRS) {
-            out[0] = now;
-            (now, next) = (next, now * (factor * inverse));
+        // By indices, which is twice as fast as chunks.
+        let (mut i, mut k) = (0, 0);
+        while i < out.len() && k < INVERSES_OF_PAIRS.len() {
+            out[i] = now;
+            (now, next) = (next, now * (factor * INVERSES_OF_PAIRS[k]));
+            (i, k) = (i + stride, k + 1);
         }
     }
 

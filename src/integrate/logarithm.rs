@@ -7,7 +7,7 @@ pub(super) fn natural_logarithm(x: f64) -> f64 {
 }
 
 /// log₂ x to 0.01, for normal x > 0.
-fn binary_logarithm(x: f64) -> f64 {
+pub(super) fn binary_logarithm(x: f64) -> f64 {
     let (exponent, fraction) = split(x);
     exponent as f64 + fraction
 }
@@ -58,54 +58,6 @@ pub(super) fn root(x: f64, n: usize) -> f64 {
     power * inverse_power((rest as f64 + fraction) / n as f64)
 }
 
-/// A factor of a length, with its logarithm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Factor {
-    value: f64,
-    logarithm: f64,
-}
-
-impl Factor {
-    /// One.
-    pub const ONE: Factor = Factor {
-        value: 1.0,
-        logarithm: 0.0,
-    };
-
-    /// A factor > 0.
-    pub fn new(value: f64) -> Self {
-        Factor {
-            value,
-            logarithm: binary_logarithm(value),
-        }
-    }
-
-    /// The factor itself.
-    pub fn value(&self) -> f64 {
-        self.value
-    }
-
-    /// log₂ of it.
-    pub fn logarithm(&self) -> f64 {
-        self.logarithm
-    }
-}
-
-/// The shortest of lengths, each a factor times the [`root`] of (x, n). Logarithms tell which it is, so
-/// that one root is taken.
-#[inline(always)]
-pub(super) fn shortest(terms: [(f64, usize, Factor); 5]) -> f64 {
-    let (mut largest, mut length) = (f64::NEG_INFINITY, (0.0, 1, 1.0));
-    for (x, n, factor) in terms {
-        let logarithm = binary_logarithm(x) / n as f64 - factor.logarithm;
-        if logarithm > largest && x >= f64::MIN_POSITIVE {
-            (largest, length) = (logarithm, (x, n, factor.value));
-        }
-    }
-    let (x, n, factor) = length;
-    factor * root(x, n)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,35 +74,6 @@ mod tests {
             }
         }
         assert_eq!(root(0.0, 7), f64::INFINITY);
-    }
-
-    #[test]
-    fn the_shortest_length_is_that_of_a_root() {
-        let mut state = 1_u64;
-        let mut draw = |most: f64| {
-            // Numerical Recipes' multiplier: any scatter will do.
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 * most
-        };
-        for _ in 0..100_000 {
-            let length = 10f64.powf(draw(6.0) - 3.0);
-            let mut term = |n: usize| (length * (1.0 + 0.1 * draw(1.0))).powi(-(n as i32));
-            let terms = [10, 11, 12, 13, 14].map(|n| {
-                let factor = if n < 12 {
-                    0.9 + 0.02 * n as f64 / 10.0
-                } else {
-                    1.0
-                };
-                (term(n), n, Factor::new(factor))
-            });
-            let all = terms.map(|(x, n, factor)| factor.value * root(x, n));
-            let least = all.into_iter().fold(f64::INFINITY, f64::min);
-            // Each of the two is right to 2 %.
-            assert!(all.contains(&shortest(terms)) && shortest(terms) < 1.04 * least);
-        }
-        assert_eq!(shortest([(0.0, 2, Factor::new(0.5)); 5]), f64::INFINITY);
     }
 
     #[test]

@@ -24,7 +24,8 @@ pub struct Dimensions {
     pub expanded: &'static [bool],
 }
 
-/// What a generated function needs besides the free coordinates.
+/// What a generated function needs besides the free coordinates. Its arrays keep the lengths that
+/// [`Dimensions`] state, which the calls rely on: nothing outside of `kernel` can replace them.
 #[derive(Debug, Clone)]
 pub struct Context {
     pub(super) dimensions: &'static Dimensions,
@@ -37,16 +38,16 @@ pub struct Context {
     /// Whether no input ever acts: all signals are zero and stay so.
     pub quiet: bool,
     /// Discrete states.
-    pub discrete: Box<[f64]>,
+    pub(super) discrete: Box<[f64]>,
     /// All coordinates; the generated functions read those that the mode holds.
-    pub held: Box<[f64]>,
+    pub(super) held: Box<[f64]>,
     /// Taylor coefficients of the signals, one row an order.
     pub(super) signal_series: Box<[f64]>,
     /// Signals at instants that will be asked for soon, a row each; antiderivatives are not among them.
     ahead: Box<[f64]>,
     pub(super) constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
-    pub guard_series: Box<[f64]>,
+    pub(super) guard_series: Box<[f64]>,
     /// What the series functions carry from one order to the next.
     pub(super) workspace: Box<[f64]>,
 }
@@ -90,6 +91,26 @@ impl Context {
     pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
         assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
         model.constants.evaluate(parameters, &mut self.constants);
+    }
+
+    /// Discrete states.
+    pub fn discrete(&self) -> &[f64] {
+        &self.discrete
+    }
+
+    /// Discrete states, to be changed.
+    pub fn discrete_mut(&mut self) -> &mut [f64] {
+        &mut self.discrete
+    }
+
+    /// All coordinates; the generated functions read those that the mode holds.
+    pub fn held(&self) -> &[f64] {
+        &self.held
+    }
+
+    /// All coordinates, to be changed.
+    pub fn held_mut(&mut self) -> &mut [f64] {
+        &mut self.held
     }
 
     /// Signals of the inputs at the present time.

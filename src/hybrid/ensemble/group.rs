@@ -192,7 +192,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             else {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
             };
-            let sign = discrete.map_or(1.0, |d| from.context.discrete[d]);
+            let sign = discrete.map_or(1.0, |d| from.context.discrete()[d]);
             guard.linear.factor.0[lane] = factor * sign;
             guard.linear.offset.0[lane] = match offset {
                 true => self.kernel.guard(&from.context, &model.kernel, origin),

@@ -155,7 +155,7 @@ impl Finished<'_, '_> {
 
     /// All discrete states.
     pub fn discrete(&self) -> &[f64] {
-        &self.simulation.context.discrete
+        self.simulation.context.discrete()
     }
 
     /// The transitions.

@@ -35,6 +35,19 @@ pub(super) const fn place(node: usize) -> f64 {
     }
 }
 
+/// Where a search on a window of length 1 looks first: at the samples of degree 4, and at two more of
+/// those of degree 8.
+pub const FIRST_PLACES: [f64; 8] = [
+    place(0),
+    place(DEGREE / 4),
+    place(DEGREE / 2),
+    place(3 * DEGREE / 4),
+    place(DEGREE),
+    place(Interpolant::test_sample(4)),
+    place(DEGREE / 8),
+    place(5 * DEGREE / 8),
+];
+
 /// cos(jπ/16).
 const fn cosine(j: usize) -> f64 {
     let j = j % 32;
@@ -75,19 +88,33 @@ pub(super) struct Interpolant {
 impl Interpolant {
     /// Through `values` at every `DEGREE / degree`-th node; `degree` is 4, 8 or 16.
     pub(super) fn through(values: &[f64; SAMPLES], degree: usize) -> Self {
-        let stride = DEGREE / degree;
+        match degree {
+            4 => Self::of_degree::<4>(values),
+            8 => Self::of_degree::<8>(values),
+            _ => Self::of_degree::<DEGREE>(values),
+        }
+    }
+
+    fn of_degree<const N: usize>(values: &[f64; SAMPLES]) -> Self {
+        let (degree, stride) = (N, DEGREE / N);
         let mut coefficients = [0.0; NODES];
-        for (k, coefficient) in coefficients[..=degree].iter_mut().enumerate() {
-            // Discrete cosine transform; the ends, and the first and last coefficient, count half.
-            let ends = values[0] + COSINES[k * DEGREE % 32] * values[DEGREE];
-            let mut sum = 0.5 * ends;
-            for j in 1..degree {
-                sum += COSINES[k * j * stride % 32] * values[j * stride];
+        // Discrete cosine transform; the ends, and the first and last coefficient, count half.
+        let [first, last] = [values[0], values[DEGREE]];
+        for (k, coefficient) in coefficients[..=N].iter_mut().enumerate() {
+            let end = if k % 2 == 0 { last } else { -last };
+            *coefficient = 0.5 * (first + end);
+        }
+        for j in 1..N {
+            let value = values[j * stride];
+            for (k, coefficient) in coefficients[..=N].iter_mut().enumerate() {
+                *coefficient += COSINES[k * j * stride % 32] * value;
             }
+        }
+        for (k, coefficient) in coefficients[..=N].iter_mut().enumerate() {
             // The nodes ascend, Chebyshev's own descend: Tₖ(−x) = (−1)ᵏ Tₖ(x).
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let weight = if k == 0 || k == degree { 1.0 } else { 2.0 };
-            *coefficient = sign * weight * sum / degree as f64;
+            let weight = if k == 0 || k == N { 1.0 } else { 2.0 };
+            *coefficient = sign * weight * *coefficient / N as f64;
         }
         let magnitude = values[..NODES]
             .iter()

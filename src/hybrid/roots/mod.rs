@@ -69,6 +69,7 @@ mod polynomial;
 mod walk;
 
 pub(super) use bracket::minimum;
+pub use chebyshev::FIRST_PLACES;
 pub use earliest::{Earliest, earliest};
 pub use function::search;
 pub use polynomial::Polynomial;

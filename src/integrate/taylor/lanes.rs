@@ -2,7 +2,7 @@
 
 use super::super::lanes::{LaneMask, Lanes};
 use super::super::tolerances::Tolerances;
-use super::length;
+use super::length::{self, Terms};
 use super::series::ORDERS;
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_cross,
@@ -27,11 +27,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let order = length::order(relative, convolutions, F);
-        let earlier = length::earlier_terms(relative, order, convolutions);
-        let factors = earlier.map(|term| term.factor);
-        let [first, second] = factors.map(|factor| factor.value());
-        let logarithms = factors.map(|factor| factor.logarithm());
-        let orders = [order - 1, order, order + 1, order - 3, order - 2].map(|n| n as f64);
+        let terms = Terms::new(relative, order, convolutions);
         LaneTaylor {
             series: LaneSeries {
                 q: rows,
@@ -43,10 +39,10 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
                 order,
                 tolerances: std::iter::once(relative).chain(absolute).collect(),
                 terms: [
-                    orders,
-                    orders.map(|n| 1.0 / n),
-                    [1.0, 1.0, 1.0, first, second],
-                    [0.0, 0.0, 0.0, logarithms[0], logarithms[1]],
+                    terms.powers.map(|n| n as f64),
+                    terms.inverses,
+                    terms.factors,
+                    terms.logarithms,
                 ],
             },
         }

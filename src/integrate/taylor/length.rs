@@ -1,6 +1,6 @@
 //! Order and length of a step.
 
-use super::super::logarithm::{Factor, natural_logarithm, root};
+use super::super::logarithm::{binary_logarithm, natural_logarithm, root};
 use super::series::ORDERS;
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
@@ -48,33 +48,68 @@ pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> 
     best.0
 }
 
-/// A term before the last ones, which limits the length where those happen to vanish.
+/// The terms that limit the length of a step of order p ≥ 5: those of order p − 1, p and p + 1, and before
+/// them those of order p − 3 and p − 2.
+///
+/// Two last orders of each of coordinates and velocities are looked at, since those of an even or odd
+/// motion vanish alternately. From a state of high symmetry only every fourth term differs from zero (a
+/// pendulum released from the horizontal: τ², τ⁶, τ¹⁰ …), so that the last terms tell nothing. A term of
+/// order k tells the radius of convergence, ρ = h_k ε^(−1/k) with the length h_k at which it equals the
+/// tolerance, and from there the length for order p, ρ ε^(1/p). Without convolutions the radius is
+/// infinite, and what the terms tell of it grows in proportion to their order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct EarlierTerm {
-    /// Power of τ in the velocity.
-    pub power: usize,
-    /// What the length at which this term equals the tolerance is multiplied with.
-    pub factor: Factor,
+pub(super) struct Terms {
+    /// Powers k of τ.
+    pub powers: [usize; 5],
+    /// 1/k.
+    pub inverses: [f64; 5],
+    /// What the length at which a term equals the tolerance is multiplied with.
+    pub factors: [f64; 5],
+    /// Their logarithms to base 2.
+    pub logarithms: [f64; 5],
 }
 
-/// The terms of order p − 3 and p − 2 of a method of order `p` ≥ 5.
-///
-/// From a state of high symmetry only every fourth term differs from zero (a pendulum released from the
-/// horizontal: τ², τ⁶, τ¹⁰ …), so that the two last terms tell nothing. A term of order k tells the
-/// radius of convergence, ρ = h_k ε^(−1/k) with the length h_k at which it equals the tolerance, and from
-/// there the length for order p, ρ ε^(1/p). Without convolutions the radius is infinite, and what the
-/// terms tell of it grows in proportion to their order.
-pub(super) fn earlier_terms(tolerance: f64, p: usize, convolutions: usize) -> [EarlierTerm; 2] {
-    [p - 3, p - 2].map(|power| {
-        let growth = match convolutions {
-            0 => p as f64 / power as f64,
-            _ => 1.0,
-        };
-        EarlierTerm {
-            power,
-            factor: Factor::new(growth * root(tolerance, power) / root(tolerance, p)),
+impl Terms {
+    /// Those of a method of order `p`.
+    pub fn new(tolerance: f64, p: usize, convolutions: usize) -> Self {
+        let powers = [p - 1, p, p + 1, p - 3, p - 2];
+        let factors = powers.map(|power| match power + 1 < p {
+            true => {
+                let growth = match convolutions {
+                    0 => p as f64 / power as f64,
+                    _ => 1.0,
+                };
+                growth * root(tolerance, power) / root(tolerance, p)
+            }
+            false => 1.0,
+        });
+        Terms {
+            powers,
+            inverses: powers.map(|power| 1.0 / power as f64),
+            factors,
+            logarithms: factors.map(|factor| match factor == 1.0 {
+                true => 0.0,
+                false => binary_logarithm(factor),
+            }),
         }
-    })
+    }
+
+    /// The shortest of the lengths that terms of these sizes, in units of the tolerance, allow: logarithms
+    /// tell which it is, so that one root is taken.
+    #[inline]
+    pub fn length(&self, sizes: [f64; 5]) -> f64 {
+        let mut logarithms = [0.0; 5];
+        for k in 0..5 {
+            logarithms[k] = binary_logarithm(sizes[k]) * self.inverses[k] - self.logarithms[k];
+        }
+        let (mut largest, mut shortest) = (f64::NEG_INFINITY, 0);
+        for k in 0..5 {
+            if logarithms[k] > largest && sizes[k] >= f64::MIN_POSITIVE {
+                (largest, shortest) = (logarithms[k], k);
+            }
+        }
+        self.factors[shortest] * root(sizes[shortest], self.powers[shortest])
+    }
 }
 
 #[cfg(test)]
@@ -91,5 +126,31 @@ mod tests {
         // Where convolutions are all that costs, p = 1 − ½ ln ε (Jorba and Zou).
         assert!(orders(10_000)[3].abs_diff(14) <= 1, "{:?}", orders(10_000));
         assert!(orders(2)[3] > orders(100)[3]);
+    }
+
+    #[test]
+    fn the_length_is_the_shortest_that_a_term_allows() {
+        let terms = Terms::new(1e-9, 13, 3);
+        let mut state = 1_u64;
+        let mut draw = || {
+            // Knuth's multiplier: any scatter will do.
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for _ in 0..100_000 {
+            let scale = 10f64.powf(6.0 * draw() - 3.0);
+            let sizes = terms
+                .powers
+                .map(|n| (scale * (1.0 + 0.1 * draw())).powi(-(n as i32)));
+            let all: [f64; 5] =
+                std::array::from_fn(|k| terms.factors[k] * root(sizes[k], terms.powers[k]));
+            let length = terms.length(sizes);
+            let least = all.into_iter().fold(f64::INFINITY, f64::min);
+            // Each of the two is right to 2 %.
+            assert!(all.contains(&length) && length < 1.04 * least);
+        }
+        assert_eq!(terms.length([0.0; 5]), f64::INFINITY);
     }
 }

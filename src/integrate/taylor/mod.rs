@@ -14,14 +14,14 @@ mod length;
 mod quadrature;
 mod series;
 
-use length::EarlierTerm;
+use length::Terms;
 
 pub use dense::TaylorDense;
 pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
 
 use super::linear::Lu;
-use super::logarithm::{Factor, root, shortest};
+use super::logarithm::root;
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
@@ -59,7 +59,7 @@ pub struct Taylor<const F: usize> {
     order: usize,
     /// Parts of a step in its quadrature.
     panels: usize,
-    earlier: [EarlierTerm; 2],
+    terms: Terms,
     start: State<F>,
     end: State<F>,
     lost_at_start: Lost<F>,
@@ -99,7 +99,7 @@ impl<const F: usize> Taylor<F> {
             tolerances: *tolerances,
             order,
             panels: quadrature::panels(convolutions),
-            earlier: length::earlier_terms(relative, order, convolutions),
+            terms: Terms::new(relative, order, convolutions),
             start: origin,
             end: origin,
             lost_at_start: Lost::nothing(),
@@ -320,24 +320,21 @@ impl<const F: usize> Taylor<F> {
 
     /// The length at which the last terms equal the tolerance, as far as those before agree; and that of
     /// a step of Radau IIA, as the term of its error estimate allows.
-    ///
-    /// Two orders are looked at, since those of an even or odd motion vanish alternately.
     fn lengths(&self) -> [f64; 2] {
         let Series { q, v, .. } = &self.dense.series;
         let [of_q, of_v] = self.weights();
         let of_q = |power: usize| largest(&q[power], &of_q);
         let of_v = |power: usize| largest(&v[power], &of_v);
         let p = self.order;
-        let [first, second] = self.earlier;
-        let terms = [
-            (of_v(p - 1), p - 1, Factor::ONE),
-            (f64::max(of_v(p), of_q(p)), p, Factor::ONE),
-            (of_q(p + 1), p + 1, Factor::ONE),
-            (of_v(first.power), first.power, first.factor),
-            (of_v(second.power), second.power, second.factor),
+        let sizes = [
+            of_v(p - 1),
+            f64::max(of_v(p), of_q(p)),
+            of_q(p + 1),
+            of_v(p - 3),
+            of_v(p - 2),
         ];
         let Implicit { power, error } = self.implicit;
-        [shortest(terms), root(of_v(power) * error, power)]
+        [self.terms.length(sizes), root(of_v(power) * error, power)]
     }
 
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
