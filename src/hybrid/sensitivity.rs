@@ -64,11 +64,11 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         }
         // What the mode holds has its errors from the modes before.
         for i in (0..accuracy.q_absolute.len()).filter(|i| !self.mode.free.contains(i)) {
-            let held = self.equations.context.held[i];
+            let held = self.equations.context.held()[i];
             let tolerance = accuracy.q_absolute[i] + accuracy.relative * held.abs();
-            self.equations.context.held[i] = held + tolerance;
+            self.equations.context.held_mut()[i] = held + tolerance;
             sum += (self.value(t, q, v) - value).abs();
-            self.equations.context.held[i] = held;
+            self.equations.context.held_mut()[i] = held;
         }
         // Not a number: there it has no value.
         sum.max(0.0)

@@ -31,13 +31,15 @@ impl Problem {
         };
         let mut context = Context::new(self.model, &self.parameters);
         context.set_signals(&self.signals, 0.0, Side::Right);
-        context.discrete.copy_from_slice(&self.initial.discrete);
+        context
+            .discrete_mut()
+            .copy_from_slice(&self.initial.discrete);
         for (m, mode) in self.variant.modes.iter().enumerate() {
             if !plan.allowed[m] {
                 continue;
             }
             for (i, held) in mode.held_at.iter().enumerate() {
-                context.held[i] = held.unwrap_or(self.initial.q[i]);
+                context.held_mut()[i] = held.unwrap_or(self.initial.q[i]);
             }
             let watched = plan.watched[m].iter().filter(|w| w.condition.is_none());
             let general = watched.map(|w| &mode.guards[w.guard]);
