@@ -241,8 +241,7 @@ class ModeEquations:
         """
         rows = []
         for row in ca.vertsplit(self.r) if self.free else []:
-            terms = graph.additive_terms(row)
-            rows.append(len(terms) * sum((ca.fabs(t) for t in terms), ca.SX(0)))
+            rows.append(len(graph.additive_terms(row)) * graph.magnitude(row))
         return ca.vertcat(*rows) if rows else ca.SX(0, 1)
 
     def energies(self):

@@ -188,7 +188,8 @@ def _mode(variant, i, equations):
         yield f"{pad}            name: {_text(_guard_name(transitions))}, text: {_text(units.short(expression, 200))},"
         yield f"{pad}            unit: {_text(_unit(model, expression))}, shape: {_shape(model, equations, expression)},"
         yield (f"{pad}            kernel: GuardKernel {{ free: {free}, value: {functions['guard', g].symbol}, "
-               f"rate: {functions['guard_rate', g].symbol} }},")
+               f"rate: {functions['guard_rate', g].symbol}, "
+               f"magnitude: {functions['guard_magnitude', g].symbol} }},")
         yield f"{pad}            transitions: &["
         for t, transition in enumerate(transitions):
             condition = functions.get(("condition", g, t))

@@ -186,6 +186,7 @@ def _variant(model):
             values.append(placed if linear is None else ca.SX(0))
             rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
             _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
+            _add(variant, prefix + f"guard{g}_magnitude", graph.magnitude(placed), equations, (i, "guard_magnitude", g))
             for t, transition in enumerate(transitions):
                 target = modes[index[transition.target.name]]
                 reset = _reset(model, equations, target, transition)

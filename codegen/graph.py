@@ -55,6 +55,11 @@ def additive_terms(expression):
     return terms
 
 
+def magnitude(expression):
+    """Sum of the absolute values of the terms of a scalar sum."""
+    return sum((ca.fabs(term) for term in additive_terms(expression)), ca.SX(0))
+
+
 def without_idle(column, symbols, discretes):
     """The same column with each entry rid of the `symbols` on which it does not depend, although it
     contains them: sin² + cos², or velocities whose terms cancel.

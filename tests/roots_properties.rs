@@ -235,14 +235,18 @@ proptest! {
         let watch = planted.start();
         // Where a dormant guard leaves zero downwards is where its value stops to underflow.
         prop_assume!(watch != Watch::Dormant || planted.value(f64::EPSILON) > 0.0);
-        prop_assert_eq!(p.search(0.0, end, watch, 0.0), scaled.search(0.0, end, watch, 0.0));
+        let in_other_units = |found: Search| Search { turn: scale * found.turn, ..found };
+        prop_assert_eq!(
+            in_other_units(p.search(0.0, end, watch, 0.0)),
+            scaled.search(0.0, end, watch, 0.0)
+        );
         let noise = 1e-14;
         prop_assert_eq!(
-            search(|t| planted.value(t), 0.0, end, watch, noise),
+            in_other_units(search(|t| planted.value(t), 0.0, end, watch, noise)),
             search(|t| scale * planted.value(t), 0.0, end, watch, scale * noise)
         );
         prop_assert_eq!(
-            search(|t| planted.value(t), 0.0, end, watch, 0.0),
+            in_other_units(search(|t| planted.value(t), 0.0, end, watch, 0.0)),
             search(|t| scale * planted.value(t), 0.0, end, watch, 0.0)
         );
     }

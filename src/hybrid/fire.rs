@@ -23,6 +23,7 @@ impl Simulation<'_> {
             return Err(Reason::Cycle { cycle });
         };
         let transition = &mode.guards[guard].transitions[t];
+        self.doubts.happened(&mode.guards[guard]);
         if self
             .problem
             .end

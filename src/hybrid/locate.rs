@@ -196,7 +196,11 @@ fn value_at<const F: usize>(
 }
 
 /// Derivative of a guard along the flow.
-fn rate_at<const F: usize>(equations: &mut Equations<F>, guard: &Guard, state: &State<F>) -> f64 {
+pub(super) fn rate_at<const F: usize>(
+    equations: &mut Equations<F>,
+    guard: &Guard,
+    state: &State<F>,
+) -> f64 {
     let at = Free {
         q: &state.q,
         v: &state.v,

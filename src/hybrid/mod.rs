@@ -7,6 +7,7 @@
 
 mod accumulation;
 mod crossing;
+mod doubt;
 mod ensemble;
 mod enter;
 mod equations;
@@ -22,10 +23,12 @@ mod resume;
 pub mod roots;
 mod samples;
 mod segment;
+mod sensitivity;
 mod simulation;
 mod simulator;
 mod solvers;
 mod stiffness;
+mod typical;
 mod visited;
 mod work;
 

@@ -69,7 +69,7 @@ pub struct End {
 }
 
 /// Tolerances of the local error of a step: absolute + relative × magnitude.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Accuracy {
     /// Relative tolerance.
     pub relative: f64,
@@ -133,11 +133,7 @@ impl Problem {
                 time: 1.0,
                 after: None,
             },
-            accuracy: Accuracy {
-                relative: 0.0,
-                q_absolute: vec![0.0; n],
-                v_absolute: vec![0.0; n],
-            },
+            accuracy: Accuracy::default(),
             method: Method::default(),
             record: Record {
                 every: Some(f64::INFINITY),
@@ -154,16 +150,16 @@ impl Problem {
         problem
     }
 
-    /// Sets the relative tolerance, and the absolute ones to it times the model's scales.
+    /// Sets the relative tolerance, and the absolute ones to it times the typical sizes
+    /// ([`Problem::typical_sizes`]) with the parameters and the initial state as they are.
     pub fn set_tolerance(&mut self, relative: f64) {
-        let coordinates = self.model.coordinates;
+        let sizes = self.typical_sizes();
+        let [q_absolute, v_absolute] =
+            sizes.map(|sizes| sizes.into_iter().map(|size| relative * size).collect());
         self.accuracy = Accuracy {
             relative,
-            q_absolute: coordinates.iter().map(|c| relative * c.scale).collect(),
-            v_absolute: coordinates
-                .iter()
-                .map(|c| relative * c.rate_scale)
-                .collect(),
+            q_absolute,
+            v_absolute,
         };
     }
 

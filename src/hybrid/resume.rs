@@ -67,6 +67,7 @@ impl Simulation<'_> {
             end,
             solver,
             energy,
+            uncertain,
             ..
         } = run;
         self.here.now = Instant::new(end.t);
@@ -79,6 +80,7 @@ impl Simulation<'_> {
             .copy_from_slice(&end.state.discrete);
         self.ledger = energy.as_ref().map(RunningLedger::continuing);
         self.solver = solver;
+        self.doubts.uncertain = uncertain;
         if let Some((name, _)) = self.problem.end.after {
             self.counted = events.iter().filter(|e| e.transition == name).count() as u64;
         }

@@ -1,6 +1,7 @@
 //! From one event to the next: steps, crossings on their dense output, samples and ledger.
 
 use super::crossing::{Cut, cut};
+use super::doubt::Searched;
 use super::equations::{Clock, Equations};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
@@ -133,6 +134,16 @@ impl Simulation<'_> {
                 watched,
                 &mut self.signs,
             )?;
+            let searched = Searched {
+                index: self.here.mode,
+                mode,
+                watched,
+                watches: &self.signs.watches,
+                found: &self.signs.found,
+                accuracy: &problem.accuracy,
+            };
+            self.doubts
+                .look(&searched, method, &mut equations, &mut conditions);
             let event = match cut {
                 Cut::Nothing => None,
                 Cut::Event {

@@ -2,6 +2,7 @@
 
 use super::accumulation::{Accumulation, Limit};
 use super::crossing::Signs;
+use super::doubt::Doubts;
 use super::ensemble::Member;
 use super::failure::Reason;
 use super::instant::Instant;
@@ -87,6 +88,7 @@ pub(super) struct Simulation<'p> {
     pub drift: Box<[f64]>,
     /// Remembered signs of what is watched in the present mode.
     pub signs: Signs,
+    pub doubts: Doubts,
     /// Room for a reset: q, v, discrete states.
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
@@ -145,6 +147,7 @@ impl<'p> Simulation<'p> {
             at_start: zeros(n),
             drift: zeros(n),
             signs: Signs::default(),
+            doubts: Doubts::new(problem.variant.modes.len()),
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(2 * n, model.discretes.len()),
             visited: Visited::default(),
@@ -201,6 +204,7 @@ impl<'p> Simulation<'p> {
         self.stiffness.fill(Stiffness::default());
         self.accumulation.clear();
         self.visited.clear();
+        self.doubts.clear();
         self.recorder.clear();
         self.jumps.clear();
         self.states_at_jumps.clear();
@@ -514,6 +518,7 @@ impl<'p> Simulation<'p> {
             solver: self.solver,
             energy,
             error: None,
+            uncertain: self.doubts.uncertain,
             wall: clock.elapsed(),
         }
     }

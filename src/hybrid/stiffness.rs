@@ -2,6 +2,10 @@
 //!
 //! An explicit method is stiff where its steps follow a rate that the motion no longer shows. Two
 //! signs of that start a trial of the implicit method, and the lengths of its steps decide.
+//!
+//! Stiffness may come and go while a mode lasts: a stop that is a stiff spring, a damper that state or
+//! input engages. So a verdict is open again after some steps, and after twice as many each time that it
+//! turns out to be the same: what that costs falls off with the length of the run.
 
 /// Cost of a step of Radau IIA in steps of the Taylor method, as measured on the benchmark problems:
 /// 1.3 (linear equations) to 3 (the walking tank).
@@ -17,13 +21,22 @@ const DECAYED: f64 = 24.0;
 /// of the motion behind it.
 const TRIAL: u32 = 16;
 
+/// Steps for which the first verdict holds. To reach it again takes the implicit method's trial and as
+/// many steps of the explicit one: some thirty, 3 % of these.
+const TERM: u32 = 1024;
+
 /// Steps of a segment between two looks at the rate of its fastest decay.
 const LOOK: u32 = 8;
 
 /// What was found out about a mode so far, and the signs of stiffness in the present segment.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Stiffness {
     verdict: Verdict,
+    /// The verdict before it was open again.
+    before: Verdict,
+    /// Steps for which a verdict holds, and those that are left of them.
+    term: u32,
+    left: u32,
     /// Steps that the explicit method has lost by its shorter lengths.
     lost: f64,
     /// Fastest decay, 1/s; 0 before the first look.
@@ -48,13 +61,49 @@ enum Verdict {
     Stiff,
 }
 
+impl Default for Stiffness {
+    fn default() -> Self {
+        Stiffness {
+            verdict: Verdict::Open,
+            before: Verdict::Open,
+            term: TERM,
+            left: TERM,
+            lost: 0.0,
+            rate: 0.0,
+            decayed: 0.0,
+            steps: 0,
+        }
+    }
+}
+
 impl Stiffness {
     /// A segment begins, with new transients.
     pub fn begin(&mut self) {
         *self = Stiffness {
             verdict: self.verdict,
+            before: self.before,
+            term: self.term,
+            left: self.left,
             ..Stiffness::default()
         };
+    }
+
+    /// Comes to a verdict.
+    fn decide(&mut self, verdict: Verdict) {
+        self.term = match verdict == self.before {
+            true => self.term.saturating_mul(2),
+            false => TERM,
+        };
+        (self.verdict, self.left) = (verdict, self.term);
+    }
+
+    /// Takes note of a step that a verdict holds for.
+    fn serve(&mut self) {
+        self.left -= 1;
+        if self.left == 0 {
+            (self.before, self.verdict) = (self.verdict, Verdict::Open);
+            self.begin();
+        }
     }
 
     /// Whether the implicit method is to go on.
@@ -62,11 +111,21 @@ impl Stiffness {
         matches!(self.verdict, Verdict::Stiff | Verdict::Trial { .. })
     }
 
+    /// Whether the implicit method was the faster one when that was last found out.
+    pub fn is_stiff(&self) -> bool {
+        match self.verdict {
+            Verdict::Open => self.before == Verdict::Stiff,
+            _ => self.prefers_implicit(),
+        }
+    }
+
     /// Takes note of a step of the explicit method of length `h`, for which the implicit one might make
     /// a step `lag` times as long; `rate` is that of the fastest decay, 1/s.
     pub fn explicit_step(&mut self, h: f64, lag: f64, rate: impl FnOnce() -> f64) {
-        if self.verdict != Verdict::Open {
-            return;
+        match self.verdict {
+            Verdict::Open => {}
+            Verdict::NotStiff => return self.serve(),
+            _ => return,
         }
         self.steps += 1;
         if self.steps % LOOK == LOOK / 2 {
@@ -85,15 +144,16 @@ impl Stiffness {
 
     /// Takes note of a step of the implicit method of length `h`.
     pub fn implicit_step(&mut self, h: f64) {
-        self.verdict = match self.verdict {
-            Verdict::Trial { length, .. } if h > length => Verdict::Stiff,
-            Verdict::Trial { left: 0, .. } => Verdict::NotStiff,
-            Verdict::Trial { length, left } => Verdict::Trial {
-                length,
-                left: left - 1,
-            },
-            verdict => verdict,
-        };
+        match self.verdict {
+            Verdict::Trial { length, .. } if h > length => self.decide(Verdict::Stiff),
+            Verdict::Trial { left: 0, .. } => self.decide(Verdict::NotStiff),
+            Verdict::Trial { length, left } => {
+                let left = left - 1;
+                self.verdict = Verdict::Trial { length, left };
+            }
+            Verdict::Stiff => self.serve(),
+            _ => {}
+        }
     }
 }
 
@@ -146,5 +206,29 @@ mod tests {
         assert!(!not.prefers_implicit());
         explicit(&mut not, 100, 20.0, 0.0);
         assert!(!not.prefers_implicit());
+    }
+
+    #[test]
+    fn a_verdict_is_open_again_after_its_term_which_doubles_while_it_stays_the_same() {
+        let mut stiffness = Stiffness::default();
+        for term in [TERM, 2 * TERM, 4 * TERM] {
+            assert!(!stiffness.prefers_implicit());
+            explicit(&mut stiffness, 10, 20.0, 0.0);
+            stiffness.implicit_step(2.5);
+            (1..term).for_each(|_| stiffness.implicit_step(2.5));
+            assert!(stiffness.prefers_implicit());
+            stiffness.implicit_step(2.5);
+        }
+        // It is not stiff any more, and later it is again.
+        explicit(&mut stiffness, 100_000, 0.5, 0.0);
+        assert!(!stiffness.prefers_implicit());
+        explicit(&mut stiffness, 10, 20.0, 0.0);
+        assert!(stiffness.prefers_implicit());
+        // A trial that fails does not decide for ever either.
+        (0..17).for_each(|_| stiffness.implicit_step(1.9));
+        explicit(&mut stiffness, TERM, 20.0, 0.0);
+        assert!(!stiffness.prefers_implicit());
+        explicit(&mut stiffness, 10, 20.0, 0.0);
+        assert!(stiffness.prefers_implicit());
     }
 }

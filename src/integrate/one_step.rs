@@ -54,6 +54,12 @@ pub trait OneStep<const F: usize, Y> {
         None
     }
 
+    /// Bound of the error of the dense output inside a step, in units of the tolerance, where it is not
+    /// as accurate as the end of the step.
+    fn looseness(&self) -> f64 {
+        0.0
+    }
+
     /// Work done since it was last asked for.
     fn take_counters(&mut self) -> Counters;
 }
@@ -119,6 +125,10 @@ where
 
     fn nodes(&self) -> impl Iterator<Item = Node<F>> {
         self.stages()
+    }
+
+    fn looseness(&self) -> f64 {
+        self.looseness()
     }
 
     fn take_counters(&mut self) -> Counters {

@@ -155,6 +155,12 @@ where
         })
     }
 
+    /// Tolerance of the error estimate ÷ tolerance asked for: the dense output, of a lower order than
+    /// the steps but a higher one than the estimate, may err by so much in units of the latter.
+    pub fn looseness(&self) -> f64 {
+        self.control.loosening
+    }
+
     /// Work done since construction, or since it was last taken.
     pub fn counters(&self) -> &Counters {
         &self.counters

@@ -895,6 +895,15 @@ impl<const F: usize> ModeKernel<F> {
         out
     }
 
+    /// Sum of the absolute values of the terms that a guard is the sum of, in its unit.
+    pub fn guard_magnitude(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
+        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        let mut out = 0.0;
+        // SAFETY: one output; the guard's number of free coordinates was checked.
+        unsafe { x.call(guard.magnitude, self.dimensions, at.pointers(), &mut out) }
+        out
+    }
+
     /// The reset of a transition out of this mode: all q, all v, all discrete states after it.
     ///
     /// # Panics
@@ -1077,6 +1086,7 @@ pub struct GuardKernel {
     free: usize,
     value: Raw,
     rate: Raw,
+    magnitude: Raw,
 }
 
 /// A generated transition: its reset, and the conditions with the target's number of

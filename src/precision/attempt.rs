@@ -1,12 +1,9 @@
 //! A run that may take too long.
 
 use crate::hybrid::{Problem, Reason, simulate};
-use crate::record::{Progress, Run};
+use crate::record::{Looks, Progress, Run};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-
-/// Calls between two looks at the clock, which costs as much as a short step.
-const STRIDE: u32 = 16;
 
 /// How a run ended.
 #[derive(Debug)]
@@ -23,7 +20,7 @@ pub enum Attempt {
 struct Limited<'a> {
     progress: &'a mut dyn Progress,
     deadline: Option<Instant>,
-    calls: u32,
+    looks: Looks,
     expired: bool,
     interrupted: bool,
 }
@@ -31,9 +28,8 @@ struct Limited<'a> {
 impl Progress for Limited<'_> {
     fn advance(&mut self, t: f64, events: u64) -> ControlFlow<()> {
         self.interrupted = self.progress.advance(t, events).is_break();
-        self.calls = (self.calls + 1) % STRIDE;
-        if self.calls == 0 {
-            self.expired = self.deadline.is_some_and(|at| Instant::now() > at);
+        if let Some(now) = self.looks.due() {
+            self.expired = self.deadline.is_some_and(|at| now > at);
         }
         match self.interrupted || self.expired {
             true => ControlFlow::Break(()),
@@ -54,7 +50,7 @@ pub fn attempt(
     let mut limited = Limited {
         progress,
         deadline: limit.map(|limit| Instant::now() + limit),
-        calls: 0,
+        looks: Looks::new(),
         expired: false,
         interrupted: false,
     };

@@ -64,6 +64,8 @@ pub struct Measured {
     pub used: String,
     /// Difference to the reference.
     pub error: Difference,
+    /// How often it says that it cannot tell whether an event happens.
+    pub uncertain: u64,
     /// What the energy balance is off by, J; `None` where no ledger is kept.
     pub imbalance: Option<f64>,
     /// Steps.
@@ -213,6 +215,7 @@ fn measure(
     };
     Ok(Verdict::Complete(Measured {
         error: reference.error(&run),
+        uncertain: run.uncertain.total,
         imbalance: run.energy.as_ref().map(|energy| energy.imbalance().abs()),
         steps: run.solver.steps,
         evaluations: run.solver.residual_evaluations,

@@ -21,6 +21,7 @@
 mod files;
 pub mod folder;
 mod layout;
+mod looks;
 mod number;
 mod peaks;
 pub mod plot;
@@ -31,10 +32,12 @@ mod report;
 mod run;
 pub mod summary;
 pub mod table;
+mod uncertain;
 
 pub use files::{OVERVIEW, PHASE};
 pub use folder::{FolderError, OutputFolder};
 pub use layout::{Layout, Quantity, Recorded};
+pub(crate) use looks::Looks;
 pub(crate) use number::{exact, rounded};
 pub use peaks::{Peak, peaks};
 pub use progress::{Progress, ProgressLine, Silent};
@@ -46,3 +49,4 @@ pub use run::{
     Solver, Subject, Trajectory,
 };
 pub use summary::Summary;
+pub use uncertain::{Doubt, Question, Uncertain};

@@ -14,6 +14,7 @@ use super::layout::{Layout, Quantity, Recorded};
 use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
 use super::summary::SUMMARY;
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
+use super::uncertain::Uncertain;
 use crate::model::{Model, Variant};
 
 /// Why a run cannot be read.
@@ -37,6 +38,8 @@ struct Written {
     end: End,
     impacts: BTreeMap<String, IgnoredAny>,
     energy: Option<Energy>,
+    #[serde(default)]
+    uncertain: Uncertain,
     solver: Solver,
     wall_seconds: f64,
 }
@@ -99,6 +102,7 @@ impl Run {
                 frame: energy.frame,
             }),
             error: None,
+            uncertain: written.uncertain,
             wall: Duration::try_from_secs_f64(written.wall_seconds).unwrap_or_default(),
             failure: None,
         })

@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::number::rounded;
-use super::{Run, Summary};
+use super::{Question, Run, Summary};
 
 /// Digits shown: enough to compare two runs by eye. The exact numbers are in the files.
 const DIGITS: usize = 6;
@@ -58,6 +58,7 @@ impl Display for Report {
         writeln!(f)?;
         energies(f, summary)?;
         error_estimate(f, summary)?;
+        uncertain(f, summary)?;
         let solver = &summary.solver;
         writeln!(
             f,
@@ -128,6 +129,28 @@ fn table<const N: usize>(f: &mut Formatter, rows: &[[String; N]]) -> fmt::Result
         writeln!(f, "{}", line.join("  ").trim_end())?;
     }
     Ok(())
+}
+
+/// One line: how many places are in doubt, the first of them, and what to do.
+fn uncertain(f: &mut Formatter, summary: &Summary) -> fmt::Result {
+    let uncertain = &summary.uncertain;
+    let Some(first) = uncertain.first.first() else {
+        return Ok(());
+    };
+    let (value, error) = (rounded(first.value, 2), rounded(first.error, 2));
+    let what = match first.what {
+        Question::Graze => format!("crosses zero by {value}, with an error of {error}"),
+        Question::NearMiss => format!("turns back at {value}, with an error of {error}"),
+        Question::Unresolved => "could not be resolved".to_owned(),
+    };
+    writeln!(
+        f,
+        "uncertain   {} times whether an event happens, first at t = {} s: {} {what} {}; tighten accuracy.relative",
+        uncertain.total,
+        number(first.t),
+        first.guard,
+        first.unit,
+    )
 }
 
 fn error_estimate(f: &mut Formatter, summary: &Summary) -> fmt::Result {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::Layout;
+use super::{Layout, Uncertain};
 
 /// The result of a simulation, complete or stopped early.
 #[derive(Debug, Clone)]
@@ -23,6 +23,8 @@ pub struct Run {
     pub energy: Option<Ledger>,
     /// Estimate of the run's error; `None` where none was asked for.
     pub error: Option<ErrorEstimate>,
+    /// What the run cannot tell at its tolerance.
+    pub uncertain: Uncertain,
     /// Time the simulation took on the wall clock (without reading and writing files).
     pub wall: Duration,
     /// Why the run stopped before its end; `None` when it reached it.

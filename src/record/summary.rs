@@ -43,6 +43,8 @@ pub struct Summary {
     /// Estimate of the error of the run; only where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_estimate: Option<Estimate>,
+    /// What the run cannot tell at its tolerance.
+    pub uncertain: super::Uncertain,
     /// Work done by the integrator.
     pub solver: super::Solver,
     /// Time the simulation took on the wall clock (s).
@@ -232,6 +234,7 @@ impl Summary {
                 extra_events: error.extra,
                 events_in_tails: error.in_tails,
             }),
+            uncertain: run.uncertain.clone(),
             solver: run.solver.clone(),
             wall_seconds: run.wall.as_secs_f64(),
         }

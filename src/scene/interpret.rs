@@ -50,7 +50,7 @@ pub(crate) fn scene(
     else {
         unreachable!("a part of the scene is absent without an error")
     };
-    let problem = Problem {
+    let mut problem = Problem {
         model,
         variant,
         title: checked.get("title").map(|title| title.text().to_owned()),
@@ -59,10 +59,11 @@ pub(crate) fn scene(
         initial,
         freeze,
         end,
-        accuracy: accuracy(model, &checked),
+        accuracy: Accuracy::default(),
         method: method(&checked),
         record: record(&checked),
     };
+    set_accuracy(&mut problem, &checked);
     let source = SceneSource { root };
     Ok(Scene { problem, source })
 }
@@ -231,28 +232,33 @@ fn end(variant: &'static Variant, scene: &Checked) -> Result<End, SceneError> {
     }
 }
 
-fn accuracy(model: &Model, scene: &Checked) -> Accuracy {
+/// Tolerances: those of the scene, and the default of what it says nothing about.
+fn set_accuracy(problem: &mut Problem, scene: &Checked) {
     let accuracy = scene.get("accuracy");
     let relative = accuracy
         .and_then(|a| a.get("relative"))
         .map_or(format::DEFAULT_RELATIVE, Checked::number);
+    problem.set_tolerance(relative);
     let absolute = accuracy.and_then(|a| a.get("absolute"));
-    let tolerance = |key: &str, scale: f64| match absolute {
-        Some(map) if map.is_object() => map.get(key).map_or(relative * scale, Checked::number),
-        Some(all) => all.number(),
-        None => relative * scale,
+    let given = |key: &str| match absolute {
+        Some(map) if map.is_object() => map.get(key).map(Checked::number),
+        all => all.map(Checked::number),
     };
-    let coordinates = model.coordinates;
-    Accuracy {
-        relative,
-        q_absolute: coordinates
-            .iter()
-            .map(|c| tolerance(c.name, c.scale))
-            .collect(),
-        v_absolute: coordinates
-            .iter()
-            .map(|c| tolerance(&format::rate_key(c), c.rate_scale))
-            .collect(),
+    for (i, coordinate) in problem.model.coordinates.iter().enumerate() {
+        let keys = [coordinate.name, &format::rate_key(coordinate)];
+        let Accuracy {
+            q_absolute,
+            v_absolute,
+            ..
+        } = &mut problem.accuracy;
+        for (tolerance, key) in [&mut q_absolute[i], &mut v_absolute[i]]
+            .into_iter()
+            .zip(keys)
+        {
+            if let Some(given) = given(key) {
+                *tolerance = given;
+            }
+        }
     }
 }
 

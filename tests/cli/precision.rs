@@ -58,6 +58,55 @@ fn every_method_comes_with_time_and_error_at_every_tolerance() {
 }
 
 #[test]
+fn json_says_what_the_table_and_the_advice_say() {
+    let home = tempfile::tempdir().unwrap();
+    let precision = ["precision", &scene("belt_oscillator"), "--json"];
+    let arguments = ["--error", "1e-6", "--error", "1e-20", "--out", "out"];
+    let output = ends_with(0, home.path(), &[&precision[..], &arguments].concat());
+    let found: serde_json::Value = serde_json::from_str(stdout(&output)).unwrap();
+    assert_eq!(found["complete"], true);
+    let table = rows(&home.path().join("out"));
+    let printed = found["rows"].as_array().unwrap();
+    assert_eq!(printed.len(), table.len());
+    for (printed, row) in printed.iter().zip(&table) {
+        for key in ["method", "used", "outcome"] {
+            assert_eq!(printed[key], row[key].as_str(), "{row:?}");
+        }
+        for (key, head) in [
+            ("tolerance", "tolerance"),
+            ("end_error", "end error"),
+            ("event_time_error", "event time error [s]"),
+            ("missed_events", "missed events"),
+            ("extra_events", "extra events"),
+            ("events_in_tails", "events in tails"),
+            ("uncertain", "uncertain"),
+            ("energy_imbalance", "energy imbalance [J]"),
+            ("steps", "steps"),
+            ("evaluations", "evaluations"),
+            ("seconds", "time [s]"),
+        ] {
+            let number: f64 = row[head].parse().unwrap();
+            assert_eq!(printed[key].as_f64(), Some(number), "{key} of {row:?}");
+        }
+    }
+    let reference = &found["reference"];
+    assert_eq!(reference["events"], 13);
+    let bound = table[0]["bound of the end error"].parse::<f64>().unwrap();
+    assert_eq!(reference["bound"]["end_error"].as_f64(), Some(bound));
+    assert!(reference["horizon"].is_null());
+    let [first, second] = [0, 1].map(|i| &found["advice"][i]);
+    assert_eq!(
+        (first["error"].as_f64(), second["error"].as_f64()),
+        (Some(1e-6), Some(1e-20))
+    );
+    assert!(first["tolerance"].as_f64().is_some() && first["why_none"].is_null());
+    assert_eq!(
+        second["why_none"],
+        "the reference itself is not known to that"
+    );
+}
+
+#[test]
 fn the_tolerance_that_is_advised_reaches_the_error() {
     // P2 of benches/peers, against its reference of 30 digits.
     let home = tempfile::tempdir().unwrap();

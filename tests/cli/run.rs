@@ -161,3 +161,80 @@ fn a_refused_run_leaves_the_last_one() {
     ends_with(2, home.path(), &[&run[..], &["--set", "end=-1"]].concat());
     assert_eq!(json(&home.path().join("out/summary.json"))["end"]["t"], 5.0);
 }
+
+/// A forced oscillation that reaches a stop at x = 1 but for `missing` (tests/data/07_grazing.json).
+fn grazing(missing: f64) -> String {
+    let (omega, force, lag) = (0.8, 0.39395431207184417, 0.4182243295792291);
+    let (amplitude, phase) = (force * (1.0 - missing), lag + std::f64::consts::PI);
+    format!(
+        r#"{{"model": "coulomb_oscillator",
+            "parameters": {{"c": 0.2, "static_friction": 0, "kinetic_friction": 0, "stop": 1}},
+            "initial": {{"x.rate": {}, "slip": -1}},
+            "inputs": {{"force": {{"sine": {{"amplitude": {amplitude}, "frequency": {}, "phase": {phase}}}}}}},
+            "end": 3, "accuracy": {{"relative": 1e-8}}}}"#,
+        -omega * (1.0 - missing),
+        omega / std::f64::consts::TAU,
+    )
+}
+
+#[test]
+fn what_hangs_on_the_tolerance_is_said() {
+    let home = tempfile::tempdir().unwrap();
+    for (missing, total) in [(1e-10, 1), (1e-5, 0)] {
+        fs::write(home.path().join("scene.json"), grazing(missing)).unwrap();
+        let output = ends_with(0, home.path(), &["run", "scene.json", "--out", "out"]);
+        let uncertain = &json(&home.path().join("out/summary.json"))["uncertain"];
+        assert_eq!(uncertain["total"], total, "{uncertain}");
+        let line = stdout(&output)
+            .lines()
+            .find(|line| line.starts_with("uncertain"));
+        assert_eq!(line.is_some(), total > 0);
+        let Some(line) = line else { continue };
+        assert!(
+            line.contains("impact turns back at") && line.contains("tighten"),
+            "{line}"
+        );
+        let first = &uncertain["first"][0];
+        assert_eq!(
+            (&first["what"], &first["unit"]),
+            (&"near-miss".into(), &"m".into())
+        );
+        let [value, error] = ["value", "error"].map(|key| first[key].as_f64().unwrap());
+        assert!((value / missing - 1.0).abs() < 0.1, "{value:e}");
+        assert!((1e-8..1e-6).contains(&error), "{error:e}");
+    }
+    // What was said of the run that is continued is said of the whole.
+    fs::write(home.path().join("scene.json"), grazing(1e-10)).unwrap();
+    ends_with(0, home.path(), &["run", "scene.json", "--out", "out"]);
+    let longer = ["run", "scene.json", "--resume", "out", "--set", "end=3.5"];
+    ends_with(0, home.path(), &longer);
+    assert_eq!(
+        json(&home.path().join("out/summary.json"))["uncertain"]["total"],
+        1
+    );
+}
+
+#[test]
+fn ordinary_scenes_leave_nothing_uncertain() {
+    let home = tempfile::tempdir().unwrap();
+    let scenes = fs::read_dir(project().join("scenes")).unwrap();
+    let names = scenes.map(|entry| entry.unwrap().path().display().to_string());
+    for name in names.filter(|name| name.ends_with(".json")) {
+        for tolerance in ["1e-4", "1e-8", "1e-12"] {
+            let relative = format!("accuracy.relative={tolerance}");
+            let run = [
+                "run",
+                &name,
+                "--set",
+                &relative,
+                "--set",
+                "record.energies=false",
+            ];
+            let output = ends_with(0, home.path(), &run);
+            assert!(
+                !stdout(&output).contains("uncertain"),
+                "{name} at {tolerance}"
+            );
+        }
+    }
+}

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use dalembert::record::{
     EnergyJump, Event, Group, Layout, Ledger, Place, Quantity, Recorder, Run, Snapshot, Solver,
-    Subject,
+    Subject, Uncertain,
 };
 
 const G: f64 = 9.81;
@@ -125,6 +125,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             ..Ledger::default()
         }),
         error: None,
+        uncertain: Uncertain::default(),
         wall: Duration::ZERO,
         failure: None,
     }
@@ -319,6 +320,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
                     .into(),
         }),
         error: None,
+        uncertain: Uncertain::default(),
         wall: Duration::from_millis(123),
         failure: None,
     }

@@ -1,5 +1,6 @@
 //! `dalembert precision`.
 
+mod json;
 mod write;
 
 use std::path::PathBuf;
@@ -36,7 +37,13 @@ The advice names the fastest tolerance whose error, and that of all tighter ones
 wanted one, with every event found. There the error is that of the end, or that of an event's time \
 over the duration of the run, whichever is larger, and the bound comes on top.
 
---out DIR writes precision.csv and precision.svg. Ctrl-C ends the study; what was done so far is \
+--out DIR writes precision.csv and precision.svg. --json prints, instead of the tables, an object with \
+`rows` (a run each, as in precision.csv; null where there is nothing), `reference` (what they were \
+compared with, its bounds, its horizon where it is not determined to the end of the scene) and `advice` \
+(for each wanted error the method and tolerance, or why there is none). Errors are relative, times in s, \
+energies in J.
+
+Ctrl-C ends the study; what was done so far is \
 shown and written, with status 3.")]
 pub struct PrecisionArguments {
     /// Scene file (JSON)
@@ -47,6 +54,9 @@ pub struct PrecisionArguments {
     /// Folder for the table and the plot
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
     /// Replace a value of the scene, such as `parameters.mu_s=0.3`; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -91,7 +101,10 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
     if let Some(folder) = &folder {
         precision.write(folder)?;
     }
-    print::output(&precision)?;
+    match arguments.json {
+        true => print::output(format_args!("{:#}", precision.json()))?,
+        false => print::output(&precision)?,
+    }
     Ok(match precision.study.is_complete() {
         true => Outcome::Done,
         false => Outcome::StoppedEarly,

@@ -44,6 +44,7 @@ impl Precision {
             "missed events",
             "extra events",
             "events in tails",
+            "uncertain",
             "energy imbalance [J]",
             "steps",
             "evaluations",
@@ -66,6 +67,7 @@ impl Precision {
                 count(|m| m.error.events.missed as u64),
                 count(|m| m.error.events.extra as u64),
                 count(|m| m.error.events.in_tails as u64),
+                count(|m| m.uncertain),
                 number(found.and_then(|m| m.imbalance)),
                 count(|m| m.steps),
                 count(|m| m.evaluations),
@@ -112,7 +114,7 @@ impl Precision {
 }
 
 /// How a run ended, in words.
-fn outcome(verdict: &Verdict) -> String {
+pub(super) fn outcome(verdict: &Verdict) -> String {
     match verdict {
         Verdict::Complete(_) => "complete".into(),
         Verdict::Stopped { at, reason } => {
@@ -235,13 +237,10 @@ impl Display for Precision {
                     row.tolerance,
                     duration(row.measured().map_or(f64::NAN, |found| found.seconds))
                 )?,
-                None if wanted <= reference.bound.end => write!(
-                    f,
-                    "\nfor an error of {wanted:.0e}: the reference itself is not known to that"
-                )?,
                 None => write!(
                     f,
-                    "\nfor an error of {wanted:.0e}: no run reaches it reliably"
+                    "\nfor an error of {wanted:.0e}: {}",
+                    no_advice(wanted, reference)
                 )?,
             }
         }
@@ -249,12 +248,25 @@ impl Display for Precision {
     }
 }
 
-/// Says what the runs were compared with.
-fn describe(reference: &Reference, f: &mut Formatter) -> fmt::Result {
-    let by = match reference.alone() {
+/// Why there is no advice for an error.
+pub(super) fn no_advice(wanted: f64, reference: &Reference) -> &'static str {
+    match wanted <= reference.bound.end {
+        true => "the reference itself is not known to that",
+        false => "no run reaches it reliably",
+    }
+}
+
+/// The two runs of a reference.
+pub(super) fn compared_with(reference: &Reference) -> String {
+    match reference.alone() {
         None => "taylor and radau at a tolerance of 1e-14".to_owned(),
         Some(why) => format!("radau at tolerances of 1e-14 and 1e-13 ({why})"),
-    };
+    }
+}
+
+/// Says what the runs were compared with.
+fn describe(reference: &Reference, f: &mut Formatter) -> fmt::Result {
+    let by = compared_with(reference);
     let (events, bound) = (reference.events(), reference.bound);
     write!(
         f,

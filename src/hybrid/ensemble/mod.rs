@@ -80,7 +80,7 @@ impl Ensemble {
                 // Where it fails it has shown what it can.
                 let _ = pilot.run(&mut Silent);
                 let verdicts = pilot.stiffness.iter();
-                verdicts.map(|s| s.prefers_implicit()).collect()
+                verdicts.map(|s| s.is_stiff()).collect()
             }
         };
         let in_lanes = (modes.iter().zip(stiff))

@@ -109,6 +109,31 @@ pub(super) fn lowest(f: &mut impl FnMut(f64) -> f64, near: Point, low: f64, high
     best
 }
 
+/// Place and value of a minimum between `low` and `high`, by the golden section (Kiefer 1953). The place
+/// is known to half of a double's digits, which leaves of the value no error that counts: its error
+/// is of the order of the square.
+pub(in crate::hybrid) fn minimum(
+    f: &mut impl FnMut(f64) -> f64,
+    (mut low, mut high): (f64, f64),
+) -> Point {
+    let part = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let width = (high - low) / f64::from(1_u32 << (f64::MANTISSA_DIGITS / 2));
+    let (mut l, mut r) = (high - part * (high - low), low + part * (high - low));
+    let (mut of_l, mut of_r) = (f(l), f(r));
+    while high - low > width {
+        if of_l <= of_r {
+            (high, r, of_r) = (r, l, of_l);
+            l = high - part * (high - low);
+            of_l = f(l);
+        } else {
+            (low, l, of_l) = (l, r, of_r);
+            r = low + part * (high - low);
+            of_r = f(r);
+        }
+    }
+    if of_l <= of_r { (l, of_l) } else { (r, of_r) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,6 +169,16 @@ mod tests {
         assert!(x == 0.3f64.next_down() && n <= 192, "{n}");
         let (x, _, n) = counted(|x| 1e-300 - x, 0.0, 1.0);
         assert!(x == 1e-300 && n <= 192, "{n}");
+    }
+
+    #[test]
+    fn a_minimum_is_found_inside_and_at_an_end() {
+        for place in [0.1, 0.5, 0.93] {
+            let (x, value) = minimum(&mut |x: f64| 2.0 + (x - place).powi(2), (0.0, 1.0));
+            assert!((x - place).abs() < 2e-8 && value < 2.0 + 4e-16, "{x}");
+        }
+        let (x, _) = minimum(&mut |x: f64| -x, (0.0, 1.0));
+        assert!(1.0 - x < 2e-8);
     }
 
     #[test]

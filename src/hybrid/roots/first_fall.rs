@@ -83,11 +83,15 @@ pub(super) fn first_fall<const N: usize>(
     let size: f64 = polynomial.coefficients.iter().map(|c| c.abs()).sum();
     let margin = Polynomial::<N>::ROUNDING * size;
     let changes = Changes::of(&bernstein, margin);
+    let bounded = |search: Search| match search.crossing {
+        None => Search::above(least(&bernstein)),
+        Some(_) => search,
+    };
     if matches!(changes, Changes::None) {
-        return Some(Search::quiet(Watch::Armed));
+        return Some(bounded(Search::quiet(Watch::Armed)));
     }
     if let Changes::One(index) = changes {
-        return only_fall(polynomial, (&bernstein, index), (from, to), 1.0);
+        return only_fall(polynomial, (&bernstein, index), (from, to), 1.0).map(bounded);
     }
     // Where it falls and rises again, there is one root before its lowest place.
     let lowest = (1..N).fold(0, |lowest, i| match bernstein[i] < bernstein[lowest] {
@@ -101,7 +105,22 @@ pub(super) fn first_fall<const N: usize>(
             return only_fall(polynomial, (&bernstein, index), (from, end), end);
         }
     }
-    by_certified_steps(polynomial, from, to)
+    by_certified_steps(polynomial, from, to).map(bounded)
+}
+
+/// The least Bernstein coefficient, which the polynomial does not fall below; four side by side, since
+/// each comparison waits for the one before.
+fn least<const N: usize>(bernstein: &[f64; N]) -> f64 {
+    let lower = |a: f64, b: f64| if b < a { b } else { a };
+    let (fours, rest) = bernstein.as_chunks::<4>();
+    let mut least = [f64::INFINITY; 4];
+    for four in fours {
+        for (least, &b) in least.iter_mut().zip(four) {
+            *least = lower(*least, b);
+        }
+    }
+    let all = least.iter().chain(rest);
+    all.fold(f64::INFINITY, |least, &b| lower(least, b))
 }
 
 /// Sign changes of Bernstein coefficients.
@@ -211,6 +230,7 @@ fn root<const N: usize>(
 ) -> Option<Search> {
     let (mut l, mut r) = (left, right);
     let mut value = polynomial.value(s);
+    let mut parabola = (value, 0.0, 0.0);
     for _ in 0..MOST_ITERATIONS {
         if value < 0.0 {
             r = (s, value)
@@ -219,6 +239,7 @@ fn root<const N: usize>(
         }
         let (slope, curvature) = polynomial.slope_and_curvature(s);
         let discriminant = slope * slope - 2.0 * curvature * value;
+        parabola = (value, slope, curvature);
         // The root of the parabola at s that a falling piece leads to, or Newton's.
         let step = match discriminant > 0.0 && slope < 0.0 {
             true => 2.0 * value / (discriminant.sqrt() - slope),
@@ -259,5 +280,12 @@ fn root<const N: usize>(
         }
     }
     let (l, r) = close(&mut own, l, r);
-    Some(Search::found(l.0, r.0, Kind::Fall, Watch::Violated))
+    let event = Search::found(l.0, r.0, Kind::Fall, Watch::Violated);
+    Some(match parabola {
+        // The bottom of the parabola where the iteration has ended.
+        (value, slope, curvature) if curvature > 0.0 => {
+            event.turning(value - slope * slope / (2.0 * curvature))
+        }
+        _ => event,
+    })
 }

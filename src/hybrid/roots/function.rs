@@ -148,6 +148,11 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         let second = self.window(centre, to, first.watch);
         Search {
             resolved: first.resolved && second.resolved,
+            // The guard may turn where the halves meet.
+            turn: match (second.crossing, watch) {
+                (None, Watch::Armed) => first.turn.min(second.turn).min(samples.values[DEGREE / 2]),
+                _ => second.turn,
+            },
             ..second
         }
     }
@@ -203,7 +208,9 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
                     ));
                 }
                 let ends = (start, quotients[DEGREE]);
-                return Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed);
+                let quotient =
+                    Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed);
+                return quotient.map(Search::of_quotient);
             }
             if !interpolant.is_resolved(noise) {
                 return None;
@@ -326,7 +333,10 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
     fn search(mut self, watch: Watch) -> Option<Search> {
         let error = self.interpolant.error();
         let (below, above) = self.interpolant.expansion.bounds();
-        if watch == Watch::Armed && below > error || watch == Watch::Violated && above < -error {
+        if watch == Watch::Armed && below > error {
+            return Some(Search::above(below - error));
+        }
+        if watch == Watch::Violated && above < -error {
             return Some(Search::quiet(watch));
         }
         if !self.interpolant.decays() && !self.resolved {

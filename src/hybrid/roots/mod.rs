@@ -68,6 +68,7 @@ mod function;
 mod polynomial;
 mod walk;
 
+pub(super) use bracket::minimum;
 pub use chebyshev::FIRST_PLACES;
 pub use earliest::{Earliest, earliest};
 pub use function::search;
@@ -135,6 +136,9 @@ pub struct Search {
     /// Whether the guard could be resolved. If not, single values decided, and an event between
     /// them may have been missed; a shorter window or a `noise` bound helps.
     pub resolved: bool,
+    /// How near to zero the guard turns, in its unit. With an event: a value down to which it falls (0
+    /// for a touch), in the window or as its slope and curvature tell; −∞ where it does not turn. Without one, of a guard that stays armed: a value that it stays above; ∞ of others.
+    pub turn: f64,
 }
 
 impl Search {
@@ -144,6 +148,15 @@ impl Search {
             crossing: None,
             watch,
             resolved: true,
+            turn: f64::INFINITY,
+        }
+    }
+
+    /// No event; the guard is armed and stays above `turn`, or at it.
+    pub(crate) fn above(turn: f64) -> Self {
+        Self {
+            turn,
+            ..Self::quiet(Watch::Armed)
         }
     }
 
@@ -157,6 +170,27 @@ impl Search {
             }),
             watch,
             resolved: true,
+            turn: match kind {
+                Kind::Touch => 0.0,
+                _ => f64::NEG_INFINITY,
+            },
         }
+    }
+
+    /// What was found of the guard divided by a power of the time since its zero: the events are the
+    /// same, the values are not.
+    pub(crate) fn of_quotient(self) -> Self {
+        Self {
+            turn: match self.crossing {
+                Some(_) => f64::NEG_INFINITY,
+                None => f64::INFINITY,
+            },
+            ..self
+        }
+    }
+
+    /// The same event, of a guard that would turn back at the value `turn`.
+    pub(crate) fn turning(self, turn: f64) -> Self {
+        Self { turn, ..self }
     }
 }

@@ -115,8 +115,9 @@ impl<const N: usize> Polynomial<N> {
             for &coefficient in &self.coefficients[1..] {
                 falls -= coefficient.min(0.0);
             }
-            if self.coefficients[0] > falls * (1.0 + Self::ROUNDING) {
-                return Search::quiet(Watch::Armed);
+            let falls = falls * (1.0 + Self::ROUNDING);
+            if self.coefficients[0] > falls {
+                return Search::above(self.coefficients[0] - falls);
             }
         }
         // As c₀ + Σ max(cₖ, 0) does from above.
@@ -166,7 +167,7 @@ impl<const N: usize> Polynomial<N> {
             return Search::quiet(Watch::Dormant);
         }
         if coefficients[0] > 0.0 {
-            return quotient.search(0.0, to, Watch::Armed, 0.0);
+            return quotient.search(0.0, to, Watch::Armed, 0.0).of_quotient();
         }
         // Cauchy: the quotient has no root nearer to 0 than this.
         let largest = coefficients[1..]

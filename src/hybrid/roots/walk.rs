@@ -28,6 +28,7 @@ pub(super) trait Pieces {
 pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search> {
     let start = pieces.node(0);
     let mut left = (start, pieces.value(0)?.0);
+    let mut least = f64::INFINITY;
     if watch == Watch::Dormant && left.1.abs() > pieces.rounding(0) {
         watch = Watch::of(left.1);
         if watch == Watch::Violated {
@@ -82,14 +83,22 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
                 if right.1 < 0.0 {
                     let (l, r) = close(&mut |x| pieces.own(x), left, right);
                     let kind = pieces.kind(l, r);
-                    return Some(Search::found(l.0, r.0, kind, Watch::Violated));
+                    let event = Search::found(l.0, r.0, kind, Watch::Violated);
+                    return Some(match kind {
+                        Kind::Fall => event.turning(right.1),
+                        _ => event,
+                    });
                 }
+                least = least.min(right.1);
             }
             _ => {}
         }
         left = right;
     }
-    Some(Search::quiet(watch))
+    Some(match watch {
+        Watch::Armed => Search::above(least),
+        _ => Search::quiet(watch),
+    })
 }
 
 /// A touch of zero at `inside`. Among the zeros and the rounding errors that follow it the guard is

@@ -41,14 +41,10 @@ fn smallest_scene_takes_every_default() {
         }
     );
     assert_eq!(scene.accuracy.relative, 1e-8);
-    for (tolerance, c) in scene
-        .accuracy
-        .q_absolute
-        .iter()
-        .zip(scene.model.coordinates)
-    {
-        assert_eq!(*tolerance, 1e-8 * c.scale);
-    }
+    let [sizes, rates] = scene.typical_sizes();
+    let products = |sizes: Vec<f64>| sizes.iter().map(|size| 1e-8 * size).collect::<Vec<_>>();
+    assert_eq!(scene.accuracy.q_absolute, products(sizes));
+    assert_eq!(scene.accuracy.v_absolute, products(rates));
     assert_eq!(
         scene.record,
         Record {

@@ -1,0 +1,225 @@
+//! Where a run cannot tell whether a guard falls through zero.
+//!
+//! A guard that turns close to zero may have crossed it or not: the errors of the steps decide. What they
+//! may amount to is known from the tolerances: the initial state and every step may be off by one
+//! tolerance, and errors of either sign add up as the root of their number. On the benchmark problems the
+//! true error at the end is a hundredth to a half of that. (Errors that the motion amplifies are larger:
+//! `dalembert precision` tells.) What such an error changes the guard by is found by making it.
+//!
+//! The search for the guard's zero bounds how near to zero it turns, at no cost. Only where this is within
+//! the error is the minimum looked for.
+
+use super::equations::Equations;
+use super::guards::Conditions;
+use super::plan::Watched;
+use super::problem::Accuracy;
+use super::roots::{Search, Watch};
+use super::sensitivity::WatchedGuard;
+use crate::integrate::OneStep;
+use crate::model::{Guard, Mode};
+use crate::record::{Doubt, Question, Uncertain};
+
+/// What was found out about the errors of guards, and the doubts.
+#[derive(Debug, Default)]
+pub(super) struct Doubts {
+    /// Number of steps so far.
+    steps: u64,
+    /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
+    /// was at the first step in the mode. Empty: no step yet.
+    errors: Vec<Vec<f64>>,
+    /// Guards that were near zero at the end of the last step; with a doubt if they fell so steeply that
+    /// it is one only if they do not fall through zero right after it.
+    left: Vec<(&'static Guard, Option<Doubt>)>,
+    /// The doubts.
+    pub uncertain: Uncertain,
+}
+
+/// A step and what was found of the guards in it.
+pub(super) struct Searched<'s> {
+    /// Index of the mode.
+    pub index: usize,
+    pub mode: &'static Mode,
+    pub watched: &'s [Watched],
+    /// Signs at the start of the step.
+    pub watches: &'s [Watch],
+    pub found: &'s [Search],
+    pub accuracy: &'s Accuracy,
+}
+
+impl Doubts {
+    /// Nothing is known, of a problem with so many modes.
+    pub fn new(modes: usize) -> Self {
+        Doubts {
+            errors: vec![Vec::new(); modes],
+            ..Doubts::default()
+        }
+    }
+
+    /// Forgets the doubts, for the next run.
+    pub fn clear(&mut self) {
+        self.steps = 0;
+        self.left.clear();
+        self.uncertain = Uncertain::default();
+    }
+
+    /// Looks for doubts in a step that was searched, up to its end or its first event.
+    #[inline]
+    pub fn look<'a, const F: usize>(
+        &mut self,
+        step: &Searched,
+        method: &impl OneStep<F, Equations<'a, F>>,
+        equations: &mut Equations<'a, F>,
+        conditions: &mut Conditions,
+    ) {
+        self.steps += 1;
+        let within = self.tolerances() + method.looseness();
+        let errors = &self.errors[step.index];
+        let certain =
+            |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * within);
+        let known = errors.len() == step.found.len() && self.left.is_empty();
+        if !(known && step.found.iter().zip(errors).all(certain)) {
+            self.examine(step, method, equations, conditions);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn examine<'a, const F: usize>(
+        &mut self,
+        step: &Searched,
+        method: &impl OneStep<F, Equations<'a, F>>,
+        equations: &mut Equations<'a, F>,
+        conditions: &mut Conditions,
+    ) {
+        let tolerances = self.tolerances();
+        let within = tolerances + method.looseness();
+        if self.errors[step.index].len() != step.found.len() {
+            let start = method.start();
+            let error = |&watched: &Watched| {
+                let mut guard = step.guard(watched, equations, conditions);
+                guard.error(start.t, &start.q, &start.v) + guard.rounding(start)
+            };
+            self.errors[step.index] = step.watched.iter().map(error).collect();
+        }
+        let left = std::mem::take(&mut self.left);
+        for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
+            let mut guard = step.guard(watched, equations, conditions);
+            let end = method.state();
+            if !found.resolved {
+                let value = guard.value(end.t, &end.q, &end.v);
+                let error = guard.error(end.t, &end.q, &end.v) * tolerances;
+                let doubt = guard.doubt(end.t, Question::Unresolved, value, error);
+                self.uncertain.add(doubt);
+                continue;
+            }
+            if !is_near(found, self.errors[step.index][i] * within) {
+                continue;
+            }
+            let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
+            let (t, what, value) = match found.crossing {
+                Some(_) => (end.t, Question::Graze, guard.would_turn(method, found.turn)),
+                None if !armed => continue,
+                None => match guard.least(method) {
+                    Some((t, value)) => (t, Question::NearMiss, value),
+                    None => continue,
+                },
+            };
+            if value.abs() > self.errors[step.index][i] * within {
+                continue;
+            }
+            let inside = t < end.t;
+            let error = guard.error_at(t, method) * tolerances
+                + if inside {
+                    guard.error_of_dense_output(t, method)
+                } else {
+                    0.0
+                };
+            if value.abs() > error || !guard.matters(t, method) {
+                continue;
+            }
+            let doubt = guard.doubt(t, what, value, error);
+            let at_end = what == Question::NearMiss && !inside;
+            let turns = !at_end || guard.would_turn(method, found.turn).abs() <= error;
+            if at_end {
+                let unless_it_falls = (!turns).then(|| doubt.clone());
+                self.left.push((guard.guard, unless_it_falls));
+            }
+            // It may turn in the next step, where it was near zero at the end of this one.
+            if turns && !left.iter().any(|(other, _)| other.name == guard.guard.name) {
+                self.uncertain.add(doubt);
+            }
+        }
+        // What fell towards zero at the end of the step before did not come there, unless it does now.
+        for (guard, doubt) in left {
+            let falls = |(found, watched): (&Search, &Watched)| {
+                let other = &step.mode.guards[watched.guard];
+                found.crossing.is_some() && other.name == guard.name
+            };
+            let again = self.left.iter().any(|(other, _)| other.name == guard.name);
+            if let Some(doubt) = doubt
+                && !again
+                && !step.found.iter().zip(step.watched).any(falls)
+            {
+                self.uncertain.add(doubt);
+            }
+        }
+    }
+
+    /// Error of every coordinate and rate, in units of its tolerance.
+    fn tolerances(&self) -> f64 {
+        1.0 + (self.steps as f64).sqrt()
+    }
+
+    /// Takes note of a transition: what its guard fell to has happened.
+    pub fn happened(&mut self, guard: &'static Guard) {
+        self.left.retain(|(other, _)| other.name != guard.name);
+    }
+}
+
+/// Whether a guard turns, or would have turned, within `error` of zero.
+fn is_near(found: &Search, error: f64) -> bool {
+    match found.crossing {
+        Some(_) => -found.turn <= error,
+        None => found.turn <= error,
+    }
+}
+
+impl Searched<'_> {
+    fn guard<'e, 'a, 'c, const F: usize>(
+        &'e self,
+        watched: Watched,
+        equations: &'e mut Equations<'a, F>,
+        conditions: &'e mut Conditions<'c>,
+    ) -> WatchedGuard<'e, 'a, 'c, F> {
+        WatchedGuard {
+            mode: self.mode,
+            accuracy: self.accuracy,
+            guard: &self.mode.guards[watched.guard],
+            watched,
+            equations,
+            conditions,
+        }
+    }
+}
+
+impl<const F: usize> WatchedGuard<'_, '_, '_, F> {
+    /// The doubt about it at local time `t`.
+    fn doubt(&self, t: f64, what: Question, value: f64, error: f64) -> Doubt {
+        let (guard, unit) = match self.watched.condition {
+            None => (self.guard.name.to_owned(), self.guard.unit.to_owned()),
+            Some((transition, _)) => {
+                let name = self.guard.transitions[transition].name;
+                (format!("condition of {name}"), String::new())
+            }
+        };
+        Doubt {
+            t: self.equations.clock.start.plus(t).seconds(),
+            mode: self.mode.name.to_owned(),
+            guard,
+            what,
+            value,
+            error,
+            unit,
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! What errors of the motion do to a guard, and how near to zero it comes in a step.
+
+use super::equations::Equations;
+use super::guards::{Conditions, motion, watched_value};
+use super::locate::rate_at;
+use super::plan::Watched;
+use super::problem::Accuracy;
+use super::roots::minimum;
+use crate::integrate::{Motion, ORDERS, OneStep, State, System};
+use crate::kernel::Free;
+use crate::model::{Guard, Mode};
+use nalgebra::SVector;
+
+/// Parts of a step among which its least value is looked for. Steps resolve the motion, so that a guard
+/// turns once or twice in one.
+const PARTS: usize = 8;
+
+fn dense_of<'m, 'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &'m M,
+) -> &'m M::Motion {
+    method.dense().expect("a step was made")
+}
+
+/// What is watched, with what it is evaluated by.
+pub(super) struct WatchedGuard<'e, 'a, 'c, const F: usize> {
+    pub mode: &'static Mode,
+    pub accuracy: &'e Accuracy,
+    pub guard: &'static Guard,
+    pub watched: Watched,
+    pub equations: &'e mut Equations<'a, F>,
+    pub conditions: &'e mut Conditions<'c>,
+}
+
+impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
+    /// Its value in a state at local time `t`.
+    pub fn value(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>) -> f64 {
+        let mut a = SVector::zeros();
+        if self.equations.acceleration(t, q, v, &mut a).is_err() {
+            return f64::NAN;
+        }
+        let at = Free { q, v, a: &a };
+        let (kernel, context) = (self.equations.kernel, &mut *self.equations.context);
+        watched_value(
+            kernel,
+            context,
+            self.conditions,
+            self.guard,
+            self.watched,
+            at,
+        )
+    }
+
+    /// What errors of one tolerance in every coordinate and rate change it by; 0 where it has no value.
+    pub fn error(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>) -> f64 {
+        let accuracy = self.accuracy;
+        let value = self.value(t, q, v);
+        let mut sum = 0.0;
+        for (i, &full) in self.mode.free.iter().enumerate() {
+            let (mut moved, mut faster) = (*q, *v);
+            moved[i] += accuracy.q_absolute[full] + accuracy.relative * q[i].abs();
+            faster[i] += accuracy.v_absolute[full] + accuracy.relative * v[i].abs();
+            sum += (self.value(t, &moved, v) - value).abs();
+            sum += (self.value(t, q, &faster) - value).abs();
+        }
+        // What the mode holds has its errors from the modes before.
+        for i in (0..accuracy.q_absolute.len()).filter(|i| !self.mode.free.contains(i)) {
+            let held = self.equations.context.held()[i];
+            let tolerance = accuracy.q_absolute[i] + accuracy.relative * held.abs();
+            self.equations.context.held_mut()[i] = held + tolerance;
+            sum += (self.value(t, q, v) - value).abs();
+            self.equations.context.held_mut()[i] = held;
+        }
+        // Not a number: there it has no value.
+        sum.max(0.0)
+    }
+
+    /// A tolerance of its own terms, which bounds what its error changes by while it comes to zero.
+    pub fn rounding(&self, state: &State<F>) -> f64 {
+        if self.watched.condition.is_some() {
+            return 0.0;
+        }
+        let at = Free {
+            q: &state.q,
+            v: &state.v,
+            a: &state.a,
+        };
+        let (kernel, context) = (self.equations.kernel, &*self.equations.context);
+        let magnitude = kernel.guard_magnitude(context, &self.guard.kernel, at);
+        self.accuracy.relative * magnitude
+    }
+
+    /// Place and value of its least value in the last step; `None` if that is at the start.
+    pub fn least(&mut self, method: &impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
+        let (start, end, dense) = (method.start(), method.state(), dense_of(method));
+        if self.watched.condition.is_none() {
+            if rate_at(self.equations, self.guard, end) <= 0.0 {
+                return Some((end.t, self.value(end.t, &end.q, &end.v)));
+            }
+            if rate_at(self.equations, self.guard, start) >= 0.0 {
+                return None;
+            }
+        }
+        let mut own = |t: f64| {
+            let [q, v, _] = motion(self.equations, dense, t, false);
+            self.value(t, &q, &v)
+        };
+        let length = end.t - start.t;
+        let place = |k: usize| match k {
+            PARTS => end.t,
+            k => start.t + k as f64 / PARTS as f64 * length,
+        };
+        let values: [f64; PARTS + 1] = std::array::from_fn(|k| own(place(k)));
+        let least = (0..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
+        let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
+        let (t, value) = minimum(&mut own, (place(low), place(high)));
+        match value < values[0] {
+            true if value < values[PARTS] => Some((t, value)),
+            true => Some((end.t, values[PARTS])),
+            false => None,
+        }
+    }
+
+    /// The same where the last step is at local time `t`.
+    pub fn error_at(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
+        let [q, v, _] = motion(self.equations, dense_of(method), t, false);
+        self.error(t, &q, &v)
+    }
+
+    /// What it is off by at local time `t` because the dense output is not as accurate as the end of the
+    /// step. There its accelerations differ from those that the equations ask for; the difference changes
+    /// its sign as often as there are coefficients in them, and makes its rate and its change of a
+    /// coordinate in the time between two such places.
+    pub fn error_of_dense_output(
+        &mut self,
+        t: f64,
+        method: &impl OneStep<F, Equations<'a, F>>,
+    ) -> f64 {
+        let (start, end, dense) = (method.start().t, method.state().t, dense_of(method));
+        let mut defect = SVector::<f64, F>::zeros();
+        for k in 0..PARTS {
+            let place = start + (k as f64 + 0.5) / PARTS as f64 * (end - start);
+            let (q, v, a) = dense.at(place);
+            let mut exact = a;
+            if self
+                .equations
+                .acceleration(place, &q, &v, &mut exact)
+                .is_ok()
+            {
+                defect = defect.zip_map(&(exact - a), |most, part| most.max(part.abs()));
+            }
+        }
+        let mut coefficients = [0.0; ORDERS];
+        let in_rate = (0..F).map(|i| dense.polynomial(i, true, &mut coefficients));
+        let time = dense.length() / (in_rate.max().unwrap_or(2) - 1) as f64;
+        let [q, v, _] = motion(self.equations, dense, t, false);
+        let value = self.value(t, &q, &v);
+        let mut sum = 0.0;
+        for i in 0..F {
+            let (mut moved, mut faster) = (q, v);
+            faster[i] += defect[i] * time;
+            moved[i] += 0.5 * defect[i] * (time * time);
+            sum += (self.value(t, &moved, &v) - value).abs();
+            sum += (self.value(t, &q, &faster) - value).abs();
+        }
+        sum.max(0.0)
+    }
+
+    /// The value at which it would turn back after the end of the last step, by its slope and curvature
+    /// there, which are more accurate than what the search has `found` on the dense output.
+    pub fn would_turn(&mut self, method: &impl OneStep<F, Equations<'a, F>>, found: f64) -> f64 {
+        let (start, end) = (method.start(), method.state());
+        if self.watched.condition.is_some() || found == 0.0 {
+            return found;
+        }
+        let before = end.t - (end.t - start.t) / PARTS as f64;
+        let [q, v, a] = motion(self.equations, dense_of(method), before, true);
+        let before = State { t: before, q, v, a };
+        let [earlier, slope] =
+            [&before, end].map(|state| rate_at(self.equations, self.guard, state));
+        let curvature = (slope - earlier) / (end.t - before.t);
+        let value = self.value(end.t, &end.q, &end.v);
+        match curvature > 0.0 {
+            true => value - slope * slope / (2.0 * curvature),
+            false => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Whether its fall would be an event where the last step is at local time `t`: one that acts
+    /// together with conditions needs the other part.
+    pub fn matters(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> bool {
+        if !self.conditions.are_part_of(self.guard) {
+            return true;
+        }
+        let [q, v, a] = motion(self.equations, dense_of(method), t, true);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let (kernel, context) = (self.equations.kernel, &mut *self.equations.context);
+        if self.watched.condition.is_some() {
+            return kernel.guard(context, &self.guard.kernel, at) < 0.0;
+        }
+        let conditions = &mut *self.conditions;
+        let allowed = conditions.plan;
+        let mut admissible = self
+            .guard
+            .transitions
+            .iter()
+            .filter(|t| allowed.allowed[t.target]);
+        admissible.any(|t| conditions.least(kernel, context, t, at) >= 0.0)
+    }
+}
