@@ -198,26 +198,25 @@ impl Accumulation {
         let now = self.hop(0).at.seconds();
         // Each time is off by half a place, so that a difference of durations is off by two.
         let slack = 2.0 * f64::EPSILON * now.abs();
-        let relative = relative.max(f64::EPSILON);
         // Durations of the last three patterns of each length; arrays, so that lengths go side by side.
         let before = |patterns: usize| from_fn(|i| times[patterns * (i + 1)]);
         let [one, two, three]: [[f64; LONGEST_PATTERN]; 3] = [before(1), before(2), before(3)];
         let last: [f64; LONGEST_PATTERN] = from_fn(|i| now - one[i]);
         let middle: [f64; LONGEST_PATTERN] = from_fn(|i| one[i] - two[i]);
         let first: [f64; LONGEST_PATTERN] = from_fn(|i| two[i] - three[i]);
-        let may_be: [bool; LONGEST_PATTERN] = from_fn(|i| {
-            let (last, middle, first) = (last[i], middle[i], first[i]);
-            // The limits that the last two durations and the two before foretell are as close as in
-            // `series`; multiplied by the differences of the durations.
-            let apart = (middle * (last * first - middle * middle)).abs();
-            let limit = now.abs() * (middle - last) + last * last;
-            let allowed = relative * limit * (first - middle);
-            // What the slack of each duration makes of the two, with their partial derivatives.
-            let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
-            (last - middle <= slack) & (middle - first <= slack) & (apart <= allowed + noise)
-        });
-        let bits = (1..=LONGEST_PATTERN).map(|p| u32::from(may_be[p - 1]) << p);
-        bits.sum::<u32>() & ((2 << longest) - 1)
+        let shrinks: [bool; LONGEST_PATTERN] =
+            from_fn(|i| (last[i] - middle[i] <= slack) & (middle[i] - first[i] <= slack));
+        let bits = (1..=LONGEST_PATTERN).map(|p| u32::from(shrinks[p - 1]) << p);
+        let mut shrinking = bits.sum::<u32>() & ((2 << longest) - 1);
+        let mut patterns = shrinking;
+        while patterns != 0 {
+            let i = patterns.trailing_zeros() as usize - 1;
+            if !foretell_one_limit([first[i], middle[i], last[i]], (now, slack), relative) {
+                shrinking &= !(2 << i);
+            }
+            patterns &= patterns - 1;
+        }
+        shrinking
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
@@ -304,6 +303,23 @@ impl Accumulation {
             new.since(old) < new.seconds().abs() * f64::EPSILON || self.still >= Self::MEMORY
         }
     }
+}
+
+/// Whether the limits that the last two of three durations and the first two foretell may be as close as
+/// a geometric series asks for (`Accumulation::series`), given that each duration is off by `slack`.
+fn foretell_one_limit(
+    [first, middle, last]: [f64; 3],
+    (now, slack): (f64, f64),
+    relative: f64,
+) -> bool {
+    let relative = relative.max(f64::EPSILON);
+    // Multiplied by the differences of the durations.
+    let apart = (middle * (last * first - middle * middle)).abs();
+    let limit = now.abs() * (middle - last) + last * last;
+    let allowed = relative * limit * (first - middle);
+    // What the slack of each duration makes of the two, with their partial derivatives.
+    let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
+    apart <= allowed + noise
 }
 
 /// Whether of pairs (after, before) some differ, but none by more than the rounding of a guard: as
