@@ -2,6 +2,7 @@
 
 use super::accumulation::Signature;
 use super::failure::Reason;
+use super::few::copy_few;
 use super::guards::Conditions;
 use super::plan::is_impact;
 use super::simulation::Simulation;
@@ -74,14 +75,12 @@ impl Simulation<'_> {
         let before = states.then(|| self.snapshot());
         let energies_before = (self.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
-        self.before[..n].copy_from_slice(&self.here.q);
-        self.before[n..].copy_from_slice(&self.here.v);
+        copy_few(&self.here.q, &mut self.before[..n]);
+        copy_few(&self.here.v, &mut self.before[n..]);
 
-        self.here.q.copy_from_slice(&self.next[..n]);
-        self.here.v.copy_from_slice(&self.next[n..2 * n]);
-        self.context
-            .discrete_mut()
-            .copy_from_slice(&self.next[2 * n..]);
+        copy_few(&self.next[..n], &mut self.here.q);
+        copy_few(&self.next[n..2 * n], &mut self.here.v);
+        copy_few(&self.next[2 * n..], self.context.discrete_mut());
         self.here.mode = target;
         self.here.j += 1;
         self.set_context();

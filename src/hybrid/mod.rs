@@ -12,6 +12,7 @@ mod ensemble;
 mod enter;
 mod equations;
 mod failure;
+mod few;
 mod fire;
 mod guards;
 mod instant;

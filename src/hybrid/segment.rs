@@ -4,6 +4,7 @@ use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations};
 use super::failure::Reason;
+use super::few::copy_few;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
@@ -91,7 +92,7 @@ impl Simulation<'_> {
         let until = Instant::new(last).since(start);
         let [q, v, a] = self.here.free::<F>(mode.free);
         method.restart(0.0, &q, &v, &a);
-        self.at_start.copy_from_slice(&self.here.q);
+        copy_few(&self.here.q, &mut self.at_start);
         let drifts = mode.drifts.contains(&true);
         let clock = Clock {
             start,

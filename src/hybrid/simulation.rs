@@ -5,6 +5,7 @@ use super::crossing::Signs;
 use super::doubt::Doubts;
 use super::ensemble::Member;
 use super::failure::Reason;
+use super::few::copy_few;
 use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
@@ -425,7 +426,7 @@ impl<'p> Simulation<'p> {
         let t = self.here.now.seconds();
         let signals = &self.problem.signals;
         self.context.set_signals(signals, t, Side::Right);
-        self.context.held_mut().copy_from_slice(&self.here.q);
+        copy_few(&self.here.q, self.context.held_mut());
     }
 
     /// T + V here, J.

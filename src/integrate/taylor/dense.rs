@@ -100,7 +100,12 @@ impl<const F: usize> TaylorDense<F> {
 fn sum<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f64, F> {
     let (fours, rest) = coefficients.as_chunks::<4>();
     let mut sums = [SVector::<f64, F>::zeros(); 4];
-    sums[..rest.len()].copy_from_slice(rest);
+    // One by one: a copy of unknown length is a call of the C library.
+    for (k, sum) in sums[..3].iter_mut().enumerate() {
+        if let Some(coefficient) = rest.get(k) {
+            *sum = *coefficient;
+        }
+    }
     let tau2 = tau * tau;
     let tau4 = tau2 * tau2;
     for four in fours.iter().rev() {
