@@ -340,6 +340,7 @@ class Series:
         """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
         right factors of the interiors."""
         graph, count = self.graph, len(self.graph.interiors)
+        # Room for the width that the C code takes: DALEMBERT_WIDTH in emit_c.py.
         self.lead, self.row = graph.slots, 2 * (count + (count % 4 == 3))
         self.operations = len(graph.next)
         self.order = ["  const double order = (double)k, inverse_k = dalembert_inverses[k];", "  (void)order, (void)inverse_k;"]

@@ -50,11 +50,17 @@ fn main() {
     }
 }
 
-fn measure(name: &str, method: Method, tolerance: f64) {
+/// A problem whose events are recorded with their times only.
+pub fn plain(name: &str, method: Method, tolerance: f64) -> Problem {
     let mut problem = problem(name, tolerance);
     problem.method = method;
     problem.record.ledger = false;
     problem.record.event_states = false;
+    problem
+}
+
+fn measure(name: &str, method: Method, tolerance: f64) {
+    let problem = plain(name, method, tolerance);
     let mut simulator = Simulator::new(&problem).expect("the initial state fits a mode");
     let (repeats, budget) = match quick() {
         true => (3, Duration::ZERO),

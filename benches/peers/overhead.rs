@@ -3,7 +3,7 @@
 //! The functions are timed one by one, outside of any run, and multiplied by how often a run calls
 //! them: an estimate, since in a run they overlap with what is around them.
 
-use super::{PROBLEMS, problem, quick};
+use super::{PROBLEMS, plain, quick};
 use dalembert::hybrid::{Method, Problem, Simulator};
 use dalembert::integrate::{Series, Taylor, Tolerances};
 use dalembert::kernel::{Context, Free, ModeKernel, with_kernel};
@@ -33,10 +33,7 @@ pub fn report() {
 }
 
 fn row(name: &str, method: Method, tolerance: f64) {
-    let mut problem = problem(name, tolerance);
-    problem.method = method;
-    problem.record.ledger = false;
-    problem.record.event_states = false;
+    let problem = plain(name, method, tolerance);
     let mut simulator = Simulator::new(&problem).expect("the initial state fits a mode");
     let repeats = if quick() { 3 } else { 200 };
     let times = (0..repeats).map(|_| {

@@ -87,8 +87,10 @@ pub(super) struct Equations<'a, const F: usize> {
     scale: SVector<f64, F>,
     /// Local time for which the context is set; NaN: none.
     set_for: f64,
-    /// Local time for which it is set as far as the equations need it; NaN: none.
-    stage_set_for: f64,
+    /// Whether all of it is set, and not only what the equations of motion need.
+    complete: bool,
+    /// Whether signals can be computed ahead.
+    foresees: bool,
     /// Local times for which the equations' signals are known ahead; NaN: none.
     ahead: [f64; Context::MOST_AHEAD],
     /// Local time about which the guards were last expanded; NaN: none.
@@ -105,6 +107,7 @@ impl<'a, const F: usize> Equations<'a, F> {
         tolerance: f64,
         scale: SVector<f64, F>,
     ) -> Self {
+        let foresees = context.can_foresee(clock.signals);
         Equations {
             kernel,
             context,
@@ -112,7 +115,8 @@ impl<'a, const F: usize> Equations<'a, F> {
             tolerance,
             scale,
             set_for: f64::NAN,
-            stage_set_for: f64::NAN,
+            complete: false,
+            foresees,
             ahead: [f64::NAN; Context::MOST_AHEAD],
             guards_expanded_at: f64::NAN,
             // None yet: it has ended before all times.
@@ -126,28 +130,37 @@ impl<'a, const F: usize> Equations<'a, F> {
     /// Sets the context to local time `tau`.
     #[inline]
     pub fn at(&mut self, tau: f64) {
-        if tau != self.set_for {
+        if tau != self.set_for || !self.complete {
             self.clock.set(tau, self.context);
-            self.set_for = tau;
-            self.stage_set_for = tau;
+            (self.set_for, self.complete) = (tau, true);
         }
     }
 
     /// Sets the context to local time `tau` as far as the equations of motion need it.
     #[inline]
     pub fn at_stage(&mut self, tau: f64) {
-        if tau == self.stage_set_for {
+        if tau == self.set_for {
             return;
         }
         match self.ahead.iter().position(|&ahead| ahead == tau) {
-            Some(index) if tau != self.set_for => {
+            Some(index) => {
                 self.context.set_foreseen_signals(index);
                 self.clock.set_held(tau, self.context);
-                self.set_for = f64::NAN;
-                self.stage_set_for = tau;
+                (self.set_for, self.complete) = (tau, false);
             }
-            _ => self.at(tau),
+            None => self.at(tau),
         }
+    }
+
+    /// The accelerations at a point whose time the context is set for.
+    #[inline]
+    pub fn acceleration_here(
+        &self,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+    ) -> Result<SVector<f64, F>, Singular> {
+        let system = self.kernel.system(self.context, q, v);
+        solve(&system.mass, &-system.load, &self.scale)
     }
 
     /// Expands the guards about the start of a step of the Taylor method, local time `tau`, unless
@@ -198,15 +211,17 @@ impl<const F: usize> System<F> for Equations<'_, F> {
     }
 
     fn foresee(&mut self, times: &[f64]) {
-        self.ahead.fill(f64::NAN);
+        if !self.foresees {
+            return;
+        }
         let clock = &self.clock;
         let mut at = [(0.0, Side::Right); Context::MOST_AHEAD];
         for (at, &tau) in at.iter_mut().zip(times) {
             *at = clock.instant(tau);
         }
-        if self.context.foresee_signals(clock.signals, &at) {
-            self.ahead[..times.len()].copy_from_slice(times);
-        }
+        self.context.foresee_signals(clock.signals, &at);
+        self.ahead.fill(f64::NAN);
+        self.ahead[..times.len()].copy_from_slice(times);
     }
 
     fn resolution(&self, t: f64) -> f64 {
@@ -253,9 +268,8 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         v: &SVector<f64, F>,
         a: &mut SVector<f64, F>,
     ) -> Result<(), Singular> {
-        self.at_stage(t);
-        let system = self.kernel.system(self.context, q, v);
-        *a = solve(&system.mass, &-system.load, &self.scale)?;
+        self.at(t);
+        *a = self.acceleration_here(q, v)?;
         Ok(())
     }
 }
@@ -275,7 +289,7 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
             let signals = self.clock.signals;
             self.context.expand_signals(signals, from, order + 1);
         }
-        (self.set_for, self.stage_set_for) = (t, t);
+        (self.set_for, self.complete) = (t, true);
         let system = self.kernel.series_start(self.context, series);
         (system.mass, system.load)
     }

@@ -164,8 +164,9 @@ fn motion_at_stage<const F: usize>(
 ) -> [SVector<f64, F>; 3] {
     let (q, v, mut a) = dense.at(tau);
     equations.at_stage(tau);
-    if accelerations && equations.acceleration(tau, &q, &v, &mut a).is_err() {
-        a.fill(f64::NAN);
+    if accelerations {
+        let found = equations.acceleration_here(&q, &v);
+        a = found.unwrap_or(SVector::repeat(f64::NAN));
     }
     [q, v, a]
 }

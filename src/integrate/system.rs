@@ -56,8 +56,8 @@ pub trait System<const F: usize> {
         Ok(())
     }
 
-    /// Says at which times residuals will be asked for next, so that what depends on time alone may be
-    /// computed for all of them side by side.
+    /// Says at which times, up to eight, residuals will be asked for next, so that what depends on time
+    /// alone may be computed for all of them side by side.
     fn foresee(&mut self, _times: &[f64]) {}
 
     /// Longest step from time `t`, s, in which the few points where a step looks at the equations

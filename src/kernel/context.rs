@@ -136,18 +136,20 @@ impl Context {
     /// Number of instants of [`Context::foresee_signals`].
     pub const MOST_AHEAD: usize = 8;
 
-    /// Computes the signals at several instants side by side, for [`Context::set_foreseen_signals`]: as
-    /// far as the equations of motion depend on them. Gives false where that is not possible.
+    /// Whether [`Context::foresee_signals`] gives all that the equations of motion need: they depend on
+    /// no antiderivative of an input, and on some input at all.
+    pub fn can_foresee(&self, signals: &Signals) -> bool {
+        !self.quiet && !signals.want_antiderivatives(self.dimensions.expanded)
+    }
+
+    /// Computes the signals at several instants side by side, for [`Context::set_foreseen_signals`];
+    /// antiderivatives are left out.
     pub fn foresee_signals(
         &mut self,
         signals: &Signals,
         at: &[(f64, Side); Self::MOST_AHEAD],
-    ) -> bool {
-        let possible = !self.quiet && !signals.want_antiderivatives(self.dimensions.expanded);
-        if possible {
-            signals.values(at, &mut self.ahead);
-        }
-        possible
+    ) {
+        signals.values(at, &mut self.ahead);
     }
 
     /// Sets the signals to those of an instant that was foreseen, by its index: enough for the equations
