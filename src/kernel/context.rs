@@ -144,11 +144,7 @@ impl Context {
 
     /// Computes the signals at several instants side by side, for [`Context::set_foreseen_signals`];
     /// antiderivatives are left out.
-    pub fn foresee_signals(
-        &mut self,
-        signals: &Signals,
-        at: &[(f64, Side); Self::MOST_AHEAD],
-    ) {
+    pub fn foresee_signals(&mut self, signals: &Signals, at: &[(f64, Side); Self::MOST_AHEAD]) {
         signals.values(at, &mut self.ahead);
     }
 

@@ -63,9 +63,9 @@ pub(super) fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -
         &format!("width=\"{width}\" height=\"{height}\""),
         1,
     );
-    // 0.21 em of the text is 0.3 em of the subscript, which is 0.7 times as high.
+    // In em, since some viewers take a percentage to be of the picture. 0.21 em of the text is 0.3 em of the subscript, which is 0.7 times as high.
     shown
-        .replace(SUB, "<tspan font-size=\"70%\" dy=\"0.3em\">")
+        .replace(SUB, "<tspan font-size=\"0.7em\" dy=\"0.3em\">")
         .replace(END_SUB, "</tspan><tspan dy=\"-0.21em\">\u{200b}</tspan>")
 }
 
