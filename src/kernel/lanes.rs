@@ -210,3 +210,15 @@ pub struct LaneSeries<const F: usize, const W: usize> {
     /// Of the accelerations.
     pub a: [[Lanes<W>; F]; LANE_ROWS],
 }
+
+/// What limits the lengths of the steps of a series.
+#[derive(Debug, Clone)]
+pub struct LaneLimits {
+    /// Order p of the series.
+    pub order: usize,
+    /// The relative tolerance, and the absolute ones of coordinates and velocities.
+    pub tolerances: Box<[f64]>,
+    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
+    /// factors of the lengths that they tell, and their logarithms.
+    pub terms: [[f64; 5]; 4],
+}

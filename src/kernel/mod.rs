@@ -6,12 +6,18 @@
 
 mod context;
 mod lanes;
+mod tables;
 
 pub use context::{Context, Dimensions};
 pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LanePoint, LaneRows, LaneSeries,
-    LaneSystem, processor_level,
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePoint, LaneRows,
+    LaneSeries, LaneSystem, processor_level,
 };
+pub use tables::{
+    ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_CONDITIONS, MOST_FREE, ModeKernel,
+    ModeKernels, TransitionKernel, with_kernel,
+};
+use tables::{LaneKernel, SeriesKernel};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
@@ -248,18 +254,6 @@ pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>]) -> LaneMas
     LaneMask(unsafe { unmet(numbers.len(), numbers.as_ptr().cast()) })
 }
 
-/// What limits the lengths of the steps of a series.
-#[derive(Debug, Clone)]
-pub struct LaneLimits {
-    /// Order p of the series.
-    pub order: usize,
-    /// The relative tolerance, and the absolute ones of coordinates and velocities.
-    pub tolerances: Box<[f64]>,
-    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
-    /// factors of the lengths that they tell, and their logarithms.
-    pub terms: [[f64; 5]; 4],
-}
-
 /// The length at which the last terms of a series equal the tolerance, as it fits into what remains up
 /// to the times `last` and not more than `horizon`. Gives the lanes in which it reaches `last`; marks
 /// those that are `unclear`, as their series is not finite or their time does not advance.
@@ -445,13 +439,6 @@ impl Context {
     }
 }
 
-/// What depends on parameters alone.
-#[derive(Debug)]
-pub struct ConstantsKernel {
-    dimensions: &'static Dimensions,
-    function: Raw,
-}
-
 impl ConstantsKernel {
     fn evaluate(&self, parameters: &[f64], out: &mut [f64]) {
         assert_eq!(
@@ -474,17 +461,6 @@ impl ConstantsKernel {
     }
 }
 
-/// State and accelerations of the free coordinates of a mode, as every mode function takes them.
-#[derive(Debug, Clone, Copy)]
-pub struct Free<'a, const F: usize> {
-    /// Coordinates.
-    pub q: &'a SVector<f64, F>,
-    /// Velocities.
-    pub v: &'a SVector<f64, F>,
-    /// Accelerations.
-    pub a: &'a SVector<f64, F>,
-}
-
 impl<const F: usize> Free<'_, F> {
     #[inline(always)]
     fn pointers(&self) -> [*const f64; 4] {
@@ -495,65 +471,6 @@ impl<const F: usize> Free<'_, F> {
             self.a.as_ptr(),
         ]
     }
-}
-
-/// Mass matrix M and load b of r = M a + b.
-#[derive(Debug, Clone, Copy)]
-#[repr(C)]
-pub struct LinearSystem<const F: usize> {
-    /// M = ∂r/∂a; unsymmetric where friction depends on the accelerations.
-    pub mass: SMatrix<f64, F, F>,
-    /// r at a = 0.
-    pub load: SVector<f64, F>,
-}
-
-/// The generated functions of one mode with F free coordinates.
-#[derive(Debug)]
-pub struct ModeKernel<const F: usize> {
-    dimensions: &'static Dimensions,
-    residual: Raw,
-    jacobian: Raw,
-    system: Raw,
-    inertia: Raw,
-    jerk_load: Raw,
-    magnitude: Raw,
-    reactions: Raw,
-    energies: Raw,
-    powers: Raw,
-    momenta: Raw,
-    requirements: (Raw, usize),
-    series: Option<SeriesKernel>,
-    /// The same where no input acts.
-    quiet_series: Option<SeriesKernel>,
-    guard_series: Option<SeriesKernel>,
-    guards: usize,
-    mass_is_constant: bool,
-    is_linear: bool,
-    held_rates: Raw,
-    lanes: &'static [LaneKernel],
-}
-
-/// The generated functions of a mode for trajectories side by side, at a level of the processor.
-#[derive(Debug)]
-struct LaneKernel {
-    series: SeriesKernel,
-    /// The same where no input acts.
-    quiet_series: SeriesKernel,
-    requirements: Raw,
-    guards: &'static [Raw],
-}
-
-/// The generated Taylor series of a mode.
-#[derive(Debug)]
-struct SeriesKernel {
-    start: RawStart,
-    run: RawRun,
-    /// Doubles of the workspace that do not grow with the order.
-    lead: usize,
-    /// Doubles of the workspace for each order.
-    row: usize,
-    /// Convolutions that an order takes.
-    convolutions: usize,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -585,16 +502,6 @@ impl<const F: usize> ModeKernel<F> {
         }
     }
 
-    /// Whether the mass matrix stays the same while the mode lasts.
-    pub fn mass_is_constant(&self) -> bool {
-        self.mass_is_constant
-    }
-
-    /// Whether the equations are linear: all of [`Self::jacobian`] stays the same while the mode lasts.
-    pub fn is_linear(&self) -> bool {
-        self.is_linear
-    }
-
     /// Mass matrix and load at (q, v).
     #[inline]
     pub fn system(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> LinearSystem<F> {
@@ -606,34 +513,6 @@ impl<const F: usize> ModeKernel<F> {
         // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
         unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
         out
-    }
-
-    /// Whether the motion can be expanded in a Taylor series: not if an operation of its equations
-    /// has no recurrence.
-    pub fn is_analytic(&self) -> bool {
-        self.series.is_some()
-    }
-
-    /// Convolutions of an order of the Taylor series of the motion.
-    pub fn convolutions(&self, x: &Context) -> usize {
-        // Each has a left and a right factor in the workspace.
-        self.motion_series(x)
-            .map_or(0, |series| series.convolutions)
-    }
-
-    #[inline]
-    fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
-        match x.quiet {
-            true => self.quiet_series.as_ref(),
-            false => self.series.as_ref(),
-        }
-    }
-
-    /// Doubles of workspace that the series of this mode need.
-    fn workspace(&self) -> usize {
-        let all = [&self.series, &self.quiet_series, &self.guard_series];
-        let all = all.into_iter().flatten();
-        all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
     }
 
     /// Fills `Context::guard_series` with the Taylor coefficients of all guards, one row an order,
@@ -659,18 +538,6 @@ impl<const F: usize> ModeKernel<F> {
             (series.run)(orders, q, v, a, u, &raw, w, out);
         }
         true
-    }
-
-    /// Coefficients of a guard, by its index in the mode, in the order of the powers of time; set by
-    /// [`Self::guard_series`].
-    pub fn guard_coefficients<'x>(
-        &self,
-        x: &'x Context,
-        guard: usize,
-        orders: usize,
-    ) -> impl Iterator<Item = f64> + use<'x, F> {
-        let guards = self.guards;
-        (0..orders).map(move |k| x.guard_series[k * guards + guard])
     }
 
     /// Begins a Taylor series: mass matrix and load at order 0 of q and v.
@@ -736,32 +603,25 @@ impl<const F: usize> ModeKernel<F> {
 
     /// b with M j + b = 0 for the jerk j; needs the signals to be set.
     pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
-        let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
-        unsafe {
-            x.call(
-                self.jerk_load,
-                self.dimensions,
-                at.pointers(),
-                out.as_mut_ptr(),
-            )
-        }
-        out
+        unsafe { self.one_a_coordinate(self.jerk_load, x, at) }
     }
 
     /// Number of terms × sum of their magnitudes, per equation: times machine epsilon a bound of
     /// the rounding error of the residual.
     pub fn magnitude(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
-        let mut out = SVector::<f64, F>::zeros();
         // SAFETY: F outputs.
-        unsafe {
-            x.call(
-                self.magnitude,
-                self.dimensions,
-                at.pointers(),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.one_a_coordinate(self.magnitude, x, at) }
+    }
+
+    /// What a function of the mode gives, one number a free coordinate.
+    ///
+    /// # Safety
+    /// The function must have F outputs.
+    unsafe fn one_a_coordinate(&self, function: Raw, x: &Context, at: Free<F>) -> SVector<f64, F> {
+        let mut out = SVector::<f64, F>::zeros();
+        // SAFETY: as the caller promises.
+        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
         out
     }
 
@@ -970,16 +830,6 @@ impl<const W: usize> LaneContext<W> {
 }
 
 impl<const F: usize> ModeKernel<F> {
-    /// Whether trajectories of this mode can go side by side.
-    pub fn goes_in_lanes(&self) -> bool {
-        !self.lanes.is_empty()
-    }
-
-    fn lane_kernel<const W: usize>(&self, level: usize) -> &'static LaneKernel {
-        assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
-        &self.lanes[level]
-    }
-
     /// As [`Self::series_start`]; `quiet`: no input acts.
     ///
     /// # Panics
@@ -1069,87 +919,5 @@ impl<const F: usize> ModeKernel<F> {
         out
     }
 }
-
-impl TransitionKernel {
-    /// Number of conditions.
-    pub fn conditions(&self) -> usize {
-        self.condition.map_or(0, |(_, _, count)| count)
-    }
-}
-
-/// Most conditions that one transition may have (codegen rejects more).
-pub const MOST_CONDITIONS: usize = 8;
-
-/// A generated guard.
-#[derive(Debug)]
-pub struct GuardKernel {
-    free: usize,
-    value: Raw,
-    rate: Raw,
-    magnitude: Raw,
-}
-
-/// A generated transition: its reset, and the conditions with the target's number of
-/// free coordinates and the number of conditions.
-#[derive(Debug)]
-pub struct TransitionKernel {
-    source_free: usize,
-    reset: Raw,
-    condition: Option<(Raw, usize, usize)>,
-}
-
-/// The functions of a mode, typed by its number of free coordinates. The numbers that some model
-/// has are told by the build script (`free_2` and so on): the event engine is compiled for each.
-#[derive(Debug)]
-pub enum ModeKernels {
-    /// A mode with 0 free coordinates.
-    #[cfg(free_0)]
-    F0(ModeKernel<0>),
-    /// A mode with 1 free coordinates.
-    #[cfg(free_1)]
-    F1(ModeKernel<1>),
-    /// A mode with 2 free coordinates.
-    #[cfg(free_2)]
-    F2(ModeKernel<2>),
-    /// A mode with 3 free coordinates.
-    #[cfg(free_3)]
-    F3(ModeKernel<3>),
-    /// A mode with 4 free coordinates.
-    #[cfg(free_4)]
-    F4(ModeKernel<4>),
-    /// A mode with 5 free coordinates.
-    #[cfg(free_5)]
-    F5(ModeKernel<5>),
-    /// A mode with 6 free coordinates.
-    #[cfg(free_6)]
-    F6(ModeKernel<6>),
-}
-
-/// Runs an expression with the typed kernel of a mode: `with_kernel!(kernels, k => expression)`.
-#[macro_export]
-macro_rules! with_kernel {
-    ($kernels:expr, $kernel:ident => $body:expr) => {
-        match $kernels {
-            #[cfg(free_0)]
-            $crate::kernel::ModeKernels::F0($kernel) => $body,
-            #[cfg(free_1)]
-            $crate::kernel::ModeKernels::F1($kernel) => $body,
-            #[cfg(free_2)]
-            $crate::kernel::ModeKernels::F2($kernel) => $body,
-            #[cfg(free_3)]
-            $crate::kernel::ModeKernels::F3($kernel) => $body,
-            #[cfg(free_4)]
-            $crate::kernel::ModeKernels::F4($kernel) => $body,
-            #[cfg(free_5)]
-            $crate::kernel::ModeKernels::F5($kernel) => $body,
-            #[cfg(free_6)]
-            $crate::kernel::ModeKernels::F6($kernel) => $body,
-        }
-    };
-}
-pub use crate::with_kernel;
-
-/// Most free coordinates that a mode may have.
-pub const MOST_FREE: usize = 6;
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));

@@ -1,0 +1,227 @@
+//! What the generated tables hold: functions, typed by the numbers of coordinates, and what is known of
+//! them without a call.
+
+use super::{Context, Dimensions, LANES_OF_LEVELS, Raw, RawRun, RawStart};
+use crate::integrate::ORDERS;
+use nalgebra::{SMatrix, SVector};
+
+/// What depends on parameters alone.
+#[derive(Debug)]
+pub struct ConstantsKernel {
+    pub(super) dimensions: &'static Dimensions,
+    pub(super) function: Raw,
+}
+
+/// State and accelerations of the free coordinates of a mode, as every mode function takes them.
+#[derive(Debug, Clone, Copy)]
+pub struct Free<'a, const F: usize> {
+    /// Coordinates.
+    pub q: &'a SVector<f64, F>,
+    /// Velocities.
+    pub v: &'a SVector<f64, F>,
+    /// Accelerations.
+    pub a: &'a SVector<f64, F>,
+}
+
+/// Mass matrix M and load b of r = M a + b.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct LinearSystem<const F: usize> {
+    /// M = ∂r/∂a; unsymmetric where friction depends on the accelerations.
+    pub mass: SMatrix<f64, F, F>,
+    /// r at a = 0.
+    pub load: SVector<f64, F>,
+}
+
+/// The generated functions of one mode with F free coordinates.
+#[derive(Debug)]
+pub struct ModeKernel<const F: usize> {
+    pub(super) dimensions: &'static Dimensions,
+    pub(super) residual: Raw,
+    pub(super) jacobian: Raw,
+    pub(super) system: Raw,
+    pub(super) inertia: Raw,
+    pub(super) jerk_load: Raw,
+    pub(super) magnitude: Raw,
+    pub(super) reactions: Raw,
+    pub(super) energies: Raw,
+    pub(super) powers: Raw,
+    pub(super) momenta: Raw,
+    pub(super) requirements: (Raw, usize),
+    pub(super) series: Option<SeriesKernel>,
+    /// The same where no input acts.
+    pub(super) quiet_series: Option<SeriesKernel>,
+    pub(super) guard_series: Option<SeriesKernel>,
+    pub(super) guards: usize,
+    pub(super) mass_is_constant: bool,
+    pub(super) is_linear: bool,
+    pub(super) held_rates: Raw,
+    pub(super) lanes: &'static [LaneKernel],
+}
+
+/// The generated functions of a mode for trajectories side by side, at a level of the processor.
+#[derive(Debug)]
+pub struct LaneKernel {
+    pub(super) series: SeriesKernel,
+    /// The same where no input acts.
+    pub(super) quiet_series: SeriesKernel,
+    pub(super) requirements: Raw,
+    pub(super) guards: &'static [Raw],
+}
+
+/// The generated Taylor series of a mode.
+#[derive(Debug)]
+pub struct SeriesKernel {
+    pub(super) start: RawStart,
+    pub(super) run: RawRun,
+    /// Doubles of the workspace that do not grow with the order.
+    pub(super) lead: usize,
+    /// Doubles of the workspace for each order.
+    pub(super) row: usize,
+    /// Convolutions that an order takes.
+    pub(super) convolutions: usize,
+}
+
+impl<const F: usize> ModeKernel<F> {
+    /// Whether the mass matrix stays the same while the mode lasts.
+    pub fn mass_is_constant(&self) -> bool {
+        self.mass_is_constant
+    }
+
+    /// Whether the equations are linear: all of [`Self::jacobian`] stays the same while the mode lasts.
+    pub fn is_linear(&self) -> bool {
+        self.is_linear
+    }
+
+    /// Whether the motion can be expanded in a Taylor series: not if an operation of its equations
+    /// has no recurrence.
+    pub fn is_analytic(&self) -> bool {
+        self.series.is_some()
+    }
+
+    /// Convolutions of an order of the Taylor series of the motion.
+    pub fn convolutions(&self, x: &Context) -> usize {
+        // Each has a left and a right factor in the workspace.
+        self.motion_series(x)
+            .map_or(0, |series| series.convolutions)
+    }
+
+    #[inline]
+    pub(super) fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
+        match x.quiet {
+            true => self.quiet_series.as_ref(),
+            false => self.series.as_ref(),
+        }
+    }
+
+    /// Doubles of workspace that the series of this mode need.
+    pub(super) fn workspace(&self) -> usize {
+        let all = [&self.series, &self.quiet_series, &self.guard_series];
+        let all = all.into_iter().flatten();
+        all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
+    }
+
+    /// Coefficients of a guard, by its index in the mode, in the order of the powers of time; set by
+    /// [`Self::guard_series`].
+    pub fn guard_coefficients<'x>(
+        &self,
+        x: &'x Context,
+        guard: usize,
+        orders: usize,
+    ) -> impl Iterator<Item = f64> + use<'x, F> {
+        let guards = self.guards;
+        (0..orders).map(move |k| x.guard_series[k * guards + guard])
+    }
+
+    /// Whether trajectories of this mode can go side by side.
+    pub fn goes_in_lanes(&self) -> bool {
+        !self.lanes.is_empty()
+    }
+
+    pub(super) fn lane_kernel<const W: usize>(&self, level: usize) -> &'static LaneKernel {
+        assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
+        &self.lanes[level]
+    }
+}
+
+impl TransitionKernel {
+    /// Number of conditions.
+    pub fn conditions(&self) -> usize {
+        self.condition.map_or(0, |(_, _, count)| count)
+    }
+}
+
+/// Most conditions that one transition may have (codegen rejects more).
+pub const MOST_CONDITIONS: usize = 8;
+
+/// A generated guard.
+#[derive(Debug)]
+pub struct GuardKernel {
+    pub(super) free: usize,
+    pub(super) value: Raw,
+    pub(super) rate: Raw,
+    pub(super) magnitude: Raw,
+}
+
+/// A generated transition: its reset, and the conditions with the target's number of
+/// free coordinates and the number of conditions.
+#[derive(Debug)]
+pub struct TransitionKernel {
+    pub(super) source_free: usize,
+    pub(super) reset: Raw,
+    pub(super) condition: Option<(Raw, usize, usize)>,
+}
+
+/// The functions of a mode, typed by its number of free coordinates. The numbers that some model
+/// has are told by the build script (`free_2` and so on): the event engine is compiled for each.
+#[derive(Debug)]
+pub enum ModeKernels {
+    /// A mode with 0 free coordinates.
+    #[cfg(free_0)]
+    F0(ModeKernel<0>),
+    /// A mode with 1 free coordinates.
+    #[cfg(free_1)]
+    F1(ModeKernel<1>),
+    /// A mode with 2 free coordinates.
+    #[cfg(free_2)]
+    F2(ModeKernel<2>),
+    /// A mode with 3 free coordinates.
+    #[cfg(free_3)]
+    F3(ModeKernel<3>),
+    /// A mode with 4 free coordinates.
+    #[cfg(free_4)]
+    F4(ModeKernel<4>),
+    /// A mode with 5 free coordinates.
+    #[cfg(free_5)]
+    F5(ModeKernel<5>),
+    /// A mode with 6 free coordinates.
+    #[cfg(free_6)]
+    F6(ModeKernel<6>),
+}
+
+/// Runs an expression with the typed kernel of a mode: `with_kernel!(kernels, k => expression)`.
+#[macro_export]
+macro_rules! with_kernel {
+    ($kernels:expr, $kernel:ident => $body:expr) => {
+        match $kernels {
+            #[cfg(free_0)]
+            $crate::kernel::ModeKernels::F0($kernel) => $body,
+            #[cfg(free_1)]
+            $crate::kernel::ModeKernels::F1($kernel) => $body,
+            #[cfg(free_2)]
+            $crate::kernel::ModeKernels::F2($kernel) => $body,
+            #[cfg(free_3)]
+            $crate::kernel::ModeKernels::F3($kernel) => $body,
+            #[cfg(free_4)]
+            $crate::kernel::ModeKernels::F4($kernel) => $body,
+            #[cfg(free_5)]
+            $crate::kernel::ModeKernels::F5($kernel) => $body,
+            #[cfg(free_6)]
+            $crate::kernel::ModeKernels::F6($kernel) => $body,
+        }
+    };
+}
+pub use crate::with_kernel;
+
+/// Most free coordinates that a mode may have.
+pub const MOST_FREE: usize = 6;
