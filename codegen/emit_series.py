@@ -6,11 +6,8 @@ is one pass over the graph (Moore 1966; Jorba and Zou 2005, Experiment. Math. 14
 
 A product z = x y has z_k = x_0 y_k + x_k y_0 + Σ_{j=1}^{k-1} x_j y_{k-j}. The sum, the interior of
 the convolution, is known before order k is begun. So is that of every other node that is not
-linear, since each obeys a product rule: an order first computes all interiors in one loop over j,
-side by side in vector lanes, and then walks the graph once in straight-line code. The left and
-right factors of the interiors are two tables in the workspace, one row an order. The sums go from
-the middle outwards, so that the coefficients that were computed last enter last: what an order has
-to wait for is one product and one sum.
+linear, since each obeys a product rule: an order first computes all interiors (interiors.py), and
+then walks the graph once in straight-line code.
 
 Without interiors the orders are unrolled: one with its number known is straight-line code. With them
 that hinders the vectors.
@@ -21,6 +18,7 @@ Nodes that are constant in time are recognised: a constant times a series is one
 import casadi as ca
 
 from .emit_c import MOST_ORDERS, SIN_COS, literal, operation, parenthesized, sin_cos
+from .interiors import Interiors
 
 
 class NotAnalytic(Exception):
@@ -46,7 +44,7 @@ class Graph:
     def __init__(self):
         self.start, self.next, self.store = [], [], []
         self.fresh = self.slots = 0
-        self.interiors, self.late, self.pairs = {}, {}, {}
+        self.interiors, self.pairs = Interiors(), {}
 
     # ---- text ---------------------------------------------------------------------------------
 
@@ -75,14 +73,6 @@ class Graph:
             node.slot, self.slots = self.slots, self.slots + 1
             self.start.append(f"  w[{node.slot}] = {node.zeroth};")
         return f"w[{node.slot}]"
-
-    def interior(self, left, right):
-        """Σ_{j=1}^{k-1} left_j right_{k-j}; both are text of the second function."""
-        for key in ((left, right), (right, left)):
-            if key in self.interiors:
-                return f"y[{self.interiors[key]}]"
-        index = self.interiors[left, right] = len(self.interiors)
-        return f"y[{index}]"
 
     # ---- operations ---------------------------------------------------------------------------
 
@@ -113,11 +103,11 @@ class Graph:
         for constant, other in ((x, y), (y, x)):
             if constant.constant:
                 return self.series(zeroth, f"{self.first(constant)} * {other.next}")
-        inner = self.interior(x.next, y.next)
+        inner = self.interiors.add(x.next, y.next)
         return self.series(zeroth, f"{inner} + ({self.first(x)} * {y.next} + {x.next} * {self.first(y)})")
 
     def square(self, x):
-        inner = self.interior(x.next, x.next)
+        inner = self.interiors.add(x.next, x.next)
         return self.series(f"{x.zeroth} * {x.zeroth}", f"{inner} + 2.0 * {self.first(x)} * {x.next}")
 
     def quotient(self, x, y):
@@ -129,7 +119,7 @@ class Graph:
         z = _Node(self._name())
         z.next = z.zeroth
         self.start.append(f"  const real {z.zeroth} = {zeroth};")
-        rest = f"({self.interior(y.next, z.next)} + {y.next} * {self.first(z)})"
+        rest = f"({self.interiors.add(y.next, z.next)} + {y.next} * {self.first(z)})"
         numerator = f"-{rest}" if x.constant else f"({x.next} - {rest})"
         self.next.append(f"  const real {z.next} = {numerator} * {reciprocal};")
         return z
@@ -141,7 +131,7 @@ class Graph:
         """z with z z = x."""
         z = self._integral(f"sqrt({x.zeroth})")
         half = self.first(self.zeroth(f"0.5 / {z.zeroth}"))
-        self.next.append(f"  const real {z.next} = ({x.next} - {self.interior(z.next, z.next)}) * {half};")
+        self.next.append(f"  const real {z.next} = ({x.next} - {self.interiors.add(z.next, z.next)}) * {half};")
         return z
 
     def _integral(self, zeroth):
@@ -152,7 +142,7 @@ class Graph:
 
     def _grows(self, z, x, w, sign=""):
         """z with ż = ± w ẋ: k z_k = ± Σ_{j=1}^{k} j x_j w_{k-j}."""
-        inner = self.interior(self._scaled(x), w.next)
+        inner = self.interiors.add(self._scaled(x), w.next)
         text = f"{inner} * inverse_k + {x.next} * {self.first(w)}"
         self.next.append(f"  const real {z.next} = {sign}({text});")
 
@@ -160,7 +150,7 @@ class Graph:
         """z with w ż = ± ẋ: w_0 k z_k = ± k x_k − Σ_{j=1}^{k-1} j z_j w_{k-j}."""
         z = self._integral(zeroth)
         reciprocal = self.first(self.zeroth(f"1.0 / {w.zeroth}"))
-        inner = self.interior(self._scaled(z), w.next)
+        inner = self.interiors.add(self._scaled(z), w.next)
         self.next.append(f"  const real {z.next} = ({sign}{x.next} - {inner} * inverse_k) * {reciprocal};")
         return z
 
@@ -204,7 +194,7 @@ class Graph:
         slope.next = slope.zeroth
         self.start.append(f"  const real {slope.zeroth} = 1.0 {sign} {z.zeroth} * {z.zeroth};")
         self._grows(z, x, slope)
-        square = f"{self.interior(z.next, z.next)} + 2.0 * {self.first(z)} * {z.next}"
+        square = f"{self.interiors.add(z.next, z.next)} + 2.0 * {self.first(z)} * {z.next}"
         self.next.append(f"  const real {slope.next} = {'' if sign == '+' else '-'}({square});")
         return z
 
@@ -229,8 +219,8 @@ class Graph:
             return self._whole_power(x, whole)
         z = self._integral(f"pow({x.zeroth}, {exponent.zeroth})")
         p, reciprocal = self.first(exponent), self.first(self.zeroth(f"1.0 / {x.zeroth}"))
-        weighted = f"({p} + 1.0) * inverse_k * {self.interior(self._scaled(x), z.next)}"
-        plain = self.interior(x.next, z.next)
+        weighted = f"({p} + 1.0) * inverse_k * {self.interiors.add(self._scaled(x), z.next)}"
+        plain = self.interiors.add(x.next, z.next)
         self.next.append(
             f"  const real {z.next} = ({p} * {x.next} * {self.first(z)} + ({weighted} - {plain})) * {reciprocal};")
         return z
@@ -339,46 +329,22 @@ class Series:
     def finish(self):
         """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
         right factors of the interiors."""
-        graph, count = self.graph, len(self.graph.interiors)
-        # Room for the width that the C code takes: DALEMBERT_WIDTH in emit_c.py.
-        self.lead, self.row = graph.slots, 2 * (count + (count % 4 == 3))
+        graph, interiors = self.graph, self.graph.interiors
+        self.lead, self.row = graph.slots, interiors.row
         self.operations = len(graph.next)
         self.order = ["  const double order = (double)k, inverse_k = dalembert_inverses[k];", "  (void)order, (void)inverse_k;"]
-        if not count:
-            self.order += graph.next
-            return
-        late = [f"  row[2 * width * (k - 1) + width + {n}] = {text};" for n, text in graph.late.items()]
-        now = []
-        for (left, right), n in graph.interiors.items():
-            now.append(f"  now[{n}] = {left};")
-            if n not in graph.late:
-                now.append(f"  now[width + {n}] = {right};")
-        product = "row[2 * width * %s + n] * row[2 * width * %s + width + n]"
-        self.order += [
-            f"  enum {{ width = DALEMBERT_WIDTH({count}) }};",
-            f"  real *const row = w + {self.lead}, *const now = row + 2 * width * k;",
-            *late,
-            "  real y[width], z[width];",
-            "  for (size_t n = 0; n < width; ++n) {",
-            f"    y[n] = k % 2 == 0 ? {product % ('(k / 2)', '(k / 2)')} : REAL(0.0);",
-            "    z[n] = REAL(0.0);",
-            "  }",
-            "  for (size_t j = (k - 1) / 2; j >= 1; --j) {",
-            "    for (size_t n = 0; n < width; ++n) {",
-            f"      y[n] += {product % ('j', '(k - j)')};",
-            f"      z[n] += {product % ('(k - j)', 'j')};",
-            "    }",
-            "  }",
-            "  for (size_t n = 0; n < width; ++n) y[n] += z[n];",
-            *graph.next, *now,
-        ]
+        self.order += [*interiors.sums(self.lead), *graph.next, *interiors.stores()] if interiors else graph.next
 
     def add_to(self, source, name):
         """Adds both functions to a `Source`; returns the names under which they can be called."""
         start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start))
-        order = source.add_text(f"{name}_order", f"const size_t k, {_SIGNATURE}", _text(self.order), "DALEMBERT_INLINE")
-        call = f"{order}(%s, q, v, a, u, x, w, out);"
+        few = self.graph.interiors.few and len(self.graph.interiors)
+        signature = f"const size_t k, {_SIGNATURE}" + (", real *restrict last" if few else "")
+        order = source.add_text(f"{name}_order", signature, _text(self.order), "DALEMBERT_INLINE")
+        call = f"{order}(%s, q, v, a, u, x, w, out{', last' if few else ''});"
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
+        if few:
+            orders.insert(0, f"  real last[{2 * few}] = {{0}};")
         if not self.graph.interiors:
             unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
             # A vector of eight lanes fills the processor without.
@@ -424,11 +390,8 @@ class Equations(Series):
         self.finish()
 
     def _late(self, mass, j, free):
-        """Interior of M a. The acceleration of order k is not known at order k: its factor is stored
-        at the beginning of the next."""
-        inner = self.graph.interior(mass.next, f"acceleration {j}")
-        self.graph.late[len(self.graph.interiors) - 1] = f"a[{free} * (k - 1) + {j}]"
-        return inner
+        """Interior of M a. The acceleration of order k is not known at order k."""
+        return self.graph.interiors.add_late(mass.next, f"acceleration {j}", f"a[{free} * (k - 1) + {j}]")
 
 
 _SIGNATURE = ("real *restrict q, real *restrict v, real *restrict a, const real *u,\n"

@@ -12,9 +12,11 @@
 #include "elementary.h"
 
 typedef double real __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
+typedef real dalembert_block;
 #define DALEMBERT_INLINE static inline __attribute__((always_inline))
 #define DALEMBERT_CLONES
-#define DALEMBERT_WIDTH(n) (n)
+#define DALEMBERT_BLOCK 1
+#define DALEMBERT_PUT(at, ...) DALEMBERT_PUT_EACH(at, __VA_ARGS__)
 #define DALEMBERT_JOIN(name, level) DALEMBERT_JOINED(name, level)
 #define DALEMBERT_JOINED(name, level) name##level
 #define LANES(name) DALEMBERT_JOIN(name, DALEMBERT_LEVEL)

@@ -1,0 +1,120 @@
+"""Emission of C for the interiors of convolutions, Σ_{j=1}^{k-1} left_j right_{k-j}.
+
+The interiors of an order are known before the order is begun: one loop over j computes all of them,
+side by side in vector lanes. Their factors are two tables in the workspace, a row an order. The
+sums go from the middle outwards, so that the coefficients that were computed last enter last: what
+an order has to wait for is one product and one sum.
+
+A processor reads as a block only after a while what was stored number by number. Where an order is
+so short that it would wait for that, the last factors are kept in registers as well.
+"""
+
+BLOCK = 4
+"""Most numbers side by side in a register: DALEMBERT_BLOCK in emit_c.py."""
+
+
+class Interiors:
+    """The convolutions of an expression graph. Factors are text of the function of an order."""
+
+    def __init__(self):
+        self.indices, self.late = {}, {}
+
+    def __len__(self):
+        return len(self.indices)
+
+    def add(self, left, right):
+        """Text of the interior of two series."""
+        for key in ((left, right), (right, left)):
+            if key in self.indices:
+                return f"y[{self.indices[key]}]"
+        index = self.indices[left, right] = len(self.indices)
+        return f"y[{index}]"
+
+    def add_late(self, left, name, right):
+        """The same where the right factor of order k is not known at order k: it is stored at the
+        beginning of the next, when its text gives it."""
+        inner = self.add(left, name)
+        self.late[len(self.indices) - 1] = right
+        return inner
+
+    @property
+    def few(self):
+        """Whether all fit into one block."""
+        return len(self) <= BLOCK
+
+    @property
+    def halves(self):
+        """2 where both halves of the sums fit into a block: right factors follow the left ones in the left
+        table, and left factors the right ones in the right table."""
+        return 2 if 2 * len(self) <= BLOCK else 1
+
+    @property
+    def row(self):
+        """Numbers of a row of both tables, filled up to whole blocks."""
+        return 2 * -(-self.halves * len(self) // BLOCK) * BLOCK
+
+    def sums(self, lead):
+        """Statements that leave the interiors of order k in `y`. The tables begin at `lead` in the workspace."""
+        count = len(self)
+        lines = [
+            f"  enum {{ width = DALEMBERT_WIDTH({self.halves * count}), blocks = width / DALEMBERT_BLOCK }};",
+            f"  real *const row = w + {lead}, *const now = row + 2 * width * k;",
+        ]
+        lines += self._late_stores()
+        first = 2 if self.few else 1
+        half = "0.5 * " if self.halves == 2 else ""
+        others = self.halves == 1
+        lines += [
+            f"  dalembert_block sums[blocks]{', others[blocks]' if others else ''};",
+            "  for (size_t n = 0; n < blocks; ++n) {",
+            f"    sums[n] = {'others[n] = ' if others else ''}DALEMBERT_ZERO;",
+            f"    if (k % 2 == 0{' && k > 2' if self.few else ''}) sums[n] = {half}(DALEMBERT_LEFT(k / 2)[n] * DALEMBERT_RIGHT(k / 2)[n]);",
+            "  }",
+            f"  for (size_t j = (k - 1) / 2; j >= {first}; --j) {{",
+            "    for (size_t n = 0; n < blocks; ++n) {",
+            "      sums[n] += DALEMBERT_LEFT(j)[n] * DALEMBERT_RIGHT(k - j)[n];",
+            *(["      others[n] += DALEMBERT_LEFT(k - j)[n] * DALEMBERT_RIGHT(j)[n];"] if others else []),
+            "    }",
+            "  }",
+            *(["  for (size_t n = 0; n < blocks; ++n) sums[n] += others[n];"] if others else []),
+        ]
+        if not self.few:
+            return [*lines, "  const real *const y = (const real *)sums;"]
+        sum = "((const real *)sums)[%s]"
+        lines += [f"  real y[{count}];"]
+        for n in range(count):
+            lines.append(f"  y[{n}] = {' + '.join(sum % m for m in range(n, self.halves * count, count))};")
+        lines += [
+            "  if (k == 2) {",
+            *(f"    y[{n}] += last[{n}] * last[{count + n}];" for n in range(count)),
+            "  } else if (k > 2) {",
+            *(f"    y[{n}] += row[2 * width + {n}] * last[{count + n}] + last[{n}] * row[3 * width + {n}];" for n in range(count)),
+            "  }",
+        ]
+        return lines
+
+    def stores(self):
+        """Statements that store the factors of order k."""
+        count, lines = len(self), []
+        tables = [list(side) for side in zip(*self.indices)]
+        for n in self.late:
+            tables[1][n] = "REAL(0.0)"
+        if self.few:
+            for n, text in enumerate(tables[0] + tables[1]):
+                lines.append(f"  last[{n}] = {text};")
+            tables = [[f"last[{count * side + n}]" for n in range(count)] for side in (0, 1)]
+        if self.halves == 2:
+            tables = [tables[0] + tables[1], tables[1] + tables[0]]
+        for side, table in zip(("", "width + "), tables):
+            for n in range(0, len(table), BLOCK):
+                lines.append(f"  DALEMBERT_PUT(now + {side}{n}, {', '.join(table[n:n + BLOCK])});")
+        return lines
+
+    def _late_stores(self):
+        """Statements that store the late factors of order k - 1."""
+        count, lines = len(self), []
+        for n, text in self.late.items():
+            places = [f"width + {n}"] + ([f"{count + n}"] if self.halves == 2 else [])
+            target = "".join(f"row[2 * width * (k - 1) + {place}] = " for place in places)
+            lines.append(f"  {target}{f'last[{count + n}] = ' if self.few else ''}{text};")
+        return lines
