@@ -22,6 +22,7 @@ CONTEXT_FIELDS = ("u", "u_dot", "d", "h", "c", "j")
 HEADER = """\
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 #if defined(__GNUC__) || defined(__clang__)
 #define DALEMBERT_INLINE static inline __attribute__((always_inline))
 #else
@@ -49,6 +50,17 @@ typedef double dalembert_block;
 #endif
 struct dalembert_sin_cos { double sin, cos; };
 struct dalembert_sin_cos dalembert_sin_cos(double);
+/* An angle whose sine and cosine were computed last: the functions of a mode are asked for one state
+ * after another. */
+struct dalembert_angle { double angle; struct dalembert_sin_cos pair; };
+DALEMBERT_INLINE struct dalembert_sin_cos dalembert_kept_sin_cos(struct dalembert_angle *kept, double angle) {
+  if (memcmp(&kept->angle, &angle, sizeof angle) != 0) {
+    kept->pair = dalembert_sin_cos(angle);
+    kept->angle = angle;
+  }
+  return kept->pair;
+}
+#define DALEMBERT_SIN_COS(n, angle) dalembert_kept_sin_cos(x->angles + (n), angle)
 """
 
 MOST_ORDERS = 32
@@ -71,7 +83,11 @@ _FACTORS = """\
   } while (0)
 """
 
-_CONTEXT = f"struct dalembert_context {{ const real {', '.join(f'*{name}' for name in CONTEXT_FIELDS)}; }};\n"
+_CONTEXT = (f"struct dalembert_context {{ const real {', '.join(f'*{name}' for name in CONTEXT_FIELDS)}; "
+            "struct dalembert_angle *angles; };\n")
+
+KEPT_ANGLES = 4
+"""Angles whose sine and cosine are kept: `KEPT_ANGLES` in src/kernel/context.rs. A function may have more."""
 
 _BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
 # Functions of the C library, whose last bits may differ between systems; sine and cosine are not
@@ -118,7 +134,7 @@ def body(arguments, output):
             angle = work[source[0]]
             if angle not in pairs:
                 pairs[angle] = f"t{fresh}"
-                lines.append(sin_cos(pairs[angle], angle))
+                lines.append(sin_cos(pairs[angle], len(pairs) - 1, angle))
                 fresh += 1
             operations += 1
             work[into[0]] = f"{pairs[angle]}.{SIN_COS[op]}"
@@ -138,9 +154,11 @@ def literal(value):
         "NAN" if value != value else ("INFINITY" if value > 0 else "-INFINITY"))
 
 
-def sin_cos(name, angle):
-    """A line of C that computes sine and cosine, both at once: `elementary.c`."""
-    return f"  const struct dalembert_sin_cos {name} = dalembert_sin_cos({angle});"
+def sin_cos(name, index, angle):
+    """A line of C that computes sine and cosine of an angle, by its index in the function, both at once:
+    `elementary.c`."""
+    kept = min(index, KEPT_ANGLES - 1)
+    return f"  const struct dalembert_sin_cos {name} = DALEMBERT_SIN_COS({kept}, {angle});"
 
 
 def operation(op, arguments):

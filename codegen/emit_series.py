@@ -43,7 +43,7 @@ class Graph:
 
     def __init__(self):
         self.start, self.next, self.store = [], [], []
-        self.fresh = self.slots = 0
+        self.fresh = self.slots = self.angles = 0
         self.interiors, self.pairs = Interiors(), {}
 
     # ---- text ---------------------------------------------------------------------------------
@@ -162,7 +162,8 @@ class Graph:
     def _sin_cos(self, angle):
         """Name of the pair of sine and cosine of order 0."""
         name = self._name()
-        self.start.append(sin_cos(name, angle))
+        self.start.append(sin_cos(name, self.angles, angle))
+        self.angles += 1
         return name
 
     def _pair(self, x, names, sign, pick):

@@ -213,9 +213,9 @@ def _mode_functions(variant, equations, slot, prefix):
         name = equations.mode.name
         _check_smooth(equations.r, f"equations of mode `{name}`", model.file, [p.symbol for p in model.parameters])
     mass, load = equations.system()
-    system = graph.without_idle(
-        ca.vertcat(ca.vec(mass), load), ca.vertcat(equations.q, equations.v),
-        [(d.symbol, d.values) for d in model.discretes])
+    without_idle = lambda column: graph.without_idle(
+        column, ca.vertcat(equations.q, equations.v), [(d.symbol, d.values) for d in model.discretes])
+    system = without_idle(ca.vertcat(ca.vec(mass), load))
     jacobians = equations.jacobians()
     reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
     for i, reaction in equations.reactions:
@@ -227,7 +227,7 @@ def _mode_functions(variant, equations, slot, prefix):
         ("system", system),
         ("series", ca.vertcat(system, _drift_rates(model, equations))),
         ("quiet_series", _quiet(model, ca.vertcat(system, _drift_rates(model, equations)))),
-        ("inertia", ca.vec(equations.inertia())),
+        ("inertia", without_idle(ca.vec(equations.inertia()))),
         ("jerk_load", equations.jerk_load(signals, rates)),
         ("magnitude", equations.magnitude()),
         ("reactions", reactions),

@@ -99,3 +99,5 @@ DALEMBERT_INLINE struct dalembert_sin_cos dalembert_lanes_sin_cos(real x) {
   return out;
 }
 #define dalembert_sin_cos(x) dalembert_lanes_sin_cos(x)
+#define DALEMBERT_SIN_COS(n, angle) dalembert_lanes_sin_cos(angle)
+struct dalembert_angle;

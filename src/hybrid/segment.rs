@@ -77,12 +77,15 @@ impl Simulation<'_> {
         stop
     }
 
-    fn follow<const F: usize>(
+    fn follow<const F: usize, M>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-        method: &mut impl for<'a> OneStep<F, Equations<'a, F>>,
+        method: &mut M,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason> {
+    ) -> Result<Stop, Reason>
+    where
+        M: for<'a> OneStep<F, Equations<'a, F>>,
+    {
         let problem = self.problem;
         let mode = self.mode();
         let scale = self.scale();
@@ -118,6 +121,7 @@ impl Simulation<'_> {
             true => 1,
             false => determinant_sign(&kernel.system(equations.context, &q, &v).mass),
         };
+        let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
         let chooses = problem.method == Method::Auto && kernel.is_analytic();
         let stiffness = &mut self.stiffness[self.here.mode];
         stiffness.begin();
@@ -175,7 +179,9 @@ impl Simulation<'_> {
                 let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
                 let here = &mut self.here;
                 here.set_free(mode.free, [&q, &v, &a]);
-                copy_drifting(&mut here.q, mode.drifts, equations.context.held());
+                if drifts {
+                    copy_drifting(&mut here.q, mode.drifts, equations.context.held());
+                }
                 let row = Row {
                     layout: &self.layout,
                     q: &here.q,
@@ -191,7 +197,7 @@ impl Simulation<'_> {
                     row.fill(kernel, equations.context, at, values)
                 });
             };
-            loop {
+            while problem.record.every.is_some() {
                 let t = sample_time(problem.record.every, self.next_sample);
                 let tau = Instant::new(t).since(start);
                 if !tau.is_finite() || tau > end.t + beyond {
@@ -232,7 +238,9 @@ impl Simulation<'_> {
             self.here.now = start.plus(state.t);
             self.here
                 .set_free(mode.free, [&state.q, &state.v, &state.a]);
-            copy_drifting(&mut self.here.q, mode.drifts, equations.context.held());
+            if drifts {
+                copy_drifting(&mut self.here.q, mode.drifts, equations.context.held());
+            }
 
             if !kernel.mass_is_constant() {
                 let mass = kernel.system(equations.context, &state.q, &state.v).mass;
@@ -268,10 +276,11 @@ impl Simulation<'_> {
             }
             self.signs.go_on();
             let h = end.t - method.start().t;
-            match method.lag() {
-                _ if !chooses => {}
-                Some(lag) => stiffness.explicit_step(h, lag, || equations.decay_rate(at)),
-                None => stiffness.implicit_step(h),
+            if chooses && is_explicit {
+                let lag = |least| method.lag(&equations, least);
+                stiffness.explicit_step(h, lag, || equations.decay_rate(at));
+            } else if chooses {
+                stiffness.implicit_step(h);
             }
             if end.t >= until {
                 self.here.now = Instant::new(last);
@@ -281,7 +290,7 @@ impl Simulation<'_> {
                     Stop::Breakpoint
                 });
             }
-            if chooses && stiffness.prefers_implicit() != method.lag().is_none() {
+            if chooses && stiffness.prefers_implicit() == is_explicit {
                 return Ok(Stop::Method);
             }
         }

@@ -120,8 +120,14 @@ impl Stiffness {
     }
 
     /// Takes note of a step of the explicit method of length `h`, for which the implicit one might make
-    /// a step `lag` times as long; `rate` is that of the fastest decay, 1/s.
-    pub fn explicit_step(&mut self, h: f64, lag: f64, rate: impl FnOnce() -> f64) {
+    /// a step `lag` times as long, where it is longer by the least factor that matters; `rate` is that of
+    /// the fastest decay, 1/s.
+    pub fn explicit_step(
+        &mut self,
+        h: f64,
+        lag: impl FnOnce(f64) -> f64,
+        rate: impl FnOnce() -> f64,
+    ) {
         match self.verdict {
             Verdict::Open => {}
             Verdict::NotStiff => return self.serve(),
@@ -131,7 +137,9 @@ impl Stiffness {
         if self.steps % LOOK == LOOK / 2 {
             self.rate = rate();
         }
-        self.lost = (self.lost + 1.0 - COST / lag).max(0.0);
+        // Where nothing is lost, less than nothing is not either.
+        let least = if self.lost == 0.0 { COST } else { 0.0 };
+        self.lost = (self.lost + 1.0 - COST / lag(least)).max(0.0);
         self.decayed = match self.rate * h >= 1.0 {
             true => self.decayed + self.rate * h,
             false => 0.0,
@@ -162,7 +170,7 @@ mod tests {
     use super::*;
 
     fn explicit(stiffness: &mut Stiffness, steps: u32, lag: f64, rate: f64) {
-        (0..steps).for_each(|_| stiffness.explicit_step(1.0, lag, || rate));
+        (0..steps).for_each(|_| stiffness.explicit_step(1.0, |_| lag, || rate));
     }
 
     #[test]

@@ -48,10 +48,14 @@ pub trait OneStep<const F: usize, Y> {
     /// tolerance alone.
     const EXACT_ACCELERATIONS: bool;
 
+    /// Whether stiffness holds the method back.
+    const EXPLICIT: bool;
+
     /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both: large
-    /// where stiffness holds an explicit method back. `None` for a method that it does not hold back.
-    fn lag(&self) -> Option<f64> {
-        None
+    /// where stiffness holds an explicit method back. 0 where it is less than `least`, and for a method that
+    /// is not held back.
+    fn lag(&self, _system: &Y, _least: f64) -> f64 {
+        0.0
     }
 
     /// Bound of the error of the dense output inside a step, in units of the tolerance, where it is not
@@ -93,6 +97,8 @@ where
     type Motion = Dense<S, F>;
 
     const EXACT_ACCELERATIONS: bool = true;
+
+    const EXPLICIT: bool = false;
 
     fn name(&self) -> (&'static str, usize) {
         ("Radau IIA", 2 * S - 1)
@@ -141,8 +147,10 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     const EXACT_ACCELERATIONS: bool = false;
 
-    fn lag(&self) -> Option<f64> {
-        Some(self.lag())
+    const EXPLICIT: bool = true;
+
+    fn lag(&self, system: &Y, least: f64) -> f64 {
+        self.lag(system, least)
     }
 
     fn name(&self) -> (&'static str, usize) {

@@ -4,6 +4,7 @@ use crate::input::{LaneSignals, Side, Signals};
 use crate::integrate::ORDERS;
 use crate::model::Model;
 use crate::with_kernel;
+use std::cell::Cell;
 
 /// Numbers of entries of the context arrays of a model; its address identifies the model.
 #[derive(Debug)]
@@ -48,8 +49,32 @@ pub struct Context {
     pub(super) constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub(super) guard_series: Box<[f64]>,
-    /// What the series functions carry from one order to the next.
+    /// What the series functions carry from one order to the next: room for the longest series of all
+    /// modes.
     pub(super) workspace: Box<[f64]>,
+    /// Sines and cosines that were computed last.
+    pub(super) angles: Cell<[KeptAngle; KEPT_ANGLES]>,
+}
+
+/// Angles whose sine and cosine are kept, for functions that ask for them again.
+pub(super) const KEPT_ANGLES: usize = 4;
+
+/// An angle (rad) with its sine and cosine, as C keeps them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub(super) struct KeptAngle {
+    angle: f64,
+    sin: f64,
+    cos: f64,
+}
+
+impl KeptAngle {
+    /// The angle 0.
+    pub const ZERO: Self = KeptAngle {
+        angle: 0.0,
+        sin: 0.0,
+        cos: 1.0,
+    };
 }
 
 impl Context {
@@ -81,6 +106,7 @@ impl Context {
             },
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
+            angles: Cell::new([KeptAngle::ZERO; KEPT_ANGLES]),
         }
     }
 

@@ -9,6 +9,7 @@ mod lanes;
 mod tables;
 
 pub use context::{Context, Dimensions};
+use context::{KEPT_ANGLES, KeptAngle};
 pub use lanes::{
     LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePoint, LaneRows,
     LaneSeries, LaneSystem, processor_level,
@@ -34,6 +35,7 @@ struct RawContext {
     h: *const f64,
     c: *const f64,
     j: *const f64,
+    angles: *mut KeptAngle,
 }
 
 /// A generated C function.
@@ -435,6 +437,7 @@ impl Context {
             h: self.held.as_ptr(),
             c: self.constants.as_ptr(),
             j,
+            angles: self.angles.as_ptr().cast(),
         }
     }
 }
@@ -447,6 +450,7 @@ impl ConstantsKernel {
             "number of parameters"
         );
         assert_eq!(out.len(), self.dimensions.constants);
+        let mut angles = [KeptAngle::ZERO; KEPT_ANGLES];
         let raw = RawContext {
             u: std::ptr::null(),
             u_dot: std::ptr::null(),
@@ -454,6 +458,7 @@ impl ConstantsKernel {
             h: std::ptr::null(),
             c: std::ptr::null(),
             j: std::ptr::null(),
+            angles: (&raw mut angles).cast(),
         };
         let none = std::ptr::null();
         // SAFETY: the function reads `parameters` only and writes `constants` outputs.
@@ -525,14 +530,13 @@ impl<const F: usize> ModeKernel<F> {
         let Some(series) = &self.guard_series else {
             return false;
         };
-        assert!(orders <= ORDERS && x.guard_series.len() >= ORDERS * self.guards);
+        assert!(orders <= ORDERS);
         let raw = x.raw(self.dimensions, std::ptr::null());
-        assert!(x.workspace.len() >= self.workspace());
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
         let out = x.guard_series.as_mut_ptr();
         // SAFETY: F entries a row of q, v and a, which are only read, and all rows are there; one
-        // output a guard and order; the workspace is as long as the generated tables say.
+        // output a guard and order; guard series and workspace have room for every mode of the model.
         unsafe {
             (series.start)(q, v, a, u, &raw, w, out);
             (series.run)(orders, q, v, a, u, &raw, w, out);
@@ -552,11 +556,10 @@ impl<const F: usize> ModeKernel<F> {
             load: SVector::zeros(),
         };
         let raw = x.raw(self.dimensions, std::ptr::null());
-        assert!(x.workspace.len() >= self.workspace());
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
         // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
-        // struct; the workspace is as long as the generated tables say.
+        // struct; the workspace has room for every mode of the model.
         unsafe { (series.start)(q, v, a, u, &raw, w, (&raw mut out).cast()) }
         out
     }
@@ -578,12 +581,11 @@ impl<const F: usize> ModeKernel<F> {
         let series = self.motion_series(x).expect("the mode is analytic");
         assert!(n <= ORDERS - 2);
         let raw = x.raw(self.dimensions, std::ptr::null());
-        assert!(x.workspace.len() >= self.workspace());
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
         let inverse = inverse.as_ptr().cast_mut();
         // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the
-        // inverse are only read; the workspace is as long as the generated tables say.
+        // inverse are only read; the workspace has room for every mode of the model.
         unsafe { (series.run)(n, q, v, a, u, &raw, w, inverse) }
     }
 
@@ -825,6 +827,8 @@ impl<const W: usize> LaneContext<W> {
             h: self.held.as_ptr().cast(),
             c: self.constants.as_ptr().cast(),
             j: std::ptr::null(),
+            // Lanes keep no angles.
+            angles: std::ptr::null_mut(),
         }
     }
 }

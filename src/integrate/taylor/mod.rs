@@ -72,8 +72,8 @@ pub struct Taylor<const F: usize> {
     /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
     inverse: Option<SMatrix<f64, F, F>>,
     implicit: Implicit,
-    /// See [`super::OneStep::lag`].
-    lag: f64,
+    /// Length of the last step as far as accuracy limits it.
+    length: f64,
     counters: Counters,
 }
 
@@ -95,7 +95,7 @@ impl<const F: usize> Taylor<F> {
                 5 => Implicit::new::<5, F>(tolerances),
                 _ => Implicit::new::<7, F>(tolerances),
             },
-            lag: 0.0,
+            length: f64::INFINITY,
             tolerances: *tolerances,
             order,
             panels: quadrature::panels(convolutions),
@@ -192,14 +192,8 @@ impl<const F: usize> Taylor<F> {
         self.expand(system, &origin)?;
         let remaining = (t_end - origin.t) - self.lost.t;
         let horizon = system.horizon(origin.t) - origin.t;
-        let [length, implicit] = self.lengths();
-        let implicit = implicit.min(system.resolution(origin.t));
-        self.lag = if length.is_finite() {
-            implicit / length
-        } else {
-            0.0
-        };
-        let h = fit(length, remaining, h_max.min(horizon));
+        self.length = self.accurate_length();
+        let h = fit(self.length, remaining, h_max.min(horizon));
         if origin.t + h == origin.t {
             return Err(StepError::Tolerance {
                 t: origin.t,
@@ -318,9 +312,8 @@ impl<const F: usize> Taylor<F> {
         ]
     }
 
-    /// The length at which the last terms equal the tolerance, as far as those before agree; and that of
-    /// a step of Radau IIA, as the term of its error estimate allows.
-    fn lengths(&self) -> [f64; 2] {
+    /// The length at which the last terms equal the tolerance, as far as those before agree.
+    fn accurate_length(&self) -> f64 {
         let Series { q, v, .. } = &self.dense.series;
         let [of_q, of_v] = self.weights();
         let of_q = |power: usize| largest(&q[power], &of_q);
@@ -333,13 +326,23 @@ impl<const F: usize> Taylor<F> {
             of_v(p - 3),
             of_v(p - 2),
         ];
-        let Implicit { power, error } = self.implicit;
-        [self.terms.length(sizes), root(of_v(power) * error, power)]
+        self.terms.length(sizes)
     }
 
-    /// Length of a step of Radau IIA ÷ that of the last step, as far as accuracy limits both.
-    pub fn lag(&self) -> f64 {
-        self.lag
+    /// Length of a step of Radau IIA, as the term of its error estimate allows, ÷ that of the last step, as
+    /// far as accuracy limits both; 0 where it is less than `least`.
+    pub fn lag<Y: Analytic<F>>(&self, system: &Y, least: f64) -> f64 {
+        let Implicit { power, error } = self.implicit;
+        let [_, of_v] = self.weights();
+        let size = largest(&self.dense.series.v[power], &of_v) * error;
+        // Already the step that is `least` times as long has too large an error, or has none.
+        let is_less = size * (least * self.length).powi(power as i32) >= 1.0;
+        if is_less || self.length == f64::INFINITY {
+            return 0.0;
+        }
+        let implicit = root(size, power).min(system.resolution(self.start.t));
+        let lag = implicit / self.length;
+        if lag < least { 0.0 } else { lag }
     }
 
     /// Ends the step from `origin` after `h`, at `t` if that is given. The acceleration is that of
