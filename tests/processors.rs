@@ -30,7 +30,8 @@ int main(void) {
     double q[32] = {0.17 - 0.003 * i}, v[32] = {0.3 + 0.01 * i}, a[32] = {0.0}, u[3 * 32], w[1024], out[2];
     double p[8] = {0.25, 1.5, 1.0, 0.9, 9.81, 1.0, 1.0, 1.0}, c[256], d[1] = {1.0}, h[8] = {0.0};
     for (int k = 0; k < 3 * 32; ++k) u[k] = 1.0 / (3.0 + k + i);
-    const struct dalembert_context x = {u, u, d, h, c, a};
+    struct dalembert_angle angles[4] = {{0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}};
+    const struct dalembert_context x = {u, u, d, h, c, a, angles};
     dalembert_rocking_block_constants(p, p, p, &x, c);
     dalembert_rocking_block_rocks_series_start(q, v, a, u, &x, w, out);
     double inverse = 1.0 / out[0];
