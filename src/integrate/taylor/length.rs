@@ -10,8 +10,9 @@ const STEP: f64 = 120.0;
 const ORDER: f64 = 10.0;
 const PRODUCT: f64 = 0.6;
 
-/// Least order: so many terms decide about the length.
-const LEAST: usize = 5;
+/// Least order: five terms decide about the length, and the term of order 6 about that of a Radau IIA step of
+/// five stages ([`super::Implicit`]).
+const LEAST: usize = 6;
 
 /// Order at which a unit of time is cheapest for a relative tolerance ε.
 ///
@@ -48,7 +49,7 @@ pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> 
     best.0
 }
 
-/// The terms that limit the length of a step of order p ≥ 5: those of order p − 1, p and p + 1, and before
+/// The terms that limit the length of a step of order p ≥ 6: those of order p − 1, p and p + 1, and before
 /// them those of order p − 3 and p − 2.
 ///
 /// Two last orders of each of coordinates and velocities are looked at, since those of an even or odd

@@ -90,11 +90,13 @@ impl<const F: usize> Taylor<F> {
         };
         let relative = tolerances.relative();
         let order = length::order(relative, convolutions, F);
+        let implicit = match super::stages(relative) {
+            5 => Implicit::new::<5, F>(tolerances),
+            _ => Implicit::new::<7, F>(tolerances),
+        };
+        debug_assert!(implicit.power <= order, "the series has no such term");
         Taylor {
-            implicit: match super::stages(relative) {
-                5 => Implicit::new::<5, F>(tolerances),
-                _ => Implicit::new::<7, F>(tolerances),
-            },
+            implicit,
             length: f64::INFINITY,
             tolerances: *tolerances,
             order,
