@@ -72,7 +72,7 @@ pub(super) fn cut<'a, const F: usize>(
     signs.from.fill(start);
     loop {
         let dense = method.dense().expect("a step was made");
-        let to = method.state().t;
+        let to = method.end();
         let Signs {
             watches,
             found,
@@ -119,7 +119,7 @@ pub(super) fn cut<'a, const F: usize>(
                     beyond,
                 });
             }
-            Landing::Short if method.state().t == to => {
+            Landing::Short if method.end() == to => {
                 // The end point itself, more accurate than the dense output, is not across.
                 found[first] = Search::quiet(Watch::Armed);
                 return Ok(Cut::Nothing);

@@ -67,7 +67,7 @@ impl Doubts {
     pub fn look<'a, const F: usize>(
         &mut self,
         step: &Searched,
-        method: &impl OneStep<F, Equations<'a, F>>,
+        method: &mut impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
@@ -87,7 +87,7 @@ impl Doubts {
     fn examine<'a, const F: usize>(
         &mut self,
         step: &Searched,
-        method: &impl OneStep<F, Equations<'a, F>>,
+        method: &mut impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
@@ -104,7 +104,7 @@ impl Doubts {
         let left = std::mem::take(&mut self.left);
         for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
             let mut guard = step.guard(watched, equations, conditions);
-            let end = method.state();
+            let end = *method.state();
             if !found.resolved {
                 let value = guard.value(end.t, &end.q, &end.v);
                 let error = guard.error(end.t, &end.q, &end.v) * tolerances;

@@ -40,12 +40,12 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     crossing: Crossing,
 ) -> Result<Landing<F>, Reason> {
     let start = method.start().t;
-    let window = method.state().t;
+    let window = method.end();
     // A guard that all but fell at the end of the step before does so within the rounding of the start.
     let mut tau = crossing.outside.max(start.next_up());
     let mut correction_before = f64::INFINITY;
     loop {
-        if tau != method.state().t {
+        if tau != method.end() {
             method.step_exactly(equations, tau - start)?;
         }
         let mut end = *method.state();

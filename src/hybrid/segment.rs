@@ -161,9 +161,12 @@ impl Simulation<'_> {
                 }
             };
 
+            let (state, beyond) = match event {
+                Some((_, state, beyond)) => (state, beyond),
+                None => (*method.state(), 0.0),
+            };
+            let end = method.end();
             let dense = method.dense().expect("a step was made");
-            let end = *method.state();
-            let (state, beyond) = event.map_or((end, 0.0), |(_, state, beyond)| (state, beyond));
 
             // Samples before the ledger moves on to the end of the step.
             let energies = problem.record.columns.energies;
@@ -200,7 +203,7 @@ impl Simulation<'_> {
             while problem.record.every.is_some() {
                 let t = sample_time(problem.record.every, self.next_sample);
                 let tau = Instant::new(t).since(start);
-                if !tau.is_finite() || tau > end.t + beyond {
+                if !tau.is_finite() || tau > end + beyond {
                     break;
                 }
                 row_at(t, tau);
@@ -215,7 +218,7 @@ impl Simulation<'_> {
             };
             if let Some(ledger) = &mut self.ledger {
                 if F == 0 {
-                    let part = (ledger_from, end.t);
+                    let part = (ledger_from, end);
                     ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
                 } else {
                     for Node { weight, state } in method.nodes() {
@@ -232,7 +235,7 @@ impl Simulation<'_> {
                 if beyond != 0.0 {
                     ledger.add_powers(kernel.powers(equations.context, at), beyond);
                 }
-                ledger_from = end.t;
+                ledger_from = end;
             }
 
             self.here.now = start.plus(state.t);
@@ -275,14 +278,14 @@ impl Simulation<'_> {
                 return Ok(Stop::Event(guard));
             }
             self.signs.go_on();
-            let h = end.t - method.start().t;
+            let h = end - method.start().t;
             if chooses && is_explicit {
                 let lag = |least| method.lag(&equations, least);
                 stiffness.explicit_step(h, lag, || equations.decay_rate(at));
             } else if chooses {
                 stiffness.implicit_step(h);
             }
-            if end.t >= until {
+            if end >= until {
                 self.here.now = Instant::new(last);
                 return Ok(if last >= problem.end.time {
                     Stop::End

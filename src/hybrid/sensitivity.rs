@@ -90,8 +90,9 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     }
 
     /// Place and value of its least value in the last step; `None` if that is at the start.
-    pub fn least(&mut self, method: &impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
-        let (start, end, dense) = (method.start(), method.state(), dense_of(method));
+    pub fn least(&mut self, method: &mut impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
+        let end = &method.state().clone();
+        let (start, dense) = (method.start(), dense_of(method));
         if self.watched.condition.is_none() {
             if rate_at(self.equations, self.guard, end) <= 0.0 {
                 return Some((end.t, self.value(end.t, &end.q, &end.v)));
@@ -135,7 +136,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         t: f64,
         method: &impl OneStep<F, Equations<'a, F>>,
     ) -> f64 {
-        let (start, end, dense) = (method.start().t, method.state().t, dense_of(method));
+        let (start, end, dense) = (method.start().t, method.end(), dense_of(method));
         let mut defect = SVector::<f64, F>::zeros();
         for k in 0..PARTS {
             let place = start + (k as f64 + 0.5) / PARTS as f64 * (end - start);
@@ -167,8 +168,13 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
 
     /// The value at which it would turn back after the end of the last step, by its slope and curvature
     /// there, which are more accurate than what the search has `found` on the dense output.
-    pub fn would_turn(&mut self, method: &impl OneStep<F, Equations<'a, F>>, found: f64) -> f64 {
-        let (start, end) = (method.start(), method.state());
+    pub fn would_turn(
+        &mut self,
+        method: &mut impl OneStep<F, Equations<'a, F>>,
+        found: f64,
+    ) -> f64 {
+        let end = &method.state().clone();
+        let start = method.start();
         if self.watched.condition.is_some() || found == 0.0 {
             return found;
         }

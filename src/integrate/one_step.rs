@@ -35,8 +35,11 @@ pub trait OneStep<const F: usize, Y> {
     /// The state the last step started from.
     fn start(&self) -> &State<F>;
 
-    /// The state the last step led to.
-    fn state(&self) -> &State<F>;
+    /// Time to which the last step led, s.
+    fn end(&self) -> f64;
+
+    /// The state the last step led to; computed now if it was not before.
+    fn state(&mut self) -> &State<F>;
 
     /// The motion within the last step.
     fn dense(&self) -> Option<&Self::Motion>;
@@ -109,7 +112,7 @@ where
     }
 
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
-        let h_max = system.resolution(self.state().t);
+        let h_max = system.resolution(self.end());
         self.step(system, t_end, h_max)
     }
 
@@ -121,8 +124,12 @@ where
         self.start()
     }
 
-    fn state(&self) -> &State<F> {
-        self.state()
+    fn end(&self) -> f64 {
+        self.end()
+    }
+
+    fn state(&mut self) -> &State<F> {
+        Radau::state(self)
     }
 
     fn dense(&self) -> Option<&Dense<S, F>> {
@@ -165,7 +172,7 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
         // The terms of the motion tell what the inputs do, unless nothing moves: guards on reactions
         // then swing with the inputs alone.
         let h_max = match F {
-            0 => system.resolution(self.state().t),
+            0 => system.resolution(self.end()),
             _ => f64::INFINITY,
         };
         self.step(system, t_end, h_max)
@@ -179,7 +186,11 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
         self.start()
     }
 
-    fn state(&self) -> &State<F> {
+    fn end(&self) -> f64 {
+        self.end()
+    }
+
+    fn state(&mut self) -> &State<F> {
         self.state()
     }
 

@@ -129,6 +129,11 @@ where
         &self.start
     }
 
+    /// Time to which the last step led, s.
+    pub fn end(&self) -> f64 {
+        self.end.t
+    }
+
     /// The state the last step led to (or the restart set).
     pub fn state(&self) -> &State<F> {
         &self.end

@@ -65,6 +65,9 @@ pub struct Taylor<const F: usize> {
     lost_at_start: Lost<F>,
     lost: Lost<F>,
     dense: TaylorDense<F>,
+    /// Length of the last step where its end is known by its time alone; it is computed when it is asked
+    /// for, since an event may shorten the step before.
+    open: Option<f64>,
     /// Whether `dense` is the last step.
     stepped: bool,
     /// Whether the step starts where the last restart did.
@@ -114,6 +117,7 @@ impl<const F: usize> Taylor<F> {
                 known: order,
                 series: Series::zero(),
             },
+            open: None,
             stepped: false,
             restarted: true,
             inverse: None,
@@ -138,6 +142,7 @@ impl<const F: usize> Taylor<F> {
         self.start = self.end;
         self.lost = Lost::nothing();
         self.lost_at_start = self.lost;
+        self.open = None;
         self.stepped = false;
         self.restarted = true;
         self.inverse = None;
@@ -153,8 +158,17 @@ impl<const F: usize> Taylor<F> {
         &self.start
     }
 
+    /// Time to which the last step led, s.
+    pub fn end(&self) -> f64 {
+        self.end.t
+    }
+
     /// The state the last step led to (or the restart set).
-    pub fn state(&self) -> &State<F> {
+    #[inline]
+    pub fn state(&mut self) -> &State<F> {
+        if let Some(h) = self.open.take() {
+            self.complete(h);
+        }
         &self.end
     }
 
@@ -189,7 +203,7 @@ impl<const F: usize> Taylor<F> {
             self.end.t
         );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
-        let origin = self.end;
+        let origin = *self.state();
         self.restarted &= !self.stepped;
         self.expand(system, &origin)?;
         let remaining = (t_end - origin.t) - self.lost.t;
@@ -347,27 +361,29 @@ impl<const F: usize> Taylor<F> {
         if lag < least { 0.0 } else { lag }
     }
 
-    /// Ends the step from `origin` after `h`, at `t` if that is given. The acceleration is that of
-    /// the polynomial: as good as the tolerance.
+    /// Ends the step from `origin` after `h`, at `t` if that is given.
+    #[inline]
     fn finish(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, t: Option<f64>) {
-        let mut end = *origin;
-        let mut now_lost = Lost::nothing();
-        match t {
-            Some(t) => end.t = t,
-            None => (end.t, now_lost.t) = add(origin.t, h, lost.t),
-        }
+        (self.start, self.lost_at_start) = (*origin, lost);
+        (self.end.t, self.lost.t) = match t {
+            Some(t) => (t, 0.0),
+            None => add(origin.t, h, lost.t),
+        };
+        self.dense.t_end = self.end.t;
+        self.open = Some(h);
+        self.stepped = true;
+    }
+
+    /// Computes the state at the end of the step of length `h`. The acceleration is that of the polynomial:
+    /// as good as the tolerance.
+    fn complete(&mut self, h: f64) {
+        let (start, lost) = (&self.start, &self.lost_at_start);
         let (dq, dv) = self.dense.change(h);
         for i in 0..F {
-            (end.q[i], now_lost.q[i]) = add(origin.q[i], dq[i], lost.q[i]);
-            (end.v[i], now_lost.v[i]) = add(origin.v[i], dv[i], lost.v[i]);
+            (self.end.q[i], self.lost.q[i]) = add(start.q[i], dq[i], lost.q[i]);
+            (self.end.v[i], self.lost.v[i]) = add(start.v[i], dv[i], lost.v[i]);
         }
-        end.a = self.dense.acceleration(h);
-        self.start = *origin;
-        self.end = end;
-        self.lost_at_start = lost;
-        self.lost = now_lost;
-        self.dense.t_end = end.t;
-        self.stepped = true;
+        self.end.a = self.dense.acceleration(h);
     }
 
     /// Nodes of Gauss's quadrature over the last step; none after a restart.
