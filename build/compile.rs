@@ -13,7 +13,7 @@ use super::parallel;
 const KIND: &str = "libraries";
 
 /// C that generated code and the crate call, relative to the project, and for lanes; what they include.
-const ELEMENTARY: &str = "codegen/elementary.c";
+const ELEMENTARY: [&str; 2] = ["codegen/elementary.c", "codegen/sums.c"];
 const LANES: &str = "codegen/lanes.c";
 const INCLUDED: [&str; 2] = ["codegen/elementary.h", "codegen/lanes.h"];
 
@@ -70,9 +70,9 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         // No model has this name: a model's begins with a letter.
         name: "_elementary".to_owned(),
         level: None,
-        origin: ELEMENTARY.to_owned(),
+        origin: ELEMENTARY.join(", "),
         directory: project.join("codegen"),
-        sources: vec![project.join(ELEMENTARY)],
+        sources: ELEMENTARY.map(|file| project.join(file)).into(),
     };
     let x86_64 = std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "x86_64");
     let levels = || std::iter::once(&ANY).chain(X86_64.iter().filter(|_| x86_64));

@@ -12,7 +12,8 @@ fn output(command: &mut Command) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// Prints the bits of the Taylor series of the rocking block's motion, and of sines and cosines.
+/// Prints the bits of the Taylor series of the rocking block's motion, of sums by a table, and of sines and
+/// cosines.
 const MAIN: &str = r#"
 #include <inttypes.h>
 #include <stdio.h>
@@ -24,8 +25,18 @@ static void print(const char *what, const double *x, int n) {
     printf("%s %d %016" PRIx64 "\n", what, i, bits);
   }
 }
+void dalembert_triangular_sums(size_t n, const double *factors, const double *table, double *out);
 int main(void) {
   enum { ORDER = 24 };
+  for (int n = 1; n <= 32; ++n) {
+    double factors[32], table[32 * 32] = {0.0}, out[32];
+    for (int k = 0; k < n; ++k) {
+      factors[k] = 1.0 / (3.0 + k) - 0.1;
+      for (int j = k; j < n; ++j) table[n * k + j] = 1.0 / (1.0 + k + 2.0 * j);
+    }
+    dalembert_triangular_sums(n, factors, table, out);
+    print("sums", out, n);
+  }
   for (int i = 0; i < 50; ++i) {
     double q[32] = {0.17 - 0.003 * i}, v[32] = {0.3 + 0.01 * i}, a[32] = {0.0}, u[3 * 32], w[1024], out[2];
     double p[8] = {0.25, 1.5, 1.0, 0.9, 9.81, 1.0, 1.0, 1.0}, c[256], d[1] = {1.0}, h[8] = {0.0};
@@ -66,7 +77,7 @@ fn the_bits_do_not_depend_on_the_instructions() {
         .arg("--out")
         .arg(folder.path());
     output(&mut generate);
-    let elementary = project.join("codegen/elementary.c");
+    let others = ["elementary.c", "sums.c"].map(|file| project.join("codegen").join(file));
     let model = folder.path().join("rocking_block/rocking_block.c");
     let main = folder.path().join("main.c");
     std::fs::write(&main, format!("#include {model:?}\n{MAIN}")).unwrap();
@@ -85,7 +96,8 @@ fn the_bits_do_not_depend_on_the_instructions() {
             // As in build/compile.rs.
             compile
                 .args([level, "-ffp-contract=off", &format!("-march={name}"), "-o"])
-                .args([&program, &main, &elementary])
+                .args([&program, &main])
+                .args(&others)
                 .arg("-lm");
             output(&mut compile);
             all.push(output(&mut Command::new(program)));

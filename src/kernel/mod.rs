@@ -73,6 +73,9 @@ struct SinCos {
 unsafe extern "C" {
     /// Takes every number.
     safe fn dalembert_sin_cos(x: f64) -> SinCos;
+
+    /// Takes `n` factors, `n` rows of `n` entries, and room for `n` sums.
+    fn dalembert_triangular_sums(n: usize, factors: *const f64, table: *const f64, out: *mut f64);
 }
 
 /// What codegen/lanes.c has for every mode, at each level of the processor.
@@ -399,6 +402,17 @@ fn lanes_of_mut<const W: usize>(blocks: &mut [Block<W>]) -> &mut [Lanes<W>] {
 pub fn sin_cos(x: f64) -> (f64, f64) {
     let SinCos { sin, cos } = dalembert_sin_cos(x);
     (sin, cos)
+}
+
+/// Sums Σ_{k ≤ j} `factors[k]` · `table[k][j]`, by the same bits on every processor (codegen/sums.c). Below its
+/// diagonal, for j < k, the table must be zero.
+#[inline]
+pub fn triangular_sums<const N: usize>(factors: &[f64; N], table: &[[f64; N]; N]) -> [f64; N] {
+    let mut out = [0.0; N];
+    let table = table.as_ptr().cast();
+    // SAFETY: all have the length N, the rows follow each other.
+    unsafe { dalembert_triangular_sums(N, factors.as_ptr(), table, out.as_mut_ptr()) }
+    out
 }
 
 impl Context {

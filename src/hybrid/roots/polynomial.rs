@@ -5,6 +5,7 @@ use super::extrema::{Count, Expansion, Places, extrema};
 use super::first_fall::first_fall;
 use super::walk::{Pieces, walk};
 use super::{Kind, Search, Watch};
+use crate::kernel::triangular_sums;
 
 /// Polynomial on s ∈ \[0, 1\] in powers of s: value Σₖ `coefficients[k]` sᵏ, of degree `N` − 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,19 +192,7 @@ impl<const N: usize> Polynomial<N> {
 
     /// Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
     pub(super) fn bernstein(&self) -> [f64; N] {
-        let mut b = [0.0; N];
-        // Four sums at a time, which a processor has room for; the table is triangular.
-        for (block, b) in b.chunks_mut(4).enumerate() {
-            let (from, mut sums) = (4 * block, [0.0; 4]);
-            for k in 0..N.min(from + 4) {
-                let (coefficient, column) = (self.coefficients[k], &Self::TO_BERNSTEIN[k]);
-                for (sum, entry) in sums.iter_mut().zip(&column[from..]) {
-                    *sum += coefficient * entry;
-                }
-            }
-            b.copy_from_slice(&sums[..b.len()]);
-        }
-        b
+        triangular_sums(&self.coefficients, &Self::TO_BERNSTEIN)
     }
 
     /// The polynomial on [0, `end`], in powers of s/`end`.
