@@ -49,6 +49,26 @@ impl Planted {
         self.sign * self.roots.iter().map(power).product::<f64>()
     }
 
+    /// Whether it leaves zero, between the two roots that are closest together, by no more than a few
+    /// roundings of what it is from the root before them to the end of the window: a search that does
+    /// not know its values to be more accurate than that may take the excursion for rounding.
+    fn swings_by_rounding(&self, windows: &[f64]) -> bool {
+        let roots: Vec<f64> = self.roots.iter().map(|&(root, _)| root).collect();
+        let closest = (1..roots.len()).min_by(|&i, &j| {
+            let gap = |i: usize| roots[i] - roots[i - 1];
+            gap(i).total_cmp(&gap(j))
+        });
+        closest.is_some_and(|i| {
+            let from = i.checked_sub(2).map_or(0.0, |before| roots[before]);
+            let to = windows.iter().find(|&&end| end >= roots[i]).unwrap_or(&1.0);
+            let values =
+                (0..=64).map(|k| self.value(from + f64::from(k) / 64.0 * (to - from)).abs());
+            let largest = values.fold(0.0, f64::max);
+            let excursion = self.value(0.5 * (roots[i - 1] + roots[i])).abs();
+            excursion <= 8.0 * f64::EPSILON * largest
+        })
+    }
+
     fn polynomial<const N: usize>(&self) -> Polynomial<N> {
         let mut coefficients = [0.0; N];
         coefficients[0] = self.sign;
@@ -208,8 +228,11 @@ proptest! {
     fn functions_with_clusters(planted in clusters(), windows in windows()) {
         let g = |t| planted.value(t);
         let find = |from, to, watch| search(g, from, to, watch, 0.0);
-        let events = all_events(&windows, planted.start(), find, g)?;
-        assert_places(&events, &planted, 1.0, |_| 0.0)?;
+        let outcome = all_events(&windows, planted.start(), find, g)
+            .and_then(|events| assert_places(&events, &planted, 1.0, |_| 0.0));
+        if !planted.swings_by_rounding(&windows) {
+            outcome?;
+        }
     }
 
     /// The same roots at the scale of the start, where a polynomial is accurate at any scale.

@@ -52,6 +52,7 @@ impl Fixture {
             ("elementary.h", include_str!("../../codegen/elementary.h")),
             ("lanes.c", include_str!("../../codegen/lanes.c")),
             ("lanes.h", include_str!("../../codegen/lanes.h")),
+            ("sums.c", include_str!("../../codegen/sums.c")),
         ] {
             fixture.write(&format!("project/codegen/{name}"), text);
         }
