@@ -49,9 +49,10 @@ impl Planted {
         self.sign * self.roots.iter().map(power).product::<f64>()
     }
 
-    /// Whether it leaves zero, between the two roots that are closest together, by no more than a few
-    /// roundings of what it is from the root before them to the end of the window: a search that does
-    /// not know its values to be more accurate than that may take the excursion for rounding.
+    /// Whether it leaves zero, between the two roots that are closest together, by no more than the search
+    /// may take for rounding, since it does not know that its values here are more accurate: a rounding of
+    /// what it is from the root before them to the end of the window, or of its second derivative there in
+    /// units of the window, which for degree 5 is up to 800 times as large (Markov).
     fn swings_by_rounding(&self, windows: &[f64]) -> bool {
         let roots: Vec<f64> = self.roots.iter().map(|&(root, _)| root).collect();
         let closest = (1..roots.len()).min_by(|&i, &j| {
@@ -65,7 +66,7 @@ impl Planted {
                 (0..=64).map(|k| self.value(from + f64::from(k) / 64.0 * (to - from)).abs());
             let largest = values.fold(0.0, f64::max);
             let excursion = self.value(0.5 * (roots[i - 1] + roots[i])).abs();
-            excursion <= 8.0 * f64::EPSILON * largest
+            excursion <= 800.0 * f64::EPSILON * largest
         })
     }
 
