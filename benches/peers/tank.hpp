@@ -11,8 +11,9 @@
 #include <utility>
 
 // What a generated function sees besides the free coordinates: signals, their rates, discrete states, all
-// coordinates, constants, jerks.
-struct Context { const double *u, *u_dot, *d, *h, *c, *j; };
+// coordinates, constants, jerks; and where it keeps sines and cosines.
+struct Angle { double angle, sin, cos; };
+struct Context { const double *u, *u_dot, *d, *h, *c, *j; Angle *angles; };
 using Function = void(const double *q, const double *v, const double *a, const Context *x, double *out);
 
 struct Transition {
@@ -42,8 +43,12 @@ template <bool FREE> struct Tank {
   static constexpr std::array<double, N> SCALES{0.01, 1e-3, 0.01, 0.1, 0.1, 0.1};
   int mode;
   double least_rate, last_rate, discrete[DISCRETES], constants[CONSTANTS];
+  mutable Angle angles[4] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 
-  Tank() { CONSTANTS_OF(PARAMETERS, nullptr, nullptr, nullptr, constants); }
+  Tank() {
+    const Context context{nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, angles};
+    CONSTANTS_OF(PARAMETERS, nullptr, nullptr, &context, constants);
+  }
 
   void start(double *y, double tolerance) {
     std::fill(y, y + N, 0.0);
@@ -118,7 +123,7 @@ template <bool FREE> struct Tank {
         q[i] = y[mode.coordinates[i]];
         v[i] = y[COUNT + mode.coordinates[i]];
       }
-      context = {signals, nullptr, tank.discrete, held, tank.constants, nullptr};
+      context = {signals, nullptr, tank.discrete, held, tank.constants, nullptr, tank.angles};
     }
     void call(Function *function, const double *a, double *out) const { function(q, v, a, &context, out); }
     // Of M a + b = 0.
