@@ -41,6 +41,14 @@ def merged(rows, new):
     return [row for row in rows if (row["peer"], row["problem"]) not in replaced] + new
 
 
+def least(rows, again):
+    """Rows of another pass of the same programs, each with the least times of both passes."""
+    key = lambda row: (row["peer"], row["method"], row["problem"], row["tolerance"], row["steps"])
+    before = {key(row): row for row in rows}
+    times = ("least_us", "median_us")
+    return [{**row, **{t: min(row[t], before.get(key(row), row)[t], key=float) for t in times}} for row in again]
+
+
 def best(rows, problem, level):
     """Fastest row of each peer with every event and an end error of at most the level."""
     fastest = {}

@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 from install import HERE, ROOT, RUNNABLE, Peers, call
-from rows import COLUMNS, PROBLEMS, collect, merged, table, with_summary
+from rows import COLUMNS, PROBLEMS, collect, least, merged, table, with_summary
 
 # The names of the rows that a peer prints.
 PRINTS = {"sundials": {"CVODE", "ARKODE"}, "fortran": {"LSODAR", "RADAU5"}, "heyoka": {"heyoka", "heyoka less calls"}, "casadi": {"CasADi"}}
@@ -54,6 +54,7 @@ def main():
     parser.add_argument("scratch", type=pathlib.Path, help="folder for what is installed and built")
     parser.add_argument("--only", default="", help=f"peers and problems, separated by commas: {', '.join(RUNNABLE + PROBLEMS)}; other rows stay")
     parser.add_argument("--missing", action="store_true", help="only what has no rows yet: goes on after an interruption")
+    parser.add_argument("--again", action="store_true", help="another pass of the same programs: the least times of both count")
     parser.add_argument("--quick", action="store_true", help="a trial, written into SCRATCH: every third tolerance, few repeats")
     arguments = parser.parse_args()
     scratch = arguments.scratch.resolve()
@@ -77,7 +78,8 @@ def main():
             command = getattr(peers, name)() if problems else None
             for problem in problems:
                 print(f"{name}: {problem}", file=sys.stderr, flush=True)
-                rows = merged(rows, rows_of(command, problem, reference))
+                new = rows_of(command, problem, reference)
+                rows = merged(rows, least(rows, new) if arguments.again else new)
                 write(results / "results.csv", rows)
             if name == "dalembert" and problems:
                 shares = subprocess.run([*map(str, command), "overhead"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)

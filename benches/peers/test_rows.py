@@ -3,7 +3,7 @@
 import unittest
 
 import ensemble
-from rows import best, collect, frontier, merged, table, with_summary
+from rows import best, collect, frontier, least, merged, table, with_summary
 from run import is_there
 
 REFERENCES = {
@@ -89,6 +89,12 @@ class Resume(unittest.TestCase):
         old = [row("x", 1, 1, problem="P1"), row("x", 2, 1, problem="P2"), row("y", 3, 1, problem="P1")]
         got = merged(old, [row("x", 9, 1, problem="P1")])
         self.assertEqual(sorted((r["peer"], r["problem"], r["least_us"]) for r in got), [("x", "P1", "9"), ("x", "P2", "2"), ("y", "P1", "3")])
+
+    def test_the_least_times_of_two_passes_count_where_the_steps_are_the_same(self):
+        run = lambda time, problem, steps: row("x", time, 1, problem=problem) | {"steps": steps, "median_us": str(time)}
+        old = [run(2, "P1", "5"), run(1, "P2", "7")]
+        new = least(old, [run(9, "P1", "5"), run(9, "P2", "5")])
+        self.assertEqual([r["least_us"] for r in new], ["2", "9"])
 
     def test_what_is_missing_is_known_by_the_names_that_a_peer_prints(self):
         rows = [row("CVODE", 1, 1)]
