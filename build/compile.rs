@@ -15,7 +15,11 @@ const KIND: &str = "libraries";
 /// C that generated code and the crate call, relative to the project, and for lanes; what they include.
 const ELEMENTARY: [&str; 2] = ["codegen/elementary.c", "codegen/sums.c"];
 const LANES: &str = "codegen/lanes.c";
-const INCLUDED: [&str; 2] = ["codegen/elementary.h", "codegen/lanes.h"];
+const INCLUDED: [&str; 3] = [
+    "codegen/elementary.h",
+    "codegen/lanes.h",
+    "codegen/vectors.h",
+];
 
 /// A level of the processor, with the width of its registers: see `codegen/lanes.h`.
 struct Level {

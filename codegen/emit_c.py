@@ -21,31 +21,19 @@ CONTEXT_FIELDS = ("u", "u_dot", "d", "h", "c", "j")
 
 HEADER = """\
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 #if defined(__GNUC__) || defined(__clang__)
 #define DALEMBERT_INLINE static inline __attribute__((always_inline))
 #else
 #define DALEMBERT_INLINE static inline
 #endif
-/* Twice, for processors with AVX2 and for others, of which the loader takes one: by the same bits. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__)
-#define DALEMBERT_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define DALEMBERT_CLONES
-#endif
 typedef double real;
 #define REAL(x) (x)
-/* Numbers side by side that fit into a register. */
-#if defined(__GNUC__) || defined(__clang__)
-#define DALEMBERT_BLOCK 4
-typedef double dalembert_block __attribute__((vector_size(32), aligned(8), may_alias));
+#if DALEMBERT_BLOCK == 4
 /* At once: a processor waits where it reads as one what it has just stored in parts, and a compiler
  * makes parts of what is not volatile. */
 #define DALEMBERT_PUT(at, ...) (*(volatile dalembert_block *)(at) = (dalembert_block){__VA_ARGS__})
 #else
-#define DALEMBERT_BLOCK 1
-typedef double dalembert_block;
 #define DALEMBERT_PUT(at, ...) DALEMBERT_PUT_EACH(at, __VA_ARGS__)
 #endif
 struct dalembert_sin_cos { double sin, cos; };
@@ -87,7 +75,7 @@ _CONTEXT = (f"struct dalembert_context {{ const real {', '.join(f'*{name}' for n
             "struct dalembert_angle *angles; };\n")
 
 KEPT_ANGLES = 4
-"""Angles whose sine and cosine are kept: `KEPT_ANGLES` in src/kernel/context.rs. A function may have more."""
+"""Angles whose sine and cosine a context keeps. A function may have more."""
 
 _BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
 # Functions of the C library, whose last bits may differ between systems; sine and cosine are not
@@ -217,7 +205,7 @@ class Source:
 
     def text(self, title):
         """The C file."""
-        return _file(title, HEADER, self.functions.values())
+        return _file(title, _text("vectors.h") + HEADER, self.functions.values())
 
     def lanes_text(self, title, names):
         """The C file of some of the functions, and of what they call, for lanes; None without any."""
@@ -233,7 +221,10 @@ def _file(title, header, functions):
 
 def _lanes_header():
     """The text of `lanes.h` with what it includes."""
-    def text(name):
-        with open(os.path.join(os.path.dirname(__file__), name), encoding="utf-8") as stream:
-            return stream.read()
-    return text("lanes.h").replace('#include "elementary.h"\n', text("elementary.h"))
+    return _text("lanes.h").replace('#include "elementary.h"\n', _text("elementary.h"))
+
+
+def _text(name):
+    """A header of this folder: generated files stand on their own."""
+    with open(os.path.join(os.path.dirname(__file__), name), encoding="utf-8") as stream:
+        return stream.read()

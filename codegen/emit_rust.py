@@ -8,6 +8,7 @@ import json
 import casadi as ca
 
 from . import units
+from .emit_c import KEPT_ANGLES
 
 MOST_FREE = 6
 """Most free coordinates a mode may have; `ModeKernels` in src/kernel/mod.rs has one case for each."""
@@ -65,7 +66,7 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
               f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
               f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
               f"    parameters: {len(model.parameters)},", f"    constants: {constants_count},",
-              f"    expanded: &[{', '.join(map(_bool, _expanded(variants)))}],", "};", ""]
+              f"    angles: {KEPT_ANGLES},", f"    expanded: &[{', '.join(map(_bool, _expanded(variants)))}],", "};", ""]
     lines += [f"/// {model.title}.", f"pub static {name.upper()}: Model = Model {{"]
     lines += [
         f"    name: {_text(name)},", f"    title: {_text(model.title)},", f"    source: {_text(model.source)},",

@@ -10,7 +10,7 @@ so short that it would wait for that, the last factors are kept in registers as 
 """
 
 BLOCK = 4
-"""Most numbers side by side in a register: DALEMBERT_BLOCK in emit_c.py."""
+"""Most numbers side by side in a register: DALEMBERT_BLOCK in vectors.h."""
 
 
 class Interiors:

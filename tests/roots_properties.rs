@@ -229,10 +229,13 @@ proptest! {
     fn functions_with_clusters(planted in clusters(), windows in windows()) {
         let g = |t| planted.value(t);
         let find = |from, to, watch| search(g, from, to, watch, 0.0);
-        let outcome = all_events(&windows, planted.start(), find, g)
-            .and_then(|events| assert_places(&events, &planted, 1.0, |_| 0.0));
-        if !planted.swings_by_rounding(&windows) {
-            outcome?;
+        let events = all_events(&windows, planted.start(), find, g)?;
+        // An excursion that is taken for rounding is one event less; the others are where they should be.
+        let is_one_less = events.len() + 1 == planted.events().len();
+        if is_one_less && planted.swings_by_rounding(&windows) {
+            prop_assert!(events.iter().all(|event| g(event.inside) == 0.0));
+        } else {
+            assert_places(&events, &planted, 1.0, |_| 0.0)?;
         }
     }
 

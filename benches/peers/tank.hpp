@@ -12,7 +12,7 @@
 
 // What a generated function sees besides the free coordinates: signals, their rates, discrete states, all
 // coordinates, constants, jerks; and where it keeps sines and cosines.
-struct Angle { double angle, sin, cos; };
+struct Angle { double angle = 0, sin = 0, cos = 1; };
 struct Context { const double *u, *u_dot, *d, *h, *c, *j; Angle *angles; };
 using Function = void(const double *q, const double *v, const double *a, const Context *x, double *out);
 
@@ -43,7 +43,7 @@ template <bool FREE> struct Tank {
   static constexpr std::array<double, N> SCALES{0.01, 1e-3, 0.01, 0.1, 0.1, 0.1};
   int mode;
   double least_rate, last_rate, discrete[DISCRETES], constants[CONSTANTS];
-  mutable Angle angles[4] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  mutable Angle angles[ANGLES];
 
   Tank() {
     const Context context{nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, angles};

@@ -65,7 +65,7 @@ def tables(rust):
     functions = sorted(set(re.findall(r"\bdalembert_\w+", "".join(rows))) | {constants})
     declared = blocks(rust[rust.index("parameters: &["):rust.index("parameter_sets: &[")], "Parameter")
     parameters = ", ".join(field("default", p) for p in declared)
-    dimensions = [f"constexpr int {what.upper()} = {field(what, rust)};" for what in ("coordinates", "signals", "discretes", "constants")]
+    dimensions = [f"constexpr int {what.upper()} = {field(what, rust)};" for what in ("coordinates", "signals", "discretes", "constants", "angles")]
     return "\n".join([
         "// Modes of the walking tank; written by tank.py.", 'extern "C" {', *(f"Function {name};" for name in functions), "}",
         *dimensions, f"constexpr double PARAMETERS[] = {{{parameters}}};", f"constexpr auto &CONSTANTS_OF = {constants};",

@@ -91,10 +91,10 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
 
     /// Place and value of its least value in the last step; `None` if that is at the start.
     pub fn least(&mut self, method: &mut impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
-        let end = &method.state().clone();
+        let end = *method.state();
         let (start, dense) = (method.start(), dense_of(method));
         if self.watched.condition.is_none() {
-            if rate_at(self.equations, self.guard, end) <= 0.0 {
+            if rate_at(self.equations, self.guard, &end) <= 0.0 {
                 return Some((end.t, self.value(end.t, &end.q, &end.v)));
             }
             if rate_at(self.equations, self.guard, start) >= 0.0 {
@@ -173,7 +173,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         method: &mut impl OneStep<F, Equations<'a, F>>,
         found: f64,
     ) -> f64 {
-        let end = &method.state().clone();
+        let end = *method.state();
         let start = method.start();
         if self.watched.condition.is_some() || found == 0.0 {
             return found;
@@ -182,7 +182,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         let [q, v, a] = motion(self.equations, dense_of(method), before, true);
         let before = State { t: before, q, v, a };
         let [earlier, slope] =
-            [&before, end].map(|state| rate_at(self.equations, self.guard, state));
+            [&before, &end].map(|state| rate_at(self.equations, self.guard, state));
         let curvature = (slope - earlier) / (end.t - before.t);
         let value = self.value(end.t, &end.q, &end.v);
         match curvature > 0.0 {

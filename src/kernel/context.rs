@@ -21,6 +21,8 @@ pub struct Dimensions {
     pub parameters: usize,
     /// Constants computed from the parameters.
     pub constants: usize,
+    /// Angles whose sines and cosines are kept.
+    pub angles: usize,
     /// Of each signal, whether the equations of motion or the guards of some mode depend on it.
     pub expanded: &'static [bool],
 }
@@ -52,12 +54,9 @@ pub struct Context {
     /// What the series functions carry from one order to the next: room for the longest series of all
     /// modes.
     pub(super) workspace: Box<[f64]>,
-    /// Sines and cosines that were computed last.
-    pub(super) angles: Cell<[KeptAngle; KEPT_ANGLES]>,
+    /// Sines and cosines that were computed last, for functions that ask for them again.
+    pub(super) angles: Box<[Cell<KeptAngle>]>,
 }
-
-/// Angles whose sine and cosine are kept, for functions that ask for them again.
-pub(super) const KEPT_ANGLES: usize = 4;
 
 /// An angle (rad) with its sine and cosine, as C keeps them.
 #[repr(C)]
@@ -106,7 +105,7 @@ impl Context {
             },
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
-            angles: Cell::new([KeptAngle::ZERO; KEPT_ANGLES]),
+            angles: vec![Cell::new(KeptAngle::ZERO); dimensions.angles].into(),
         }
     }
 

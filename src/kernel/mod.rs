@@ -8,8 +8,8 @@ mod context;
 mod lanes;
 mod tables;
 
+use context::KeptAngle;
 pub use context::{Context, Dimensions};
-use context::{KEPT_ANGLES, KeptAngle};
 pub use lanes::{
     LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePoint, LaneRows,
     LaneSeries, LaneSystem, processor_level,
@@ -451,7 +451,7 @@ impl Context {
             h: self.held.as_ptr(),
             c: self.constants.as_ptr(),
             j,
-            angles: self.angles.as_ptr().cast(),
+            angles: self.angles.as_ptr().cast::<KeptAngle>().cast_mut(),
         }
     }
 }
@@ -464,7 +464,7 @@ impl ConstantsKernel {
             "number of parameters"
         );
         assert_eq!(out.len(), self.dimensions.constants);
-        let mut angles = [KeptAngle::ZERO; KEPT_ANGLES];
+        let mut angles = vec![KeptAngle::ZERO; self.dimensions.angles];
         let raw = RawContext {
             u: std::ptr::null(),
             u_dot: std::ptr::null(),
@@ -472,7 +472,7 @@ impl ConstantsKernel {
             h: std::ptr::null(),
             c: std::ptr::null(),
             j: std::ptr::null(),
-            angles: (&raw mut angles).cast(),
+            angles: angles.as_mut_ptr(),
         };
         let none = std::ptr::null();
         // SAFETY: the function reads `parameters` only and writes `constants` outputs.

@@ -53,6 +53,7 @@ impl Fixture {
             ("lanes.c", include_str!("../../codegen/lanes.c")),
             ("lanes.h", include_str!("../../codegen/lanes.h")),
             ("sums.c", include_str!("../../codegen/sums.c")),
+            ("vectors.h", include_str!("../../codegen/vectors.h")),
         ] {
             fixture.write(&format!("project/codegen/{name}"), text);
         }

@@ -352,7 +352,8 @@ impl<const F: usize> Taylor<F> {
         let [_, of_v] = self.weights();
         let size = largest(&self.dense.series.v[power], &of_v) * error;
         // Already the step that is `least` times as long has too large an error, or has none.
-        let is_less = size * (least * self.length).powi(power as i32) >= 1.0;
+        let limit = least * self.length;
+        let is_less = (0..power).fold(size, |error, _| error * limit) >= 1.0;
         if is_less || self.length == f64::INFINITY {
             return 0.0;
         }
