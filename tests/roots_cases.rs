@@ -500,3 +500,14 @@ fn an_oscillation_within_the_window_is_resolved_by_halving() {
     let event = crossing(search(g, 0.0, 1.0, Watch::Dormant, 0.0), g);
     assert_near(event.outside, std::f64::consts::PI / 200.0, 1e-17);
 }
+
+/// The window's halves, 2⁻²⁶ of which are a whole number of units in the last place.
+#[test]
+fn what_a_rounded_argument_does_to_the_value_is_rounding() {
+    let roots = [0.5065669060998059, 0.5069113974395631, 0.507428134449199];
+    let g = |t: f64| -roots.iter().map(|root| t - root).product::<f64>();
+    let from = roots[0].next_up();
+    let found = search(g, from, 0.5075682633240519, Watch::Violated, 0.0);
+    assert!(found.resolved);
+    assert_eq!(crossing(found, g).inside, roots[2]);
+}

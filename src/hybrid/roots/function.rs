@@ -80,6 +80,16 @@ impl Samples {
             .fold(0.0, |m: f64, v| m.max(v.abs()))
     }
 
+    /// What the values owe to the rounding of the nodes, by half a unit in the last place: four times as
+    /// much, as in `Guard::roughness`, which does not see it where the shift is a whole number of units.
+    fn rounding_of_nodes(&self) -> f64 {
+        let unit = |t: f64| t.abs().next_up() - t.abs();
+        let slope =
+            |j: usize| (self.values[j] - self.values[j - 1]) / (self.nodes[j] - self.nodes[j - 1]);
+        let steepest = (1..NODES).fold(0.0, |m: f64, j| m.max(slope(j).abs()));
+        4.0 * steepest * 0.5 * unit(self.from).max(unit(self.to))
+    }
+
     fn time(&self, fraction: f64) -> f64 {
         (self.from + fraction * (self.to - self.from)).clamp(self.from, self.to)
     }
@@ -128,7 +138,8 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
         }
         if watch != Watch::Dormant {
             // Halving the window does not help where rounding errors are what is not resolved.
-            let noise = noise.max(self.roughness(&samples, DEGREE));
+            let roughness = self.roughness(&samples, DEGREE);
+            let noise = noise.max(roughness).max(samples.rounding_of_nodes());
             if let Some(search) = self.decide(&samples, DEGREE, watch, noise) {
                 return search;
             }
