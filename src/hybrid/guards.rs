@@ -2,7 +2,7 @@
 
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
-use super::roots::{self, Polynomial, Search, Watch};
+use super::roots::{self, Polynomial, Search, Watch, stretch, sum_of};
 use crate::integrate::{Motion, ORDERS, System, solve};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
@@ -289,7 +289,7 @@ fn search_linear<const F: usize>(
             coefficients[0] = 0.0;
         }
     }
-    search_polynomial(&coefficients[..count], dense, window, watch)
+    search_polynomial(&coefficients, dense, window, watch)
 }
 
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
@@ -311,16 +311,14 @@ fn search_series<const F: usize>(
     }
     let (kernel, context) = (equations.kernel, &*equations.context);
     let mut coefficients = [0.0; ORDERS];
-    let mut power = 1.0;
     let given = kernel.guard_coefficients(context, watched.guard, orders);
     for (coefficient, given) in coefficients.iter_mut().zip(given) {
-        *coefficient = given * power;
-        power *= dense.length();
+        *coefficient = given;
     }
-    let coefficients = &mut coefficients[..orders];
-    let size = |of: &[f64]| of.iter().map(|c| c.abs()).sum::<f64>();
-    let allowed = equations.tolerance * (orders * orders) as f64 * size(coefficients);
-    let falls_off = size(&coefficients[orders - 2..]) <= allowed;
+    stretch(&mut coefficients[..orders], dense.length());
+    let size = |of: &[f64]| sum_of(of, f64::abs);
+    let allowed = equations.tolerance * (orders * orders) as f64 * size(&coefficients);
+    let falls_off = size(&coefficients[orders - 2..orders]) <= allowed;
     if !falls_off {
         return None;
     }
@@ -332,12 +330,12 @@ fn search_series<const F: usize>(
         a: &series.a[0],
     };
     coefficients[0] = kernel.guard(equations.context, &guard.kernel, at);
-    Some(search_polynomial(coefficients, dense, window, watch))
+    Some(search_polynomial(&coefficients, dense, window, watch))
 }
 
 /// Searches a polynomial in s = (τ − start)/length of the step.
 fn search_polynomial<const F: usize>(
-    coefficients: &[f64],
+    coefficients: &[f64; ORDERS],
     dense: &impl Motion<F>,
     (from, to): (f64, f64),
     watch: Watch,
@@ -352,26 +350,36 @@ fn search_polynomial<const F: usize>(
 }
 
 /// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
-pub(super) fn search_window(coefficients: &[f64], window: (f64, f64), watch: Watch) -> Search {
+pub(super) fn search_window(
+    coefficients: &[f64; ORDERS],
+    window: (f64, f64),
+    watch: Watch,
+) -> Search {
     let degree = coefficients.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     // Work grows with the square of the room.
     match degree {
-        0..=3 => search_padded::<4>(coefficients, window, watch),
-        4..=7 => search_padded::<8>(coefficients, window, watch),
-        8..=11 => search_padded::<12>(coefficients, window, watch),
-        12..=15 => search_padded::<16>(coefficients, window, watch),
-        16..=19 => search_padded::<20>(coefficients, window, watch),
-        20..=23 => search_padded::<24>(coefficients, window, watch),
-        24..=27 => search_padded::<28>(coefficients, window, watch),
-        _ => search_padded::<ORDERS>(coefficients, window, watch),
+        0..=3 => search_part::<4>(coefficients, window, watch),
+        4..=7 => search_part::<8>(coefficients, window, watch),
+        8..=11 => search_part::<12>(coefficients, window, watch),
+        12..=15 => search_part::<16>(coefficients, window, watch),
+        16..=19 => search_part::<20>(coefficients, window, watch),
+        20..=23 => search_part::<24>(coefficients, window, watch),
+        24..=27 => search_part::<28>(coefficients, window, watch),
+        _ => search_part::<ORDERS>(coefficients, window, watch),
     }
 }
 
 /// Searches a polynomial whose coefficients beyond the first `N` vanish.
-fn search_padded<const N: usize>(given: &[f64], (from, to): (f64, f64), watch: Watch) -> Search {
-    let mut coefficients = [0.0; N];
-    for (coefficient, given) in coefficients.iter_mut().zip(given) {
-        *coefficient = *given;
+fn search_part<const N: usize>(
+    coefficients: &[f64; ORDERS],
+    (from, to): (f64, f64),
+    watch: Watch,
+) -> Search {
+    let first = coefficients
+        .first_chunk::<N>()
+        .expect("N is ORDERS at most");
+    Polynomial {
+        coefficients: *first,
     }
-    Polynomial { coefficients }.search(from, to, watch, 0.0)
+    .search(from, to, watch, 0.0)
 }

@@ -89,7 +89,7 @@ pub trait Motion<const F: usize> {
     }
 
     /// Writes the coefficients, in powers of s = (t − start)/length, of coordinate `index` or of its
-    /// rate; gives their number.
+    /// rate; gives their number. What is beyond them stays zero if it was.
     fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize;
 }
 
@@ -231,6 +231,7 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
         for power in 0..degree {
             out[power] = (power + 1) as f64 * out[power + 1] / self.length();
         }
+        out[degree] = 0.0;
         degree
     }
 }

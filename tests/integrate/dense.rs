@@ -2,7 +2,7 @@
 
 use crate::problems::{DoublePendulum, Oscillator, SlidingBlock};
 use crate::{start, tolerances};
-use dalembert::integrate::System;
+use dalembert::integrate::{Motion, ORDERS, System};
 use nalgebra::{SMatrix, SVector, vector};
 
 /// A block that lifts off: the tilting moment t passes zero at t = 0, a = t + 5 sin θ.
@@ -147,5 +147,28 @@ fn an_unresolved_transient_does_not_bend_the_dense_output() {
             "block at {part}: {v}"
         );
         assert!(v[1].abs() < 1e-6, "spring at {part}: {v}");
+    }
+}
+
+#[test]
+fn the_polynomials_of_coordinates_and_rates_are_the_motion() {
+    let mut pendulum = DoublePendulum { g: 9.81 };
+    let (q, v) = (vector![1.0, 2.0], vector![0.5, -0.5]);
+    let mut radau = start::<3, 2>(&mut pendulum, q, v, &tolerances(1e-8, 1.0, 1.0));
+    radau.step(&mut pendulum, 10.0, f64::INFINITY).unwrap();
+    let dense = radau.dense().unwrap();
+    for (index, rate) in [(0, false), (1, false), (0, true), (1, true)] {
+        let mut coefficients = [0.0; ORDERS];
+        let count = dense.polynomial(index, rate, &mut coefficients);
+        assert!(coefficients[count..].iter().all(|&c| c == 0.0));
+        for s in [0.0, 0.3, 1.0] {
+            let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
+            let (q, v, _) = dense.at_offset(s * dense.length());
+            let exact = if rate { v[index] } else { q[index] };
+            assert!(
+                (sum - exact).abs() < 1e-14,
+                "{index} {rate} {s}: {sum} {exact}"
+            );
+        }
     }
 }

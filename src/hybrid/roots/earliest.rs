@@ -38,8 +38,18 @@ pub fn earliest(
         found.len(),
         "as many remembered signs as guards"
     );
+    let mut events = 0;
     for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
         *found = search(index, from, to, watch);
+        events += usize::from(found.crossing.is_some());
+    }
+    // Nothing to compare: most windows.
+    if events == 0 {
+        let resolved = found.iter().all(|found| found.resolved);
+        return Earliest {
+            time: None,
+            resolved,
+        };
     }
     let mut end = to;
     // Each pass ends earlier than the one before, until the set lies at the end of its window.

@@ -1,21 +1,19 @@
 //! The first simple fall of a polynomial: the common case, fast.
 //!
 //! The Bernstein coefficients have no sign change where there is no root, and one where there is one
-//! root (Descartes' rule): then a Newton iteration of third order leads to it.
-//!
-//! Where they have more, certified steps go on. Bounds of the curvature on the whole window make every step safe. From a place s with g(s) > 0
-//! the parabola with the least possible curvature bounds g from below, so that there is no root
-//! before its own. As far as the greatest possible curvature cannot turn a negative slope, g falls:
-//! the sign at the end of that piece decides, and the only root in it is found as before. Whatever
-//! does not fit is left to the general search.
+//! root (Descartes' rule): then a Newton iteration of third order leads to it. Where they have more, the
+//! polynomial is cut in two by de Casteljau's rule, and the first part is looked at first (Lane, J. M. and
+//! Riesenfeld, R. F. (1981), BIT 21, 112–117). Whatever does not fit, such as a touch, is left to the
+//! general search.
 
 use super::bracket::{Point, close};
 use super::doubles::{above, below};
-use super::polynomial::Polynomial;
+use super::polynomial::{Polynomial, sum_of};
 use super::{Kind, Search, Watch};
 
-/// Certified steps before the general search is cheaper; most windows need two or three.
-const MOST_STEPS: usize = 12;
+/// Cuts into halves of halves before the general search is cheaper: what has not become one root or none by
+/// then is a touch or nearly one.
+const MOST_CUTS: usize = 8;
 
 /// Steps to a root on a falling piece; the third order needs three from half a window away.
 const MOST_ITERATIONS: usize = 8;
@@ -24,54 +22,6 @@ const MOST_ITERATIONS: usize = 8;
 /// cube root of the unit roundoff.
 const LAST_STEP: f64 = 4.8e-6;
 
-/// A polynomial with its slope, and bounds of its curvature.
-struct Derivatives<const N: usize> {
-    value: Polynomial<N>,
-    slope: Polynomial<N>,
-    /// Bounds of the curvature on [0, 1].
-    least: f64,
-    greatest: f64,
-    /// Bounds of the rounding errors of value and slope on [0, 1].
-    error: f64,
-    slope_error: f64,
-}
-
-impl<const N: usize> Derivatives<N> {
-    fn new(polynomial: &Polynomial<N>) -> Self {
-        let c = &polynomial.coefficients;
-        let mut slope = [0.0; N];
-        let (mut size, mut slope_size, mut curvature_size) = (c[0].abs(), 0.0, 0.0);
-        let (mut least, mut greatest) = (0.0, 0.0);
-        for k in 1..N {
-            let first = k as f64 * c[k];
-            slope[k - 1] = first;
-            size += c[k].abs();
-            slope_size += first.abs();
-            if k >= 2 {
-                let second = (k - 1) as f64 * first;
-                curvature_size += second.abs();
-                if k == 2 {
-                    (least, greatest) = (second, second);
-                } else {
-                    least += second.min(0.0);
-                    greatest += second.max(0.0);
-                }
-            }
-        }
-        let rounding = Polynomial::<N>::ROUNDING;
-        Derivatives {
-            value: *polynomial,
-            slope: Polynomial {
-                coefficients: slope,
-            },
-            least: least - rounding * curvature_size,
-            greatest: greatest + rounding * curvature_size,
-            error: rounding * size,
-            slope_error: rounding * slope_size,
-        }
-    }
-}
-
 /// The first event of an armed guard in `from` < s ≤ `to`, or that there is none; `None` where this
 /// search cannot tell.
 pub(super) fn first_fall<const N: usize>(
@@ -79,33 +29,112 @@ pub(super) fn first_fall<const N: usize>(
     from: f64,
     to: f64,
 ) -> Option<Search> {
-    let bernstein = polynomial.bernstein();
-    let size: f64 = polynomial.coefficients.iter().map(|c| c.abs()).sum();
-    let margin = Polynomial::<N>::ROUNDING * size;
-    let changes = Changes::of(&bernstein, margin);
-    let bounded = |search: Search| match search.crossing {
-        None => Search::above(least(&bernstein)),
-        Some(_) => search,
+    let size = sum_of(&polynomial.coefficients, f64::abs);
+    let guard = Armed {
+        polynomial,
+        from,
+        to,
+        rounding: Polynomial::<N>::ROUNDING * size,
     };
-    if matches!(changes, Changes::None) {
-        return Some(bounded(Search::quiet(Watch::Armed)));
+    guard.first_fall(&polynomial.bernstein(), (0.0, 1.0), 0)
+}
+
+/// An armed guard on a window.
+struct Armed<'p, const N: usize> {
+    polynomial: &'p Polynomial<N>,
+    from: f64,
+    to: f64,
+    /// Bound of the rounding errors of Bernstein coefficients on [0, 1], and of those that a cut adds: a cut
+    /// takes N − 1 means of two, each in between.
+    rounding: f64,
+}
+
+impl<const N: usize> Armed<'_, N> {
+    /// The same within a piece, given the Bernstein coefficients there, after so many cuts.
+    fn first_fall(&self, bernstein: &[f64; N], piece: (f64, f64), cuts: usize) -> Option<Search> {
+        let (start, end) = piece;
+        if end <= self.from || self.to <= start {
+            return Some(Search::quiet(Watch::Armed));
+        }
+        let search = match Changes::of(bernstein, (1 + cuts) as f64 * self.rounding) {
+            Changes::None => Search::quiet(Watch::Armed),
+            Changes::One(index) => self.only_fall((bernstein, index), piece)?,
+            Changes::Other if cuts == MOST_CUTS => return None,
+            Changes::Other => {
+                let part = part_before_rise(bernstein);
+                let middle = start + part * (end - start);
+                // At the start the powers lead there at less cost.
+                let left = match start == 0.0 {
+                    true => self.polynomial.on(middle).bernstein(),
+                    false => cut(bernstein, part).0,
+                };
+                let first = self.first_fall(&left, (start, middle), cuts + 1)?;
+                if first.crossing.is_some() {
+                    return Some(first);
+                }
+                let right = cut(bernstein, part).1;
+                let second = self.first_fall(&right, (middle, end), cuts + 1)?;
+                let turn = first.turn.min(second.turn);
+                return Some(match second.crossing {
+                    Some(_) => second,
+                    None => Search { turn, ..second },
+                });
+            }
+        };
+        Some(match search.crossing {
+            Some(_) => search,
+            None => Search::above(least(bernstein)),
+        })
     }
-    if let Changes::One(index) = changes {
-        return only_fall(polynomial, (&bernstein, index), (from, to), 1.0).map(bounded);
+
+    /// The event in a piece where the Bernstein coefficients change their sign once, at the one of index
+    /// `falls`: there is one root.
+    fn only_fall(
+        &self,
+        (bernstein, falls): (&[f64; N], usize),
+        (start, end): (f64, f64),
+    ) -> Option<Search> {
+        let (from, to) = (self.from.max(start), self.to.min(end));
+        let at_end = self.polynomial.value(to);
+        if at_end >= 0.0 {
+            return (to < end).then(|| Search::quiet(Watch::Armed));
+        }
+        // Where the polygon of the coefficients falls through zero.
+        let (before, after) = (bernstein[falls - 1], bernstein[falls]);
+        let place = ((falls - 1) as f64 + before / (before - after)) / (N - 1) as f64;
+        let near = start + place * (end - start);
+        let s = if from < near && near < to { near } else { from };
+        let (left, right) = ((from, self.polynomial.value(from)), (to, at_end));
+        match left.1 > 0.0 {
+            true => root(self.polynomial, left, right, s),
+            false => None,
+        }
     }
-    // Where it falls and rises again, there is one root before its lowest place.
+}
+
+/// The part of a piece before its least Bernstein coefficient, which divides a fall from the rise that
+/// follows; half of it where that is at an end.
+fn part_before_rise<const N: usize>(bernstein: &[f64; N]) -> f64 {
     let lowest = (1..N).fold(0, |lowest, i| match bernstein[i] < bernstein[lowest] {
         true => i,
         false => lowest,
     });
-    let end = to.min(lowest as f64 / (N - 1) as f64);
-    if from < end && polynomial.value(end) < -margin {
-        let bernstein = polynomial.on(end).bernstein();
-        if let Changes::One(index) = Changes::of(&bernstein, margin) {
-            return only_fall(polynomial, (&bernstein, index), (from, end), end);
-        }
+    match lowest == 0 || lowest == N - 1 {
+        true => 0.5,
+        false => lowest as f64 / (N - 1) as f64,
     }
-    by_certified_steps(polynomial, from, to).map(bounded)
+}
+
+/// Bernstein coefficients before and behind a part of the piece.
+fn cut<const N: usize>(bernstein: &[f64; N], part: f64) -> ([f64; N], [f64; N]) {
+    let (mut left, mut right) = (*bernstein, *bernstein);
+    for (count, left) in (1..N).rev().zip(&mut left[1..]) {
+        for i in 0..count {
+            right[i] = (1.0 - part) * right[i] + part * right[i + 1];
+        }
+        *left = right[0];
+    }
+    (left, right)
 }
 
 /// The least Bernstein coefficient, which the polynomial does not fall below; four side by side, since
@@ -145,82 +174,6 @@ impl Changes {
     }
 }
 
-/// The event in `from` < s ≤ `to`, where the Bernstein coefficients on [0, `end`] change their sign once,
-/// at the one of index `falls`: there is one root.
-fn only_fall<const N: usize>(
-    polynomial: &Polynomial<N>,
-    (bernstein, falls): (&[f64; N], usize),
-    (from, to): (f64, f64),
-    end: f64,
-) -> Option<Search> {
-    let at_end = polynomial.value(to);
-    if at_end >= 0.0 {
-        return Some(Search::quiet(Watch::Armed));
-    }
-    // Where the polygon of the coefficients falls through zero.
-    let (before, after) = (bernstein[falls - 1], bernstein[falls]);
-    let place = (falls - 1) as f64 + before / (before - after);
-    let near = end * place / (N - 1) as f64;
-    let s = if from < near && near < to { near } else { from };
-    let (left, right) = ((from, polynomial.value(from)), (to, at_end));
-    match left.1 > 0.0 {
-        true => root(polynomial, left, right, s),
-        false => None,
-    }
-}
-
-/// The same where more than one root is possible.
-fn by_certified_steps<const N: usize>(
-    polynomial: &Polynomial<N>,
-    from: f64,
-    to: f64,
-) -> Option<Search> {
-    let g = Derivatives::new(polynomial);
-    let mut s = from;
-    for _ in 0..MOST_STEPS {
-        let (value, slope) = (g.value.value(s), g.slope.value(s));
-        let positive = value - g.error;
-        if positive.is_nan() || positive <= 0.0 {
-            return None;
-        }
-        // How far there is no root for certain …
-        let slope_below = slope - g.slope_error;
-        let discriminant = slope_below * slope_below - 2.0 * g.least * positive;
-        if discriminant < 0.0 || g.least >= 0.0 && slope_below >= 0.0 {
-            return Some(Search::quiet(Watch::Armed));
-        }
-        let denominator = discriminant.sqrt() - slope_below;
-        if denominator <= 0.0 {
-            return Some(Search::quiet(Watch::Armed));
-        }
-        // (four roundings of the quotient: shortened by as much)
-        let safe = 2.0 * positive / denominator * (1.0 - 4.0 * f64::EPSILON);
-        if s + safe >= to {
-            return Some(Search::quiet(Watch::Armed));
-        }
-        // … and how far it falls for certain.
-        let steepest = slope + g.slope_error;
-        let falls = match g.greatest > 0.0 {
-            true => -steepest / g.greatest * (1.0 - 2.0 * f64::EPSILON),
-            false => f64::INFINITY,
-        };
-        if steepest < 0.0 && falls > safe {
-            let end = to.min(s + falls);
-            let at_end = g.value.value(end);
-            if at_end < 0.0 {
-                return root(polynomial, (s, value), (end, at_end), s);
-            }
-            if end == to {
-                return Some(Search::quiet(Watch::Armed));
-            }
-            s = end;
-        } else {
-            s += safe;
-        }
-    }
-    None
-}
-
 /// The only root between two places at which the polynomial has different signs, sought from `s` on.
 fn root<const N: usize>(
     polynomial: &Polynomial<N>,
@@ -229,6 +182,7 @@ fn root<const N: usize>(
     mut s: f64,
 ) -> Option<Search> {
     let (mut l, mut r) = (left, right);
+    let derivatives = polynomial.derivatives();
     let mut value = polynomial.value(s);
     let mut parabola = (value, 0.0, 0.0);
     for _ in 0..MOST_ITERATIONS {
@@ -237,7 +191,7 @@ fn root<const N: usize>(
         } else {
             l = (s, value)
         }
-        let (slope, curvature) = polynomial.slope_and_curvature(s);
+        let [slope, curvature] = [0, 1].map(|order| derivatives[order].sum(s));
         let discriminant = slope * slope - 2.0 * curvature * value;
         parabola = (value, slope, curvature);
         // The root of the parabola at s that a falling piece leads to, or Newton's.

@@ -51,7 +51,7 @@ impl<const N: usize> Polynomial<N> {
     }
 
     #[inline]
-    fn sum(&self, s: f64) -> f64 {
+    pub(super) fn sum(&self, s: f64) -> f64 {
         if N < 6 {
             let mut value = 0.0;
             for &coefficient in self.coefficients.iter().rev() {
@@ -72,9 +72,8 @@ impl<const N: usize> Polynomial<N> {
         (sums[0] + s * sums[1]) + s2 * (sums[2] + s * sums[3])
     }
 
-    /// First and second derivative at s.
-    #[inline]
-    pub(super) fn slope_and_curvature(&self, s: f64) -> (f64, f64) {
+    /// First and second derivative.
+    pub(super) fn derivatives(&self) -> [Self; 2] {
         let (mut slope, mut curvature) = ([0.0; N], [0.0; N]);
         for k in 1..N {
             slope[k - 1] = k as f64 * self.coefficients[k];
@@ -82,8 +81,7 @@ impl<const N: usize> Polynomial<N> {
         for k in 1..N {
             curvature[k - 1] = k as f64 * slope[k];
         }
-        let derivatives = [slope, curvature].map(|coefficients| Self { coefficients }.sum(s));
-        (derivatives[0], derivatives[1])
+        [slope, curvature].map(|coefficients| Self { coefficients })
     }
 
     /// The value where the polynomial is a multiple of s.
@@ -110,23 +108,17 @@ impl<const N: usize> Polynomial<N> {
     /// error of its value, so expand a segment's polynomials about its start.
     #[inline]
     pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
-        // c₀ + Σ min(cₖ, 0) bounds the polynomial on [0, 1] from below.
+        // c₀ + Σ min(cₖ, 0) bounds the polynomial on [0, 1] from below; c₀ itself is on the right side of 0,
+        // or this bound tells nothing.
         if watch == Watch::Armed {
-            let mut falls = 0.0;
-            for &coefficient in &self.coefficients[1..] {
-                falls -= coefficient.min(0.0);
-            }
-            let falls = falls * (1.0 + Self::ROUNDING);
+            let falls = sum_of(&self.coefficients, |c| (-c).max(0.0)) * (1.0 + Self::ROUNDING);
             if self.coefficients[0] > falls {
                 return Search::above(self.coefficients[0] - falls);
             }
         }
         // As c₀ + Σ max(cₖ, 0) does from above.
         if watch == Watch::Violated {
-            let mut rises = 0.0;
-            for &coefficient in &self.coefficients[1..] {
-                rises += coefficient.max(0.0);
-            }
+            let rises = sum_of(&self.coefficients, |c| c.max(0.0));
             if -self.coefficients[0] > rises * (1.0 + Self::ROUNDING) {
                 return Search::quiet(Watch::Violated);
             }
@@ -151,7 +143,7 @@ impl<const N: usize> Polynomial<N> {
             return search;
         }
         if watch == Watch::Violated {
-            let margin = Self::ROUNDING * self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
+            let margin = Self::ROUNDING * sum_of(&self.coefficients, f64::abs);
             if self.bernstein().iter().all(|&b| b < -margin) {
                 return Search::quiet(watch);
             }
@@ -197,13 +189,42 @@ impl<const N: usize> Polynomial<N> {
 
     /// The polynomial on [0, `end`], in powers of s/`end`.
     pub(super) fn on(&self, end: f64) -> Self {
-        let (mut coefficients, mut power) = (self.coefficients, 1.0);
-        for coefficient in &mut coefficients {
-            *coefficient *= power;
-            power *= end;
-        }
+        let mut coefficients = self.coefficients;
+        stretch(&mut coefficients, end);
         Self { coefficients }
     }
+}
+
+/// Makes of the coefficients in powers of s those in powers of s/`scale`: the power k of the scale times
+/// the coefficient k, two powers side by side, since a product waits for the one before.
+#[inline(always)]
+pub(in crate::hybrid) fn stretch(coefficients: &mut [f64], scale: f64) {
+    let squared = scale * scale;
+    let mut powers = [1.0, scale];
+    let (pairs, last) = coefficients.as_chunks_mut::<2>();
+    for pair in pairs {
+        for (coefficient, power) in pair.iter_mut().zip(&mut powers) {
+            *coefficient *= *power;
+            *power *= squared;
+        }
+    }
+    if let [last] = last {
+        *last *= powers[0];
+    }
+}
+
+/// Sum of what is made of each number, in four sums side by side: an addition waits for the one before.
+#[inline(always)]
+pub(in crate::hybrid) fn sum_of(numbers: &[f64], part: impl Fn(f64) -> f64) -> f64 {
+    let (fours, rest) = numbers.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for four in fours {
+        for (sum, &number) in sums.iter_mut().zip(four) {
+            *sum += part(number);
+        }
+    }
+    let all = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    rest.iter().fold(all, |sum, &number| sum + part(number))
 }
 
 impl<const N: usize> Expansion for Polynomial<N> {

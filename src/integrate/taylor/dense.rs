@@ -85,10 +85,19 @@ impl<const F: usize> TaylorDense<F> {
             false => (&self.series.q, self.order + 2),
             true => (&self.series.v, self.order + 1),
         };
-        let mut power = 1.0;
-        for k in 0..count {
-            out[k] = rows[k][index] * power;
-            power *= self.h;
+        // Two powers side by side, since a product waits for the one before.
+        let squared = self.h * self.h;
+        let mut powers = [1.0, self.h];
+        let (pairs, last) = rows[..count].as_chunks::<2>();
+        let (out_pairs, _) = out.as_chunks_mut::<2>();
+        for (out, row) in out_pairs.iter_mut().zip(pairs) {
+            for k in 0..2 {
+                out[k] = row[k][index] * powers[k];
+                powers[k] *= squared;
+            }
+        }
+        if let Some(row) = last.first() {
+            out[count - 1] = row[index] * powers[0];
         }
         count
     }

@@ -72,6 +72,8 @@ pub struct Taylor<const F: usize> {
     stepped: bool,
     /// Whether the step starts where the last restart did.
     restarted: bool,
+    /// Reciprocal tolerances of coordinates and velocities at the start of the step.
+    weights: [SVector<f64, F>; 2],
     /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
     inverse: Option<SMatrix<f64, F, F>>,
     implicit: Implicit,
@@ -120,6 +122,7 @@ impl<const F: usize> Taylor<F> {
             open: None,
             stepped: false,
             restarted: true,
+            weights: [zero; 2],
             inverse: None,
             counters: Counters::default(),
         }
@@ -205,6 +208,8 @@ impl<const F: usize> Taylor<F> {
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
         let origin = *self.state();
         self.restarted &= !self.stepped;
+        // Before the expansion, so that no division is left to wait for behind it.
+        self.weights = self.weights_at(&origin);
         self.expand(system, &origin)?;
         let remaining = (t_end - origin.t) - self.lost.t;
         let horizon = system.horizon(origin.t) - origin.t;
@@ -315,25 +320,24 @@ impl<const F: usize> Taylor<F> {
         Ok(inverse)
     }
 
-    /// Reciprocal tolerances of coordinates and velocities at the start of the step.
-    fn weights(&self) -> [SVector<f64, F>; 2] {
-        let Series { q, v, .. } = &self.dense.series;
+    /// Reciprocal tolerances of coordinates and velocities at a state.
+    fn weights_at(&self, state: &State<F>) -> [SVector<f64, F>; 2] {
         let relative = self.tolerances.relative();
         let weights = |absolute: &SVector<f64, F>, x: &SVector<f64, F>| {
             SVector::from_fn(|i, _| 1.0 / (absolute[i] + relative * x[i].abs()))
         };
         [
-            weights(self.tolerances.q_absolute(), &q[0]),
-            weights(self.tolerances.v_absolute(), &v[0]),
+            weights(self.tolerances.q_absolute(), &state.q),
+            weights(self.tolerances.v_absolute(), &state.v),
         ]
     }
 
     /// The length at which the last terms equal the tolerance, as far as those before agree.
     fn accurate_length(&self) -> f64 {
         let Series { q, v, .. } = &self.dense.series;
-        let [of_q, of_v] = self.weights();
-        let of_q = |power: usize| largest(&q[power], &of_q);
-        let of_v = |power: usize| largest(&v[power], &of_v);
+        let [of_q, of_v] = &self.weights;
+        let of_q = |power: usize| largest(&q[power], of_q);
+        let of_v = |power: usize| largest(&v[power], of_v);
         let p = self.order;
         let sizes = [
             of_v(p - 1),
@@ -349,8 +353,8 @@ impl<const F: usize> Taylor<F> {
     /// far as accuracy limits both; 0 where it is less than `least`.
     pub fn lag<Y: Analytic<F>>(&self, system: &Y, least: f64) -> f64 {
         let Implicit { power, error } = self.implicit;
-        let [_, of_v] = self.weights();
-        let size = largest(&self.dense.series.v[power], &of_v) * error;
+        let [_, of_v] = &self.weights;
+        let size = largest(&self.dense.series.v[power], of_v) * error;
         // Already the step that is `least` times as long has too large an error, or has none.
         let limit = least * self.length;
         let is_less = (0..power).fold(size, |error, _| error * limit) >= 1.0;
