@@ -2,8 +2,8 @@
 
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
-use super::roots::{self, Polynomial, Search, Watch, stretch, sum_of};
-use crate::integrate::{Motion, ORDERS, System, solve};
+use super::roots::{self, Polynomial, Search, Watch, sum_of};
+use crate::integrate::{Motion, ORDERS, System, solve, stretch};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
 use crate::model::{Guard, GuardShape, Transition, Variant};

@@ -80,18 +80,15 @@ impl Sine {
     /// The value alone at each of several instants.
     pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
         let [sines, cosines] = sin_cos_of_eight(&at.map(|(t, _)| 0.5 * self.angle(t)));
-        // One after another, so that the compiler works on several side by side.
-        let shifted: [_; 8] = std::array::from_fn(|i| self.shifted((sines[i], cosines[i])));
-        let mut values = [0.0; 8];
-        for i in 0..8 {
-            values[i] = self.amplitude * (shifted[i].0 * cosines[i] + shifted[i].1 * sines[i]);
-        }
-        for (value, &(t, side)) in values.iter_mut().zip(at) {
-            if !self.acts(t, side) {
-                *value = 0.0;
+        std::array::from_fn(|i| {
+            let (t, side) = at[i];
+            let (sin, cos) = (sines[i], cosines[i]);
+            let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
+            match self.acts(t, side) {
+                true => self.amplitude * (sin_shifted * cos + cos_shifted * sin),
+                false => 0.0,
             }
-        }
-        values
+        })
     }
 
     /// Whether it acts at an instant.

@@ -222,9 +222,7 @@ impl Interpolant {
     /// Whether the sample that tests the degree differs by no more than the error that the decay
     /// foretells, 2r/(1 − r) of the upper half, and errors of `noise` in each value explain. Where the
     /// coefficients do not decay the error is not foretold, and the sample must leave room: a quarter of
-    /// what [`error`](Self::error) says, since by chance it is near a zero of the error. (Of random sums
-    /// of cosines with up to two periods in the window, 5 in 3 million lose an event so, without the
-    /// quarter 24.)
+    /// what [`error`](Self::error) says, since by chance it is near a zero of the error.
     pub(super) fn agrees(&self, values: &[f64; SAMPLES], noise: f64) -> bool {
         let [lower, upper] = self.halves;
         let foretold = if self.decays() && upper < lower {

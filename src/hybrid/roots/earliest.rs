@@ -38,22 +38,14 @@ pub fn earliest(
         found.len(),
         "as many remembered signs as guards"
     );
-    let mut events = 0;
+    let mut happens = false;
     for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
         *found = search(index, from, to, watch);
-        events += usize::from(found.crossing.is_some());
-    }
-    // Nothing to compare: most windows.
-    if events == 0 {
-        let resolved = found.iter().all(|found| found.resolved);
-        return Earliest {
-            time: None,
-            resolved,
-        };
+        happens |= found.crossing.is_some();
     }
     let mut end = to;
     // Each pass ends earlier than the one before, until the set lies at the end of its window.
-    while let Some(time) = time_of_first_set(found) {
+    while happens && let Some(time) = time_of_first_set(found) {
         if time == end {
             break;
         }

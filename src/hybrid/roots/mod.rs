@@ -73,7 +73,7 @@ pub use chebyshev::FIRST_PLACES;
 pub use earliest::{Earliest, earliest};
 pub use function::search;
 pub use polynomial::Polynomial;
-pub(super) use polynomial::{stretch, sum_of};
+pub(super) use polynomial::sum_of;
 
 /// Remembered sign of a guard at the start of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

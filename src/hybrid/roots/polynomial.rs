@@ -5,6 +5,7 @@ use super::extrema::{Count, Expansion, Places, extrema};
 use super::first_fall::first_fall;
 use super::walk::{Pieces, walk};
 use super::{Kind, Search, Watch};
+use crate::integrate::stretch;
 use crate::kernel::triangular_sums;
 
 /// Polynomial on s ∈ \[0, 1\] in powers of s: value Σₖ `coefficients[k]` sᵏ, of degree `N` − 1.
@@ -192,24 +193,6 @@ impl<const N: usize> Polynomial<N> {
         let mut coefficients = self.coefficients;
         stretch(&mut coefficients, end);
         Self { coefficients }
-    }
-}
-
-/// Makes of the coefficients in powers of s those in powers of s/`scale`: the power k of the scale times
-/// the coefficient k, two powers side by side, since a product waits for the one before.
-#[inline(always)]
-pub(in crate::hybrid) fn stretch(coefficients: &mut [f64], scale: f64) {
-    let squared = scale * scale;
-    let mut powers = [1.0, scale];
-    let (pairs, last) = coefficients.as_chunks_mut::<2>();
-    for pair in pairs {
-        for (coefficient, power) in pair.iter_mut().zip(&mut powers) {
-            *coefficient *= *power;
-            *power *= squared;
-        }
-    }
-    if let [last] = last {
-        *last *= powers[0];
     }
 }
 

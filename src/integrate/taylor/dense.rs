@@ -85,20 +85,10 @@ impl<const F: usize> TaylorDense<F> {
             false => (&self.series.q, self.order + 2),
             true => (&self.series.v, self.order + 1),
         };
-        // Two powers side by side, since a product waits for the one before.
-        let squared = self.h * self.h;
-        let mut powers = [1.0, self.h];
-        let (pairs, last) = rows[..count].as_chunks::<2>();
-        let (out_pairs, _) = out.as_chunks_mut::<2>();
-        for (out, row) in out_pairs.iter_mut().zip(pairs) {
-            for k in 0..2 {
-                out[k] = row[k][index] * powers[k];
-                powers[k] *= squared;
-            }
+        for k in 0..count {
+            out[k] = rows[k][index];
         }
-        if let Some(row) = last.first() {
-            out[count - 1] = row[index] * powers[0];
-        }
+        stretch(&mut out[..count], self.h);
         count
     }
 }
@@ -123,4 +113,22 @@ fn sum<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f6
         }
     }
     (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2
+}
+
+/// Makes of the coefficients in powers of s those in powers of s/`scale`: the power k of the scale times
+/// the coefficient k, two powers side by side, since a product waits for the one before.
+#[inline(always)]
+pub(crate) fn stretch(coefficients: &mut [f64], scale: f64) {
+    let squared = scale * scale;
+    let mut powers = [1.0, scale];
+    let (pairs, last) = coefficients.as_chunks_mut::<2>();
+    for pair in pairs {
+        for (coefficient, power) in pair.iter_mut().zip(&mut powers) {
+            *coefficient *= *power;
+            *power *= squared;
+        }
+    }
+    if let [last] = last {
+        *last *= powers[0];
+    }
 }

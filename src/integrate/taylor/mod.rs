@@ -17,6 +17,7 @@ mod series;
 use length::Terms;
 
 pub use dense::TaylorDense;
+pub(crate) use dense::stretch;
 pub use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series};
 
