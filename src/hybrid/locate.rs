@@ -71,7 +71,8 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                     beyond: 0.0,
                 },
                 false => {
-                    beyond_the_crossing(equations, conditions, guard, &end, 0.0, (start, window))
+                    let step = (start, window);
+                    beyond_the_crossing::<F, M>(equations, conditions, guard, &end, 0.0, step)
                 }
             });
         }
@@ -89,7 +90,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         }
         let step = (start, window);
         if correction.abs() <= TAYLOR * (window - start) {
-            return Ok(beyond_the_crossing(
+            return Ok(beyond_the_crossing::<F, M>(
                 equations, conditions, guard, &end, correction, step,
             ));
         }
@@ -118,8 +119,8 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// `smooth` the Taylor polynomial ends. What is tried first is the last place of the time in which the
 /// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
 /// of all of that where the guard is no coordinate.
-fn beyond_the_crossing<const F: usize>(
-    equations: &mut Equations<F>,
+fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: &Guard,
     end: &State<F>,
@@ -144,7 +145,8 @@ fn beyond_the_crossing<const F: usize>(
         }
         let value = value_at(equations, conditions, guard, &state);
         if value < 0.0 || !value.is_finite() {
-            if !of_accelerations {
+            // What the equations gave at the end is not exact here; a polynomial is as good in both places.
+            if M::EXACT_ACCELERATIONS && !of_accelerations {
                 accelerate(equations, &mut state);
             }
             return Landing::On { state, beyond };
