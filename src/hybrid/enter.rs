@@ -109,6 +109,65 @@ impl Simulation<'_> {
         Ok(violation)
     }
 
+    /// Enters the present mode again after an event in it, where that takes no more than what most events
+    /// ask for: guards that are positive, or zero and rise. False: the mode is to be entered as any other.
+    pub fn enter_again<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+    ) -> Result<bool, Reason> {
+        let mode = self.mode();
+        let [q, v, _] = self.here.free::<F>(mode.free);
+        if mode.drifts.contains(&true)
+            || self
+                .check_inertia(&kernel.inertia(&self.context, &q, &v))
+                .is_err()
+        {
+            return Ok(false);
+        }
+        self.signs.clear();
+        for watched in &self.plan.watched[self.here.mode] {
+            let guard = &mode.guards[watched.guard];
+            let GuardShape::Linear {
+                index,
+                rate,
+                factor,
+                discrete,
+                ..
+            } = guard.shape
+            else {
+                return Ok(false);
+            };
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &SVector::zeros(),
+            };
+            let value = kernel.guard(&self.context, &guard.kernel, at);
+            let factor = factor * discrete.map_or(1.0, |d| self.context.discrete()[d]);
+            let rises = !rate && factor * v[index] > 0.0;
+            if guard.transitions.iter().any(|t| t.conditional)
+                || !(value > 0.0 || value == 0.0 && rises)
+            {
+                return Ok(false);
+            }
+            self.signs.watches.push(Watch::of(value));
+        }
+        self.signs.start();
+        let system = kernel.system(&self.context, &q, &v);
+        let Ok(a) = solve(&system.mass, &-system.load, &self.scale::<F>()) else {
+            return Ok(false);
+        };
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        check_requirements(kernel, &self.context, mode, at)?;
+        self.here.set_free(mode.free, [&q, &v, &a]);
+        self.flush_samples();
+        Ok(true)
+    }
+
     /// The symmetric part of the mass matrix must be positive definite (Cholesky).
     fn check_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Result<(), Reason> {
         let mut lower = SMatrix::<f64, F, F>::zeros();

@@ -269,12 +269,7 @@ fn search_linear<const F: usize>(
     };
     let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete()[d]);
     let mut coefficients = [0.0; ORDERS];
-    let count = dense.polynomial(index, rate, &mut coefficients);
-    if factor != 1.0 {
-        for coefficient in &mut coefficients[..count] {
-            *coefficient *= factor;
-        }
-    }
+    let count = dense.polynomial((index, rate), factor, &mut coefficients);
     if offset {
         // What is added is what the guard is at the zero state.
         let zero = SVector::<f64, F>::zeros();
@@ -289,7 +284,7 @@ fn search_linear<const F: usize>(
             coefficients[0] = 0.0;
         }
     }
-    search_polynomial(&coefficients, dense, window, watch)
+    search_polynomial((&coefficients, count), dense, window, watch)
 }
 
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
@@ -310,17 +305,24 @@ fn search_series<const F: usize>(
         return None;
     }
     let (kernel, context) = (equations.kernel, &*equations.context);
-    let mut coefficients = [0.0; ORDERS];
+    let mut powers = [0.0; ORDERS];
     let given = kernel.guard_coefficients(context, watched.guard, orders);
-    for (coefficient, given) in coefficients.iter_mut().zip(given) {
-        *coefficient = given;
+    for (power, given) in powers.iter_mut().zip(given) {
+        *power = given;
     }
-    stretch(&mut coefficients[..orders], dense.length());
-    let size = |of: &[f64]| sum_of(of, f64::abs);
-    let allowed = equations.tolerance * (orders * orders) as f64 * size(&coefficients);
-    let falls_off = size(&coefficients[orders - 2..orders]) <= allowed;
-    if !falls_off {
-        return None;
+    // Of a low degree where nothing moves.
+    let degree = powers[..orders].iter().rposition(|&c| c != 0.0);
+    let count = degree.map_or(1, |degree| degree + 1);
+    let mut coefficients = [0.0; ORDERS];
+    let scale = (1.0, dense.length());
+    stretch(&powers[..count], |own| *own, scale, &mut coefficients);
+    if count + 2 > orders {
+        let size = |of: &[f64]| sum_of(of, f64::abs);
+        let allowed = equations.tolerance * (orders * orders) as f64 * size(&coefficients[..count]);
+        let falls_off = size(&coefficients[orders - 2..count]) <= allowed;
+        if !falls_off {
+            return None;
+        }
     }
     // The guard's own value decides on which side of zero it starts.
     equations.at(tau);
@@ -330,12 +332,17 @@ fn search_series<const F: usize>(
         a: &series.a[0],
     };
     coefficients[0] = kernel.guard(equations.context, &guard.kernel, at);
-    Some(search_polynomial(&coefficients, dense, window, watch))
+    Some(search_polynomial(
+        (&coefficients, count),
+        dense,
+        window,
+        watch,
+    ))
 }
 
-/// Searches a polynomial in s = (τ − start)/length of the step.
+/// Searches a polynomial in s = (τ − start)/length of the step, given by so many coefficients.
 fn search_polynomial<const F: usize>(
-    coefficients: &[f64; ORDERS],
+    coefficients: (&[f64; ORDERS], usize),
     dense: &impl Motion<F>,
     (from, to): (f64, f64),
     watch: Watch,
@@ -349,13 +356,15 @@ fn search_polynomial<const F: usize>(
     search
 }
 
-/// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
+/// Searches a polynomial in s on a window within 0 ≤ s ≤ 1. It has so many coefficients; those beyond
+/// them are zero.
 pub(super) fn search_window(
-    coefficients: &[f64; ORDERS],
+    (coefficients, count): (&[f64; ORDERS], usize),
     window: (f64, f64),
     watch: Watch,
 ) -> Search {
-    let degree = coefficients.iter().rposition(|&c| c != 0.0).unwrap_or(0);
+    let given = &coefficients[..count];
+    let degree = given.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     // Work grows with the square of the room.
     match degree {
         0..=3 => search_part::<4>(coefficients, window, watch),

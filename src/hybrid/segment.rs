@@ -20,10 +20,12 @@ use crate::record::Progress;
 use nalgebra::{SMatrix, SVector};
 
 impl Simulation<'_> {
-    /// Integrates the present mode until something happens.
+    /// Integrates the present mode until something happens; `stays`: not an event that leads to the same
+    /// mode again.
     pub fn advance<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
+        stays: bool,
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason> {
         let (problem, mode) = (self.problem, self.mode());
@@ -37,16 +39,17 @@ impl Simulation<'_> {
                 let convolutions = kernel.convolutions(&self.context);
                 let make = || Taylor::new(&tolerances(problem, mode), convolutions);
                 let method = self.solvers.take(self.here.mode, make);
-                self.integrate(kernel, method, progress)
+                self.integrate(kernel, method, stays, progress)
             }
-            5 => self.by_radau::<5, F>(kernel, progress),
-            _ => self.by_radau::<7, F>(kernel, progress),
+            5 => self.by_radau::<5, F>(kernel, stays, progress),
+            _ => self.by_radau::<7, F>(kernel, stays, progress),
         }
     }
 
     fn by_radau<const S: usize, const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
+        stays: bool,
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason>
     where
@@ -55,26 +58,49 @@ impl Simulation<'_> {
         let (problem, mode) = (self.problem, self.mode());
         let make = || Radau::<S, F>::new(&tolerances(problem, mode));
         let method = self.solvers.take(self.here.mode, make);
-        self.integrate(kernel, method, progress)
+        self.integrate(kernel, method, stays, progress)
     }
 
     fn integrate<const F: usize, M>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         mut method: Box<M>,
+        stays: bool,
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason>
     where
         M: for<'a> OneStep<F, Equations<'a, F>> + 'static,
     {
-        let stop = self.follow(kernel, &mut *method, progress);
+        let mode = self.here.mode;
+        let stop = loop {
+            match self.follow(kernel, &mut *method, progress) {
+                Ok(Stop::Event(guard)) if stays => match self.fire_and_stay(kernel, guard) {
+                    Ok(true) => {}
+                    Ok(false) => break Ok(Stop::Fired),
+                    Err(reason) => break Err(reason),
+                },
+                stop => break stop,
+            }
+        };
         self.count(&OneStep::<F, Equations<F>>::take_counters(&mut *method));
         let name = OneStep::<F, Equations<F>>::name(&*method);
         if !self.methods.contains(&name) {
             self.methods.push(name);
         }
-        self.solvers.keep(self.here.mode, method);
+        self.solvers.keep(mode, method);
         stop
+    }
+
+    /// Takes a transition of a guard; whether it has led to the same mode again, which goes on.
+    fn fire_and_stay<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        guard: usize,
+    ) -> Result<bool, Reason> {
+        let mode = self.here.mode;
+        self.visited.clear();
+        self.fire(guard)?;
+        Ok(self.here.mode == mode && !self.is_over() && self.enter_again(kernel)?)
     }
 
     fn follow<const F: usize, M>(

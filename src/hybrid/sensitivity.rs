@@ -151,7 +151,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
             }
         }
         let mut coefficients = [0.0; ORDERS];
-        let in_rate = (0..F).map(|i| dense.polynomial(i, true, &mut coefficients));
+        let in_rate = (0..F).map(|i| dense.polynomial((i, true), 1.0, &mut coefficients));
         let time = dense.length() / (in_rate.max().unwrap_or(2) - 1) as f64;
         let [q, v, _] = motion(self.equations, dense, t, false);
         let value = self.value(t, &q, &v);

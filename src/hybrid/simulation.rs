@@ -70,6 +70,8 @@ pub(super) enum Stop {
     Method,
     /// A guard, by its index in the mode, fell through zero.
     Event(usize),
+    /// The same, and its transition was taken.
+    Fired,
     /// A guard that was zero at the segment's start leaves it downwards.
     Violated(Violation),
 }
@@ -305,7 +307,9 @@ impl<'p> Simulation<'p> {
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
         while self.settle()? {
-            if !self.advance_to_event(progress)? {
+            let mode = self.mode();
+            let stop = with_kernel!(&mode.kernels, k => self.advance(k, true, progress))?;
+            if !self.pass(stop)? {
                 break;
             }
         }
@@ -315,7 +319,7 @@ impl<'p> Simulation<'p> {
     /// From an admissible mode through the next event; false at the end of the run.
     pub fn advance_to_event(&mut self, progress: &mut dyn Progress) -> Result<bool, Reason> {
         let mode = self.mode();
-        let stop = with_kernel!(&mode.kernels, k => self.advance(k, progress))?;
+        let stop = with_kernel!(&mode.kernels, k => self.advance(k, false, progress))?;
         self.pass(stop)
     }
 
@@ -331,6 +335,7 @@ impl<'p> Simulation<'p> {
                 self.visited.clear();
                 self.fire(guard)?;
             }
+            Stop::Fired => {}
             Stop::Violated(violation) => self.resolve(violation)?,
         }
         Ok(true)

@@ -88,9 +88,9 @@ pub trait Motion<const F: usize> {
         None
     }
 
-    /// Writes the coefficients, in powers of s = (t − start)/length, of coordinate `index` or of its
-    /// rate; gives their number. What is beyond them stays zero if it was.
-    fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize;
+    /// Writes the coefficients, in powers of s = (t − start)/length, of `factor` times coordinate `index`
+    /// or its rate; gives their number. What is beyond them stays zero if it was.
+    fn polynomial(&self, of: (usize, bool), factor: f64, out: &mut [f64; ORDERS]) -> usize;
 }
 
 impl<const S: usize, const F: usize, Y: System<F>> OneStep<F, Y> for Radau<S, F>
@@ -220,10 +220,15 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
         self.at(t)
     }
 
-    fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {
+    fn polynomial(
+        &self,
+        (index, rate): (usize, bool),
+        factor: f64,
+        out: &mut [f64; ORDERS],
+    ) -> usize {
         let degree = Self::DEGREE;
         for power in 0..=degree {
-            out[power] = self.coefficient(power)[index];
+            out[power] = factor * self.coefficient(power)[index];
         }
         if !rate {
             return degree + 1;
@@ -253,7 +258,7 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
         Some((self.series(), self.orders()))
     }
 
-    fn polynomial(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {
-        self.scaled(index, rate, out)
+    fn polynomial(&self, of: (usize, bool), factor: f64, out: &mut [f64; ORDERS]) -> usize {
+        self.scaled(of, factor, out)
     }
 }

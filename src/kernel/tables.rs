@@ -129,8 +129,8 @@ impl<const F: usize> ModeKernel<F> {
         guard: usize,
         orders: usize,
     ) -> impl Iterator<Item = f64> + use<'x, F> {
-        let guards = self.guards;
-        (0..orders).map(move |k| x.guard_series[k * guards + guard])
+        let rows = x.guard_series[..orders * self.guards].chunks_exact(self.guards);
+        rows.map(move |row| row[guard])
     }
 
     /// Whether trajectories of this mode can go side by side.

@@ -210,7 +210,7 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
     } else {
         Watch::Armed
     };
-    let search = guards::search_window(&own, (0.0, 1.0), watch);
+    let search = guards::search_window((&own, coefficients.len()), (0.0, 1.0), watch);
     match search.crossing {
         None if search.watch == Watch::Armed => Some(f64::INFINITY),
         Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),

@@ -190,8 +190,13 @@ impl<const N: usize> Polynomial<N> {
 
     /// The polynomial on [0, `end`], in powers of s/`end`.
     pub(super) fn on(&self, end: f64) -> Self {
-        let mut coefficients = self.coefficients;
-        stretch(&mut coefficients, end);
+        let mut coefficients = [0.0; N];
+        stretch(
+            &self.coefficients,
+            |own| *own,
+            (1.0, end),
+            &mut coefficients,
+        );
         Self { coefficients }
     }
 }

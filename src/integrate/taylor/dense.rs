@@ -77,18 +77,20 @@ impl<const F: usize> TaylorDense<F> {
         )
     }
 
-    /// Writes the coefficients in powers of s = τ/length of coordinate `index`, or of its rate;
-    /// gives their number.
+    /// Writes the coefficients in powers of s = τ/length of `factor` times coordinate `index`, or its
+    /// rate; gives their number.
     #[inline]
-    pub fn scaled(&self, index: usize, rate: bool, out: &mut [f64; ORDERS]) -> usize {
+    pub fn scaled(
+        &self,
+        (index, rate): (usize, bool),
+        factor: f64,
+        out: &mut [f64; ORDERS],
+    ) -> usize {
         let (rows, count) = match rate {
             false => (&self.series.q, self.order + 2),
             true => (&self.series.v, self.order + 1),
         };
-        for k in 0..count {
-            out[k] = rows[k][index];
-        }
-        stretch(&mut out[..count], self.h);
+        stretch(&rows[..count], |row| row[index], (factor, self.h), out);
         count
     }
 }
@@ -115,20 +117,26 @@ fn sum<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f6
     (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2
 }
 
-/// Makes of the coefficients in powers of s those in powers of s/`scale`: the power k of the scale times
-/// the coefficient k, two powers side by side, since a product waits for the one before.
+/// Of the coefficients in powers of s writes those of `factor` times the polynomial in powers of s/`scale`:
+/// two powers side by side, since a product waits for the one before.
 #[inline(always)]
-pub(crate) fn stretch(coefficients: &mut [f64], scale: f64) {
+pub(crate) fn stretch<T>(
+    from: &[T],
+    coefficient: impl Fn(&T) -> f64,
+    (factor, scale): (f64, f64),
+    out: &mut [f64],
+) {
     let squared = scale * scale;
-    let mut powers = [1.0, scale];
-    let (pairs, last) = coefficients.as_chunks_mut::<2>();
-    for pair in pairs {
-        for (coefficient, power) in pair.iter_mut().zip(&mut powers) {
-            *coefficient *= *power;
-            *power *= squared;
+    let mut powers = [factor, factor * scale];
+    let (pairs, last) = from.as_chunks::<2>();
+    let (out_pairs, out_last) = out[..from.len()].as_chunks_mut::<2>();
+    for (out, pair) in out_pairs.iter_mut().zip(pairs) {
+        for k in 0..2 {
+            out[k] = coefficient(&pair[k]) * powers[k];
+            powers[k] *= squared;
         }
     }
-    if let [last] = last {
-        *last *= powers[0];
+    if let ([out], [last]) = (out_last, last) {
+        *out = coefficient(last) * powers[0];
     }
 }
