@@ -159,7 +159,7 @@ fn the_polynomials_of_coordinates_and_rates_are_the_motion() {
     let dense = radau.dense().unwrap();
     for (index, rate) in [(0, false), (1, false), (0, true), (1, true)] {
         let mut coefficients = [0.0; ORDERS];
-        let count = dense.polynomial(index, rate, &mut coefficients);
+        let count = dense.polynomial((index, rate), 1.0, &mut coefficients);
         assert!(coefficients[count..].iter().all(|&c| c == 0.0));
         for s in [0.0, 0.3, 1.0] {
             let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
