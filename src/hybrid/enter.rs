@@ -274,3 +274,33 @@ fn inverse<const F: usize>(
     }
     inverse
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::problem::Problem;
+    use super::*;
+    use crate::kernel::{MODELS, with_kernel};
+
+    /// A ball at height y with velocity v, just after an event in flight: whether it flies on, and the sign
+    /// remembered of its height.
+    fn flies_on(y: f64, v: f64) -> Option<Watch> {
+        let model = MODELS.iter().find(|m| m.name == "bouncing_ball").unwrap();
+        let problem = Problem::new(model);
+        let mut simulation = Simulation::new(&problem).unwrap();
+        simulation.here.mode = 0;
+        (simulation.here.q[0], simulation.here.v[0]) = (y, v);
+        simulation.set_context();
+        let mode = simulation.mode();
+        let again = with_kernel!(&mode.kernels, k => simulation.enter_again(k)).unwrap();
+        again.then(|| simulation.signs.watches[0])
+    }
+
+    #[test]
+    fn only_guards_that_are_positive_or_rise_from_zero_let_a_mode_go_on() {
+        assert_eq!(flies_on(1.0, -1.0), Some(Watch::Armed));
+        assert_eq!(flies_on(0.0, 1.0), Some(Watch::Dormant));
+        for (y, v) in [(-1e-300, 1.0), (0.0, 0.0), (0.0, -1.0), (f64::NAN, 1.0)] {
+            assert_eq!(flies_on(y, v), None, "{y} {v}");
+        }
+    }
+}
