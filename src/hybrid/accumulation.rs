@@ -7,7 +7,6 @@
 //! the run.
 
 use super::instant::Instant;
-use std::array::from_fn;
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 pub const LONGEST_PATTERN: usize = 8;
@@ -16,6 +15,10 @@ pub const LONGEST_PATTERN: usize = 8;
 /// 1 − ratio, which keeps half of a double's digits here (1 − √ε). Events whose ratio is closer to
 /// one than this are regular, and rounding decides on which side of one it falls.
 const LARGEST_RATIO: f64 = 1.0 - 1.5e-8;
+
+/// Part of the time since the start that the last pattern of several events takes at least while the rest
+/// of its series advances the time: √ε = 2⁻²⁶, and twice that for the rounding of the times.
+const SHORTEST_PATTERN: f64 = 2.0 * 1.490_116_119_384_765_6e-8;
 
 /// What makes two events the same, besides the discrete states after them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -78,9 +81,6 @@ const ROOM: usize = Accumulation::MEMORY.next_power_of_two();
 #[derive(Debug)]
 pub struct Accumulation {
     hops: [Hop; ROOM],
-    /// When they happened, as the nearest double: the last ones first, once in each half, so that
-    /// they follow each other from any place of the first half on.
-    times: [f64; 2 * ROOM],
     /// Coordinates and velocities after each of them.
     states: Box<[f64]>,
     /// Discrete states after each of them.
@@ -98,7 +98,6 @@ impl Accumulation {
     pub fn new(width: usize, discretes: usize) -> Self {
         Accumulation {
             hops: [Hop::default(); ROOM],
-            times: [0.0; 2 * ROOM],
             states: vec![0.0; ROOM * width].into(),
             discretes: vec![0.0; ROOM * discretes].into(),
             count: 0,
@@ -129,8 +128,6 @@ impl Accumulation {
             impact,
             at,
         };
-        let place = ROOM - 1 - slot;
-        (self.times[place], self.times[place + ROOM]) = (at.seconds(), at.seconds());
         let width = self.states.len() / ROOM;
         for (to, from) in self.states[slot * width..].iter_mut().zip(state) {
             *to = from;
@@ -156,67 +153,41 @@ impl Accumulation {
         &self.states[self.slot(back) * width..][..width]
     }
 
-    fn discrete(&self, back: usize) -> &[f64] {
-        let width = self.discretes.len() / ROOM;
-        &self.discretes[self.slot(back) * width..][..width]
-    }
-
     /// Whether two events are the same but for time and state.
     fn are_alike(&self, one: usize, other: usize) -> bool {
-        let bits = |x: &f64| x.to_bits();
-        let [one_after, other_after] =
-            [one, other].map(|back| self.discrete(back).iter().map(bits));
-        self.hop(one).signature == self.hop(other).signature && one_after.eq(other_after)
+        let [one, other] = [one, other].map(|back| self.slot(back));
+        let width = self.discretes.len() / ROOM;
+        let [of_one, of_other] = [one, other].map(|slot| &self.discretes[slot * width..][..width]);
+        let mut pairs = of_one.iter().zip(of_other);
+        pairs.all(|(a, b)| a.to_bits() == b.to_bits())
+            && self.hops[one].signature == self.hops[other].signature
     }
 
     /// The limit, if the last events accumulate and what is left of the series moves no component
     /// of the state by more than `tolerance(index, value)`; `relative` is the accuracy asked of
     /// the limit's time.
     pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
-        let longest = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
-        let mut patterns = self.shrinking(longest, relative);
-        while patterns != 0 {
-            let p = patterns.trailing_zeros() as usize;
-            if let Some(series) = self.series(p, relative) {
-                // What repeats after p events repeats after a multiple of p, and leaves as much.
-                return self
-                    .is_negligible(&series, tolerance)
-                    .then(|| self.end_of(&series));
-            }
-            patterns &= patterns - 1;
-        }
-        None
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
+        let longest = match known > 1 && self.may_end_a_pattern(&tolerance) {
+            true => known,
+            false => known.min(1),
+        };
+        // What repeats after p events repeats after a multiple of p, and leaves as much.
+        let series = (1..=longest).find_map(|p| self.series(p, relative))?;
+        let ends = self.is_negligible(&series, tolerance);
+        ends.then(|| self.end_of(&series))
     }
 
-    /// The patterns of up to `longest` events, a bit each, whose durations may shrink geometrically, as far
-    /// as plain doubles tell: hardly any pattern of most runs does.
-    fn shrinking(&self, longest: usize, relative: f64) -> u32 {
-        let times: &[f64; Self::MEMORY] = self.times[ROOM - 1 - self.slot(0)..]
-            .first_chunk()
-            .expect("all are remembered twice");
-        // The same as `times[0]`, which has just been stored.
-        let now = self.hop(0).at.seconds();
-        // Each time is off by half a place, so that a difference of durations is off by two.
-        let slack = 2.0 * f64::EPSILON * now.abs();
-        // Durations of the last three patterns of each length; arrays, so that lengths go side by side.
-        let before = |patterns: usize| from_fn(|i| times[patterns * (i + 1)]);
-        let [one, two, three]: [[f64; LONGEST_PATTERN]; 3] = [before(1), before(2), before(3)];
-        let last: [f64; LONGEST_PATTERN] = from_fn(|i| now - one[i]);
-        let middle: [f64; LONGEST_PATTERN] = from_fn(|i| one[i] - two[i]);
-        let first: [f64; LONGEST_PATTERN] = from_fn(|i| two[i] - three[i]);
-        let shrinks: [bool; LONGEST_PATTERN] =
-            from_fn(|i| (last[i] - middle[i] <= slack) & (middle[i] - first[i] <= slack));
-        let bits = (1..=LONGEST_PATTERN).map(|p| u32::from(shrinks[p - 1]) << p);
-        let mut shrinking = bits.sum::<u32>() & ((2 << longest) - 1);
-        let mut patterns = shrinking;
-        while patterns != 0 {
-            let i = patterns.trailing_zeros() as usize - 1;
-            if !foretell_one_limit([first[i], middle[i], last[i]], (now, slack), relative) {
-                shrinking &= !(2 << i);
-            }
-            patterns &= patterns - 1;
-        }
-        shrinking
+    /// Whether the last event may end a pattern of several events whose rest [is negligible]
+    /// (Self::is_negligible). Then the event before is within the tolerances of it; or the rest of the series,
+    /// at least last²/middle with the durations of the last two patterns, does not advance the time t, which
+    /// middle is less than: so that the last one is shorter than √ε t.
+    fn may_end_a_pattern(&self, tolerance: impl Fn(usize, f64) -> f64) -> bool {
+        let near =
+            |(i, (now, before)): (usize, (&f64, &f64))| (now - before).abs() <= tolerance(i, *now);
+        let mut pairs = self.state(0).iter().zip(self.state(1)).enumerate();
+        let [now, before] = [0, 1].map(|back| self.hop(back).at.seconds());
+        now - before <= SHORTEST_PATTERN * now || pairs.all(near)
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
@@ -303,23 +274,6 @@ impl Accumulation {
             new.since(old) < new.seconds().abs() * f64::EPSILON || self.still >= Self::MEMORY
         }
     }
-}
-
-/// Whether the limits that the last two of three durations and the first two foretell may be as close as
-/// a geometric series asks for (`Accumulation::series`), given that each duration is off by `slack`.
-fn foretell_one_limit(
-    [first, middle, last]: [f64; 3],
-    (now, slack): (f64, f64),
-    relative: f64,
-) -> bool {
-    let relative = relative.max(f64::EPSILON);
-    // Multiplied by the differences of the durations.
-    let apart = (middle * (last * first - middle * middle)).abs();
-    let limit = now.abs() * (middle - last) + last * last;
-    let allowed = relative * limit * (first - middle);
-    // What the slack of each duration makes of the two, with their partial derivatives.
-    let noise = 8.0 * slack * first * (first + relative * (now.abs() + first));
-    apart <= allowed + noise
 }
 
 /// Whether of pairs (after, before) some differ, but none by more than the rounding of a guard: as

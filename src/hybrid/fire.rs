@@ -75,6 +75,8 @@ impl Simulation<'_> {
         let before = states.then(|| self.snapshot());
         let energies_before = (self.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
+        let left = [&*self.here.q, &self.here.v, self.context.discrete()];
+        self.visited.leave(left);
         copy_few(&self.here.q, &mut self.before[..n]);
         copy_few(&self.here.v, &mut self.before[n..]);
 
@@ -106,7 +108,7 @@ impl Simulation<'_> {
         }
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let modes = self.problem.variant.modes;
-        match self.visited.add((name, from, target), state, modes) {
+        match self.visited.arrive((name, from, target), state, modes) {
             Some(cycle) => Err(Reason::Cycle { cycle }),
             None => Ok(()),
         }

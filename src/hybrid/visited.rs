@@ -10,7 +10,7 @@ type Step = (&'static str, usize, usize);
 #[derive(Debug, Default)]
 pub(super) struct Visited {
     steps: Vec<Step>,
-    /// A state a step, of equal widths.
+    /// A state a step, of equal widths; that of the last step is still the present one.
     states: Vec<f64>,
 }
 
@@ -21,24 +21,30 @@ impl Visited {
         self.states.clear();
     }
 
-    /// Adds the state that a step led to: the cycle in words, if it was seen before.
-    pub fn add(
+    /// Leaves the present state by a transition. It is remembered if a step led there.
+    pub fn leave(&mut self, state: [&[f64]; 3]) {
+        if !self.steps.is_empty() {
+            for part in state {
+                self.states.extend_from_slice(part);
+            }
+        }
+    }
+
+    /// Adds the step that led from there to a state: the cycle in words, if that was seen before.
+    pub fn arrive(
         &mut self,
         (name, from, to): Step,
         state: [&[f64]; 3],
         modes: &[Mode],
     ) -> Option<String> {
-        let before = self.states.len();
-        for part in state {
-            self.states.extend_from_slice(part);
-        }
-        let (seen, new) = self.states.split_at(before);
+        let width = state.iter().map(|part| part.len()).sum();
         let bits = |x: &f64| x.to_bits();
-        let mut visits = self.steps.iter().enumerate();
-        let first = visits.find(|(i, (_, _, mode))| {
-            let state = &seen[i * new.len()..(i + 1) * new.len()];
-            *mode == to && state.iter().map(bits).eq(new.iter().map(bits))
-        });
+        let seen = |(i, (_, _, mode)): &(usize, &Step)| {
+            let seen = &self.states[i * width..][..width];
+            let now = state.iter().copied().flatten();
+            *mode == to && seen.iter().map(bits).eq(now.map(bits))
+        };
+        let first = self.steps.iter().enumerate().find(seen);
         let cycle = first.map(|(first, _)| {
             let last = (name, from, to);
             let steps = self.steps[first + 1..].iter().chain([&last]);
