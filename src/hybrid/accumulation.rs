@@ -371,6 +371,23 @@ mod tests {
         assert!((limit.at.seconds() - 1.3 / 0.3).abs() < 1e-12, "{limit:?}");
     }
 
+    /// The rest no longer advances the time, though each hop moves the state.
+    #[test]
+    fn hops_too_short_for_the_time_end_whatever_they_move() {
+        let mut accumulation = Accumulation::new(1, 0);
+        let (mut t, mut hop) = (Instant::new(0.0), 1.0);
+        let found = (0..40).find_map(|k| {
+            let now = if k % 2 == 0 { 1.0 } else { -1.0 };
+            push(&mut accumulation, k % 2, true, t, &[-now], &[now]);
+            t = t.plus(hop);
+            hop *= if k % 2 == 0 { 0.3 } else { 1e-3 / 0.3 };
+            accumulation.limit(1e-12, |_, _| 1e-9)
+        });
+        let limit = found.expect("the time stands still");
+        assert_eq!(limit.pattern, 2);
+        assert!((limit.at.seconds() - 1.3 / 0.999).abs() < 1e-15);
+    }
+
     #[test]
     fn regular_events_do_not_accumulate() {
         let mut accumulation = Accumulation::new(1, 0);
