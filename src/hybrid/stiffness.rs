@@ -5,7 +5,9 @@
 //!
 //! Stiffness may come and go while a mode lasts: a stop that is a stiff spring, a damper that state or
 //! input engages. So a verdict is open again after some steps, and after twice as many each time that it
-//! turns out to be the same: what that costs falls off with the length of the run.
+//! turns out to be the same: what that costs falls off with the length of the run. And the implicit method
+//! is given up as soon as a row of its steps, of one segment or of several short ones, is no longer than what
+//! the explicit method makes at the same cost.
 
 /// Cost of a step of Radau IIA in steps of the Taylor method. Measured on the benchmark problems: 1.5 (one
 /// coordinate, linear equations) to 4 (the walking tank at loose tolerances); stiffness exceeds that by far.
@@ -21,6 +23,10 @@ const DECAYED: f64 = 24.0;
 /// of the motion behind it.
 const TRIAL: u32 = 16;
 
+/// Steps of the implicit method in a row none of which is longer than what the explicit one makes at the
+/// same cost, before it is given up: they have lost what a new trial costs, at most.
+const IDLE: u32 = 8;
+
 /// Steps for which the first verdict holds. To reach it again takes the implicit method's trial and as
 /// many steps of the explicit one: some thirty, 3 % of these.
 const TERM: u32 = 1024;
@@ -32,8 +38,8 @@ const LOOK: u32 = 8;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stiffness {
     verdict: Verdict,
-    /// The verdict before it was open again.
-    before: Verdict,
+    /// Whether the verdict was the implicit method before it was open again; `None`: there was none.
+    before: Option<bool>,
     /// Steps for which a verdict holds, and those that are left of them.
     term: u32,
     left: u32,
@@ -57,15 +63,15 @@ enum Verdict {
     Trial { length: f64, left: u32 },
     /// The explicit method.
     NotStiff,
-    /// The implicit method.
-    Stiff,
+    /// The implicit method; so many steps in a row were not longer than `length`.
+    Stiff { length: f64, idle: u32 },
 }
 
 impl Default for Stiffness {
     fn default() -> Self {
         Stiffness {
             verdict: Verdict::Open,
-            before: Verdict::Open,
+            before: None,
             term: TERM,
             left: TERM,
             lost: 0.0,
@@ -90,7 +96,8 @@ impl Stiffness {
 
     /// Comes to a verdict.
     fn decide(&mut self, verdict: Verdict) {
-        self.term = match verdict == self.before {
+        let implicit = matches!(verdict, Verdict::Stiff { .. });
+        self.term = match self.before == Some(implicit) {
             true => self.term.saturating_mul(2),
             false => TERM,
         };
@@ -101,20 +108,24 @@ impl Stiffness {
     fn serve(&mut self) {
         self.left -= 1;
         if self.left == 0 {
-            (self.before, self.verdict) = (self.verdict, Verdict::Open);
-            self.begin();
+            self.open_again();
         }
+    }
+
+    fn open_again(&mut self) {
+        (self.before, self.verdict) = (Some(self.prefers_implicit()), Verdict::Open);
+        self.begin();
     }
 
     /// Whether the implicit method is to go on.
     pub fn prefers_implicit(&self) -> bool {
-        matches!(self.verdict, Verdict::Stiff | Verdict::Trial { .. })
+        matches!(self.verdict, Verdict::Stiff { .. } | Verdict::Trial { .. })
     }
 
     /// Whether the implicit method was the faster one when that was last found out.
     pub fn is_stiff(&self) -> bool {
         match self.verdict {
-            Verdict::Open => self.before == Verdict::Stiff,
+            Verdict::Open => self.before == Some(true),
             _ => self.prefers_implicit(),
         }
     }
@@ -150,16 +161,26 @@ impl Stiffness {
         }
     }
 
-    /// Takes note of a step of the implicit method of length `h`.
+    /// Takes note of a step of the implicit method of length `h`, which an event may have ended: where
+    /// segments are short, the method does not pay either.
     pub fn implicit_step(&mut self, h: f64) {
         match self.verdict {
-            Verdict::Trial { length, .. } if h > length => self.decide(Verdict::Stiff),
+            Verdict::Trial { length, .. } if h > length => {
+                self.decide(Verdict::Stiff { length, idle: 0 });
+            }
             Verdict::Trial { left: 0, .. } => self.decide(Verdict::NotStiff),
             Verdict::Trial { length, left } => {
                 let left = left - 1;
                 self.verdict = Verdict::Trial { length, left };
             }
-            Verdict::Stiff => self.serve(),
+            Verdict::Stiff { length, idle } => {
+                let idle = if h > length { 0 } else { idle + 1 };
+                self.verdict = Verdict::Stiff { length, idle };
+                match idle < IDLE {
+                    true => self.serve(),
+                    false => self.open_again(),
+                }
+            }
             _ => {}
         }
     }
@@ -207,13 +228,31 @@ mod tests {
         let mut stiff = tried;
         (0..10).for_each(|_| stiff.implicit_step(1.0));
         stiff.implicit_step(1.25 * COST);
-        (0..100).for_each(|_| stiff.implicit_step(0.1));
+        (1..IDLE).for_each(|_| stiff.implicit_step(0.1));
         assert!(stiff.prefers_implicit());
         let mut not = tried;
         (0..17).for_each(|_| not.implicit_step(0.95 * COST));
         assert!(!not.prefers_implicit());
         explicit(&mut not, 100, 20.0, 0.0);
         assert!(!not.prefers_implicit());
+    }
+
+    #[test]
+    fn an_implicit_method_whose_steps_stay_short_is_given_up_until_it_pays_again() {
+        let mut stiffness = Stiffness::default();
+        explicit(&mut stiffness, 10, 20.0, 0.0);
+        stiffness.implicit_step(1.25 * COST);
+        for _ in 0..100 {
+            (1..IDLE).for_each(|_| stiffness.implicit_step(0.9 * COST));
+            stiffness.implicit_step(1.25 * COST);
+        }
+        assert!(stiffness.prefers_implicit());
+        (0..IDLE).for_each(|_| stiffness.implicit_step(0.9 * COST));
+        assert!(!stiffness.prefers_implicit() && stiffness.is_stiff());
+        explicit(&mut stiffness, 100, 0.5, 0.0);
+        assert!(!stiffness.prefers_implicit());
+        explicit(&mut stiffness, 10, 20.0, 0.0);
+        assert!(stiffness.prefers_implicit());
     }
 
     #[test]
