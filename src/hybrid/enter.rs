@@ -3,9 +3,9 @@
 use super::failure::Reason;
 use super::guards::{Conditions, value, watched_value};
 use super::roots::Watch;
-use super::segment::{check_requirements, determinant_sign};
+use super::segment::check_requirements;
 use super::simulation::{Simulation, Violation};
-use crate::integrate::solve;
+use crate::integrate::{determinant_sign, solve};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, GuardShape};
 use nalgebra::{SMatrix, SVector};
@@ -154,7 +154,8 @@ impl Simulation<'_> {
         }
         self.signs.start();
         let system = kernel.system(&self.context, &q, &v);
-        let Ok(a) = solve(&system.mass, &-system.load, &self.scale::<F>()) else {
+        let a = solve(&system.mass, &-system.load, &self.scale::<F>());
+        let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
             return Ok(false);
         };
         let at = Free {

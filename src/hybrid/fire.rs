@@ -37,6 +37,18 @@ impl Simulation<'_> {
         self.remember(guard, t, is_impact(&mode.guards[guard]))
     }
 
+    /// Takes a transition of a guard; whether it has led to the same mode again, which goes on.
+    pub fn fire_and_stay<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        guard: usize,
+    ) -> Result<bool, Reason> {
+        let mode = self.here.mode;
+        self.visited.clear();
+        self.fire(guard)?;
+        Ok(self.here.mode == mode && !self.is_over() && self.enter_again(kernel)?)
+    }
+
     /// Index of the transition that is taken; its reset is left in `next`.
     fn choose<const F: usize>(
         &mut self,

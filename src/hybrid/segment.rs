@@ -12,12 +12,13 @@ use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
 use crate::integrate::{
-    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances, stages,
+    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances, determinant_sign,
+    stages,
 };
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use crate::record::Progress;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 impl Simulation<'_> {
     /// Integrates the present mode until something happens; `stays`: not an event that leads to the same
@@ -89,18 +90,6 @@ impl Simulation<'_> {
         }
         self.solvers.keep(mode, method);
         stop
-    }
-
-    /// Takes a transition of a guard; whether it has led to the same mode again, which goes on.
-    fn fire_and_stay<const F: usize>(
-        &mut self,
-        kernel: &'static ModeKernel<F>,
-        guard: usize,
-    ) -> Result<bool, Reason> {
-        let mode = self.here.mode;
-        self.visited.clear();
-        self.fire(guard)?;
-        Ok(self.here.mode == mode && !self.is_over() && self.enter_again(kernel)?)
     }
 
     fn follow<const F: usize, M>(
@@ -396,35 +385,4 @@ fn copy_drifting(q: &mut [f64], drifts: &[bool], held: &[f64]) {
             *q = held;
         }
     }
-}
-
-/// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
-pub(super) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
-    let mut m = *matrix;
-    let mut sign = 1;
-    for k in 0..F {
-        let mut pivot = k;
-        for i in k + 1..F {
-            if m[(i, k)].abs() > m[(pivot, k)].abs() {
-                pivot = i;
-            }
-        }
-        if pivot != k {
-            m.swap_rows(pivot, k);
-            sign = -sign;
-        }
-        if m[(k, k)] == 0.0 || m[(k, k)].is_nan() {
-            return 0;
-        }
-        if m[(k, k)] < 0.0 {
-            sign = -sign;
-        }
-        for i in k + 1..F {
-            let factor = m[(i, k)] / m[(k, k)];
-            for j in k + 1..F {
-                m[(i, j)] -= factor * m[(k, j)];
-            }
-        }
-    }
-    sign
 }

@@ -169,6 +169,37 @@ pub fn solve<const F: usize>(
     Ok(SVector::from(lu.solve(|i| right_side[i])))
 }
 
+/// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
+pub(crate) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
+    let mut m = *matrix;
+    let mut sign = 1;
+    for k in 0..F {
+        let mut pivot = k;
+        for i in k + 1..F {
+            if m[(i, k)].abs() > m[(pivot, k)].abs() {
+                pivot = i;
+            }
+        }
+        if pivot != k {
+            m.swap_rows(pivot, k);
+            sign = -sign;
+        }
+        if m[(k, k)] == 0.0 || m[(k, k)].is_nan() {
+            return 0;
+        }
+        if m[(k, k)] < 0.0 {
+            sign = -sign;
+        }
+        for i in k + 1..F {
+            let factor = m[(i, k)] / m[(k, k)];
+            for j in k + 1..F {
+                m[(i, j)] -= factor * m[(k, j)];
+            }
+        }
+    }
+    sign
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

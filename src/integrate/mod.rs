@@ -40,6 +40,7 @@ mod tolerances;
 
 pub use dense::Dense;
 pub use lanes::{LaneMask, Lanes};
+pub(crate) use linear::determinant_sign;
 pub use linear::{Singular, solve};
 pub use one_step::{Motion, OneStep};
 pub use radau::Radau;
