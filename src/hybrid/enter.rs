@@ -1,7 +1,7 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
 use super::failure::Reason;
-use super::guards::{Conditions, value, watched_value};
+use super::guards::{Conditions, slope, value, watched_value};
 use super::roots::Watch;
 use super::segment::check_requirements;
 use super::simulation::{Simulation, Violation};
@@ -143,7 +143,7 @@ impl Simulation<'_> {
                 a: &SVector::zeros(),
             };
             let value = kernel.guard(&self.context, &guard.kernel, at);
-            let factor = factor * discrete.map_or(1.0, |d| self.context.discrete()[d]);
+            let factor = slope((factor, discrete), &self.context);
             let rises = !rate && factor * v[index] > 0.0;
             if guard.transitions.iter().any(|t| t.conditional)
                 || !(value > 0.0 || value == 0.0 && rises)
@@ -224,7 +224,7 @@ impl<const F: usize> Start<'_, F> {
                 discrete,
                 ..
             } => {
-                let factor = factor * discrete.map_or(1.0, |d| context.discrete()[d]);
+                let factor = slope((factor, discrete), context);
                 if !rate && v[index] != 0.0 {
                     return factor * v[index];
                 }

@@ -249,6 +249,12 @@ fn search_function(
     search
 }
 
+/// What a linear guard multiplies its coordinate or rate with: its factor and its discrete state, if any.
+#[inline]
+pub(super) fn slope((factor, discrete): (f64, Option<usize>), context: &Context) -> f64 {
+    factor * discrete.map_or(1.0, |d| context.discrete()[d])
+}
+
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
 fn search_linear<const F: usize>(
     equations: &mut Equations<F>,
@@ -267,7 +273,7 @@ fn search_linear<const F: usize>(
     else {
         unreachable!("the caller has asked for its shape")
     };
-    let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete()[d]);
+    let factor = slope((factor, discrete), equations.context);
     let mut coefficients = [0.0; ORDERS];
     let count = dense.polynomial((index, rate), factor, &mut coefficients);
     if offset {

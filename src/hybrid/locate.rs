@@ -216,7 +216,7 @@ pub(super) fn rate_at<const F: usize>(
         ..
     } = guard.shape
     {
-        let factor = factor * discrete.map_or(1.0, |d| equations.context.discrete()[d]);
+        let factor = guards::slope((factor, discrete), equations.context);
         return factor * if rate { state.a[index] } else { state.v[index] };
     }
     equations.at(state.t);

@@ -1,6 +1,7 @@
 //! Trajectories of one mode side by side, from one event of each to its next.
 
 use super::super::crossing::Signs;
+use super::super::guards::slope;
 use super::super::instant::Instant;
 use super::super::roots::Watch;
 use super::super::segment::tolerances;
@@ -192,8 +193,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             else {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
             };
-            let sign = discrete.map_or(1.0, |d| from.context.discrete()[d]);
-            guard.linear.factor.0[lane] = factor * sign;
+            guard.linear.factor.0[lane] = slope((factor, discrete), &from.context);
             guard.linear.offset.0[lane] = match offset {
                 true => self.kernel.guard(&from.context, &model.kernel, origin),
                 false => 0.0,
