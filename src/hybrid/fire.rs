@@ -5,7 +5,7 @@ use super::failure::Reason;
 use super::few::copy_few;
 use super::guards::Conditions;
 use super::plan::is_impact;
-use super::simulation::Simulation;
+use super::simulation::{Simulation, Stop};
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::record::{EnergyJump, Jump};
@@ -44,8 +44,7 @@ impl Simulation<'_> {
         guard: usize,
     ) -> Result<bool, Reason> {
         let mode = self.here.mode;
-        self.visited.clear();
-        self.fire(guard)?;
+        self.pass(Stop::Event(guard))?;
         Ok(self.here.mode == mode && !self.is_over() && self.enter_again(kernel)?)
     }
 

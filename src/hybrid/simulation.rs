@@ -306,20 +306,19 @@ impl<'p> Simulation<'p> {
 
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
-        while self.settle()? {
-            let mode = self.mode();
-            let stop = with_kernel!(&mode.kernels, k => self.advance(k, true, progress))?;
-            if !self.pass(stop)? {
-                break;
-            }
-        }
+        while self.settle()? && self.advance_to_event(true, progress)? {}
         Ok(())
     }
 
-    /// From an admissible mode through the next event; false at the end of the run.
-    pub fn advance_to_event(&mut self, progress: &mut dyn Progress) -> Result<bool, Reason> {
+    /// From an admissible mode through the next event, or, where it `stays`, the next that does not lead to
+    /// the same mode again; false at the end of the run.
+    pub fn advance_to_event(
+        &mut self,
+        stays: bool,
+        progress: &mut dyn Progress,
+    ) -> Result<bool, Reason> {
         let mode = self.mode();
-        let stop = with_kernel!(&mode.kernels, k => self.advance(k, false, progress))?;
+        let stop = with_kernel!(&mode.kernels, k => self.advance(k, stays, progress))?;
         self.pass(stop)
     }
 

@@ -229,7 +229,7 @@ impl<'a, const W: usize> Worker<'a, W> {
                 return;
             }
             alone = false;
-            passed = simulation.advance_to_event(&mut Silent);
+            passed = simulation.advance_to_event(false, &mut Silent);
         };
         take(
             *member,
