@@ -18,7 +18,7 @@ const LARGEST_RATIO: f64 = 1.0 - 1.5e-8;
 
 /// Part of the time since the start that the last pattern of several events takes at least while the rest
 /// of its series advances the time: √ε = 2⁻²⁶, and twice that for the rounding of the times.
-const SHORTEST_PATTERN: f64 = 2.0 * 1.490_116_119_384_765_6e-8;
+const SHORTEST_PATTERN: f64 = 2.0 / (1_u32 << 26) as f64;
 
 /// What makes two events the same, besides the discrete states after them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -178,8 +178,8 @@ impl Accumulation {
         ends.then(|| self.end_of(&series))
     }
 
-    /// Whether the last event may end a pattern of several events whose rest [is negligible]
-    /// (Self::is_negligible). Then the event before is within the tolerances of it; or the rest of the series,
+    /// Whether the last event may end a pattern of several events whose rest is negligible
+    /// ([`Self::is_negligible`]). Then the event before is within the tolerances of it; or the rest of the series,
     /// at least last²/middle with the durations of the last two patterns, does not advance the time t, which
     /// middle is less than: so that the last one is shorter than √ε t.
     fn may_end_a_pattern(&self, tolerance: impl Fn(usize, f64) -> f64) -> bool {

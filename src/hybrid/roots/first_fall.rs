@@ -63,16 +63,19 @@ impl<const N: usize> Armed<'_, N> {
             Changes::Other => {
                 let part = part_before_rise(bernstein);
                 let middle = start + part * (end - start);
-                // At the start the powers lead there at less cost.
-                let left = match start == 0.0 {
-                    true => self.polynomial.on(middle).bernstein(),
-                    false => cut(bernstein, part).0,
+                // At the start the powers lead there at less cost, and what is behind may not be needed.
+                let (left, right) = match start == 0.0 {
+                    true => (self.polynomial.on(middle).bernstein(), None),
+                    false => {
+                        let (left, right) = cut(bernstein, part);
+                        (left, Some(right))
+                    }
                 };
                 let first = self.first_fall(&left, (start, middle), cuts + 1)?;
                 if first.crossing.is_some() {
                     return Some(first);
                 }
-                let right = cut(bernstein, part).1;
+                let right = right.unwrap_or_else(|| cut(bernstein, part).1);
                 let second = self.first_fall(&right, (middle, end), cuts + 1)?;
                 let turn = first.turn.min(second.turn);
                 return Some(match second.crossing {
