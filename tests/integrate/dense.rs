@@ -158,17 +158,19 @@ fn the_polynomials_of_coordinates_and_rates_are_the_motion() {
     radau.step(&mut pendulum, 10.0, f64::INFINITY).unwrap();
     let dense = radau.dense().unwrap();
     for (index, rate) in [(0, false), (1, false), (0, true), (1, true)] {
-        let mut coefficients = [0.0; ORDERS];
-        let count = dense.polynomial((index, rate), 1.0, &mut coefficients);
-        assert!(coefficients[count..].iter().all(|&c| c == 0.0));
-        for s in [0.0, 0.3, 1.0] {
-            let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
-            let (q, v, _) = dense.at_offset(s * dense.length());
-            let exact = if rate { v[index] } else { q[index] };
-            assert!(
-                (sum - exact).abs() < 1e-14,
-                "{index} {rate} {s}: {sum} {exact}"
-            );
+        for factor in [1.0, -2.0] {
+            let mut coefficients = [0.0; ORDERS];
+            let count = dense.polynomial((index, rate), factor, &mut coefficients);
+            assert!(coefficients[count..].iter().all(|&c| c == 0.0));
+            for s in [0.0, 0.3, 1.0] {
+                let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
+                let (q, v, _) = dense.at_offset(s * dense.length());
+                let exact = factor * if rate { v[index] } else { q[index] };
+                assert!(
+                    (sum - exact).abs() < 1e-14 * f64::abs(factor),
+                    "{index} {rate} {factor} {s}: {sum} {exact}"
+                );
+            }
         }
     }
 }
