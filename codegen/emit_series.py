@@ -13,6 +13,10 @@ Without interiors the orders are unrolled: one with its number known is straight
 that hinders the vectors.
 
 Nodes that are constant in time are recognised: a constant times a series is one product an order.
+Between what is not linear, an order is a linear map with coefficients that the start of the step
+gives. So a coefficient of order k is held as a linear form of the terms that an order begins with:
+sums and products by constants multiply its coefficients out, once a step, and an order waits for
+one product and a sum instead of a chain of them.
 """
 
 import casadi as ca
@@ -26,25 +30,35 @@ class NotAnalytic(Exception):
 
 
 class _Node:
-    """C text of the coefficients of order 0 and k; `next` is None where all but the first vanish."""
+    """Coefficients of a node: C text of order 0, and of order k a linear form, None where all but the first
+    vanish.
 
-    __slots__ = ("zeroth", "next", "slot")
+    A form maps terms, C text of order k, to their constant factors. `name`: of the variable that holds
+    its value, where there is one; `uses`: how often the graph refers to the node.
+    """
 
-    def __init__(self, zeroth, next=None):
-        self.zeroth, self.next, self.slot = zeroth, next, None
+    __slots__ = ("zeroth", "form", "name", "slot", "uses")
+
+    def __init__(self, zeroth, term=None):
+        self.zeroth, self.slot, self.uses = zeroth, None, 1
+        self.form, self.name = (None, None) if term is None else ({term: _ONE}, term)
 
     @property
     def constant(self):
-        return self.next is None
+        return self.form is None
+
+
+_ONE = _Node("1.0")
+_MINUS_ONE = _Node("-1.0")
 
 
 class Graph:
     """The two function bodies under construction."""
 
     def __init__(self):
-        self.start, self.next, self.store = [], [], []
+        self.start, self.next = [], []
         self.fresh = self.slots = self.angles = 0
-        self.interiors, self.pairs = Interiors(), {}
+        self.interiors, self.pairs, self.forms = Interiors(), {}, {}
 
     # ---- text ---------------------------------------------------------------------------------
 
@@ -58,12 +72,11 @@ class Graph:
         self.start.append(f"  const real {name} = {text};")
         return _Node(name)
 
-    def series(self, zeroth, next):
+    def series(self, zeroth, form):
         """A node with coefficients of all orders."""
-        name = self._name()
-        self.start.append(f"  const real {name} = {zeroth};")
-        self.next.append(f"  const real {name} = {next};")
-        return _Node(name, name)
+        node = self.zeroth(zeroth)
+        node.form = form
+        return node
 
     def first(self, node):
         """Coefficient of order 0, as text of the second function."""
@@ -73,6 +86,83 @@ class Graph:
             node.slot, self.slots = self.slots, self.slots + 1
             self.start.append(f"  w[{node.slot}] = {node.zeroth};")
         return f"w[{node.slot}]"
+
+    def value(self, node):
+        """Coefficient of order k, as text of the second function."""
+        if node.name is None:
+            node.name = self._name()
+            self.define(node, node.form)
+        return node.name
+
+    def define(self, node, form):
+        """Gives the variable of a node the value of a form, which may refer to interiors of the variable."""
+        form = self._merged(form)
+        self.next.append(f"  const real {node.name} = {self.text(form)};")
+        self.forms[node.name], node.form = form, {node.name: _ONE}
+
+    # ---- forms --------------------------------------------------------------------------------
+
+    def form(self, node, factor=_ONE):
+        """A form of the node times a constant, for another node: that of its variable where its value is
+        needed more than once, or where the products by the constant would be more than one."""
+        units = sum(own in (_ONE, _MINUS_ONE) for own in node.form.values())
+        plain = factor in (_ONE, _MINUS_ONE)
+        if node.name is None and len(node.form) > 1 and (node.uses > 1 or units > 1 and not plain):
+            self.value(node)
+        return self.times(factor, node.form)
+
+    def text(self, form):
+        """C text of a form. What is known first enters first."""
+        text = ""
+        for term in sorted(form, key=self._age):
+            factor = form[term]
+            product = term if factor in (_ONE, _MINUS_ONE) else f"{self.first(factor)} * {term}"
+            sign = "-" if factor is _MINUS_ONE else "+" if text else ""
+            text += f" {sign} {product}" if text else f"{sign}{product}"
+        return text or "REAL(0.0)"
+
+    @staticmethod
+    def _age(term):
+        """When the term of an order is known, compared with others: inputs, interiors, motion, variables."""
+        if term.startswith("t"):
+            return (3, int(term[1:]))
+        return ("uyqva".find(term[0]) // 2, 0)
+
+    def sum(self, *forms):
+        """Sum of forms."""
+        total = {}
+        for term, factor in (item for form in forms for item in form.items()):
+            total[term] = self._sum(total.get(term), factor)
+        return {term: factor for term, factor in total.items() if factor is not None}
+
+    def times(self, factor, form):
+        """A form times a constant node."""
+        return {term: self._times(factor, own) for term, own in form.items()}
+
+    def _times(self, x, y):
+        if _ONE in (x, y):
+            return y if x is _ONE else x
+        if _MINUS_ONE in (x, y):
+            other = y if x is _MINUS_ONE else x
+            return _ONE if other is _MINUS_ONE else self.zeroth(f"-{parenthesized(other.zeroth)}")
+        return self.zeroth(operation(ca.OP_MUL, [x.zeroth, y.zeroth]))
+
+    def _sum(self, x, y):
+        """The sum of two factors; None: zero."""
+        if None in (x, y):
+            return y if x is None else x
+        if {x, y} == {_ONE, _MINUS_ONE}:
+            return None
+        return self.zeroth(operation(ca.OP_ADD, [x.zeroth, y.zeroth]))
+
+    def _merged(self, form):
+        """The form without variables whose own terms take no more room than they do."""
+        for name in sorted(form, key=self._age, reverse=True):
+            own = self.forms.get(name)
+            if own is not None and len(form) > 1 and len({*form, *own}) <= len(form) + 1:
+                rest = {term: factor for term, factor in form.items() if term != name}
+                return self._merged(self.sum(rest, self.times(form[name], own)))
+        return form
 
     # ---- operations ---------------------------------------------------------------------------
 
@@ -87,41 +177,37 @@ class Graph:
             raise NotAnalytic(f"CasADi operation {op} has no Taylor recurrence")
         return rule(self, *arguments)
 
-    def linear(self, op):
-        def rule(x, *y):
-            both = (x, *y)
-            zeroth = operation(op, [a.zeroth for a in both])
-            if y and y[0].constant:
-                return self.series(zeroth, x.next)
-            if x.constant:
-                return self.series(zeroth, y[0].next if op == ca.OP_ADD else f"-{y[0].next}")
-            return self.series(zeroth, operation(op, [a.next for a in both]))
+    def linear(self, op, *factors):
+        """An operation that is the sum of its arguments, times these factors."""
+        def rule(*arguments):
+            zeroth = operation(op, [a.zeroth for a in arguments])
+            terms = (self.form(a, f) for f, a in zip(factors, arguments) if not a.constant)
+            return self.series(zeroth, self.sum(*terms))
         return rule
 
     def product(self, x, y):
         zeroth = operation(ca.OP_MUL, [x.zeroth, y.zeroth])
         for constant, other in ((x, y), (y, x)):
             if constant.constant:
-                return self.series(zeroth, f"{self.first(constant)} * {other.next}")
-        inner = self.interiors.add(x.next, y.next)
-        return self.series(zeroth, f"{inner} + ({self.first(x)} * {y.next} + {x.next} * {self.first(y)})")
+                return self.series(zeroth, self.form(other, constant))
+        inner = self.interiors.add(self.value(x), self.value(y))
+        return self.series(zeroth, self.sum({inner: _ONE}, self.times(x, y.form), self.times(y, x.form)))
 
     def square(self, x):
-        inner = self.interiors.add(x.next, x.next)
-        return self.series(f"{x.zeroth} * {x.zeroth}", f"{inner} + 2.0 * {self.first(x)} * {x.next}")
+        inner = self.interiors.add(self.value(x), self.value(x))
+        twice = self.zeroth(f"2.0 * {x.zeroth}")
+        return self.series(f"{x.zeroth} * {x.zeroth}", self.sum({inner: _ONE}, self.times(twice, x.form)))
 
     def quotient(self, x, y):
         """z with y z = x."""
         zeroth = operation(ca.OP_DIV, [x.zeroth, y.zeroth])
+        reciprocal = self.zeroth(f"1.0 / {parenthesized(y.zeroth)}")
         if y.constant:
-            return self.series(zeroth, f"{x.next} / {parenthesized(self.first(y))}")
-        reciprocal = self.first(self.zeroth(f"1.0 / {y.zeroth}"))
-        z = _Node(self._name())
-        z.next = z.zeroth
-        self.start.append(f"  const real {z.zeroth} = {zeroth};")
-        rest = f"({self.interiors.add(y.next, z.next)} + {y.next} * {self.first(z)})"
-        numerator = f"-{rest}" if x.constant else f"({x.next} - {rest})"
-        self.next.append(f"  const real {z.next} = {numerator} * {reciprocal};")
+            return self.series(zeroth, self.form(x, reciprocal))
+        z = self._integral(zeroth)
+        inner = self.interiors.add(self.value(y), z.name)
+        rest = self.sum({inner: _ONE}, self.times(z, y.form))
+        self._define_quotient(z, {} if x.constant else self.form(x), rest, reciprocal)
         return z
 
     def inverse(self, x):
@@ -130,34 +216,39 @@ class Graph:
     def root(self, x):
         """z with z z = x."""
         z = self._integral(f"sqrt({x.zeroth})")
-        half = self.first(self.zeroth(f"0.5 / {z.zeroth}"))
-        self.next.append(f"  const real {z.next} = ({x.next} - {self.interiors.add(z.next, z.next)}) * {half};")
+        inner = self.interiors.add(z.name, z.name)
+        self._define_quotient(z, self.form(x), {inner: _ONE}, self.zeroth(f"0.5 / {z.zeroth}"))
         return z
 
     def _integral(self, zeroth):
-        """A node whose `next` is given later, by its own recurrence."""
-        name = self._name()
-        self.start.append(f"  const real {name} = {zeroth};")
+        """A node that is defined later, by its own recurrence."""
+        name = self.zeroth(zeroth).zeroth
         return _Node(name, name)
 
-    def _grows(self, z, x, w, sign=""):
-        """z with ż = ± w ẋ: k z_k = ± Σ_{j=1}^{k} j x_j w_{k-j}."""
-        inner = self.interiors.add(self._scaled(x), w.next)
-        text = f"{inner} * inverse_k + {x.next} * {self.first(w)}"
-        self.next.append(f"  const real {z.next} = {sign}({text});")
+    def _define_quotient(self, z, numerator, less, reciprocal):
+        """Gives z the value of a difference of forms times the reciprocal of a divisor."""
+        difference = self.sum(numerator, self.times(_MINUS_ONE, less))
+        self.define(z, self.times(reciprocal, difference))
 
-    def _quotient_grows(self, zeroth, x, w, sign=""):
+    def _grows(self, z, x, w, sign=_ONE):
+        """z with ż = ± w ẋ: k z_k = ± Σ_{j=1}^{k} j x_j w_{k-j}."""
+        inner = self._over_k(self.interiors.add(self._scaled(x), self.value(w)))
+        self.define(z, self.times(sign, self.sum(inner, self.times(w, x.form))))
+
+    def _quotient_grows(self, zeroth, x, w, sign=_ONE):
         """z with w ż = ± ẋ: w_0 k z_k = ± k x_k − Σ_{j=1}^{k-1} j z_j w_{k-j}."""
         z = self._integral(zeroth)
-        reciprocal = self.first(self.zeroth(f"1.0 / {w.zeroth}"))
-        inner = self.interiors.add(self._scaled(z), w.next)
-        self.next.append(f"  const real {z.next} = ({sign}{x.next} - {inner} * inverse_k) * {reciprocal};")
+        inner = self._over_k(self.interiors.add(self._scaled(z), self.value(w)))
+        self._define_quotient(z, self.times(sign, self.form(x)), inner, self.zeroth(f"1.0 / {w.zeroth}"))
         return z
 
-    @staticmethod
-    def _scaled(x):
+    def _scaled(self, x):
         """k x_k: the derivative's coefficient of order k − 1."""
-        return f"order * {x.next}"
+        return f"order * {self.value(x)}"
+
+    @staticmethod
+    def _over_k(inner):
+        return {f"{inner} * inverse_k": _ONE}
 
     def _sin_cos(self, angle):
         """Name of the pair of sine and cosine of order 0."""
@@ -191,24 +282,22 @@ class Graph:
     def tangent(self, x, name="tan", sign="+"):
         """ż = (1 ± z²) ẋ."""
         z = self._integral(f"{name}({x.zeroth})")
-        slope = _Node(self._name())
-        slope.next = slope.zeroth
-        self.start.append(f"  const real {slope.zeroth} = 1.0 {sign} {z.zeroth} * {z.zeroth};")
+        slope = self._integral(f"1.0 {sign} {z.zeroth} * {z.zeroth}")
         self._grows(z, x, slope)
-        square = f"{self.interiors.add(z.next, z.next)} + 2.0 * {self.first(z)} * {z.next}"
-        self.next.append(f"  const real {slope.next} = {'' if sign == '+' else '-'}({square});")
+        square = self.square(z).form
+        self.define(slope, self.times(_ONE if sign == "+" else _MINUS_ONE, square))
         return z
 
     def arc_tangent(self, x):
         """(1 + x²) ż = ẋ."""
         square = self.square(x)
-        slope = self.series(f"1.0 + {square.zeroth}", square.next)
+        slope = self.series(f"1.0 + {square.zeroth}", square.form)
         return self._quotient_grows(f"atan({x.zeroth})", x, slope)
 
-    def arc_sine(self, x, name="asin", sign=""):
+    def arc_sine(self, x, name="asin", sign=_ONE):
         """√(1 − x²) ż = ± ẋ."""
         square = self.square(x)
-        slope = self.root(self.series(f"1.0 - {square.zeroth}", f"-{square.next}"))
+        slope = self.root(self.series(f"1.0 - {square.zeroth}", self.times(_MINUS_ONE, square.form)))
         return self._quotient_grows(f"{name}({x.zeroth})", x, slope, sign)
 
     def power(self, x, exponent):
@@ -219,11 +308,11 @@ class Graph:
         if whole is not None:
             return self._whole_power(x, whole)
         z = self._integral(f"pow({x.zeroth}, {exponent.zeroth})")
-        p, reciprocal = self.first(exponent), self.first(self.zeroth(f"1.0 / {x.zeroth}"))
-        weighted = f"({p} + 1.0) * inverse_k * {self.interiors.add(self._scaled(x), z.next)}"
-        plain = self.interiors.add(x.next, z.next)
-        self.next.append(
-            f"  const real {z.next} = ({p} * {x.next} * {self.first(z)} + ({weighted} - {plain})) * {reciprocal};")
+        weighted = self._over_k(self.interiors.add(self._scaled(x), z.name))
+        plain = self.interiors.add(self.value(x), z.name)
+        grows = self.times(self.zeroth(f"{exponent.zeroth} * {z.zeroth}"), x.form)
+        weighted = self.times(self.zeroth(f"{exponent.zeroth} + 1.0"), weighted)
+        self._define_quotient(z, self.sum(grows, weighted), {plain: _ONE}, self.zeroth(f"1.0 / {x.zeroth}"))
         return z
 
     def _whole_power(self, x, exponent):
@@ -249,25 +338,25 @@ def _whole(text):
 
 
 _RULES = {
-    ca.OP_ADD: lambda g, x, y: g.linear(ca.OP_ADD)(x, y),
-    ca.OP_SUB: lambda g, x, y: g.linear(ca.OP_SUB)(x, y),
-    ca.OP_NEG: lambda g, x: g.linear(ca.OP_NEG)(x),
-    ca.OP_TWICE: lambda g, x: g.linear(ca.OP_TWICE)(x),
+    ca.OP_ADD: lambda g, x, y: g.linear(ca.OP_ADD, _ONE, _ONE)(x, y),
+    ca.OP_SUB: lambda g, x, y: g.linear(ca.OP_SUB, _ONE, _MINUS_ONE)(x, y),
+    ca.OP_NEG: lambda g, x: g.linear(ca.OP_NEG, _MINUS_ONE)(x),
+    ca.OP_TWICE: lambda g, x: g.linear(ca.OP_TWICE, _Node("2.0"))(x),
     ca.OP_ASSIGN: lambda g, x: x,
     ca.OP_MUL: Graph.product,
     ca.OP_SQ: Graph.square,
     ca.OP_DIV: Graph.quotient,
     ca.OP_INV: Graph.inverse,
     ca.OP_SQRT: Graph.root,
-    ca.OP_SIN: lambda g, x: g._pair(x, ("sin", "cos"), "-", 0),
-    ca.OP_COS: lambda g, x: g._pair(x, ("sin", "cos"), "-", 1),
-    ca.OP_SINH: lambda g, x: g._pair(x, ("sinh", "cosh"), "", 0),
-    ca.OP_COSH: lambda g, x: g._pair(x, ("sinh", "cosh"), "", 1),
+    ca.OP_SIN: lambda g, x: g._pair(x, ("sin", "cos"), _MINUS_ONE, 0),
+    ca.OP_COS: lambda g, x: g._pair(x, ("sin", "cos"), _MINUS_ONE, 1),
+    ca.OP_SINH: lambda g, x: g._pair(x, ("sinh", "cosh"), _ONE, 0),
+    ca.OP_COSH: lambda g, x: g._pair(x, ("sinh", "cosh"), _ONE, 1),
     ca.OP_TAN: Graph.tangent,
     ca.OP_TANH: lambda g, x: g.tangent(x, "tanh", "-"),
     ca.OP_ATAN: Graph.arc_tangent,
     ca.OP_ASIN: Graph.arc_sine,
-    ca.OP_ACOS: lambda g, x: g.arc_sine(x, "acos", "-"),
+    ca.OP_ACOS: lambda g, x: g.arc_sine(x, "acos", _MINUS_ONE),
     ca.OP_EXP: Graph.exponential,
     ca.OP_LOG: Graph.logarithm,
     ca.OP_POW: Graph.power,
@@ -283,6 +372,7 @@ def _walk(graph, place, output):
     if missing:
         raise ValueError(f"expression depends on {', '.join(missing)}, which is not an argument")
     function = ca.Function("series", symbols, [ca.cse(output)])
+    uses = _uses(function)
     work, result = {}, [None] * output.numel()
     for k in range(function.n_instructions()):
         op = function.instruction_id(k)
@@ -294,8 +384,24 @@ def _walk(graph, place, output):
         elif op == ca.OP_INPUT:
             work[into[0]] = place[symbols[source[0]].element_hash()]
         else:
-            work[into[0]] = graph.operation(op, [work[i] for i in source])
+            node = graph.operation(op, [work[i] for i in source])
+            if node.name is None:
+                node.uses = uses[k]
+            work[into[0]] = node
     return result
+
+
+def _uses(function):
+    """How often the result of each instruction is used."""
+    uses, owner = [0] * function.n_instructions(), {}
+    for k in range(function.n_instructions()):
+        op = function.instruction_id(k)
+        if op not in (ca.OP_INPUT, ca.OP_CONST):
+            for i in function.instruction_input(k):
+                uses[owner[i]] += 1
+        if op != ca.OP_OUTPUT:
+            owner[function.instruction_output(k)[0]] = k
+    return uses
 
 
 class Series:
@@ -360,7 +466,8 @@ class Outputs(Series):
     def __init__(self, output, **arguments):
         super().__init__(output, **arguments)
         for i, node in enumerate(self.nodes):
-            self.graph.next.append(f"  out[{len(self.nodes)} * k + {i}] = REAL({node.next or '0.0'});")
+            value = "0.0" if node.constant else self.graph.value(node)
+            self.graph.next.append(f"  out[{len(self.nodes)} * k + {i}] = REAL({value});")
         self.finish()
 
 
@@ -374,25 +481,28 @@ class Equations(Series):
 
     def __init__(self, free, output, **arguments):
         super().__init__(output, **arguments)
-        lines = self.graph.next
+        graph = self.graph
+        lines = graph.next
         for i in range(free):
             load = self.nodes[free * free + i]
-            terms = [] if load.constant else [load.next]
+            forms = [] if load.constant else [graph.form(load)]
             for j, mass in enumerate(self.nodes[i: free * free: free]):
                 if not mass.constant:
-                    terms.append(f"({self._late(mass, j, free)} + {mass.next} * a[{j}])")
-            lines.append(f"  const real r{i} = REAL({' + '.join(terms) or '0.0'});")
+                    forms += [self._late(mass, j, free), graph.times(_Node(f"a[{j}]"), mass.form)]
+            residual = graph._merged(graph.sum(*forms))
+            lines.append(f"  const real r{i} = REAL({graph.text(residual)});")
         for i in range(free):
-            row = " + ".join(f"out[{free * j + i}] * r{j}" for j in range(free))
-            lines.append(f"  const real a{i} = -({row}), v{i} = a{i} * dalembert_inverses[k + 1];")
+            row = "".join(f" - out[{free * j + i}] * r{j}" for j in range(free))[1:].replace("- ", "-", 1)
+            lines.append(f"  const real a{i} = {row};")
             lines.append(f"  a[{free} * k + {i}] = a{i};")
-            lines.append(f"  v[{free} * (k + 1) + {i}] = v{i};")
-            lines.append(f"  q[{free} * (k + 2) + {i}] = v{i} * dalembert_inverses[k + 2];")
+            lines.append(f"  v[{free} * (k + 1) + {i}] = a{i} * dalembert_inverses[k + 1];")
+            lines.append(f"  q[{free} * (k + 2) + {i}] = a{i} * (dalembert_inverses[k + 1] * dalembert_inverses[k + 2]);")
         self.finish()
 
     def _late(self, mass, j, free):
         """Interior of M a. The acceleration of order k is not known at order k."""
-        return self.graph.interiors.add_late(mass.next, f"acceleration {j}", f"a[{free} * (k - 1) + {j}]")
+        value = self.graph.value(mass)
+        return {self.graph.interiors.add_late(value, f"acceleration {j}", f"a[{free} * (k - 1) + {j}]"): _ONE}
 
 
 _SIGNATURE = ("real *restrict q, real *restrict v, real *restrict a, const real *u,\n"

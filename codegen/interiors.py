@@ -88,7 +88,8 @@ class Interiors:
             "  if (k == 2) {",
             *(f"    y[{n}] += last[{n}] * last[{count + n}];" for n in range(count)),
             "  } else if (k > 2) {",
-            *(f"    y[{n}] += row[2 * width + {n}] * last[{count + n}] + last[{n}] * row[3 * width + {n}];" for n in range(count)),
+            *(f"    y[{n}] = y[{n}] + last[{n}] * row[3 * width + {n}] + row[2 * width + {n}] * last[{count + n}];"
+              for n in range(count)),
             "  }",
         ]
         return lines

@@ -1,6 +1,6 @@
 //! Order and length of a step.
 
-use super::super::logarithm::{binary_logarithm, natural_logarithm, root};
+use super::super::logarithm::{binary_logarithm, natural_logarithm, root, rough_logarithm};
 use super::series::ORDERS;
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
@@ -99,14 +99,12 @@ impl Terms {
     /// tell which it is, so that one root is taken.
     #[inline]
     pub fn length(&self, sizes: [f64; 5]) -> f64 {
-        let mut logarithms = [0.0; 5];
-        for k in 0..5 {
-            logarithms[k] = binary_logarithm(sizes[k]) * self.inverses[k] - self.logarithms[k];
-        }
-        let (mut largest, mut shortest) = (f64::NEG_INFINITY, 0);
-        for k in 0..5 {
-            if logarithms[k] > largest && sizes[k] >= f64::MIN_POSITIVE {
-                (largest, shortest) = (logarithms[k], k);
+        let own = |k: usize| rough_logarithm(sizes[k]) * self.inverses[k] - self.logarithms[k];
+        let logarithms: [f64; 5] = std::array::from_fn(own);
+        let mut shortest = 0;
+        for k in 1..5 {
+            if logarithms[k] > logarithms[shortest] {
+                shortest = k;
             }
         }
         self.factors[shortest] * root(sizes[shortest], self.powers[shortest])
