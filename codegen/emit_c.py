@@ -39,10 +39,12 @@ typedef double real;
 struct dalembert_sin_cos { double sin, cos; };
 struct dalembert_sin_cos dalembert_sin_cos(double);
 /* An angle whose sine and cosine were computed last: the functions of a mode are asked for one state
- * after another. */
+ * after another. At a contact it is zero, or nearly: sin x = x - x^3/6 and cos x = 1 - x^2/2 round to x
+ * and 1 below 2^-27, as dalembert_sin_cos does. */
 struct dalembert_angle { double angle; struct dalembert_sin_cos pair; };
 DALEMBERT_INLINE struct dalembert_sin_cos dalembert_kept_sin_cos(struct dalembert_angle *kept, double angle) {
   if (memcmp(&kept->angle, &angle, sizeof angle) != 0) {
+    if (angle < 0x1p-27 && angle > -0x1p-27) return (struct dalembert_sin_cos){angle, 1.0};
     kept->pair = dalembert_sin_cos(angle);
     kept->angle = angle;
   }

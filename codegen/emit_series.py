@@ -19,6 +19,8 @@ sums and products by constants multiply its coefficients out, once a step, and a
 one product and a sum instead of a chain of them.
 """
 
+import re
+
 import casadi as ca
 
 from .emit_c import MOST_ORDERS, SIN_COS, literal, operation, parenthesized, sin_cos
@@ -47,6 +49,9 @@ class _Node:
     def constant(self):
         return self.form is None
 
+
+_VARIABLE = re.compile(r"\bt\d+\b")
+_DEFINITION = re.compile(r"\s*const (?:real|struct \w+) (t\d+) = ")
 
 _ONE = _Node("1.0")
 _MINUS_ONE = _Node("-1.0")
@@ -97,8 +102,32 @@ class Graph:
     def define(self, node, form):
         """Gives the variable of a node the value of a form, which may refer to interiors of the variable."""
         form = self._merged(form)
-        self.next.append(f"  const real {node.name} = {self.text(form)};")
+        self.state(f"const real {node.name} = %s;", form, node.name)
         self.forms[node.name], node.form = form, {node.name: _ONE}
+
+    def state(self, statement, form=None, name=None):
+        """Adds a statement of the second function: with the value of a form, if one is given, and of the
+        variable of that name, if it is for one, which is left out where nothing needs it."""
+        self.next.append((statement, form or {}, name))
+
+    def statements(self, needed):
+        """Those that are needed: for themselves, or by text."""
+        kept = []
+        for statement, form, name in reversed(self.next):
+            if name is None or name in needed:
+                kept.append(f"  {statement}" % ((self.text(form),) if form or "%s" in statement else ()))
+                needed = needed | set(_VARIABLE.findall(" ".join([statement, *form])))
+        return kept[::-1]
+
+    def beginning(self):
+        """The statements of the first function that something needs."""
+        kept, needed = [], set()
+        for line in reversed(self.start):
+            defined = _DEFINITION.match(line)
+            if defined is None or defined.group(1) in needed:
+                kept.append(line)
+                needed |= set(_VARIABLE.findall(line))
+        return kept[::-1]
 
     # ---- forms --------------------------------------------------------------------------------
 
@@ -124,9 +153,8 @@ class Graph:
     @staticmethod
     def _age(term):
         """When the term of an order is known, compared with others: inputs, interiors, motion, variables."""
-        if term.startswith("t"):
-            return (3, int(term[1:]))
-        return ("uyqva".find(term[0]) // 2, 0)
+        variable = _VARIABLE.match(term)
+        return (3, int(variable.group()[1:])) if variable else ("uyqva".find(term[0]) // 2, 0)
 
     def sum(self, *forms):
         """Sum of forms."""
@@ -437,14 +465,17 @@ class Series:
         """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
         right factors of the interiors."""
         graph, interiors = self.graph, self.graph.interiors
-        self.lead, self.row = graph.slots, interiors.row
-        self.operations = len(graph.next)
+        self.row = interiors.row
         self.order = ["  const double order = (double)k, inverse_k = dalembert_inverses[k];", "  (void)order, (void)inverse_k;"]
-        self.order += [*interiors.sums(self.lead), *graph.next, *interiors.stores()] if interiors else graph.next
+        stores = interiors.stores() if interiors else []
+        needed = set(_VARIABLE.findall("\n".join([*stores, *interiors.late.values()])))
+        statements = graph.statements(needed)
+        self.lead, self.operations = graph.slots, len(statements)
+        self.order += [*(interiors.sums(self.lead) if interiors else []), *statements, *stores]
 
     def add_to(self, source, name):
         """Adds both functions to a `Source`; returns the names under which they can be called."""
-        start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.start))
+        start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.beginning()))
         few = self.graph.interiors.few and len(self.graph.interiors)
         signature = f"const size_t k, {_SIGNATURE}" + (", real *restrict last" if few else "")
         order = source.add_text(f"{name}_order", signature, _text(self.order), "DALEMBERT_INLINE")
@@ -467,7 +498,7 @@ class Outputs(Series):
         super().__init__(output, **arguments)
         for i, node in enumerate(self.nodes):
             value = "0.0" if node.constant else self.graph.value(node)
-            self.graph.next.append(f"  out[{len(self.nodes)} * k + {i}] = REAL({value});")
+            self.graph.state(f"out[{len(self.nodes)} * k + {i}] = REAL({value});")
         self.finish()
 
 
@@ -482,21 +513,21 @@ class Equations(Series):
     def __init__(self, free, output, **arguments):
         super().__init__(output, **arguments)
         graph = self.graph
-        lines = graph.next
         for i in range(free):
             load = self.nodes[free * free + i]
             forms = [] if load.constant else [graph.form(load)]
             for j, mass in enumerate(self.nodes[i: free * free: free]):
                 if not mass.constant:
-                    forms += [self._late(mass, j, free), graph.times(_Node(f"a[{j}]"), mass.form)]
+                    # The acceleration is not known at the start, where factors are multiplied.
+                    forms += [self._late(mass, j, free), {f"{graph.value(mass)} * a[{j}]": _ONE}]
             residual = graph._merged(graph.sum(*forms))
-            lines.append(f"  const real r{i} = REAL({graph.text(residual)});")
+            graph.state(f"const real r{i} = REAL(%s);", residual)
         for i in range(free):
             row = "".join(f" - out[{free * j + i}] * r{j}" for j in range(free))[1:].replace("- ", "-", 1)
-            lines.append(f"  const real a{i} = {row};")
-            lines.append(f"  a[{free} * k + {i}] = a{i};")
-            lines.append(f"  v[{free} * (k + 1) + {i}] = a{i} * dalembert_inverses[k + 1];")
-            lines.append(f"  q[{free} * (k + 2) + {i}] = a{i} * (dalembert_inverses[k + 1] * dalembert_inverses[k + 2]);")
+            graph.state(f"const real a{i} = {row};")
+            graph.state(f"a[{free} * k + {i}] = a{i};")
+            graph.state(f"v[{free} * (k + 1) + {i}] = a{i} * dalembert_inverses[k + 1];")
+            graph.state(f"q[{free} * (k + 2) + {i}] = a{i} * (dalembert_inverses[k + 1] * dalembert_inverses[k + 2]);")
         self.finish()
 
     def _late(self, mass, j, free):

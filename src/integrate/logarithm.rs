@@ -12,12 +12,6 @@ pub(super) fn binary_logarithm(x: f64) -> f64 {
     exponent as f64 + fraction
 }
 
-/// log₂ x to 0.09, for x ≥ 0: linear between powers of two, and below −1022 where x is no normal number.
-#[inline]
-pub(super) fn rough_logarithm(x: f64) -> f64 {
-    x.to_bits() as i64 as f64 * (f64::EPSILON) - 1023.0
-}
-
 /// log₂ x to 0.01 as a whole number and what is left, in [0, 1), for normal x > 0.
 fn split(x: f64) -> (i64, f64) {
     let bits = x.to_bits();

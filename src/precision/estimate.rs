@@ -6,11 +6,13 @@ use crate::hybrid::{Method, Problem, Reason};
 use crate::record::{ErrorEstimate, Progress, Run};
 use std::time::Duration;
 
-/// How much tighter the tolerance of the better run is. At the same tolerance the errors of two methods
-/// differ by up to some hundred times (a rocking block at 1e-3: 3e-3 by Taylor, 9e-6 by Radau), so the
-/// better run's own error is a few percent of what is estimated. At high orders that costs little: four
-/// decades take less than twice as long.
+/// How much tighter the tolerance of the better run is, so that its own error is a few percent of what is
+/// estimated. At high orders that costs little: four decades take less than twice as long.
 pub const ESTIMATE_FACTOR: f64 = 1e4;
+
+/// How much tighter it is where Taylor judges Radau: at the same tolerance its errors are up to some hundred
+/// times as large (a rocking block at 1e-3: 3e-3 by Taylor, 9e-6 by Radau).
+pub const TAYLOR_ESTIMATE_FACTOR: f64 = 1e6;
 
 /// Time that the Taylor method gets at least to be the better run: nobody waits for less.
 const GRACE: Duration = Duration::from_secs(1);
@@ -41,7 +43,8 @@ pub enum NoEstimate {
 /// Estimates the error of a run that has come to its end: the difference to a run by another method at
 /// a tolerance [`ESTIMATE_FACTOR`] times as tight, but not tighter than [`TIGHTEST`], and the rounding
 /// of their steps. What Taylor has a part in is compared with Radau; what Radau has made alone is
-/// compared with Taylor, or with Radau where Taylor would take many times as long or has no series.
+/// compared with Taylor ([`TAYLOR_ESTIMATE_FACTOR`]), or with Radau where Taylor would take many times as
+/// long or has no series.
 ///
 /// # Errors
 /// [`NoEstimate`] if one of the two runs did not come to its end.
@@ -53,8 +56,7 @@ pub fn estimate(
     if run.failure.is_some() {
         return Err(NoEstimate::Early);
     }
-    let tolerance = (problem.accuracy.relative / ESTIMATE_FACTOR).max(TIGHTEST);
-    let better = better(problem, run, tolerance, progress)?;
+    let (better, tolerance) = better(problem, run, progress)?;
     if let Some(failure) = better.failure {
         let (t, reason) = (failure.at.t, failure.reason);
         return Err(NoEstimate::Better { t, reason });
@@ -79,28 +81,27 @@ pub fn estimate(
     })
 }
 
-/// The run to compare with.
+/// The run to compare with, and its tolerance.
 fn better(
     problem: &Problem,
     run: &Run,
-    tolerance: f64,
     progress: &mut dyn Progress,
-) -> Result<Run, NoEstimate> {
+) -> Result<(Run, f64), NoEstimate> {
+    let tighter = |factor: f64| (problem.accuracy.relative / factor).max(TIGHTEST);
     if !used_taylor(run) {
         let limit = (run.wall * GIVEN_UP).max(GRACE);
+        let tolerance = tighter(TAYLOR_ESTIMATE_FACTOR);
         let taylor = variation(problem, Method::Taylor, tolerance);
         match attempt(&taylor, Some(limit), progress)? {
             Attempt::Interrupted => return Err(NoEstimate::Interrupted),
-            Attempt::Done(better) if better.failure.is_none() => return Ok(better),
+            Attempt::Done(better) if better.failure.is_none() => return Ok((better, tolerance)),
             _ => {}
         }
     }
-    match attempt(
-        &variation(problem, Method::Radau, tolerance),
-        None,
-        progress,
-    )? {
-        Attempt::Done(better) => Ok(better),
+    let tolerance = tighter(ESTIMATE_FACTOR);
+    let radau = variation(problem, Method::Radau, tolerance);
+    match attempt(&radau, None, progress)? {
+        Attempt::Done(better) => Ok((better, tolerance)),
         _ => Err(NoEstimate::Interrupted),
     }
 }

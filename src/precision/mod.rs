@@ -10,7 +10,7 @@ mod reference;
 mod study;
 
 pub use difference::Difference;
-pub use estimate::{ESTIMATE_FACTOR, NoEstimate, estimate};
+pub use estimate::{ESTIMATE_FACTOR, NoEstimate, TAYLOR_ESTIMATE_FACTOR, estimate};
 pub use matching::{Match, match_events};
 pub use reference::{Bound, Horizon, Reference};
 pub use study::{Measured, Row, Study, TOLERANCES, Verdict};
