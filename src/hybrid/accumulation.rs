@@ -18,7 +18,7 @@ const LARGEST_RATIO: f64 = 1.0 - 1.5e-8;
 
 /// Part of the time since the start that the last pattern of several events takes at least while the rest
 /// of its series advances the time: √ε = 2⁻²⁶, and twice that for the rounding of the times.
-const SHORTEST_PATTERN: f64 = 2.0 / (1_u32 << 26) as f64;
+pub const SHORTEST_PATTERN: f64 = 2.0 / (1_u32 << 26) as f64;
 
 /// What makes two events the same, besides the discrete states after them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -31,14 +31,12 @@ pub struct Signature {
     pub mode: usize,
 }
 
-/// What is remembered of an event, besides the states after it.
-#[derive(Debug, Clone, Copy, Default)]
-struct Hop {
-    signature: Signature,
-    /// Whether it was an impact.
-    impact: bool,
-    /// When it happened.
-    at: Instant,
+impl Signature {
+    /// All of it, and whether the event was an impact, in one number. A model has fewer of each than 2¹⁶.
+    fn key(self, impact: bool) -> u64 {
+        let [guard, transition, mode] = [self.guard, self.transition, self.mode].map(|i| i as u64);
+        guard | transition << 16 | mode << 32 | u64::from(impact) << 48
+    }
 }
 
 /// Limit of an accumulation.
@@ -77,14 +75,26 @@ impl Series {
 /// Room for events: a power of two.
 const ROOM: usize = Accumulation::MEMORY.next_power_of_two();
 
+/// Numbers that fill a line of the cache.
+const LINE: usize = 8;
+
+/// Where in the record of an event its time begins, of two numbers; the bits of what makes it the same as
+/// others ([`Signature::key`]); coordinates and velocities after it. Discrete states after it follow.
+const TIME: usize = 0;
+const KEY: usize = 2;
+const STATE: usize = 3;
+
 /// The last events of a run.
 #[derive(Debug)]
 pub struct Accumulation {
-    hops: [Hop; ROOM],
-    /// Coordinates and velocities after each of them.
-    states: Box<[f64]>,
-    /// Discrete states after each of them.
-    discretes: Box<[f64]>,
+    /// A record an event, each in lines of the cache of its own: it is written and looked at as a whole.
+    records: Box<[f64]>,
+    /// Where the first record begins, and how long one is.
+    first: usize,
+    stride: usize,
+    /// Number of coordinates and velocities, and of discrete states.
+    width: usize,
+    discretes: usize,
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
@@ -94,12 +104,20 @@ impl Accumulation {
     /// Number of events remembered: three repetitions of the longest pattern and the one before.
     pub const MEMORY: usize = 3 * LONGEST_PATTERN + 1;
 
+    /// Part of itself by which a component moves at most while it stands still: the rounding of a guard, as
+    /// many units in the last place as events are remembered.
+    pub const HARDLY: f64 = Self::MEMORY as f64 * f64::EPSILON;
+
     /// No events yet; `width` is the number of coordinates and velocities.
     pub fn new(width: usize, discretes: usize) -> Self {
+        let stride = (STATE + width + discretes).next_multiple_of(LINE);
+        let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
         Accumulation {
-            hops: [Hop::default(); ROOM],
-            states: vec![0.0; ROOM * width].into(),
-            discretes: vec![0.0; ROOM * discretes].into(),
+            first: records.as_ptr().align_offset(LINE * size_of::<f64>()) % LINE,
+            records,
+            stride,
+            width,
+            discretes,
             count: 0,
             still: 0,
         }
@@ -110,57 +128,82 @@ impl Accumulation {
         (self.count, self.still) = (0, 0);
     }
 
-    /// Remembers an event, with the states before and after it.
+    /// Remembers an event, with the coordinates and velocities before it and after it.
     pub fn push(
         &mut self,
         signature: Signature,
         impact: bool,
         at: Instant,
-        before: impl Iterator<Item = f64>,
-        state: impl Iterator<Item = f64>,
+        before: &[f64],
+        state: [&[f64]; 2],
         discrete: &[f64],
     ) {
-        let still = self.count > 0 && hardly_moved(before.zip(self.state(0).iter().copied()));
-        self.still = if still { self.still + 1 } else { 0 };
-        let slot = self.count % ROOM;
-        self.hops[slot] = Hop {
-            signature,
-            impact,
-            at,
-        };
-        let width = self.states.len() / ROOM;
-        for (to, from) in self.states[slot * width..].iter_mut().zip(state) {
+        let own = |x: &f64| *x;
+        let is_still = self.count > 0
+            && hardly_moved(before.iter().map(own).zip(self.state(0).iter().map(own)));
+        let still = if is_still { self.still + 1 } else { 0 };
+        let after = state.into_iter().chain([discrete]).flatten().copied();
+        self.push_apart(signature, impact, at, after);
+        self.still = still;
+    }
+
+    /// Remembers an event before which something has moved since the one before; `after`: coordinates,
+    /// velocities and discrete states after it.
+    #[inline]
+    pub fn push_apart(
+        &mut self,
+        signature: Signature,
+        impact: bool,
+        at: Instant,
+        after: impl Iterator<Item = f64>,
+    ) {
+        self.still = 0;
+        self.count += 1;
+        let start = self.start(0);
+        let record = &mut self.records[start..][..STATE + self.width + self.discretes];
+        [record[TIME], record[TIME + 1]] = at.parts();
+        record[KEY] = f64::from_bits(signature.key(impact));
+        for (to, from) in record[STATE..].iter_mut().zip(after) {
             *to = from;
         }
-        let to = &mut self.discretes[slot * discrete.len()..];
-        for (to, from) in to.iter_mut().zip(discrete) {
-            *to = *from;
-        }
-        self.count += 1;
     }
 
-    /// Slot of the event so many before the last.
-    fn slot(&self, back: usize) -> usize {
-        (self.count - 1 - back) % ROOM
+    /// When the last event happened, if there was one, with coordinates and velocities, and discrete states
+    /// after it.
+    pub fn last(&self) -> Option<(Instant, &[f64], &[f64])> {
+        (self.count > 0).then(|| (self.at(0), self.state(0), self.discrete(0)))
     }
 
-    fn hop(&self, back: usize) -> &Hop {
-        &self.hops[self.slot(back)]
+    /// Where the record of the event so many before the last begins.
+    fn start(&self, back: usize) -> usize {
+        self.first + (self.count - 1 - back) % ROOM * self.stride
+    }
+
+    fn at(&self, back: usize) -> Instant {
+        let start = self.start(back);
+        Instant::of_parts([self.records[start + TIME], self.records[start + TIME + 1]])
+    }
+
+    fn key(&self, back: usize) -> u64 {
+        self.records[self.start(back) + KEY].to_bits()
+    }
+
+    fn is_impact(&self, back: usize) -> bool {
+        self.key(back) >> 48 != 0
     }
 
     fn state(&self, back: usize) -> &[f64] {
-        let width = self.states.len() / ROOM;
-        &self.states[self.slot(back) * width..][..width]
+        &self.records[self.start(back) + STATE..][..self.width]
+    }
+
+    fn discrete(&self, back: usize) -> &[f64] {
+        &self.records[self.start(back) + STATE + self.width..][..self.discretes]
     }
 
     /// Whether two events are the same but for time and state.
     fn are_alike(&self, one: usize, other: usize) -> bool {
-        let [one, other] = [one, other].map(|back| self.slot(back));
-        let width = self.discretes.len() / ROOM;
-        let [of_one, of_other] = [one, other].map(|slot| &self.discretes[slot * width..][..width]);
-        let mut pairs = of_one.iter().zip(of_other);
-        pairs.all(|(a, b)| a.to_bits() == b.to_bits())
-            && self.hops[one].signature == self.hops[other].signature
+        let mut pairs = self.discrete(one).iter().zip(self.discrete(other));
+        self.key(one) == self.key(other) && pairs.all(|(a, b)| a.to_bits() == b.to_bits())
     }
 
     /// The limit, if the last events accumulate and what is left of the series moves no component
@@ -186,19 +229,16 @@ impl Accumulation {
         let near =
             |(i, (now, before)): (usize, (&f64, &f64))| (now - before).abs() <= tolerance(i, *now);
         let mut pairs = self.state(0).iter().zip(self.state(1)).enumerate();
-        let [now, before] = [0, 1].map(|back| self.hop(back).at.seconds());
+        let [now, before] = [0, 1].map(|back| self.at(back).seconds());
         now - before <= SHORTEST_PATTERN * now || pairs.all(near)
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
-        if !self.are_alike(0, p) {
-            return None;
-        }
-        let at = [0, 1, 2, 3].map(|k| self.hop(k * p).at);
+        let at = [0, 1, 2, 3].map(|k| self.at(k * p));
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
         // The last may be shorter than the resolution of an instant.
-        if !(0.0 <= last && last < middle && middle < first) {
+        if !(0.0 <= last && last < middle && middle < first && self.are_alike(0, p)) {
             return None;
         }
         let (ratio, ratio_before) = (last / middle, middle / first);
@@ -207,7 +247,7 @@ impl Accumulation {
         }
         let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
         // Only impacts come to rest; stick and slip alone have modes of their own.
-        if !repeats || !(0..p).any(|i| self.hop(i).impact) {
+        if !repeats || !(0..p).any(|i| self.is_impact(i)) {
             return None;
         }
         let remaining = last * (ratio / (1.0 - ratio));
@@ -270,19 +310,19 @@ impl Accumulation {
     /// its last place, or between which nothing moves by more than rounding.
     pub fn stands_still(&self) -> bool {
         self.count >= Self::MEMORY && {
-            let (new, old) = (self.hop(0).at, self.hop(Self::MEMORY - 1).at);
+            let (new, old) = (self.at(0), self.at(Self::MEMORY - 1));
             new.since(old) < new.seconds().abs() * f64::EPSILON || self.still >= Self::MEMORY
         }
     }
 }
 
-/// Whether of pairs (after, before) some differ, but none by more than the rounding of a guard: as
-/// many units in the last place as events are remembered. A state that is held still is no evidence.
+/// Whether of pairs (after, before) some differ, but none by more than the rounding of a guard
+/// ([`Accumulation::HARDLY`]). A state that is held still is no evidence.
 fn hardly_moved(mut pairs: impl Iterator<Item = (f64, f64)>) -> bool {
     let mut moved = false;
     let hardly = pairs.all(|(after, before)| {
         moved |= after != before;
-        (after - before).abs() <= Accumulation::MEMORY as f64 * f64::EPSILON * before.abs()
+        (after - before).abs() <= Accumulation::HARDLY * before.abs()
     });
     hardly && moved
 }
@@ -303,8 +343,7 @@ mod tests {
             guard,
             ..Signature::default()
         };
-        let [before, after] = [before, after].map(|state| state.iter().copied());
-        accumulation.push(signature, impact, at, before, after, &[]);
+        accumulation.push(signature, impact, at, before, [after, &[]], &[]);
     }
 
     fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {

@@ -178,13 +178,12 @@ impl Simulation<'_> {
             transition,
             mode: self.here.mode,
         };
-        let after = self.here.q.iter().chain(&self.here.v).copied();
         self.accumulation.push(
             signature,
             impact,
             self.here.now,
-            self.before.iter().copied(),
-            after,
+            &self.before,
+            [&self.here.q, &self.here.v],
             self.context.discrete(),
         );
         self.look_for_accumulation()
