@@ -21,7 +21,7 @@ SERIES = ("series", "quiet_series", "guard_series")
 
 
 LANES = ("series", "quiet_series", "requirements", "guard")
-"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names."""
+"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and resets that stay in the mode."""
 
 LEVELS = (("v1", ""), ("v3", '#[cfg(target_arch = "x86_64")] '), ("v4", '#[cfg(target_arch = "x86_64")] '))
 """Levels of the processor for which lanes are compiled, as in build/compile.rs."""
@@ -39,6 +39,11 @@ def goes_in_lanes(variant, i):
     return bool(equations.free) and analytic and not equations.mode.drift and all(guards)
 
 
+def is_for_lanes(variant, slot, function):
+    """Whether a function, by its slot, is emitted for lanes, too."""
+    return (slot[1] in LANES or function.stays) and goes_in_lanes(variant, slot[0])
+
+
 def model_text(name, variants, constants_symbol, constants_count, for_tests):
     """The Rust fragment of a model."""
     model = variants[0].model
@@ -54,7 +59,7 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     arrays = "q: *mut f64, v: *mut f64, a: *mut f64, u: *const f64, x: *const RawContext, w: *mut f64, out: *mut f64"
     lines += [f"    fn {e}({arrays});" for e in sorted({start for start, _ in series})]
     lines += [f"    fn {e}(n: usize, {arrays});" for e in sorted({run for _, run in series})]
-    lanes = [f for v in variants for slot, f in v.functions.items() if slot[1] in LANES and goes_in_lanes(v, slot[0])]
+    lanes = [f for v in variants for slot, f in v.functions.items() if is_for_lanes(v, slot, f)]
     for level, only in LEVELS:
         of = lambda names: sorted({f"{only}fn {e}_{level}" for e in names})
         lines += [f"    {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
@@ -245,10 +250,14 @@ def _lanes(variant, i, functions):
     sets = []
     for level, only in LEVELS:
         guards = ", ".join(f"{functions['guard', g].symbol}_{level}" for g in range(len(variant.modes[i].guards)))
+        own = lambda reset: _option(reset if reset.stays else None, lambda f: f"{f.symbol}_{level}")
+        resets = ", ".join(
+            f"&[{', '.join(own(functions['reset', g, t]) for t in range(len(transitions)))}]"
+            for g, (_, transitions) in enumerate(variant.modes[i].guards))
         sets.append(
             f"{only}LaneKernel {{ series: {_series(functions[('series',)], '_' + level)}, "
             f"quiet_series: {_series(functions[('quiet_series',)], '_' + level)}, "
-            f"requirements: {functions[('requirements',)].symbol}_{level}, guards: &[{guards}] }}")
+            f"requirements: {functions[('requirements',)].symbol}_{level}, guards: &[{guards}], resets: &[{resets}] }}")
     return f"&[{', '.join(sets)}]"
 
 
@@ -265,20 +274,20 @@ def _shape(model, equations, expression):
     linear = linear_shape(model, equations, placed)
     if linear is not None:
         return linear
-    depends = lambda *columns: bool(_present(ca.symvar(placed), *columns))
+    depends = lambda *columns: bool(present(ca.symvar(placed), *columns))
     return (f"GuardShape::General {{ accelerations: {_bool(depends(equations.a))}, "
             f"signals: {_bool(depends(ca.vertcat(*_signals(model))))} }}")
 
 
 def _is_constant(model, equations, entries):
     """Whether entries of a matrix stay the same while the mode lasts."""
-    return not _present(ca.symvar(entries), equations.a, *_moving(model, equations))
+    return not present(ca.symvar(entries), equations.a, *_moving(model, equations))
 
 
 def linear_shape(model, equations, expression):
     """`GuardShape::Linear` if the guard is a constant or discrete factor times one coordinate or rate,
     plus what does not move, else None."""
-    moving = _present(ca.symvar(expression), equations.a, *_moving(model, equations))
+    moving = present(ca.symvar(expression), equations.a, *_moving(model, equations))
     if len(moving) != 1:
         return None
     [symbol] = moving
@@ -312,7 +321,7 @@ def _expanded(variants):
     return [s.element_hash() in present for s in _signals(variants[0].model)]
 
 
-def _present(symbols, *columns):
+def present(symbols, *columns):
     """Those of the symbols that some column contains."""
     wanted = {column[i].element_hash() for column in columns for i in range(column.numel())}
     return [s for s in symbols if s.element_hash() in wanted]

@@ -24,6 +24,8 @@ class Function:
     symbol: str = ""
     operations: int = 0
     workspace: tuple = ()
+    stays: bool = False
+    """A reset that leads to the same mode and changes nothing that the mode holds: see `_stays`."""
 
 
 @dataclass
@@ -102,7 +104,7 @@ def _lane_functions(variants):
     names = set()
     for variant in variants:
         for slot, function in variant.functions.items():
-            if slot[1] in emit_rust.LANES and emit_rust.goes_in_lanes(variant, slot[0]):
+            if emit_rust.is_for_lanes(variant, slot, function):
                 names.update([function.symbol] if isinstance(function.symbol, str) else function.symbol)
     return names
 
@@ -190,7 +192,8 @@ def _variant(model):
             for t, transition in enumerate(transitions):
                 target = modes[index[transition.target.name]]
                 reset = _reset(model, equations, target, transition)
-                _add(variant, prefix + f"guard{g}_reset{t}", reset, equations, (i, "reset", g, t))
+                function = _add(variant, prefix + f"guard{g}_reset{t}", reset, equations, (i, "reset", g, t))
+                function.stays = target is equations and _stays(model, equations, reset)
                 if transition.condition is not None:
                     condition = target.place(transition.condition)
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
@@ -203,7 +206,8 @@ def _variant(model):
 def _add(variant, name, output, equations, slot):
     parameters = [p.symbol for p in variant.model.parameters]
     arranged = graph.arrange(ca.densify(ca.vec(ca.SX(output))), parameters)
-    variant.functions[slot] = Function(name, arranged, equations, slot)
+    function = variant.functions[slot] = Function(name, arranged, equations, slot)
+    return function
 
 
 def _mode_functions(variant, equations, slot, prefix):
@@ -299,6 +303,23 @@ def _reset(model, source, target, transition):
     order = [c.name for c in model.coordinates]
     order += [c.name + ".rate" for c in model.coordinates] + [d.name for d in model.discretes]
     return source.place(ca.vertcat(*[values[key] for key in order]))
+
+
+def _stays(model, equations, reset):
+    """Whether a reset that leads back to its mode changes nothing but free coordinates, their rates and
+    discrete states, and depends on no signal: then it needs no more than what lanes have."""
+    n = len(model.coordinates)
+    held = [(i, c) for i, c in enumerate(model.coordinates) if i not in equations.free]
+    before = [(k, equations.place(x)) for i, c in held for k, x in ((i, c.symbol), (n + i, c.symbol.rate))]
+    return (all(_is_same(reset[k], x) for k, x in before)
+            and not emit_rust.present(ca.symvar(reset), _signals(model), _signal_rates(model), equations.j))
+
+
+def _is_same(one, other):
+    """Whether two expressions are the same constant or the same symbol."""
+    if one.is_constant() and other.is_constant():
+        return float(one) == float(other)
+    return one.is_symbolic() and other.is_symbolic() and one.element_hash() == other.element_hash()
 
 
 @dataclass

@@ -329,6 +329,76 @@ void LANES(dalembert_lane_end)(size_t free, size_t p, const real *q, const real 
   }
 }
 
+/* A guard that is linear: src/kernel/lanes.rs. */
+struct guard {
+  real factor, offset;
+  /* Lanes in which it is zero at the start of the step: there the factor tau is divided out. */
+  unsigned starts_at_zero;
+};
+
+/* The lanes in which an event before the time `last` certainly ends neither an accumulation nor a standstill:
+ * src/hybrid/accumulation.rs, which has the reasons. index: of the free coordinates among all. tolerances: as
+ * for `length`. point: before the event, reset: all coordinates, velocities and discrete states after it,
+ * after: the free ones, the time and the discrete states after the event before; where these are not numbers
+ * there was none. hardly, shortest: parts of themselves that what stands still moves by at most, and part of
+ * the time that a pattern takes at least. rests: whether an accumulation is looked for.
+ */
+unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
+                                        unsigned rests, double hardly, double shortest, const double *tolerances,
+                                        const real *point, const real *reset, const real *after, const real *last);
+unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
+                                        unsigned rests, double hardly, double shortest, const double *tolerances,
+                                        const real *point, const real *reset, const real *after, const real *last) {
+  const real now = point[5 * free];
+  truth still = truth_of(~0U), near = still, alike = still;
+  for (size_t i = 0; i < 2 * free; ++i) {
+    const real own = reset[i < free ? index[i] : coordinates + index[i - free]];
+    still &= at_most(size_of(point[i] - after[i]), hardly * size_of(after[i]));
+    near &= at_most(size_of(own - after[i]), tolerances[1 + i] + tolerances[0] * size_of(own));
+  }
+  /* What repeats leads to the same discrete states, by their bits: never to ones that differ as numbers. */
+  for (size_t i = 0; i < discretes; ++i) {
+    const real own = reset[2 * coordinates + i], other = after[2 * free + 1 + i];
+    alike &= (truth)~(below(own, other) | below(other, own));
+  }
+  const truth at_once = at_most(now - after[2 * free], shortest * now);
+  const truth first = (truth)~same(after[2 * free], after[2 * free]);
+  const truth rest = rests ? (truth)((near | alike) & ~first) : truth_of(0);
+  return bits((truth)(below(now, *last) & ~(still | at_once | rest)));
+}
+
+/* Makes a guard factor * (discrete state) with the offset that it has one at the start of a step, where it is
+ * factor * x + offset; discrete: null if none is a factor. Gives the lanes in which it is positive, or zero and
+ * rises with the rate of x; rate: null if x is one.
+ */
+unsigned LANES(dalembert_lane_departs)(const real *x, const real *rate, double factor, const real *discrete,
+                                       struct guard *guard);
+unsigned LANES(dalembert_lane_departs)(const real *x, const real *rate, double factor, const real *discrete,
+                                       struct guard *guard) {
+  guard->factor = discrete ? factor * *discrete : REAL(factor);
+  const real value = guard->factor * *x + guard->offset, zero = REAL(0.0);
+  const truth at_zero = same(value, zero);
+  guard->starts_at_zero = bits(at_zero);
+  return bits(below(zero, value) | (rate ? (truth)(at_zero & below(zero, guard->factor * *rate)) : truth_of(0)));
+}
+
+/* Goes on in some lanes from the state that a reset gives, and remembers it: names as in `is_apart`. */
+void LANES(dalembert_lane_leap)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
+                                unsigned where, const real *reset, real *point, real *after);
+void LANES(dalembert_lane_leap)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
+                                unsigned where, const real *reset, real *point, real *after) {
+  const truth lanes = truth_of(where);
+  for (size_t i = 0; i < 2 * free; ++i) {
+    const real own = reset[i < free ? index[i] : coordinates + index[i - free]];
+    point[i] = pick(lanes, own, point[i]);
+    point[3 * free + i] = pick(lanes, REAL(0.0), point[3 * free + i]);
+    after[i] = pick(lanes, own, after[i]);
+  }
+  after[2 * free] = pick(lanes, point[5 * free], after[2 * free]);
+  for (size_t i = 0; i < discretes; ++i)
+    after[2 * free + 1 + i] = pick(lanes, reset[2 * coordinates + i], after[2 * free + 1 + i]);
+}
+
 /* Takes over numbers in some lanes. */
 void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, real *to);
 void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, real *to) {
@@ -436,13 +506,6 @@ DALEMBERT_INLINE real first_fall_of(size_t count, const real *c) {
   }
   return REAL(NAN);
 }
-
-/* A guard that is linear: src/hybrid/ensemble/bundle.rs. */
-struct guard {
-  real factor, offset;
-  /* Lanes in which it is zero at the start of the step: there the factor tau is divided out. */
-  unsigned starts_at_zero;
-};
 
 /* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
  * `place`, a part of h, that becomes it: gives these lanes. c gets the coefficients in powers of tau/h.

@@ -6,12 +6,15 @@ use common::{numbers, problem, reference};
 use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
 use dalembert::input::{Function, Sine};
 use dalembert::kernel::processor_level;
-use dalembert::record::Silent;
+use dalembert::record::{Jump, Silent};
 
 /// What a trajectory ends with.
 #[derive(Debug, Clone, PartialEq)]
 struct End {
     events: Vec<(&'static str, f64)>,
+    /// Their numbers, and the modes that they lead from and to.
+    numbers: Vec<[u64; 3]>,
+    /// Coordinates, velocities, discrete states.
     state: Vec<f64>,
     failure: Option<String>,
 }
@@ -26,6 +29,10 @@ fn variations(like: &Problem, count: usize, vary: impl Fn(&mut Problem, f64)) ->
     (0..count).map(variation).collect()
 }
 
+fn numbers_of(jump: &Jump) -> [u64; 3] {
+    [jump.j, jump.from as u64, jump.to as u64]
+}
+
 /// Each by itself.
 fn alone(problems: &[Problem]) -> Vec<End> {
     let run = |problem: &Problem| {
@@ -34,7 +41,8 @@ fn alone(problems: &[Problem]) -> Vec<End> {
         let events = simulator.events().iter().map(|e| (e.transition, e.t));
         End {
             events: events.collect(),
-            state: [simulator.q(), simulator.v()].concat(),
+            numbers: simulator.events().iter().map(numbers_of).collect(),
+            state: [simulator.q(), simulator.v(), simulator.discrete()].concat(),
             failure,
         }
     };
@@ -52,7 +60,8 @@ fn together(problems: &[Problem], level: usize, threads: usize) -> Vec<End> {
             .iter()
             .map(|e| (e.transition, e.t))
             .collect(),
-        state: [finished.q(), finished.v()].concat(),
+        numbers: finished.events().iter().map(numbers_of).collect(),
+        state: [finished.q(), finished.v(), finished.discrete()].concat(),
         failure: finished.failure.as_ref().map(|why| why.to_string()),
     };
     pool.build()
@@ -205,6 +214,90 @@ fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours
     let mut ends = together(&reversed, processor_level(), 1);
     ends[1..].reverse();
     assert_eq!(ends, all);
+}
+
+#[test]
+fn a_transition_that_ends_the_run_is_counted() {
+    let mut blocks = shaken_blocks(1e-6, 13);
+    for block in &mut blocks {
+        block.end.after = Some(("landing", 5));
+    }
+    for end in together(&blocks, processor_level(), 1) {
+        assert_eq!(end.events.len(), 5);
+    }
+}
+
+/// A transition that a run counts is taken by the engine for single runs.
+fn by_the_engine(problems: &[Problem], transition: &'static str) -> Vec<End> {
+    let mut problems = problems.to_vec();
+    for problem in &mut problems {
+        problem.end.after = Some((transition, u64::MAX));
+    }
+    together(&problems, processor_level(), 1)
+}
+
+#[test]
+fn transitions_in_lanes_are_those_of_the_engine_to_the_bit() {
+    // An accumulation ends within the tolerances of the state or, of tiny ones, where its rest does not
+    // advance the time.
+    let sizes = [(1e-3, 1.0), (1e-9, 1.0), (1e-9, 1e-9)];
+    let dying = sizes.map(|(tolerance, size)| {
+        let mut block = problem("rocking_block", &[("alpha", 0.25), ("R", 1.5)]);
+        block.end.time = 60.0;
+        set_size(&mut block, tolerance, 0.2 * size, 0.5 * size);
+        variations(&block, 29, |p, x| {
+            p.set_parameter("e", 0.6 + 0.3 * x).unwrap();
+            p.set_initial("theta", 0.02 + 0.2 * x).unwrap();
+        })
+    });
+    let balls = sizes.map(|(tolerance, size)| {
+        let mut ball = problem("bouncing_ball", &[]);
+        ball.end.time = 40.0;
+        set_size(&mut ball, tolerance, size, 4.4 * size);
+        variations(&ball, 21, |p, x| {
+            p.set_parameter("e", 0.1 + 0.8 * x).unwrap();
+            p.set_initial("h", 1.0 + x).unwrap();
+        })
+    });
+    let shaken = [1e-3, 1e-6, 1e-9, 1e-12].map(|tolerance| shaken_blocks(tolerance, 37));
+    let blocks = shaken.iter().chain(&dying).map(|p| (p, "landing"));
+    let balls = balls.iter().map(|p| (p, "impact"));
+    let shuttles = shuttles();
+    let shuttles = ["turn", "left", "right"].map(|name| (&shuttles, name));
+    for (problems, name) in blocks.chain(balls).chain(shuttles) {
+        let ends = together(problems, processor_level(), 1);
+        let happens = |end: &End| end.events.iter().any(|e| e.0 == name);
+        assert!(ends.iter().any(happens), "{name}");
+        assert_eq!(by_the_engine(problems, name), ends, "{name}");
+    }
+}
+
+/// Masses that are pushed to and fro between walls of which one steps: guards with factors and offsets that
+/// resets change.
+fn shuttles() -> Vec<Problem> {
+    let mut shuttle = problem("shuttle", &[]);
+    let push = Function::from(Sine::new(4.0, 2.5, 0.4));
+    shuttle.set_input("push", push).unwrap();
+    shuttle.set_initial("x.rate", 2.0).unwrap();
+    shuttle.set_initial("y", 0.5).unwrap();
+    shuttle.end.time = 20.0;
+    set_size(&mut shuttle, 1e-9, 1.0, 1.0);
+    variations(&shuttle, 37, |p, x| {
+        p.set_parameter("k", 1.0 + 5.0 * x).unwrap()
+    })
+}
+
+#[test]
+fn guards_that_resets_change_are_those_of_single_runs() {
+    let shuttles = shuttles();
+    let ends = together(&shuttles, processor_level(), 1);
+    let at_once = |end: &End| end.events.windows(2).any(|pair| pair[0].1 == pair[1].1);
+    assert!(ends.iter().any(at_once), "a wall steps behind a mass");
+    assert!(ends.iter().any(|end| !at_once(end)));
+    assert!(difference(&alone(&shuttles), &ends) < 1e-7);
+    for level in 0..processor_level() {
+        assert_eq!(together(&shuttles, level, 2), ends, "level {level}");
+    }
 }
 
 #[test]

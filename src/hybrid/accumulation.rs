@@ -6,6 +6,7 @@
 //! The rest of the series is left out only once it moves nothing by more than the tolerances of
 //! the run.
 
+use super::few::copy_few;
 use super::instant::Instant;
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
@@ -142,30 +143,25 @@ impl Accumulation {
         let is_still = self.count > 0
             && hardly_moved(before.iter().map(own).zip(self.state(0).iter().map(own)));
         let still = if is_still { self.still + 1 } else { 0 };
-        let after = state.into_iter().chain([discrete]).flatten().copied();
-        self.push_apart(signature, impact, at, after);
+        let n = state[0].len();
+        let record = self.push_apart(signature, impact, at);
+        copy_few(state[0], &mut record[..n]);
+        copy_few(state[1], &mut record[n..][..state[1].len()]);
+        copy_few(discrete, &mut record[n + state[1].len()..]);
         self.still = still;
     }
 
-    /// Remembers an event before which something has moved since the one before; `after`: coordinates,
+    /// Remembers an event before which something has moved since the one before; gives room for coordinates,
     /// velocities and discrete states after it.
     #[inline]
-    pub fn push_apart(
-        &mut self,
-        signature: Signature,
-        impact: bool,
-        at: Instant,
-        after: impl Iterator<Item = f64>,
-    ) {
+    pub fn push_apart(&mut self, signature: Signature, impact: bool, at: Instant) -> &mut [f64] {
         self.still = 0;
         self.count += 1;
         let start = self.start(0);
         let record = &mut self.records[start..][..STATE + self.width + self.discretes];
         [record[TIME], record[TIME + 1]] = at.parts();
         record[KEY] = f64::from_bits(signature.key(impact));
-        for (to, from) in record[STATE..].iter_mut().zip(after) {
-            *to = from;
-        }
+        &mut record[STATE..]
     }
 
     /// When the last event happened, if there was one, with coordinates and velocities, and discrete states

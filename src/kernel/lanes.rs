@@ -61,6 +61,17 @@ impl<const W: usize> LaneRows<W> {
             count,
         }
     }
+
+    /// Sets all numbers of a lane.
+    pub fn fill_lane(&mut self, lane: usize, x: f64) {
+        self.iter_mut().for_each(|row| row.0[lane] = x);
+    }
+}
+
+impl<const W: usize> Default for LaneRows<W> {
+    fn default() -> Self {
+        Self::zeros(0)
+    }
 }
 
 impl<const W: usize> Deref for LaneRows<W> {
@@ -133,6 +144,16 @@ impl<const W: usize> LaneContext<W> {
         }
     }
 
+    /// Discrete states.
+    pub fn discrete(&self) -> &[Lanes<W>] {
+        &self.discrete
+    }
+
+    /// Discrete states, to be changed.
+    pub fn discrete_mut(&mut self) -> &mut [Lanes<W>] {
+        &mut self.discrete
+    }
+
     /// The same for a trajectory whose constants were loaded before.
     pub fn load_state(&mut self, lane: usize, from: &Context) {
         for (into, of) in self.discrete.iter_mut().zip(&from.discrete) {
@@ -194,6 +215,26 @@ pub struct LaneGuard<const W: usize> {
     pub offset: Lanes<W>,
     /// Lanes in which it is zero at the start of the step: there the factor τ is divided out.
     pub starts_at_zero: LaneMask,
+}
+
+/// What an event is told from the end of an accumulation by: see [`crate::hybrid`]'s accumulations.
+#[derive(Debug, Clone)]
+pub struct LanePast<const F: usize, const W: usize> {
+    /// Number of all coordinates.
+    pub coordinates: usize,
+    /// Indices of the free ones.
+    pub free: &'static [usize],
+    /// Whether an accumulation is looked for.
+    pub may_rest: bool,
+    /// Part of itself that a component moves by at most while it stands still.
+    pub hardly: f64,
+    /// Part of the time that the last pattern of an accumulation takes at least.
+    pub shortest: f64,
+    /// The relative tolerance, and the absolute ones of free coordinates and velocities.
+    pub tolerances: Box<[f64]>,
+    /// After the last event: free coordinates, their velocities, the time (s), discrete states; not a
+    /// number before the first one.
+    pub after: LaneRows<W>,
 }
 
 /// Rows of a series in lanes: those beyond its order are zero, and fill up fours.

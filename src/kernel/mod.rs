@@ -11,7 +11,7 @@ mod tables;
 use context::KeptAngle;
 pub use context::{Context, Dimensions};
 pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePoint, LaneRows,
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePast, LanePoint, LaneRows,
     LaneSeries, LaneSystem, processor_level,
 };
 pub use tables::{
@@ -108,6 +108,7 @@ type Out = *mut f64;
 /// A bit a lane.
 type Bits = u32;
 type OutBits = *mut u32;
+type Indices = *const usize;
 
 lane_functions!(
     ["_v1", #[cfg(target_arch = "x86_64")] "_v3", #[cfg(target_arch = "x86_64")] "_v4"]
@@ -123,6 +124,9 @@ lane_functions!(
         cross(usize, usize, In, In, In, Bits, In, Out, Out);
         end(usize, usize, In, In, In, In, In, Out);
         take(usize, Bits, In, Out);
+        is_apart(usize, usize, usize, Indices, Bits, f64, f64, In, In, In, In, In) -> Bits;
+        departs(In, In, f64, In, Out) -> Bits;
+        leap(usize, usize, usize, Indices, Bits, In, Out, Out);
     )
 );
 
@@ -380,6 +384,127 @@ impl<const F: usize, const W: usize> LanePoint<F, W> {
         // SAFETY: a point has as many numbers a lane, one after the other.
         unsafe { (lane_functions::<W>(level).take)(5 * F + 2, lanes.0, from, to) };
     }
+}
+
+impl<const W: usize> LaneGuard<W> {
+    /// Takes over those of some lanes.
+    #[inline]
+    pub fn take(&mut self, level: usize, lanes: LaneMask, from: &Self) {
+        let zero = &mut self.starts_at_zero;
+        *zero = *zero & !lanes | from.starts_at_zero & lanes;
+        let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
+        // SAFETY: a guard begins with two numbers a lane.
+        unsafe { (lane_functions::<W>(level).take)(2, lanes.0, from, to) };
+    }
+}
+
+/// Takes over numbers of some lanes.
+///
+/// # Panics
+/// If they are not as many.
+#[inline]
+pub fn lane_take<const W: usize>(
+    level: usize,
+    lanes: LaneMask,
+    from: &[Lanes<W>],
+    to: &mut [Lanes<W>],
+) {
+    assert_eq!(from.len(), to.len());
+    let count = from.len();
+    let (from, to) = (from.as_ptr().cast(), to.as_mut_ptr().cast());
+    // SAFETY: the length was checked.
+    unsafe { (lane_functions::<W>(level).take)(count, lanes.0, from, to) };
+}
+
+/// The lanes in which an event, with the states before and after it, is before `last` (s) and certainly ends
+/// neither an accumulation nor a standstill.
+#[inline]
+pub fn lane_is_apart<const F: usize, const W: usize>(
+    level: usize,
+    past: &LanePast<F, W>,
+    point: &LanePoint<F, W>,
+    reset: &[Lanes<W>],
+    last: &Lanes<W>,
+) -> LaneMask {
+    let discretes = past.check(reset);
+    let is_apart = lane_functions::<W>(level).is_apart;
+    // SAFETY: all lengths and indices were checked; the rest is a point and one number a lane.
+    LaneMask(unsafe {
+        is_apart(
+            F,
+            past.coordinates,
+            discretes,
+            past.free.as_ptr(),
+            u32::from(past.may_rest),
+            past.hardly,
+            past.shortest,
+            past.tolerances.as_ptr(),
+            (&raw const *point).cast(),
+            reset.as_ptr().cast(),
+            past.after.as_ptr().cast(),
+            (&raw const *last).cast(),
+        )
+    })
+}
+
+/// Goes on in some lanes from the state that a reset gives, and remembers it.
+#[inline]
+pub fn lane_leap<const F: usize, const W: usize>(
+    level: usize,
+    lanes: LaneMask,
+    reset: &[Lanes<W>],
+    point: &mut LanePoint<F, W>,
+    past: &mut LanePast<F, W>,
+) {
+    let discretes = past.check(reset);
+    let leap = lane_functions::<W>(level).leap;
+    // SAFETY: all lengths and indices were checked; the rest is a point.
+    unsafe {
+        leap(
+            F,
+            past.coordinates,
+            discretes,
+            past.free.as_ptr(),
+            lanes.0,
+            reset.as_ptr().cast(),
+            (&raw mut *point).cast(),
+            past.after.as_mut_ptr().cast(),
+        )
+    };
+}
+
+impl<const F: usize, const W: usize> LanePast<F, W> {
+    /// Number of discrete states in a reset.
+    ///
+    /// # Panics
+    /// If a length or an index does not fit the others.
+    #[inline]
+    fn check(&self, reset: &[Lanes<W>]) -> usize {
+        let coordinates = self.coordinates;
+        let discretes = reset.len() - 2 * coordinates;
+        assert!(self.free.len() == F && self.free.iter().all(|&i| i < coordinates));
+        assert_eq!(self.after.len(), 2 * F + 1 + discretes);
+        assert_eq!(self.tolerances.len(), 1 + 2 * F);
+        discretes
+    }
+}
+
+/// Sets a guard to `factor` · discrete state, if it has one, times a coordinate or rate `x`, plus the offset
+/// that it has, at the start of a step. Gives the lanes in which it is positive, or zero and rises with the
+/// `rate` of the coordinate.
+#[inline]
+pub fn lane_departs<const W: usize>(
+    level: usize,
+    (x, rate): (&Lanes<W>, Option<&Lanes<W>>),
+    factor: f64,
+    discrete: Option<&Lanes<W>>,
+    guard: &mut LaneGuard<W>,
+) -> LaneMask {
+    let pointer = |x: Option<&Lanes<W>>| x.map_or(std::ptr::null(), |x| (&raw const *x).cast());
+    let (x, rate, discrete) = (pointer(Some(x)), pointer(rate), pointer(discrete));
+    let departs = lane_functions::<W>(level).departs;
+    // SAFETY: one number a lane each, where it is given, and a guard.
+    LaneMask(unsafe { departs(x, rate, factor, discrete, (&raw mut *guard).cast()) })
 }
 
 /// The numbers of blocks.
@@ -826,6 +951,7 @@ impl<const F: usize> ModeKernel<F> {
 
 impl<const W: usize> LaneContext<W> {
     /// The context as C sees it.
+    #[inline]
     fn raw(&self, dimensions: &'static Dimensions) -> RawContext {
         assert!(
             std::ptr::eq(self.dimensions, dimensions)
@@ -935,6 +1061,29 @@ impl<const F: usize> ModeKernel<F> {
         // SAFETY: one output; the level was compiled for `W` lanes.
         unsafe { function(q, v, a, &raw, (&raw mut out).cast()) }
         out
+    }
+
+    /// As [`Self::reset`], by the indices of the guard and its transition.
+    ///
+    /// # Panics
+    /// If [`Self::stays_in_lanes`] denies it, or `out` has not two entries a coordinate and one a discrete
+    /// state.
+    pub fn lane_reset<const W: usize>(
+        &self,
+        level: usize,
+        x: &LaneContext<W>,
+        (guard, transition): (usize, usize),
+        [q, v, a]: [&[Lanes<W>; F]; 3],
+        out: &mut [Lanes<W>],
+    ) {
+        let dimensions = self.dimensions;
+        assert_eq!(out.len(), 2 * dimensions.coordinates + dimensions.discretes);
+        let function = self.lane_kernel::<W>(level).resets[guard][transition];
+        let function = function.expect("the transition stays in lanes");
+        let raw = x.raw(dimensions);
+        let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
+        // SAFETY: the length was checked; the level was compiled for `W` lanes.
+        unsafe { function(q, v, a, &raw, out.as_mut_ptr().cast()) }
     }
 }
 

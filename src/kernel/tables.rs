@@ -67,6 +67,9 @@ pub struct LaneKernel {
     pub(super) quiet_series: SeriesKernel,
     pub(super) requirements: Raw,
     pub(super) guards: &'static [Raw],
+    /// Of each guard the resets of its transitions: of those that lead to the same mode, change nothing
+    /// that it holds, and depend on no signal.
+    pub(super) resets: &'static [&'static [Option<Raw>]],
 }
 
 /// The generated Taylor series of a mode.
@@ -136,6 +139,12 @@ impl<const F: usize> ModeKernel<F> {
     /// Whether trajectories of this mode can go side by side.
     pub fn goes_in_lanes(&self) -> bool {
         !self.lanes.is_empty()
+    }
+
+    /// Whether a transition of a guard, by their indices, can be taken in lanes.
+    pub fn stays_in_lanes(&self, guard: usize, transition: usize) -> bool {
+        let resets = self.lanes.first().map(|lanes| lanes.resets);
+        resets.is_some_and(|resets| resets[guard][transition].is_some())
     }
 
     pub(super) fn lane_kernel<const W: usize>(&self, level: usize) -> &'static LaneKernel {

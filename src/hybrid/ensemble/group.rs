@@ -1,5 +1,6 @@
 //! Trajectories of one mode side by side, from one event of each to its next.
 
+use super::super::accumulation::{Accumulation, SHORTEST_PATTERN};
 use super::super::crossing::Signs;
 use super::super::guards::slope;
 use super::super::instant::Instant;
@@ -8,7 +9,7 @@ use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
-use crate::kernel::{Free, LaneContext, LaneGuard, LanePoint, LaneRows, ModeKernel};
+use crate::kernel::{Free, LaneContext, LaneGuard, LanePast, LanePoint, LaneRows, ModeKernel};
 use crate::model::{GuardShape, Mode};
 use nalgebra::SVector;
 
@@ -29,7 +30,19 @@ pub(super) struct WatchedGuard<const W: usize> {
     pub guard: usize,
     /// Index of the coordinate, and whether it is its rate.
     pub of: (usize, bool),
+    /// What it is multiplied with: a number, and a discrete state.
+    pub factor: (f64, Option<usize>),
+    /// Whether something is added.
+    pub offset: bool,
     pub linear: LaneGuard<W>,
+    /// Its transition, if lanes can take it side by side.
+    pub transition: Option<usize>,
+    /// Lanes in which it falls in the last step.
+    pub falls: LaneMask,
+    /// All coordinates, velocities and discrete states after the transition.
+    pub reset: LaneRows<W>,
+    /// What it is where the transition leads to.
+    pub after: LaneGuard<W>,
     /// In powers of a part of the last step.
     pub coefficients: [Lanes<W>; ORDERS],
 }
@@ -37,7 +50,9 @@ pub(super) struct WatchedGuard<const W: usize> {
 /// Up to `W` trajectories in one mode.
 pub(super) struct Group<const F: usize, const W: usize> {
     pub kernel: &'static ModeKernel<F>,
-    mode: &'static Mode,
+    pub mode: &'static Mode,
+    /// Index of the mode.
+    pub index: usize,
     /// Level of the processor.
     pub level: usize,
     /// Whether no input ever acts.
@@ -51,6 +66,10 @@ pub(super) struct Group<const F: usize, const W: usize> {
     /// Where the step under way leads to.
     pub next: LanePoint<F, W>,
     pub at_start: LaneMask,
+    /// What was before the last step.
+    pub past: LanePast<F, W>,
+    /// Discrete states before a transition.
+    pub left: LaneRows<W>,
     /// Where inputs are not smooth, or the end, s.
     pub last: Lanes<W>,
     /// Time after which the inputs are analytic, s.
@@ -75,34 +94,62 @@ impl<const F: usize, const W: usize> Group<F, W> {
         like: &Simulation,
     ) -> Self {
         let (problem, mode) = (like.problem, like.mode());
+        let context = LaneContext::new(kernel, &like.context);
+        let (coordinates, discretes) = (like.here.q.len(), context.discrete().len());
         let guards = like.plan.watched[like.here.mode].iter().map(|watched| {
-            let GuardShape::Linear { index, rate, .. } = mode.guards[watched.guard].shape else {
+            let GuardShape::Linear {
+                index,
+                rate,
+                factor,
+                discrete,
+                offset,
+            } = mode.guards[watched.guard].shape
+            else {
                 unreachable!("codegen has looked at the guards of what goes in lanes")
+            };
+            let linear = LaneGuard {
+                factor: Lanes::of(1.0),
+                offset: Lanes::of(0.0),
+                starts_at_zero: LaneMask::NONE,
             };
             WatchedGuard {
                 guard: watched.guard,
                 of: (index, rate),
-                linear: LaneGuard {
-                    factor: Lanes::of(1.0),
-                    offset: Lanes::of(0.0),
-                    starts_at_zero: LaneMask::NONE,
-                },
+                factor: (factor, discrete),
+                offset,
+                linear,
+                transition: transition_in_lanes(kernel, like, watched.guard),
+                falls: LaneMask::NONE,
+                reset: LaneRows::zeros(2 * coordinates + discretes),
+                after: linear,
                 coefficients: [Lanes::of(0.0); ORDERS],
             }
         });
+        let tolerances = tolerances(problem, mode);
         let convolutions = kernel.convolutions(&like.context);
         let mut group = Group {
             kernel,
             mode,
+            index: like.here.mode,
             level,
             quiet,
-            taylor: LaneTaylor::new(level, &tolerances(problem, mode), convolutions),
-            context: LaneContext::new(kernel, &like.context),
+            taylor: LaneTaylor::new(level, &tolerances, convolutions),
+            context,
             signals: LaneSignals::new(level, &problem.signals),
             guards: guards.collect(),
             here: LanePoint::zero(),
             next: LanePoint::zero(),
             at_start: LaneMask::ALL,
+            past: LanePast {
+                coordinates,
+                free: mode.free,
+                may_rest: like.plan.rest(mode).is_some(),
+                hardly: Accumulation::HARDLY,
+                shortest: SHORTEST_PATTERN,
+                tolerances: tolerances.all().into(),
+                after: LaneRows::zeros(2 * F + 1 + discretes),
+            },
+            left: LaneRows::zeros(discretes),
             last: Lanes::of(f64::INFINITY),
             analytic_from: analytic_from(&problem.signals),
             requirements: LaneRows::zeros(mode.requirements.len()),
@@ -176,6 +223,18 @@ impl<const F: usize, const W: usize> Group<F, W> {
         }
         let [high, low] = from.here.now.parts();
         (here.t[0].0[lane], here.t[1].0[lane]) = (high, low);
+        self.past.after.fill_lane(lane, f64::NAN);
+        if let Some((at, states, discretes)) = from.accumulation.last() {
+            let after = &mut self.past.after;
+            for (i, &coordinate) in self.mode.free.iter().enumerate() {
+                after[i].0[lane] = states[coordinate];
+                after[F + i].0[lane] = states[from.here.q.len() + coordinate];
+            }
+            after[2 * F].0[lane] = at.seconds();
+            for (after, discrete) in after[2 * F + 1..].iter_mut().zip(discretes) {
+                after.0[lane] = *discrete;
+            }
+        }
         let zero = SVector::<f64, F>::zeros();
         let origin = Free {
             q: &zero,
@@ -183,21 +242,11 @@ impl<const F: usize, const W: usize> Group<F, W> {
             a: &zero,
         };
         for guard in &mut self.guards {
-            let model = &self.mode.guards[guard.guard];
-            let GuardShape::Linear {
-                factor,
-                discrete,
-                offset,
-                ..
-            } = model.shape
-            else {
-                unreachable!("codegen has looked at the guards of what goes in lanes")
-            };
-            guard.linear.factor.0[lane] = slope((factor, discrete), &from.context);
-            guard.linear.offset.0[lane] = match offset {
-                true => self.kernel.guard(&from.context, &model.kernel, origin),
-                false => 0.0,
-            };
+            guard.linear.factor.0[lane] = slope(guard.factor, &from.context);
+            if guard.offset {
+                let own = &self.mode.guards[guard.guard].kernel;
+                guard.linear.offset.0[lane] = self.kernel.guard(&from.context, own, origin);
+            }
         }
     }
 
@@ -212,6 +261,10 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let here = &self.here;
         let [q, v, a] = [column(&here.q), column(&here.v), column(&here.a)];
         into.here.set_free(self.mode.free, [&q, &v, &a]);
+        let discrete = into.context.discrete_mut().iter_mut();
+        for (into, of) in discrete.zip(self.context.discrete()) {
+            *into = of.0[lane];
+        }
         into.here.now = match self.outcomes[lane] {
             Outcome::Until => Instant::new(self.last.0[lane]),
             _ => self.now(lane),
@@ -230,6 +283,20 @@ impl<const F: usize, const W: usize> Group<F, W> {
     pub fn vacate(&mut self, lane: usize) {
         self.occupied.set(lane, false);
     }
+}
+
+/// The transition that a guard of the present mode takes, if lanes can take it side by side.
+fn transition_in_lanes<const F: usize>(
+    kernel: &ModeKernel<F>,
+    of: &Simulation,
+    guard: usize,
+) -> Option<usize> {
+    let transitions = of.mode().guards[guard].transitions;
+    let first = transitions.iter().position(|t| of.plan.allowed[t.target])?;
+    // Where it ends the run its number is counted.
+    let ends = |(name, _)| name == transitions[first].name;
+    let stays = !of.problem.end.after.is_some_and(ends) && kernel.stays_in_lanes(guard, first);
+    stays.then_some(first)
 }
 
 /// The last time at which some input is not analytic, s.

@@ -17,21 +17,8 @@ const FARTHEST: f64 = 3.8e-6;
 struct Falls<const W: usize> {
     /// Lanes with one.
     lanes: LaneMask,
-    /// Which of the watched guards falls there.
-    guards: [usize; W],
     /// Where, as parts of the step; infinite where none falls.
     places: Lanes<W>,
-}
-
-impl<const W: usize> Falls<W> {
-    /// The lanes in which a watched guard is the first.
-    fn of(&self, guard: usize) -> LaneMask {
-        let own = self
-            .lanes
-            .lanes()
-            .filter(|&lane| self.guards[lane] == guard);
-        own.fold(LaneMask::NONE, |lanes, lane| lanes | LaneMask(1 << lane))
-    }
 }
 
 impl<const F: usize, const W: usize> Group<F, W> {
@@ -53,18 +40,21 @@ impl<const F: usize, const W: usize> Group<F, W> {
             let zero = &mut guard.linear.starts_at_zero;
             *zero = *zero & !made;
         }
-        for lane in made.lanes() {
-            self.steps[lane] += 1;
+        for (lane, steps) in self.steps.iter_mut().enumerate() {
+            *steps += u64::from(made.is(lane));
         }
         let ended = (falls.lanes | until | unclear) & self.occupied;
-        for lane in ended.lanes() {
-            self.outcomes[lane] = if unclear.is(lane) {
-                Outcome::Unclear
-            } else if falls.lanes.is(lane) {
-                Outcome::Event(self.guards[falls.guards[lane]].guard)
-            } else {
-                Outcome::Until
+        for lane in (ended & !falls.lanes | unclear).lanes() {
+            self.outcomes[lane] = match unclear.is(lane) {
+                true => Outcome::Unclear,
+                false => Outcome::Until,
             };
+        }
+        for guard in &mut self.guards {
+            guard.falls = guard.falls & made;
+            for lane in guard.falls.lanes() {
+                self.outcomes[lane] = Outcome::Event(guard.guard);
+            }
         }
         ended
     }
@@ -115,10 +105,10 @@ impl<const F: usize, const W: usize> Group<F, W> {
     fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask) -> Falls<W> {
         let mut falls = Falls {
             lanes: LaneMask::NONE,
-            guards: [0; W],
             places: Lanes::of(f64::INFINITY),
         };
-        for (number, guard) in self.guards.iter_mut().enumerate() {
+        for number in 0..self.guards.len() {
+            let guard = &mut self.guards[number];
             let (linear, coefficients) = (&guard.linear, &mut guard.coefficients);
             let places = &mut falls.places;
             let found = self
@@ -136,8 +126,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
                     None => unclear.set(lane, true),
                 }
             }
-            for lane in first.lanes() {
-                falls.guards[lane] = number;
+            guard.falls = first;
+            for before in &mut self.guards[..number] {
+                before.falls = before.falls & !first;
             }
             falls.lanes = falls.lanes | first;
         }
@@ -157,18 +148,18 @@ impl<const F: usize, const W: usize> Group<F, W> {
         }
         let mut more = Lanes(tau.0.map(|tau| tau * f64::EPSILON));
         let mut most = Lanes(h.0.map(|h| h * FARTHEST));
-        for (number, guard) in self.guards.iter().enumerate() {
-            let (linear, lanes) = (&guard.linear, falls.of(number));
+        for guard in &self.guards {
+            let (linear, lanes) = (&guard.linear, guard.falls);
             let durations = [&mut tau, &mut more, &mut most];
             (self.taylor).cross(&self.here, guard.of, linear, lanes, durations);
         }
         self.taylor.end(&self.here, &tau, &mut self.next);
         // The guards' own values decide: they may round an offset in another way.
-        for (number, guard) in self.guards.iter().enumerate() {
+        for guard in &self.guards {
             let at = [&self.next.q, &self.next.v, &self.next.a];
             let (kernel, context) = (self.kernel, &self.context);
             let value = kernel.lane_guard(self.level, context, guard.guard, at);
-            for lane in falls.of(number).lanes() {
+            for lane in guard.falls.lanes() {
                 // Beyond the rounding of the polynomial there is no such state.
                 let crossed = value.0[lane] < 0.0 && tau.0[lane] <= h.0[lane];
                 unclear.set(lane, !crossed);

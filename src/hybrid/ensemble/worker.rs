@@ -15,7 +15,8 @@ trait AnyGroup<const W: usize> {
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
-    fn step(&mut self, signals: &Signals) -> LaneMask;
+    fn step(&mut self, signals: &Signals) -> [LaneMask; 2];
+    fn record(&self, lane: usize, into: &mut Simulation);
     fn outcome(&self, lane: usize) -> Outcome;
 }
 
@@ -32,8 +33,13 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
     }
-    fn step(&mut self, signals: &Signals) -> LaneMask {
-        Group::step(self, signals)
+    fn step(&mut self, signals: &Signals) -> [LaneMask; 2] {
+        let ended = Group::step(self, signals);
+        let gone = self.transit();
+        [gone, ended & !gone]
+    }
+    fn record(&self, lane: usize, into: &mut Simulation) {
+        Group::record(self, lane, into)
     }
     fn outcome(&self, lane: usize) -> Outcome {
         self.outcomes[lane]
@@ -157,7 +163,11 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// A step of a group, and what follows from it.
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
-        let ended = lanes.group.step(&self.ensemble.problem.signals);
+        let [gone, ended] = lanes.group.step(&self.ensemble.problem.signals);
+        for lane in gone.lanes() {
+            let slot = lanes.slots[lane].expect("what goes on is in a lane");
+            lanes.group.record(lane, &mut self.slots[slot].simulation);
+        }
         for lane in ended.lanes() {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
             let Some(slot) = lanes.slots[lane] else {

@@ -1,0 +1,116 @@
+//! Transitions of lanes side by side: those that most events are. A guard falls, the reset leads to the same
+//! mode, nothing accumulates, and no guard acts at once. All others are taken by the engine for single runs.
+
+use super::super::accumulation::Signature;
+use super::super::plan::is_impact;
+use super::super::simulation::Simulation;
+use super::group::{Group, Outcome};
+use crate::integrate::{LaneMask, Lanes};
+use crate::kernel::{lane_departs, lane_is_apart, lane_leap, lane_take};
+use crate::record::Jump;
+
+impl<const F: usize, const W: usize> Group<F, W> {
+    /// Takes the transitions of lanes that have just come to an event, where they are plain; gives these
+    /// lanes, which go on. Nothing has changed in the others.
+    pub fn transit(&mut self) -> LaneMask {
+        let mut gone = LaneMask::NONE;
+        for number in 0..self.guards.len() {
+            let guard = &self.guards[number];
+            if let Some(transition) = guard.transition
+                && guard.falls.any()
+            {
+                gone = gone | self.take(number, transition);
+            }
+        }
+        self.unchecked |= gone.any();
+        gone
+    }
+
+    /// The same for the events of a guard.
+    fn take(&mut self, number: usize, transition: usize) -> LaneMask {
+        let (level, kernel) = (self.level, self.kernel);
+        let guard = &mut self.guards[number];
+        let (event, lanes) = (guard.guard, guard.falls);
+        let mut reset = std::mem::take(&mut guard.reset);
+        let at = [&self.here.q, &self.here.v, &self.here.a];
+        kernel.lane_reset(level, &self.context, (event, transition), at, &mut reset);
+        let tried = lanes & lane_is_apart(level, &self.past, &self.here, &reset, &self.last);
+        let plain = match tried.any() {
+            true => self.arrive(tried, &reset),
+            false => tried,
+        };
+        self.guards[number].reset = reset;
+        plain
+    }
+
+    /// Sets lanes to the state after a reset, where no guard acts there at once: gives these lanes.
+    fn arrive(&mut self, tried: LaneMask, reset: &[Lanes<W>]) -> LaneMask {
+        let (level, kernel) = (self.level, self.kernel);
+        let coordinates = self.past.coordinates;
+        let discrete = &reset[2 * coordinates..];
+        lane_take(
+            level,
+            LaneMask::ALL,
+            self.context.discrete(),
+            &mut self.left,
+        );
+        lane_take(level, tried, discrete, self.context.discrete_mut());
+        let mut plain = tried;
+        for guard in &mut self.guards {
+            let (index, rate) = guard.of;
+            let (q, v) = (self.mode.free[index], coordinates + self.mode.free[index]);
+            let of = match rate {
+                true => (&reset[v], None),
+                false => (&reset[q], Some(&reset[v])),
+            };
+            if guard.offset {
+                let zero = [Lanes::of(0.0); F];
+                let (context, origin) = (&self.context, [&zero; 3]);
+                guard.after.offset = kernel.lane_guard(level, context, guard.guard, origin);
+            }
+            let (factor, discrete) = (guard.factor.0, guard.factor.1.map(|d| &discrete[d]));
+            plain = plain & lane_departs(level, of, factor, discrete, &mut guard.after);
+        }
+        let back = tried & !plain;
+        if back.any() {
+            lane_take(level, back, &self.left, self.context.discrete_mut());
+        }
+        for guard in &mut self.guards {
+            guard.linear.take(level, plain, &guard.after);
+        }
+        lane_leap(level, plain, reset, &mut self.here, &mut self.past);
+        plain
+    }
+
+    /// Records the transition that a lane has just taken: as [`Simulation::fire`], where the time advances
+    /// before the next one, no transition is counted, and nothing is asked about doubts.
+    pub fn record(&self, lane: usize, into: &mut Simulation) {
+        let Outcome::Event(event) = self.outcomes[lane] else {
+            unreachable!("it has taken a transition")
+        };
+        let guards = &mut self.guards.iter();
+        let guard = guards.find(|guard| guard.guard == event);
+        let guard = guard.expect("it is watched");
+        let transition = guard.transition.expect("it was taken");
+        let (at, own) = (self.now(lane), &self.mode.guards[event]);
+        let here = &mut into.here;
+        here.j += 1;
+        into.jumps.push(Jump {
+            t: at.seconds(),
+            j: here.j,
+            transition: own.transitions[transition].name,
+            from: self.index,
+            to: self.index,
+            energy: None,
+        });
+        let signature = Signature {
+            guard: event,
+            transition,
+            mode: self.index,
+        };
+        let after = (into.accumulation).push_apart(signature, is_impact(own), at);
+        for (after, row) in after.iter_mut().zip(&*guard.reset) {
+            *after = row.0[lane];
+        }
+    }
+}
