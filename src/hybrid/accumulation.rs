@@ -197,6 +197,7 @@ impl Accumulation {
     }
 
     /// Whether two events are the same but for time and state.
+    #[inline]
     fn are_alike(&self, one: usize, other: usize) -> bool {
         let mut pairs = self.discrete(one).iter().zip(self.discrete(other));
         self.key(one) == self.key(other) && pairs.all(|(a, b)| a.to_bits() == b.to_bits())
@@ -231,10 +232,13 @@ impl Accumulation {
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
+        if !self.are_alike(0, p) {
+            return None;
+        }
         let at = [0, 1, 2, 3].map(|k| self.at(k * p));
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
         // The last may be shorter than the resolution of an instant.
-        if !(0.0 <= last && last < middle && middle < first && self.are_alike(0, p)) {
+        if !(0.0 <= last && last < middle && middle < first) {
             return None;
         }
         let (ratio, ratio_before) = (last / middle, middle / first);
