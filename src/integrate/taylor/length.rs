@@ -4,12 +4,11 @@ use super::super::logarithm::{binary_logarithm, natural_logarithm, root};
 use super::series::ORDERS;
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
-/// costs for each coordinate, and what a product in a convolution costs, in ns: least squares for the
-/// rocking block with 28 impacts at all orders from 14 to 26. Their ratios decide, and these hardly depend
-/// on the processor.
-const STEP: f64 = 200.0;
-const ORDER: f64 = 5.0;
-const PRODUCT: f64 = 0.35;
+/// costs for each coordinate, and what a product in a convolution costs, in ns: fitted to the rocking block
+/// with 28 impacts at 1e-12, orders 14 to 26. Their ratios decide, and these hardly depend on the processor.
+const STEP: f64 = 150.0;
+const ORDER: f64 = 4.0;
+const PRODUCT: f64 = 0.25;
 
 /// Least order: five terms decide about the length, and the term of order 6 about that of a Radau IIA step of
 /// five stages ([`super::Implicit`]).
