@@ -115,7 +115,7 @@ class Graph:
         kept = []
         for statement, form, name in reversed(self.next):
             if name is None or name in needed:
-                kept.append(f"  {statement}" % ((self.text(form),) if form or "%s" in statement else ()))
+                kept.append(f"  {statement}" % ((self.text(form),) if "%s" in statement else ()))
                 needed = needed | set(_VARIABLE.findall(" ".join([statement, *form])))
         return kept[::-1]
 

@@ -9,7 +9,9 @@ use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
-use crate::kernel::{Free, LaneContext, LaneGuard, LanePast, LanePoint, LaneRows, ModeKernel};
+use crate::kernel::{
+    Free, LaneContext, LaneGuard, LanePast, LanePoint, LaneRows, ModeKernel, lane_departs,
+};
 use crate::model::{GuardShape, Mode};
 use nalgebra::SVector;
 
@@ -194,15 +196,19 @@ impl<const F: usize, const W: usize> Group<F, W> {
     pub fn go_on(&mut self, lane: usize, from: &Simulation) -> bool {
         self.context.load_state(lane, &from.context);
         self.set(lane, from);
+        let here = LaneMask(1 << lane);
         for guard in &mut self.guards {
             let (index, rate) = guard.of;
-            let linear = &mut guard.linear;
-            let of = |state: &[Lanes<W>; F]| linear.factor.0[lane] * state[index].0[lane];
-            let state = if rate { &self.here.v } else { &self.here.q };
-            let value = of(state) + linear.offset.0[lane];
-            let leaves_upwards = !rate && of(&self.here.v) > 0.0;
-            linear.starts_at_zero.set(lane, value == 0.0);
-            if !(value > 0.0 || value == 0.0 && leaves_upwards) {
+            let of = match rate {
+                true => (&self.here.v[index], None),
+                false => (&self.here.q[index], Some(&self.here.v[index])),
+            };
+            let (factor, discrete) = guard.factor;
+            let discrete = discrete.map(|d| &self.context.discrete()[d]);
+            guard.after.offset = guard.linear.offset;
+            let departs = lane_departs(self.level, of, factor, discrete, &mut guard.after);
+            guard.linear.take(self.level, here, &guard.after);
+            if !departs.is(lane) {
                 return false;
             }
         }

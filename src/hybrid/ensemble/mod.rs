@@ -8,7 +8,7 @@
 //! room for the next that has entered it (`worker`).
 //!
 //! What a trajectory gives is independent of the others, of their number, of the number of lanes and of
-//! threads: to the bit. It agrees with a single run to the accuracy, as the two take different steps.
+//! threads: to the bit. A single run by the Taylor method takes the same steps, with other roundings.
 
 mod group;
 mod step;
