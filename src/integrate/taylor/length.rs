@@ -6,15 +6,32 @@ use super::series::ORDERS;
 /// What a step costs besides its series (search for events and the engine's loop), what an order
 /// costs for each coordinate, and what a product in a convolution costs, in ns. Their ratios decide, and these
 /// hardly depend on the processor: they lie between those of steps alone and of steps with their events, and are
-/// set where the shaken rocking block takes little time. Of all its orders those with the least are 10 and 18 at
-/// 1e-3, 14 at 1e-6, 19 at 1e-9, 25 at 1e-12; it gets 12, 16, 20, 25.
-const STEP: f64 = 150.0;
+/// set where the shaken rocking block takes little time. Of the orders 10, 12 … 30 those with the least are 18 at
+/// 1e-3, 14 to 18 at 1e-6, 20 and 22 at 1e-9, 24 to 30 at 1e-12; it gets 18, 18, 22, 26.
+const STEP: f64 = 200.0;
 const ORDER: f64 = 4.0;
 const PRODUCT: f64 = 0.25;
 
 /// Least order: five terms decide about the length, and the term of order 6 about that of a Radau IIA step of
 /// five stages ([`super::Implicit`]).
 const LEAST: usize = 6;
+
+/// The search for events works on coefficients by fours, of which a coordinate has two more than orders.
+const FULL: usize = 4;
+
+/// Cost of the series of an order, in ns.
+fn series(order: usize, convolutions: usize, coordinates: usize) -> f64 {
+    let p = order as f64;
+    ORDER * p * coordinates as f64 + PRODUCT * 0.5 * p * p * convolutions as f64
+}
+
+/// The highest order whose series costs no more than the rest of a step. Events cut steps: where a flight
+/// takes one step instead of two, all of the second is saved, so a lower order gains nothing.
+fn cheap(convolutions: usize, coordinates: usize) -> usize {
+    let full = (LEAST..=ORDERS - 2).rev().filter(|p| (p + 2) % FULL == 0);
+    let mut cheap = full.filter(|&p| series(p, convolutions, coordinates) <= STEP);
+    cheap.next().unwrap_or(LEAST)
+}
 
 /// Order at which a unit of time is cheapest for a relative tolerance ε.
 ///
@@ -41,14 +58,16 @@ pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> 
             }
             continue;
         }
-        let products = 0.5 * p * p * convolutions as f64;
-        let cost = STEP + ORDER * p * coordinates as f64 + PRODUCT * products;
+        let cost = STEP + series(order, convolutions, coordinates);
         let cost = natural_logarithm(cost) - digits / p;
         if cost < best.1 {
             best = (order, cost);
         }
     }
-    best.0
+    match convolutions {
+        0 => best.0,
+        _ => best.0.max(cheap(convolutions, coordinates)),
+    }
 }
 
 /// The terms that limit the length of a step of order p ≥ 6: those of order p − 1, p and p + 1, and before
