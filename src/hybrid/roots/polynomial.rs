@@ -96,7 +96,11 @@ impl<const N: usize> Polynomial<N> {
         let order = self.coefficients.iter().position(|&c| c != 0.0);
         let order = order.unwrap_or(0);
         let mut coefficients = [0.0; N];
-        coefficients[..N - order].copy_from_slice(&self.coefficients[order..]);
+        match order {
+            // A guard that leaves zero with a slope; a copy of unknown length is a call of the C library.
+            1 => coefficients[..N - 1].copy_from_slice(&self.coefficients[1..]),
+            _ => coefficients[..N - order].copy_from_slice(&self.coefficients[order..]),
+        }
         (Self { coefficients }, order)
     }
 
