@@ -41,12 +41,28 @@ def merged(rows, new):
     return [row for row in rows if (row["peer"], row["problem"]) not in replaced] + new
 
 
+# Of these rows' times the cost of calls is subtracted.
+LESS = " less calls"
+
+
 def least(rows, again):
-    """Rows of another pass of the same programs, each with the least times of both passes."""
+    """Rows of another pass of the same programs, each with the least times of both passes.
+
+    A time less calls is the least time less the least cost of calls: of the differences themselves the least would be
+    that of a pass in which the calls alone were disturbed."""
     key = lambda row: (row["peer"], row["method"], row["problem"], row["tolerance"], row["steps"])
-    before = {key(row): row for row in rows}
-    times = ("least_us", "median_us")
-    return [{**row, **{t: min(row[t], before.get(key(row), row)[t], key=float) for t in times}} for row in again]
+    before, now = ({key(row): row for row in all} for all in (rows, again))
+
+    def time(row, name):
+        passes = [(all, all[key(row)]) for all in (now, before) if key(row) in all]
+        if not row["peer"].endswith(LESS):
+            return min((own[name] for _, own in passes), key=float)
+        with_calls = {**row, "peer": row["peer"].removesuffix(LESS)}
+        full = [float(all[key(with_calls)][name]) for all, _ in passes]
+        costs = [of - float(own[name]) for of, (_, own) in zip(full, passes)]
+        return f"{min(full) - min(costs):.2f}"
+
+    return [{**row, **{name: time(row, name) for name in ("least_us", "median_us")}} for row in again]
 
 
 def best(rows, problem, level):

@@ -151,6 +151,23 @@ mod tests {
     }
 
     #[test]
+    fn a_series_that_costs_little_is_not_cut_short() {
+        assert_eq!(
+            [1e-3, 1e-6, 1e-9, 1e-12].map(|e| order(e, 3, 1)),
+            [18, 18, 22, 26]
+        );
+        for (convolutions, coordinates) in [(1, 1), (2, 1), (3, 1), (5, 2), (12, 3), (34, 3)] {
+            let cheap = cheap(convolutions, coordinates);
+            let next = series(cheap + FULL, convolutions, coordinates);
+            assert!(cheap == ORDERS - 2 || next > STEP, "{cheap}");
+            assert!(order(1e-3, convolutions, coordinates) >= cheap);
+            assert_eq!((cheap + 2) % FULL, 0);
+        }
+        // Where the series is what costs, the tolerance alone decides.
+        assert!(order(1e-3, 34, 3) < 10 && cheap(34, 3) == LEAST);
+    }
+
+    #[test]
     fn the_length_is_the_shortest_that_a_term_allows() {
         let terms = Terms::new(1e-9, 13, 3);
         let mut state = 1_u64;
