@@ -51,16 +51,16 @@ def least(rows, again):
     A time less calls is the least time less the least cost of calls: of the differences themselves the least would be
     that of a pass in which the calls alone were disturbed."""
     key = lambda row: (row["peer"], row["method"], row["problem"], row["tolerance"], row["steps"])
-    before, now = ({key(row): row for row in all} for all in (rows, again))
+    by_key = [{key(row): row for row in one_pass} for one_pass in (again, rows)]
 
     def time(row, name):
-        passes = [(all, all[key(row)]) for all in (now, before) if key(row) in all]
+        passes = [one_pass for one_pass in by_key if key(row) in one_pass]
+        own = [float(one_pass[key(row)][name]) for one_pass in passes]
         if not row["peer"].endswith(LESS):
-            return min((own[name] for _, own in passes), key=float)
-        with_calls = {**row, "peer": row["peer"].removesuffix(LESS)}
-        full = [float(all[key(with_calls)][name]) for all, _ in passes]
-        costs = [of - float(own[name]) for of, (_, own) in zip(full, passes)]
-        return f"{min(full) - min(costs):.2f}"
+            return f"{min(own):.2f}"
+        with_calls = key({**row, "peer": row["peer"].removesuffix(LESS)})
+        full = [float(one_pass[with_calls][name]) for one_pass in passes]
+        return f"{min(full) - min(f - o for f, o in zip(full, own)):.2f}"
 
     return [{**row, **{name: time(row, name) for name in ("least_us", "median_us")}} for row in again]
 

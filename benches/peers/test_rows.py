@@ -94,7 +94,7 @@ class Resume(unittest.TestCase):
         run = lambda time, problem, steps: row("x", time, 1, problem=problem) | {"steps": steps, "median_us": str(time)}
         old = [run(2, "P1", "5"), run(1, "P2", "7")]
         new = least(old, [run(9, "P1", "5"), run(9, "P2", "5")])
-        self.assertEqual([r["least_us"] for r in new], ["2", "9"])
+        self.assertEqual([r["least_us"] for r in new], ["2.00", "9.00"])
 
     def test_a_time_less_calls_is_the_least_time_less_the_least_cost(self):
         def run(peer, least):

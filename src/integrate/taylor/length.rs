@@ -26,14 +26,15 @@ fn series(order: usize, convolutions: usize, coordinates: usize) -> f64 {
 }
 
 /// The highest order whose series costs no more than the rest of a step. Events cut steps: where a flight
-/// takes one step instead of two, all of the second is saved, so a lower order gains nothing.
+/// takes one step instead of two, all of the second is saved, so that a lower order gains little, and nothing at
+/// most tolerances (`ARCHITECTURE.md`, "An order costs less than a step").
 fn cheap(convolutions: usize, coordinates: usize) -> usize {
     let full = (LEAST..=ORDERS - 2).rev().filter(|p| (p + 2) % FULL == 0);
-    let mut cheap = full.filter(|&p| series(p, convolutions, coordinates) <= STEP);
-    cheap.next().unwrap_or(LEAST)
+    let mut affordable = full.filter(|&p| series(p, convolutions, coordinates) <= STEP);
+    affordable.next().unwrap_or(LEAST)
 }
 
-/// Order at which a unit of time is cheapest for a relative tolerance ε.
+/// Order at which a unit of time is cheapest for a relative tolerance ε, if it is not below [`cheap`].
 ///
 /// A step of order p costs a + b p + c p²/2 with c in proportion to the number of convolutions. A
 /// series with radius of convergence ρ meets ε with h = ρ ε^(1/p) (Jorba and Zou 2005, section 3.2).
