@@ -483,8 +483,10 @@ class Series:
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
         if few:
             orders.insert(0, f"  real last[{2 * few}] = {{0}};")
-        if not self.graph.interiors:
+        if self.graph.interiors.halves == 2:
             unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
+            if few:
+                unrolled.insert(0, orders[0])
             # A vector of eight lanes fills the processor without.
             orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]
         run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders), "DALEMBERT_CLONES")

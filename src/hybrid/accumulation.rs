@@ -199,8 +199,11 @@ impl Accumulation {
     /// Whether two events are the same but for time and state.
     #[inline]
     fn are_alike(&self, one: usize, other: usize) -> bool {
+        if self.key(one) != self.key(other) {
+            return false;
+        }
         let mut pairs = self.discrete(one).iter().zip(self.discrete(other));
-        self.key(one) == self.key(other) && pairs.all(|(a, b)| a.to_bits() == b.to_bits())
+        pairs.all(|(a, b)| a.to_bits() == b.to_bits())
     }
 
     /// The limit, if the last events accumulate and what is left of the series moves no component

@@ -43,11 +43,11 @@ impl Signs {
 
     /// Makes room for the search of as many as there are signs.
     pub fn start(&mut self) {
-        self.found.clear();
-        self.found
-            .resize(self.watches.len(), Search::quiet(Watch::Dormant));
-        self.from.clear();
-        self.from.resize(self.watches.len(), 0.0);
+        let count = self.watches.len();
+        if self.found.len() != count {
+            self.found.resize(count, Search::quiet(Watch::Dormant));
+            self.from.resize(count, 0.0);
+        }
     }
 
     /// The signs at the end of the step are those at the start of the next.

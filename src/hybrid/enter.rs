@@ -110,11 +110,12 @@ impl Simulation<'_> {
     }
 
     /// Enters the present mode again after an event in it, where that takes no more than what most events
-    /// ask for: guards that are positive, or zero and rise. False: the mode is to be entered as any other.
+    /// ask for: guards that are positive, or zero and rise. Gives free coordinates, velocities and
+    /// accelerations; `None`: the mode is to be entered as any other.
     pub fn enter_again<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-    ) -> Result<bool, Reason> {
+    ) -> Result<Option<[SVector<f64, F>; 3]>, Reason> {
         let mode = self.mode();
         let [q, v, _] = self.here.free::<F>(mode.free);
         if mode.drifts.contains(&true)
@@ -122,7 +123,7 @@ impl Simulation<'_> {
                 .check_inertia(&kernel.inertia(&self.context, &q, &v))
                 .is_err()
         {
-            return Ok(false);
+            return Ok(None);
         }
         self.signs.clear();
         for watched in &self.plan.watched[self.here.mode] {
@@ -135,7 +136,7 @@ impl Simulation<'_> {
                 ..
             } = guard.shape
             else {
-                return Ok(false);
+                return Ok(None);
             };
             let at = Free {
                 q: &q,
@@ -148,7 +149,7 @@ impl Simulation<'_> {
             if guard.transitions.iter().any(|t| t.conditional)
                 || !(value > 0.0 || value == 0.0 && rises)
             {
-                return Ok(false);
+                return Ok(None);
             }
             self.signs.watches.push(Watch::of(value));
         }
@@ -156,7 +157,7 @@ impl Simulation<'_> {
         let system = kernel.system(&self.context, &q, &v);
         let a = solve(&system.mass, &-system.load, &self.scale::<F>());
         let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
-            return Ok(false);
+            return Ok(None);
         };
         let at = Free {
             q: &q,
@@ -166,7 +167,7 @@ impl Simulation<'_> {
         check_requirements(kernel, &self.context, mode, at)?;
         self.here.set_free(mode.free, [&q, &v, &a]);
         self.flush_samples();
-        Ok(true)
+        Ok(Some([q, v, a]))
     }
 
     /// The symmetric part of the mass matrix must be positive definite (Cholesky).
@@ -292,7 +293,7 @@ mod tests {
         (simulation.here.q[0], simulation.here.v[0]) = (y, v);
         simulation.set_context();
         let mode = simulation.mode();
-        let again = with_kernel!(&mode.kernels, k => simulation.enter_again(k)).unwrap();
+        let again = with_kernel!(&mode.kernels, k => simulation.enter_again(k).unwrap().is_some());
         again.then(|| simulation.signs.watches[0])
     }
 

@@ -5,10 +5,11 @@ use super::failure::Reason;
 use super::few::copy_few;
 use super::guards::Conditions;
 use super::plan::is_impact;
-use super::simulation::{Simulation, Stop};
+use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::record::{EnergyJump, Jump};
+use nalgebra::SVector;
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -17,14 +18,23 @@ impl Simulation<'_> {
     /// Takes the first transition of a guard whose condition holds.
     pub fn fire(&mut self, guard: usize) -> Result<(), Reason> {
         let mode = self.mode();
-        let chosen = with_kernel!(&mode.kernels, k => self.choose(k, guard));
+        with_kernel!(&mode.kernels, k => self.fire_by(k, guard))
+    }
+
+    fn fire_by<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        guard: usize,
+    ) -> Result<(), Reason> {
+        let chosen = self.choose(kernel, guard);
+        let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
             // Every condition fails at the very state where the guard is crossed.
-            let cycle = format!("{} (no condition holds)", mode.guards[guard].name);
+            let cycle = format!("{} (no condition holds)", fired.name);
             return Err(Reason::Cycle { cycle });
         };
-        let transition = &mode.guards[guard].transitions[t];
-        self.doubts.happened(&mode.guards[guard]);
+        let transition = &fired.transitions[t];
+        self.doubts.happened(fired);
         if self
             .problem
             .end
@@ -34,18 +44,23 @@ impl Simulation<'_> {
             self.counted += 1;
         }
         self.commit(transition.name, transition.impact, transition.target)?;
-        self.remember(guard, t, is_impact(&mode.guards[guard]))
+        self.remember(guard, t, is_impact(fired))
     }
 
-    /// Takes a transition of a guard; whether it has led to the same mode again, which goes on.
+    /// Takes a transition of a guard. If it has led to the same mode again, which goes on: free coordinates,
+    /// velocities and accelerations after it.
     pub fn fire_and_stay<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         guard: usize,
-    ) -> Result<bool, Reason> {
+    ) -> Result<Option<[SVector<f64, F>; 3]>, Reason> {
         let mode = self.here.mode;
-        self.pass(Stop::Event(guard))?;
-        Ok(self.here.mode == mode && !self.is_over() && self.enter_again(kernel)?)
+        self.visited.clear();
+        self.fire_by(kernel, guard)?;
+        match self.here.mode == mode && !self.is_over() {
+            true => self.enter_again(kernel),
+            false => Ok(None),
+        }
     }
 
     /// Index of the transition that is taken; its reset is left in `next`.

@@ -12,13 +12,30 @@ use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
 use crate::integrate::{
-    Coefficients, Counters, Node, OneStep, Radau, RadauIia, Taylor, Tolerances, determinant_sign,
-    stages,
+    Coefficients, Counters, Node, OneStep, Radau, RadauIia, State, Taylor, Tolerances,
+    determinant_sign, stages,
 };
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use crate::record::Progress;
 use nalgebra::SVector;
+
+/// What does not change while a mode is followed.
+struct Stay<const F: usize> {
+    kernel: &'static ModeKernel<F>,
+    mode: &'static Mode,
+    /// Typical sizes of the free coordinates.
+    scale: SVector<f64, F>,
+    /// Whether some frozen coordinate drifts.
+    drifts: bool,
+    /// Until when the inputs are smooth, or the run lasts, s.
+    last: f64,
+    /// Whether the method follows from what is seen of the stiffness.
+    chooses: bool,
+    /// Whether something is evaluated at the end of every step with the inputs there; the explicit method
+    /// goes on from them.
+    looks_at_ends: bool,
+}
 
 impl Simulation<'_> {
     /// Integrates the present mode until something happens; `stays`: not an event that leads to the same
@@ -73,16 +90,7 @@ impl Simulation<'_> {
         M: for<'a> OneStep<F, Equations<'a, F>> + 'static,
     {
         let mode = self.here.mode;
-        let stop = loop {
-            match self.follow(kernel, &mut *method, progress) {
-                Ok(Stop::Event(guard)) if stays => match self.fire_and_stay(kernel, guard) {
-                    Ok(true) => {}
-                    Ok(false) => break Ok(Stop::Fired),
-                    Err(reason) => break Err(reason),
-                },
-                stop => break stop,
-            }
-        };
+        let stop = self.stay(kernel, &mut *method, stays, progress);
         self.count(&OneStep::<F, Equations<F>>::take_counters(&mut *method));
         let name = OneStep::<F, Equations<F>>::name(&*method);
         if !self.methods.contains(&name) {
@@ -92,26 +100,77 @@ impl Simulation<'_> {
         stop
     }
 
-    fn follow<const F: usize, M>(
+    /// Follows the motion from event to event, as long as they lead to the same mode again and it `stays`
+    /// there.
+    fn stay<const F: usize, M>(
         &mut self,
         kernel: &'static ModeKernel<F>,
+        method: &mut M,
+        stays: bool,
+        progress: &mut dyn Progress,
+    ) -> Result<Stop, Reason>
+    where
+        M: for<'a> OneStep<F, Equations<'a, F>>,
+    {
+        let (problem, mode) = (self.problem, self.mode());
+        let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
+        let drifts = mode.drifts.contains(&true);
+        let mut stay = Stay {
+            kernel,
+            mode,
+            scale: self.scale(),
+            drifts,
+            last: f64::NEG_INFINITY,
+            chooses: problem.method == Method::Auto && kernel.is_analytic(),
+            looks_at_ends: is_explicit
+                || drifts
+                || !mode.requirements.is_empty()
+                || !kernel.mass_is_constant()
+                || problem.record.every.is_none()
+                || self.ledger.is_some(),
+        };
+        let [q, v, a] = self.here.free::<F>(mode.free);
+        method.restart(0.0, &q, &v, &a);
+        loop {
+            let now = self.here.now.seconds();
+            if now >= stay.last {
+                let breakpoint = problem.signals.next_breakpoint(now);
+                stay.last = breakpoint.min(problem.end.time);
+            }
+            match self.follow(&stay, method, progress)? {
+                Stop::Event(guard) if stays => match self.fire_and_stay(kernel, guard)? {
+                    Some([q, v, a]) => method.restart(0.0, &q, &v, &a),
+                    None => return Ok(Stop::Fired),
+                },
+                stop => return Ok(stop),
+            }
+        }
+    }
+
+    /// Integrates until something happens.
+    fn follow<const F: usize, M>(
+        &mut self,
+        stay: &Stay<F>,
         method: &mut M,
         progress: &mut dyn Progress,
     ) -> Result<Stop, Reason>
     where
         M: for<'a> OneStep<F, Equations<'a, F>>,
     {
+        let &Stay {
+            kernel,
+            mode,
+            drifts,
+            last,
+            chooses,
+            looks_at_ends,
+            ..
+        } = stay;
         let problem = self.problem;
-        let mode = self.mode();
-        let scale = self.scale();
+        let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
         let start = self.here.now;
-        let breakpoint = problem.signals.next_breakpoint(start.seconds());
-        let last = breakpoint.min(problem.end.time);
         let until = Instant::new(last).since(start);
-        let [q, v, a] = self.here.free::<F>(mode.free);
-        method.restart(0.0, &q, &v, &a);
         copy_few(&self.here.q, &mut self.at_start);
-        let drifts = mode.drifts.contains(&true);
         let clock = Clock {
             start,
             signals: &problem.signals,
@@ -124,7 +183,7 @@ impl Simulation<'_> {
             &mut self.context,
             clock,
             problem.accuracy.relative,
-            scale,
+            stay.scale,
         );
         let watched = &self.plan.watched[self.here.mode];
         let mut conditions = Conditions {
@@ -134,20 +193,13 @@ impl Simulation<'_> {
         };
         let mut determinant = match kernel.mass_is_constant() {
             true => 1,
-            false => determinant_sign(&kernel.system(equations.context, &q, &v).mass),
+            false => {
+                let State { q, v, .. } = *method.state();
+                determinant_sign(&kernel.system(equations.context, &q, &v).mass)
+            }
         };
-        let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
-        let chooses = problem.method == Method::Auto && kernel.is_analytic();
         let stiffness = &mut self.stiffness[self.here.mode];
         stiffness.begin();
-        // What is evaluated at the end of every step with the inputs there; the explicit method goes on from
-        // them.
-        let looks_at_ends = is_explicit
-            || drifts
-            || !mode.requirements.is_empty()
-            || !kernel.mass_is_constant()
-            || problem.record.every.is_none()
-            || self.ledger.is_some();
         let mut ledger_from = 0.0;
         let relative = problem.accuracy.relative;
 
@@ -365,16 +417,24 @@ pub(super) fn check_requirements<const F: usize>(
     let mut values = [0.0; MOST_REQUIREMENTS];
     let values = &mut values[..mode.requirements.len()];
     kernel.requirements(context, at, values);
-    let unmet = |(value, _): &(&f64, _)| value.is_nan() || **value <= 0.0;
-    match values.iter().zip(mode.requirements).find(unmet) {
-        None => Ok(()),
-        Some((&value, requirement)) => Err(Reason::Requirement {
-            mode: mode.name,
-            failure: requirement.failure,
-            text: requirement.text,
-            value,
-            unit: requirement.unit,
-        }),
+    // One that is not a number is not met.
+    match values.iter().all(|value| *value > 0.0) {
+        true => Ok(()),
+        false => Err(unmet(mode, values)),
+    }
+}
+
+#[cold]
+fn unmet(mode: &Mode, values: &[f64]) -> Reason {
+    let unmet = |value: &f64| value.is_nan() || *value <= 0.0;
+    let index = values.iter().position(unmet).expect("one is not met");
+    let requirement = &mode.requirements[index];
+    Reason::Requirement {
+        mode: mode.name,
+        failure: requirement.failure,
+        text: requirement.text,
+        value: values[index],
+        unit: requirement.unit,
     }
 }
 

@@ -1,5 +1,6 @@
 //! What generated functions need besides the free coordinates.
 
+use super::{Array, RawContext};
 use crate::input::{LaneSignals, Side, Signals};
 use crate::integrate::ORDERS;
 use crate::model::Model;
@@ -29,33 +30,58 @@ pub struct Dimensions {
 
 /// What a generated function needs besides the free coordinates. Its arrays keep the lengths that
 /// [`Dimensions`] state, which the calls rely on: nothing outside of `kernel` can replace them.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Context {
     pub(super) dimensions: &'static Dimensions,
-    /// Signals of the inputs at the present time.
-    pub(super) signals: Box<[f64]>,
-    /// Time derivatives of the signals.
-    pub(super) signal_rates: Box<[f64]>,
+    pub(super) arrays: Arrays,
+    /// The arrays as C sees them.
+    pub(super) raw: RawContext,
     /// Time and side that the signals and their rates are set for, s; NaN: none.
     pub(super) signals_at: (f64, Side),
     /// Whether no input ever acts: all signals are zero and stay so.
     pub quiet: bool,
-    /// Discrete states.
-    pub(super) discrete: Box<[f64]>,
-    /// All coordinates; the generated functions read those that the mode holds.
-    pub(super) held: Box<[f64]>,
     /// Taylor coefficients of the signals, one row an order.
     pub(super) signal_series: Box<[f64]>,
     /// Signals at instants that will be asked for soon, a row each; antiderivatives are not among them.
     ahead: Box<[f64]>,
-    pub(super) constants: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub(super) guard_series: Box<[f64]>,
     /// What the series functions carry from one order to the next: room for the longest series of all
     /// modes.
     pub(super) workspace: Box<[f64]>,
+}
+
+/// What every call is given.
+#[derive(Debug, Clone)]
+pub(super) struct Arrays {
+    /// Signals of the inputs at the present time.
+    pub signals: Array<f64>,
+    /// Time derivatives of the signals.
+    pub signal_rates: Array<f64>,
+    /// Discrete states.
+    pub discrete: Array<f64>,
+    /// All coordinates; the generated functions read those that the mode holds.
+    pub held: Array<f64>,
+    pub constants: Array<f64>,
     /// Sines and cosines that were computed last, for functions that ask for them again.
-    pub(super) angles: Box<[Cell<KeptAngle>]>,
+    pub angles: Array<Cell<KeptAngle>>,
+}
+
+impl Clone for Context {
+    fn clone(&self) -> Self {
+        let arrays = self.arrays.clone();
+        Context {
+            dimensions: self.dimensions,
+            raw: arrays.raw(),
+            arrays,
+            signals_at: self.signals_at,
+            quiet: self.quiet,
+            signal_series: self.signal_series.clone(),
+            ahead: self.ahead.clone(),
+            guard_series: self.guard_series.clone(),
+            workspace: self.workspace.clone(),
+        }
+    }
 }
 
 /// An angle (rad) with its sine and cosine, as C keeps them.
@@ -88,24 +114,27 @@ impl Context {
         let (workspace, guards) = rooms.fold((0, 0), |most, room| {
             (most.0.max(room.0), most.1.max(room.1))
         });
+        let mut constants = vec![0.0; dimensions.constants];
+        model.constants.evaluate(parameters, &mut constants);
+        let zeros = |count| Array::of(vec![0.0; count]);
+        let arrays = Arrays {
+            signals: zeros(dimensions.signals),
+            signal_rates: zeros(dimensions.signals),
+            discrete: Array::of(model.discretes.iter().map(|d| d.values[0]).collect()),
+            held: zeros(dimensions.coordinates),
+            constants: Array::of(constants),
+            angles: Array::of(vec![Cell::new(KeptAngle::ZERO); dimensions.angles]),
+        };
         Context {
             dimensions,
-            signals: vec![0.0; dimensions.signals].into(),
-            signal_rates: vec![0.0; dimensions.signals].into(),
+            raw: arrays.raw(),
+            arrays,
             signals_at: (f64::NAN, Side::Right),
             quiet: false,
-            discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
-            held: vec![0.0; dimensions.coordinates].into(),
             ahead: vec![0.0; Self::MOST_AHEAD * dimensions.signals].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
-            constants: {
-                let mut constants = vec![0.0; dimensions.constants].into_boxed_slice();
-                model.constants.evaluate(parameters, &mut constants);
-                constants
-            },
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
-            angles: vec![Cell::new(KeptAngle::ZERO); dimensions.angles].into(),
         }
     }
 
@@ -115,45 +144,52 @@ impl Context {
     /// As [`Context::new`], and if it is another model.
     pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
         assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
-        model.constants.evaluate(parameters, &mut self.constants);
+        model
+            .constants
+            .evaluate(parameters, &mut self.arrays.constants);
     }
 
     /// Discrete states.
     pub fn discrete(&self) -> &[f64] {
-        &self.discrete
+        &self.arrays.discrete
     }
 
     /// Discrete states, to be changed.
     pub fn discrete_mut(&mut self) -> &mut [f64] {
-        &mut self.discrete
+        &mut self.arrays.discrete
     }
 
     /// All coordinates; the generated functions read those that the mode holds.
     pub fn held(&self) -> &[f64] {
-        &self.held
+        &self.arrays.held
     }
 
     /// All coordinates, to be changed.
     pub fn held_mut(&mut self) -> &mut [f64] {
-        &mut self.held
+        &mut self.arrays.held
     }
 
     /// Signals of the inputs at the present time.
     pub fn signals(&self) -> &[f64] {
-        &self.signals
+        &self.arrays.signals
     }
 
     /// Signals and their rates, for values of one's own.
     pub fn signals_mut(&mut self) -> [&mut [f64]; 2] {
         self.signals_at.0 = f64::NAN;
-        [&mut self.signals, &mut self.signal_rates]
+        [&mut self.arrays.signals, &mut self.arrays.signal_rates]
     }
 
     /// Sets signals and their rates to those at time `t` (s), as they are on that side.
     #[inline]
     pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
         if !self.quiet && self.signals_at != (t, side) {
-            signals.jets(t, side, &mut self.signals, &mut self.signal_rates);
+            signals.jets(
+                t,
+                side,
+                &mut self.arrays.signals,
+                &mut self.arrays.signal_rates,
+            );
             self.signals_at = (t, side);
         }
     }
@@ -177,9 +213,9 @@ impl Context {
     /// of motion, and for nothing else.
     #[inline]
     pub fn set_foreseen_signals(&mut self, index: usize) {
-        let width = self.signals.len();
+        let width = self.arrays.signals.len();
         let row = &self.ahead[index * width..][..width];
-        self.signals.copy_from_slice(row);
+        self.arrays.signals.copy_from_slice(row);
         self.signals_at.0 = f64::NAN;
     }
 
@@ -190,7 +226,12 @@ impl Context {
         lane: usize,
         signals: &Signals,
     ) {
-        of.of_lane(lane, signals, &mut self.signals, &mut self.signal_rates);
+        of.of_lane(
+            lane,
+            signals,
+            &mut self.arrays.signals,
+            &mut self.arrays.signal_rates,
+        );
         self.signals_at = (of.time(lane), Side::Right);
     }
 
@@ -199,8 +240,8 @@ impl Context {
     pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
         if !self.quiet {
             self.set_signals(signals, t, Side::Right);
-            let rows = &mut self.signal_series[..orders * self.signals.len()];
-            let known = [&*self.signals, &self.signal_rates];
+            let rows = &mut self.signal_series[..orders * self.arrays.signals.len()];
+            let known = [&*self.arrays.signals, &self.arrays.signal_rates];
             signals.series(t, known, self.dimensions.expanded, rows);
         }
     }

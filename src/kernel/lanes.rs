@@ -111,11 +111,11 @@ impl<const W: usize> LaneContext<W> {
         let zeros = LaneRows::zeros;
         let mut context = LaneContext {
             dimensions: like.dimensions,
-            signals: zeros(like.signals.len()),
+            signals: zeros(like.arrays.signals.len()),
             signal_series: zeros(like.signal_series.len()),
-            discrete: zeros(like.discrete.len()),
-            held: zeros(like.held.len()),
-            constants: zeros(like.constants.len()),
+            discrete: zeros(like.arrays.discrete.len()),
+            held: zeros(like.arrays.held.len()),
+            constants: zeros(like.arrays.constants.len()),
             workspace: zeros(kernel.workspace()),
         };
         for lane in 0..W {
@@ -135,7 +135,11 @@ impl<const W: usize> LaneContext<W> {
     /// If it is one of another model.
     pub fn load(&mut self, lane: usize, from: &Context) {
         assert!(std::ptr::eq(self.dimensions, from.dimensions));
-        let of = [&from.discrete, &from.held, &from.constants];
+        let of = [
+            &from.arrays.discrete,
+            &from.arrays.held,
+            &from.arrays.constants,
+        ];
         let into = [&mut self.discrete, &mut self.held, &mut self.constants];
         for (into, of) in into.into_iter().zip(of) {
             for (into, of) in into.iter_mut().zip(&**of) {
@@ -156,10 +160,10 @@ impl<const W: usize> LaneContext<W> {
 
     /// The same for a trajectory whose constants were loaded before.
     pub fn load_state(&mut self, lane: usize, from: &Context) {
-        for (into, of) in self.discrete.iter_mut().zip(&from.discrete) {
+        for (into, of) in self.discrete.iter_mut().zip(from.arrays.discrete.iter()) {
             into.0[lane] = *of;
         }
-        for (into, of) in self.held.iter_mut().zip(&from.held) {
+        for (into, of) in self.held.iter_mut().zip(from.arrays.held.iter()) {
             into.0[lane] = *of;
         }
     }

@@ -8,7 +8,7 @@ mod context;
 mod lanes;
 mod tables;
 
-use context::KeptAngle;
+use context::{Arrays, KeptAngle};
 pub use context::{Context, Dimensions};
 pub use lanes::{
     LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePast, LanePoint, LaneRows,
@@ -24,10 +24,13 @@ use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
 use lanes::Block;
 use nalgebra::{SMatrix, SVector};
+use std::ops::{Deref, DerefMut};
+use std::ptr::NonNull;
 
 /// Context of a call, as C sees it: signals, their rates, discrete states, held coordinates,
 /// constants, jerks.
 #[repr(C)]
+#[derive(Debug, Clone, Copy)]
 struct RawContext {
     u: *const f64,
     u_dot: *const f64,
@@ -36,6 +39,73 @@ struct RawContext {
     c: *const f64,
     j: *const f64,
     angles: *mut KeptAngle,
+}
+
+// SAFETY: it is what arrays that may be sent to another thread look like to C, and goes with them.
+unsafe impl Send for RawContext {}
+
+/// Numbers at an address that stays as long as they are there, so that it can be told to C once.
+#[derive(Debug)]
+struct Array<T>(NonNull<[T]>);
+
+// SAFETY: it owns its numbers as a box does.
+unsafe impl<T: Send> Send for Array<T> {}
+
+impl<T> Array<T> {
+    fn of(numbers: Vec<T>) -> Self {
+        Array(NonNull::from(Box::leak(numbers.into_boxed_slice())))
+    }
+
+    fn pointer(&self) -> *mut T {
+        self.0.as_ptr().cast()
+    }
+}
+
+impl<T> Deref for Array<T> {
+    type Target = [T];
+
+    #[inline]
+    fn deref(&self) -> &[T] {
+        // SAFETY: the numbers are there until it is dropped, and borrowed as it is.
+        unsafe { self.0.as_ref() }
+    }
+}
+
+impl<T> DerefMut for Array<T> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [T] {
+        // SAFETY: as in `deref`.
+        unsafe { self.0.as_mut() }
+    }
+}
+
+impl<T: Clone> Clone for Array<T> {
+    fn clone(&self) -> Self {
+        Array::of(self.to_vec())
+    }
+}
+
+impl<T> Drop for Array<T> {
+    fn drop(&mut self) {
+        // SAFETY: they were a box, and nobody else has taken them back.
+        drop(unsafe { Box::from_raw(self.0.as_ptr()) })
+    }
+}
+
+impl Arrays {
+    /// The arrays as C sees them, as long as they are there.
+    fn raw(&self) -> RawContext {
+        RawContext {
+            u: self.signals.pointer(),
+            u_dot: self.signal_rates.pointer(),
+            d: self.discrete.pointer(),
+            h: self.held.pointer(),
+            c: self.constants.pointer(),
+            // Only the rate of a guard reads jerks.
+            j: std::ptr::null(),
+            angles: self.angles.pointer().cast(),
+        }
+    }
 }
 
 /// A generated C function.
@@ -532,31 +602,32 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 /// Sums Σ_{k ≤ j} `factors[k]` · `table[k][j]`, by the same bits on every processor (codegen/sums.c). Below its
 /// diagonal, for j < k, the table must be zero.
 #[inline]
-pub fn triangular_sums<const N: usize>(factors: &[f64; N], table: &[[f64; N]; N]) -> [f64; N] {
-    let mut out = [0.0; N];
+pub fn triangular_sums<const N: usize>(
+    factors: &[f64; N],
+    table: &[[f64; N]; N],
+    sums: &mut [f64; N],
+) {
     let table = table.as_ptr().cast();
     // SAFETY: all have the length N, the rows follow each other.
-    unsafe { dalembert_triangular_sums(N, factors.as_ptr(), table, out.as_mut_ptr()) }
-    out
+    unsafe { dalembert_triangular_sums(N, factors.as_ptr(), table, sums.as_mut_ptr()) }
 }
 
 impl Context {
     /// Calls a generated function.
     ///
     /// # Safety
-    /// `q`, `v`, `a`, `jerks` must have the length of the function's free coordinates (where it
-    /// reads them) and `out` must have room for its outputs.
+    /// `q`, `v`, `a` must have the length of the function's free coordinates (where it reads them), it must
+    /// not read jerks, and `out` must have room for its outputs.
     #[inline(always)]
     unsafe fn call(
         &self,
         function: Raw,
         dimensions: &'static Dimensions,
-        [q, v, a, j]: [*const f64; 4],
+        [q, v, a]: [*const f64; 3],
         out: *mut f64,
     ) {
-        let raw = self.raw(dimensions, j);
-        // SAFETY: the lengths of the context arrays were checked, the rest is the caller's.
-        unsafe { function(q, v, a, &raw, out) }
+        // SAFETY: the context is of the function's model, the rest is the caller's.
+        unsafe { function(q, v, a, self.raw(dimensions), out) }
     }
 
     /// The context as C sees it.
@@ -564,20 +635,12 @@ impl Context {
     /// # Panics
     /// If it was made for another model. Its arrays have their lengths since it was made.
     #[inline(always)]
-    fn raw(&self, dimensions: &'static Dimensions, j: *const f64) -> RawContext {
+    fn raw(&self, dimensions: &'static Dimensions) -> &RawContext {
         assert!(
             std::ptr::eq(self.dimensions, dimensions),
             "a context is used with the functions of the model it was made for"
         );
-        RawContext {
-            u: self.signals.as_ptr(),
-            u_dot: self.signal_rates.as_ptr(),
-            d: self.discrete.as_ptr(),
-            h: self.held.as_ptr(),
-            c: self.constants.as_ptr(),
-            j,
-            angles: self.angles.as_ptr().cast::<KeptAngle>().cast_mut(),
-        }
+        &self.raw
     }
 }
 
@@ -607,13 +670,8 @@ impl ConstantsKernel {
 
 impl<const F: usize> Free<'_, F> {
     #[inline(always)]
-    fn pointers(&self) -> [*const f64; 4] {
-        [
-            self.q.as_ptr(),
-            self.v.as_ptr(),
-            self.a.as_ptr(),
-            self.a.as_ptr(),
-        ]
+    fn pointers(&self) -> [*const f64; 3] {
+        [self.q.as_ptr(), self.v.as_ptr(), self.a.as_ptr()]
     }
 }
 
@@ -653,7 +711,7 @@ impl<const F: usize> ModeKernel<F> {
             mass: SMatrix::zeros(),
             load: SVector::zeros(),
         };
-        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
+        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
         unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
         out
@@ -670,15 +728,15 @@ impl<const F: usize> ModeKernel<F> {
             return false;
         };
         assert!(orders <= ORDERS);
-        let raw = x.raw(self.dimensions, std::ptr::null());
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
         let out = x.guard_series.as_mut_ptr();
+        let raw = x.raw(self.dimensions);
         // SAFETY: F entries a row of q, v and a, which are only read, and all rows are there; one
         // output a guard and order; guard series and workspace have room for every mode of the model.
         unsafe {
-            (series.start)(q, v, a, u, &raw, w, out);
-            (series.run)(orders, q, v, a, u, &raw, w, out);
+            (series.start)(q, v, a, u, raw, w, out);
+            (series.run)(orders, q, v, a, u, raw, w, out);
         }
         true
     }
@@ -694,12 +752,12 @@ impl<const F: usize> ModeKernel<F> {
             mass: SMatrix::zeros(),
             load: SVector::zeros(),
         };
-        let raw = x.raw(self.dimensions, std::ptr::null());
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        let raw = x.raw(self.dimensions);
         // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
         // struct; the workspace has room for every mode of the model.
-        unsafe { (series.start)(q, v, a, u, &raw, w, (&raw mut out).cast()) }
+        unsafe { (series.start)(q, v, a, u, raw, w, (&raw mut out).cast()) }
         out
     }
 
@@ -719,13 +777,13 @@ impl<const F: usize> ModeKernel<F> {
     ) {
         let series = self.motion_series(x).expect("the mode is analytic");
         assert!(n <= ORDERS - 2);
-        let raw = x.raw(self.dimensions, std::ptr::null());
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
         let inverse = inverse.as_ptr().cast_mut();
+        let raw = x.raw(self.dimensions);
         // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the
         // inverse are only read; the workspace has room for every mode of the model.
-        unsafe { (series.run)(n, q, v, a, u, &raw, w, inverse) }
+        unsafe { (series.run)(n, q, v, a, u, raw, w, inverse) }
     }
 
     /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
@@ -736,7 +794,7 @@ impl<const F: usize> ModeKernel<F> {
         v: &SVector<f64, F>,
     ) -> SMatrix<f64, F, F> {
         let mut out = SMatrix::<f64, F, F>::zeros();
-        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr(), v.as_ptr()];
+        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F outputs; `a` is not read.
         unsafe { x.call(self.inertia, self.dimensions, at, out.as_mut_ptr()) }
         out
@@ -890,9 +948,13 @@ impl<const F: usize> ModeKernel<F> {
     ) -> f64 {
         assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
         let mut out = 0.0;
-        let at = [at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr(), j.as_ptr()];
+        let [q, v, a] = at.pointers();
+        let raw = RawContext {
+            j: j.as_ptr(),
+            ..*x.raw(self.dimensions)
+        };
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.rate, self.dimensions, at, &mut out) }
+        unsafe { (guard.rate)(q, v, a, &raw, &mut out) }
         out
     }
 

@@ -43,6 +43,13 @@ pub fn earliest(
         *found = search(index, from, to, watch);
         happens |= found.crossing.is_some();
     }
+    if let [only] = found {
+        let time = only.crossing.map(|crossing| crossing.outside);
+        return Earliest {
+            time,
+            resolved: only.resolved,
+        };
+    }
     let mut end = to;
     // Each pass ends earlier than the one before, until the set lies at the end of its window.
     while happens && let Some(time) = time_of_first_set(found) {

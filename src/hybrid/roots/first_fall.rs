@@ -36,7 +36,9 @@ pub(super) fn first_fall<const N: usize>(
         to,
         rounding: Polynomial::<N>::ROUNDING * size,
     };
-    guard.first_fall(&polynomial.bernstein(), (0.0, 1.0), 0)
+    let mut bernstein = [0.0; N];
+    polynomial.bernstein(&mut bernstein);
+    guard.first_fall(&bernstein, (0.0, 1.0), 0)
 }
 
 /// An armed guard on a window.
@@ -64,11 +66,16 @@ impl<const N: usize> Armed<'_, N> {
                 let part = part_before_rise(bernstein);
                 let middle = start + part * (end - start);
                 // At the start the powers lead there at less cost, and what is behind may not be needed.
-                let (left, right) = match start == 0.0 {
-                    true => (self.polynomial.on(middle).bernstein(), None),
+                let mut left = [0.0; N];
+                let right = match start == 0.0 {
+                    true => {
+                        self.polynomial.on(middle).bernstein(&mut left);
+                        None
+                    }
                     false => {
-                        let (left, right) = cut(bernstein, part);
-                        (left, Some(right))
+                        let (own, right) = cut(bernstein, part);
+                        left = own;
+                        Some(right)
                     }
                 };
                 let first = self.first_fall(&left, (start, middle), cuts + 1)?;
@@ -107,7 +114,11 @@ impl<const N: usize> Armed<'_, N> {
         let place = ((falls - 1) as f64 + before / (before - after)) / (N - 1) as f64;
         let near = start + place * (end - start);
         let s = if from < near && near < to { near } else { from };
-        let (left, right) = ((from, self.polynomial.value(from)), (to, at_end));
+        let at_start = match from == 0.0 {
+            true => self.polynomial.coefficients[0],
+            false => self.polynomial.value(from),
+        };
+        let (left, right) = ((from, at_start), (to, at_end));
         match left.1 > 0.0 {
             true => root(self.polynomial, left, right, s),
             false => None,

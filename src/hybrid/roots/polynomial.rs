@@ -35,6 +35,10 @@ impl<const N: usize> Polynomial<N> {
         table
     };
 
+    const ZERO: Self = Self {
+        coefficients: [0.0; N],
+    };
+
     /// Relative error of a sum of N terms whose factors carry as many roundings: γ ≈ 2Nu.
     pub(super) const ROUNDING: f64 = N as f64 * f64::EPSILON;
 
@@ -87,21 +91,29 @@ impl<const N: usize> Polynomial<N> {
 
     /// The value where the polynomial is a multiple of s.
     fn value_of_multiple(&self, s: f64) -> f64 {
-        let (quotient, order) = self.without_zeros();
+        let (order, mut quotient) = (self.leading_zeros(), Self::ZERO);
+        self.divide(order, &mut quotient);
         (0..order).fold(quotient.sum(s), |value, _| value * s)
     }
 
-    /// Divides the highest power of s out that is a factor, and gives it.
-    fn without_zeros(&self) -> (Self, usize) {
+    /// The highest power of s that is a factor.
+    fn leading_zeros(&self) -> usize {
         let order = self.coefficients.iter().position(|&c| c != 0.0);
-        let order = order.unwrap_or(0);
-        let mut coefficients = [0.0; N];
+        order.unwrap_or(0)
+    }
+
+    /// Divides a power of s out that is a factor. `quotient` is zero before: what is given back is copied.
+    #[inline]
+    fn divide(&self, order: usize, quotient: &mut Self) {
+        let (from, to) = (&self.coefficients, &mut quotient.coefficients);
         match order {
             // A guard that leaves zero with a slope; a copy of unknown length is a call of the C library.
-            1 => coefficients[..N - 1].copy_from_slice(&self.coefficients[1..]),
-            _ => coefficients[..N - order].copy_from_slice(&self.coefficients[order..]),
+            1 => to[..N - 1]
+                .iter_mut()
+                .zip(&from[1..])
+                .for_each(|(to, from)| *to = *from),
+            _ => to[..N - order].copy_from_slice(&from[order..]),
         }
-        (Self { coefficients }, order)
     }
 
     /// The earliest event in `from` < s ≤ `to`, where 0 ≤ `from` ≤ `to` ≤ 1.
@@ -149,7 +161,9 @@ impl<const N: usize> Polynomial<N> {
         }
         if watch == Watch::Violated {
             let margin = Self::ROUNDING * sum_of(&self.coefficients, f64::abs);
-            if self.bernstein().iter().all(|&b| b < -margin) {
+            let mut bernstein = [0.0; N];
+            self.bernstein(&mut bernstein);
+            if bernstein.iter().all(|&b| b < -margin) {
                 return Search::quiet(watch);
             }
         }
@@ -159,7 +173,8 @@ impl<const N: usize> Polynomial<N> {
 
     /// Divides the zero at s = 0 out; the sign beside it is that of the first coefficient left.
     fn leave_zero(&self, to: f64) -> Search {
-        let (quotient, _) = self.without_zeros();
+        let mut quotient = Self::ZERO;
+        self.divide(self.leading_zeros(), &mut quotient);
         let coefficients = &quotient.coefficients;
         if coefficients[0] == 0.0 {
             return Search::quiet(Watch::Dormant);
@@ -187,9 +202,10 @@ impl<const N: usize> Polynomial<N> {
         Self::ROUNDING * sum
     }
 
-    /// Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
-    pub(super) fn bernstein(&self) -> [f64; N] {
-        triangular_sums(&self.coefficients, &Self::TO_BERNSTEIN)
+    /// Writes the Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
+    #[inline]
+    pub(super) fn bernstein(&self, out: &mut [f64; N]) {
+        triangular_sums(&self.coefficients, &Self::TO_BERNSTEIN, out);
     }
 
     /// The polynomial on [0, `end`], in powers of s/`end`.
@@ -238,7 +254,8 @@ impl<const N: usize> Expansion for Polynomial<N> {
         if self.coefficients[1..].iter().all(|&c| c == 0.0) {
             return Count::None;
         }
-        let b = self.bernstein();
+        let mut b = [0.0; N];
+        self.bernstein(&mut b);
         let mut changes = 0;
         let mut sign = 0.0;
         for &b in b.iter().filter(|b| **b != 0.0) {
