@@ -16,7 +16,7 @@ pub(super) struct Clock<'a> {
     /// Local time of the segment's last admissible instant and the absolute time it stands for.
     /// Inputs are smooth before it and take their left-hand limits at it.
     pub until: (f64, f64),
-    /// All coordinates at the start.
+    /// All coordinates at the start, if any drifts.
     pub held: &'a [f64],
     /// Rates of the frozen coordinates; empty if none drifts.
     pub drift: &'a [f64],

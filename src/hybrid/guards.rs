@@ -274,23 +274,28 @@ fn search_linear<const F: usize>(
         unreachable!("the caller has asked for its shape")
     };
     let factor = slope((factor, discrete), equations.context);
-    let mut coefficients = [0.0; ORDERS];
-    let count = dense.polynomial((index, rate), factor, &mut coefficients);
-    if offset {
-        // What is added is what the guard is at the zero state.
-        let zero = SVector::<f64, F>::zeros();
-        let at = Free {
-            q: &zero,
-            v: &zero,
-            a: &zero,
-        };
-        coefficients[0] += equations.kernel.guard(equations.context, &guard.kernel, at);
-        if watch == Watch::Dormant && window.0 == dense.start() {
-            // Its own value was zero; the first coefficient of the dense output may be off by a rounding.
-            coefficients[0] = 0.0;
+    let constant = dense.constant((index, rate), factor);
+    let constant = match offset {
+        false => constant,
+        // Its own value was zero; the first coefficient of the dense output may be off by a rounding.
+        true if watch == Watch::Dormant && window.0 == dense.start() => 0.0,
+        true => {
+            // What is added is what the guard is at the zero state.
+            let zero = SVector::<f64, F>::zeros();
+            let at = Free {
+                q: &zero,
+                v: &zero,
+                a: &zero,
+            };
+            constant + equations.kernel.guard(equations.context, &guard.kernel, at)
         }
-    }
-    search_polynomial((&coefficients, count), dense, window, watch)
+    };
+    let coefficients = Coefficients {
+        count: dense.coefficients(rate),
+        constant,
+        write: |first, out: &mut [f64]| dense.polynomial((index, rate), factor, first, out),
+    };
+    search_polynomial(coefficients, dense, window, watch)
 }
 
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
@@ -319,17 +324,6 @@ fn search_series<const F: usize>(
     // Of a low degree where nothing moves.
     let degree = powers[..orders].iter().rposition(|&c| c != 0.0);
     let count = degree.map_or(1, |degree| degree + 1);
-    let mut coefficients = [0.0; ORDERS];
-    let scale = (1.0, dense.length());
-    stretch(&powers[..count], |own| *own, scale, &mut coefficients);
-    if count + 2 > orders {
-        let size = |of: &[f64]| sum_of(of, f64::abs);
-        let allowed = equations.tolerance * (orders * orders) as f64 * size(&coefficients[..count]);
-        let falls_off = size(&coefficients[orders - 2..count]) <= allowed;
-        if !falls_off {
-            return None;
-        }
-    }
     // The guard's own value decides on which side of zero it starts.
     equations.at(tau);
     let at = Free {
@@ -337,18 +331,40 @@ fn search_series<const F: usize>(
         v: &series.v[0],
         a: &series.a[0],
     };
-    coefficients[0] = kernel.guard(equations.context, &guard.kernel, at);
-    Some(search_polynomial(
-        (&coefficients, count),
-        dense,
-        window,
-        watch,
-    ))
+    let constant = kernel.guard(equations.context, &guard.kernel, at);
+    let mut falls_off = true;
+    let coefficients = Coefficients {
+        count,
+        constant,
+        write: |first, out: &mut [f64]| {
+            let scale = (1.0, dense.length(), first);
+            stretch(&powers[..count], |own| *own, scale, out);
+            if count + 2 > orders {
+                let size = |of: &[f64]| sum_of(of, f64::abs);
+                let all = (orders * orders) as f64 * size(&out[..count - first]);
+                falls_off =
+                    size(&out[orders - 2 - first..count - first]) <= equations.tolerance * all;
+            }
+        },
+    };
+    let search = search_polynomial(coefficients, dense, window, watch);
+    falls_off.then_some(search)
 }
 
-/// Searches a polynomial in s = (τ − start)/length of the step, given by so many coefficients.
+/// A polynomial in s.
+pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
+    /// Their number.
+    pub count: usize,
+    /// That of the power 0.
+    pub constant: f64,
+    /// Writes the others, from a power on. (It may write one of the power 0, which does not count.)
+    pub write: W,
+}
+
+/// Searches a polynomial in s = (τ − start)/length of the step.
+#[inline]
 fn search_polynomial<const F: usize>(
-    coefficients: (&[f64; ORDERS], usize),
+    coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     dense: &impl Motion<F>,
     (from, to): (f64, f64),
     watch: Watch,
@@ -362,39 +378,46 @@ fn search_polynomial<const F: usize>(
     search
 }
 
-/// Searches a polynomial in s on a window within 0 ≤ s ≤ 1. It has so many coefficients; those beyond
-/// them are zero.
+/// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
 pub(super) fn search_window(
-    (coefficients, count): (&[f64; ORDERS], usize),
+    coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     window: (f64, f64),
     watch: Watch,
 ) -> Search {
-    let given = &coefficients[..count];
-    let degree = given.iter().rposition(|&c| c != 0.0).unwrap_or(0);
     // Work grows with the square of the room.
-    match degree {
-        0..=3 => search_part::<4>(coefficients, window, watch),
-        4..=7 => search_part::<8>(coefficients, window, watch),
-        8..=11 => search_part::<12>(coefficients, window, watch),
-        12..=15 => search_part::<16>(coefficients, window, watch),
-        16..=19 => search_part::<20>(coefficients, window, watch),
-        20..=23 => search_part::<24>(coefficients, window, watch),
-        24..=27 => search_part::<28>(coefficients, window, watch),
+    match coefficients.count {
+        0..=4 => search_part::<4>(coefficients, window, watch),
+        5..=8 => search_part::<8>(coefficients, window, watch),
+        9..=12 => search_part::<12>(coefficients, window, watch),
+        13..=16 => search_part::<16>(coefficients, window, watch),
+        17..=20 => search_part::<20>(coefficients, window, watch),
+        21..=24 => search_part::<24>(coefficients, window, watch),
+        25..=28 => search_part::<28>(coefficients, window, watch),
         _ => search_part::<ORDERS>(coefficients, window, watch),
     }
 }
 
-/// Searches a polynomial whose coefficients beyond the first `N` vanish.
+/// Searches a polynomial of at most `N` coefficients. They are written where they are read: a copy right
+/// after them would wait for what is on its way to memory.
+#[inline(never)]
 fn search_part<const N: usize>(
-    coefficients: &[f64; ORDERS],
+    mut of: Coefficients<impl FnMut(usize, &mut [f64])>,
     (from, to): (f64, f64),
     watch: Watch,
 ) -> Search {
-    let first = coefficients
-        .first_chunk::<N>()
-        .expect("N is ORDERS at most");
-    Polynomial {
-        coefficients: *first,
+    let zero = Polynomial {
+        coefficients: [0.0; N],
+    };
+    if watch == Watch::Dormant && from == 0.0 && to > 0.0 && of.constant == 0.0 && of.count > 1 {
+        // A guard that leaves zero upwards with a slope.
+        let mut quotient = zero;
+        (of.write)(1, &mut quotient.coefficients);
+        if quotient.coefficients[0] > 0.0 {
+            return quotient.search_of_multiple(to);
+        }
     }
-    .search(from, to, watch, 0.0)
+    let mut polynomial = zero;
+    (of.write)(0, &mut polynomial.coefficients);
+    polynomial.coefficients[0] = of.constant;
+    polynomial.search(from, to, watch, 0.0)
 }

@@ -48,16 +48,19 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         if tau != method.end() {
             method.step_exactly(equations, tau - start)?;
         }
-        let mut end = *method.state();
+        let mut accelerated;
+        let mut end = method.state();
         if !M::EXACT_ACCELERATIONS && depends_on_accelerations(conditions, guard) {
-            accelerate(equations, &mut end);
+            accelerated = *end;
+            accelerate(equations, &mut accelerated);
+            end = &accelerated;
         }
-        let value = value_at(equations, conditions, guard, &end);
+        let value = value_at(equations, conditions, guard, end);
         if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
             // There is no slope to follow: the place is as good as the dense output.
             return Ok(match crossing.kind == Kind::Touch || value < 0.0 {
                 true => Landing::On {
-                    state: end,
+                    state: *end,
                     beyond: 0.0,
                 },
                 false => Landing::Short,
@@ -67,22 +70,22 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             // Guard and condition together have no slope of their own.
             return Ok(match value < 0.0 {
                 true => Landing::On {
-                    state: end,
+                    state: *end,
                     beyond: 0.0,
                 },
                 false => {
                     let step = (start, window);
-                    beyond_the_crossing::<F, M>(equations, conditions, guard, &end, 0.0, step)
+                    beyond_the_crossing::<F, M>(equations, conditions, guard, end, 0.0, step)
                 }
             });
         }
-        let rate = rate_at(equations, guard, &end);
+        let rate = rate_at(equations, guard, end);
         let correction = -value / rate;
         if rate.is_nan() || rate >= 0.0 || end.t + correction > window {
             // No fall here: either the shortened step has its crossing earlier, or none at all.
             return Ok(match value < 0.0 && end.t == window {
                 true => Landing::On {
-                    state: end,
+                    state: *end,
                     beyond: 0.0,
                 },
                 false => Landing::Short,
@@ -91,7 +94,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let step = (start, window);
         if correction.abs() <= TAYLOR * (window - start) {
             return Ok(beyond_the_crossing::<F, M>(
-                equations, conditions, guard, &end, correction, step,
+                equations, conditions, guard, end, correction, step,
             ));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {

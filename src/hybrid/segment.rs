@@ -4,7 +4,6 @@ use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations};
 use super::failure::Reason;
-use super::few::copy_few;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
@@ -170,7 +169,9 @@ impl Simulation<'_> {
         let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
         let start = self.here.now;
         let until = Instant::new(last).since(start);
-        copy_few(&self.here.q, &mut self.at_start);
+        if drifts {
+            self.at_start.copy_from_slice(&self.here.q);
+        }
         let clock = Clock {
             start,
             signals: &problem.signals,

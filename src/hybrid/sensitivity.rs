@@ -6,7 +6,7 @@ use super::locate::rate_at;
 use super::plan::Watched;
 use super::problem::Accuracy;
 use super::roots::minimum;
-use crate::integrate::{Motion, ORDERS, OneStep, State, System};
+use crate::integrate::{Motion, OneStep, State, System};
 use crate::kernel::Free;
 use crate::model::{Guard, Mode};
 use nalgebra::SVector;
@@ -150,9 +150,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
                 defect = defect.zip_map(&(exact - a), |most, part| most.max(part.abs()));
             }
         }
-        let mut coefficients = [0.0; ORDERS];
-        let in_rate = (0..F).map(|i| dense.polynomial((i, true), 1.0, &mut coefficients));
-        let time = dense.length() / (in_rate.max().unwrap_or(2) - 1) as f64;
+        let time = dense.length() / (dense.coefficients(true) - 1) as f64;
         let [q, v, _] = motion(self.equations, dense, t, false);
         let value = self.value(t, &q, &v);
         let mut sum = 0.0;

@@ -85,7 +85,7 @@ pub(super) struct Simulation<'p> {
     pub here: Here,
     /// All coordinates, then all velocities, just before the last event.
     pub before: Box<[f64]>,
-    /// All coordinates at the start of the segment.
+    /// All coordinates at the start of the segment, where some drift.
     pub at_start: Box<[f64]>,
     /// Rates of the frozen coordinates in the present mode.
     pub drift: Box<[f64]>,

@@ -6,7 +6,7 @@ use super::report::{Counters, StepError, StepReport};
 use super::state::{Node, State};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
-use super::taylor::{Analytic, ORDERS, Series, Taylor, TaylorDense};
+use super::taylor::{Analytic, Series, Taylor, TaylorDense};
 use nalgebra::SVector;
 
 /// A one-step method with dense output, for systems of type `Y`.
@@ -88,9 +88,18 @@ pub trait Motion<const F: usize> {
         None
     }
 
-    /// Writes the coefficients, in powers of s = (t − start)/length, of `factor` times coordinate `index`
-    /// or its rate; gives their number. What is beyond them stays zero if it was.
-    fn polynomial(&self, of: (usize, bool), factor: f64, out: &mut [f64; ORDERS]) -> usize;
+    /// Number of coefficients of a coordinate, or of its `rate`; at most [`super::ORDERS`].
+    fn coefficients(&self, rate: bool) -> usize;
+
+    /// The coefficient of the power 0.
+    fn constant(&self, of: (usize, bool), factor: f64) -> f64;
+
+    /// Writes these coefficients, in powers of s = (t − start)/length, of `factor` times coordinate `index`
+    /// or its rate, from the power `first` on. What is beyond them stays as it was.
+    ///
+    /// # Panics
+    /// If there is no room for them.
+    fn polynomial(&self, of: (usize, bool), factor: f64, first: usize, out: &mut [f64]);
 }
 
 impl<const S: usize, const F: usize, Y: System<F>> OneStep<F, Y> for Radau<S, F>
@@ -220,24 +229,26 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
         self.at(t)
     }
 
-    fn polynomial(
-        &self,
-        (index, rate): (usize, bool),
-        factor: f64,
-        out: &mut [f64; ORDERS],
-    ) -> usize {
-        let degree = Self::DEGREE;
-        for power in 0..=degree {
-            out[power] = factor * self.coefficient(power)[index];
+    fn coefficients(&self, rate: bool) -> usize {
+        if rate { Self::DEGREE } else { Self::DEGREE + 1 }
+    }
+
+    fn constant(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
+        match rate {
+            true => factor * self.coefficient(1)[index] / self.length(),
+            false => factor * self.coefficient(0)[index],
         }
-        if !rate {
-            return degree + 1;
+    }
+
+    fn polynomial(&self, (index, rate): (usize, bool), factor: f64, first: usize, out: &mut [f64]) {
+        let coefficient = |power: usize| factor * self.coefficient(power)[index];
+        let powers = first..self.coefficients(rate);
+        for (power, out) in powers.clone().zip(&mut out[..powers.len()]) {
+            *out = match rate {
+                true => (power + 1) as f64 * coefficient(power + 1) / self.length(),
+                false => coefficient(power),
+            };
         }
-        for power in 0..degree {
-            out[power] = (power + 1) as f64 * out[power + 1] / self.length();
-        }
-        out[degree] = 0.0;
-        degree
     }
 }
 
@@ -258,7 +269,18 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
         Some((self.series(), self.orders()))
     }
 
-    fn polynomial(&self, of: (usize, bool), factor: f64, out: &mut [f64; ORDERS]) -> usize {
-        self.scaled(of, factor, out)
+    #[inline]
+    fn coefficients(&self, rate: bool) -> usize {
+        self.count(rate)
+    }
+
+    #[inline]
+    fn constant(&self, of: (usize, bool), factor: f64) -> f64 {
+        self.scaled_constant(of, factor)
+    }
+
+    #[inline]
+    fn polynomial(&self, of: (usize, bool), factor: f64, first: usize, out: &mut [f64]) {
+        self.scaled(of, factor, first, out);
     }
 }

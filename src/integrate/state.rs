@@ -5,14 +5,14 @@ use nalgebra::SVector;
 /// A point of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<const F: usize> {
-    /// Time, s.
-    pub t: f64,
     /// Coordinates.
     pub q: SVector<f64, F>,
     /// Velocities.
     pub v: SVector<f64, F>,
     /// Accelerations.
     pub a: SVector<f64, F>,
+    /// Time, s.
+    pub t: f64,
 }
 
 impl<const F: usize> State<F> {

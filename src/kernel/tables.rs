@@ -132,8 +132,8 @@ impl<const F: usize> ModeKernel<F> {
         guard: usize,
         orders: usize,
     ) -> impl Iterator<Item = f64> + use<'x, F> {
-        let rows = x.guard_series[..orders * self.guards].chunks_exact(self.guards);
-        rows.map(move |row| row[guard])
+        let all = x.guard_series[guard..].iter().step_by(self.guards);
+        all.take(orders).copied()
     }
 
     /// Whether trajectories of this mode can go side by side.

@@ -160,8 +160,13 @@ fn the_polynomials_of_coordinates_and_rates_are_the_motion() {
     for (index, rate) in [(0, false), (1, false), (0, true), (1, true)] {
         for factor in [1.0, -2.0] {
             let mut coefficients = [0.0; ORDERS];
-            let count = dense.polynomial((index, rate), factor, &mut coefficients);
+            dense.polynomial((index, rate), factor, 0, &mut coefficients);
+            let count = dense.coefficients(rate);
             assert!(coefficients[count..].iter().all(|&c| c == 0.0));
+            let mut higher = [0.0; ORDERS];
+            dense.polynomial((index, rate), factor, 2, &mut higher);
+            assert_eq!(higher[..ORDERS - 2], coefficients[2..]);
+            assert_eq!(dense.constant((index, rate), factor), coefficients[0]);
             for s in [0.0, 0.3, 1.0] {
                 let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
                 let (q, v, _) = dense.at_offset(s * dense.length());

@@ -6,7 +6,7 @@ use super::super::instant::Instant;
 use super::super::roots::{Kind, Watch};
 use super::group::{Group, Outcome};
 use crate::input::Signals;
-use crate::integrate::{LaneMask, Lanes, ORDERS};
+use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::lane_unmet;
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
@@ -191,17 +191,23 @@ impl<const F: usize, const W: usize> Group<F, W> {
 /// else.
 #[cold]
 fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool) -> Option<f64> {
-    let mut own = [0.0; ORDERS];
-    for (own, of) in own.iter_mut().zip(coefficients) {
-        *own = of.0[lane];
-    }
-    let watch = if dormant {
-        own[0] = 0.0;
-        Watch::Dormant
-    } else {
-        Watch::Armed
+    let own = guards::Coefficients {
+        count: coefficients.len(),
+        constant: match dormant {
+            true => 0.0,
+            false => coefficients[0].0[lane],
+        },
+        write: |first, out: &mut [f64]| {
+            for (own, of) in out.iter_mut().zip(&coefficients[first..]) {
+                *own = of.0[lane];
+            }
+        },
     };
-    let search = guards::search_window((&own, coefficients.len()), (0.0, 1.0), watch);
+    let watch = match dormant {
+        true => Watch::Dormant,
+        false => Watch::Armed,
+    };
+    let search = guards::search_window(own, (0.0, 1.0), watch);
     match search.crossing {
         None if search.watch == Watch::Armed => Some(f64::INFINITY),
         Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),

@@ -53,6 +53,7 @@ struct Armed<'p, const N: usize> {
 
 impl<const N: usize> Armed<'_, N> {
     /// The same within a piece, given the Bernstein coefficients there, after so many cuts.
+    #[inline]
     fn first_fall(&self, bernstein: &[f64; N], piece: (f64, f64), cuts: usize) -> Option<Search> {
         let (start, end) = piece;
         if end <= self.from || self.to <= start {
@@ -62,34 +63,7 @@ impl<const N: usize> Armed<'_, N> {
             Changes::None => Search::quiet(Watch::Armed),
             Changes::One(index) => self.only_fall((bernstein, index), piece)?,
             Changes::Other if cuts == MOST_CUTS => return None,
-            Changes::Other => {
-                let part = part_before_rise(bernstein);
-                let middle = start + part * (end - start);
-                // At the start the powers lead there at less cost, and what is behind may not be needed.
-                let mut left = [0.0; N];
-                let right = match start == 0.0 {
-                    true => {
-                        self.polynomial.on(middle).bernstein(&mut left);
-                        None
-                    }
-                    false => {
-                        let (own, right) = cut(bernstein, part);
-                        left = own;
-                        Some(right)
-                    }
-                };
-                let first = self.first_fall(&left, (start, middle), cuts + 1)?;
-                if first.crossing.is_some() {
-                    return Some(first);
-                }
-                let right = right.unwrap_or_else(|| cut(bernstein, part).1);
-                let second = self.first_fall(&right, (middle, end), cuts + 1)?;
-                let turn = first.turn.min(second.turn);
-                return Some(match second.crossing {
-                    Some(_) => second,
-                    None => Search { turn, ..second },
-                });
-            }
+            Changes::Other => return self.first_fall_of_parts(bernstein, piece, cuts),
         };
         Some(match search.crossing {
             Some(_) => search,
@@ -97,8 +71,45 @@ impl<const N: usize> Armed<'_, N> {
         })
     }
 
+    /// The same, of two parts in turn.
+    #[inline(never)]
+    fn first_fall_of_parts(
+        &self,
+        bernstein: &[f64; N],
+        (start, end): (f64, f64),
+        cuts: usize,
+    ) -> Option<Search> {
+        let part = part_before_rise(bernstein);
+        let middle = start + part * (end - start);
+        // At the start the powers lead there at less cost, and what is behind may not be needed.
+        let mut left = [0.0; N];
+        let right = match start == 0.0 {
+            true => {
+                self.polynomial.on(middle).bernstein(&mut left);
+                None
+            }
+            false => {
+                let (own, right) = cut(bernstein, part);
+                left = own;
+                Some(right)
+            }
+        };
+        let first = self.first_fall(&left, (start, middle), cuts + 1)?;
+        if first.crossing.is_some() {
+            return Some(first);
+        }
+        let right = right.unwrap_or_else(|| cut(bernstein, part).1);
+        let second = self.first_fall(&right, (middle, end), cuts + 1)?;
+        let turn = first.turn.min(second.turn);
+        Some(match second.crossing {
+            Some(_) => second,
+            None => Search { turn, ..second },
+        })
+    }
+
     /// The event in a piece where the Bernstein coefficients change their sign once, at the one of index
     /// `falls`: there is one root.
+    #[inline(always)]
     fn only_fall(
         &self,
         (bernstein, falls): (&[f64; N], usize),
@@ -189,6 +200,7 @@ impl Changes {
 }
 
 /// The only root between two places at which the polynomial has different signs, sought from `s` on.
+#[inline(always)]
 fn root<const N: usize>(
     polynomial: &Polynomial<N>,
     left: Point,

@@ -102,18 +102,9 @@ impl<const N: usize> Polynomial<N> {
         order.unwrap_or(0)
     }
 
-    /// Divides a power of s out that is a factor. `quotient` is zero before: what is given back is copied.
-    #[inline]
+    /// Divides a power of s out that is a factor; `quotient` is zero before.
     fn divide(&self, order: usize, quotient: &mut Self) {
-        let (from, to) = (&self.coefficients, &mut quotient.coefficients);
-        match order {
-            // A guard that leaves zero with a slope; a copy of unknown length is a call of the C library.
-            1 => to[..N - 1]
-                .iter_mut()
-                .zip(&from[1..])
-                .for_each(|(to, from)| *to = *from),
-            _ => to[..N - order].copy_from_slice(&from[order..]),
-        }
+        quotient.coefficients[..N - order].copy_from_slice(&self.coefficients[order..]);
     }
 
     /// The earliest event in `from` < s ≤ `to`, where 0 ≤ `from` ≤ `to` ≤ 1.
@@ -123,27 +114,18 @@ impl<const N: usize> Polynomial<N> {
     /// `noise` = 0 the leading zero coefficients of a polynomial that is dormant at `from` = 0 are
     /// divided out exactly; one that is dormant elsewhere is asleep until it exceeds the rounding
     /// error of its value, so expand a segment's polynomials about its start.
-    #[inline]
     pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
-        // c₀ + Σ min(cₖ, 0) bounds the polynomial on [0, 1] from below; c₀ itself is on the right side of 0,
-        // or this bound tells nothing.
         if watch == Watch::Armed {
-            let falls = sum_of(&self.coefficients, |c| (-c).max(0.0)) * (1.0 + Self::ROUNDING);
-            if self.coefficients[0] > falls {
-                return Search::above(self.coefficients[0] - falls);
-            }
+            return self.search_armed(from, to, noise);
         }
-        // As c₀ + Σ max(cₖ, 0) does from above.
+        // c₀ + Σ max(cₖ, 0) bounds the polynomial on [0, 1] from above; c₀ itself is on the right side of 0,
+        // or this bound tells nothing.
         if watch == Watch::Violated {
             let rises = sum_of(&self.coefficients, |c| c.max(0.0));
             if -self.coefficients[0] > rises * (1.0 + Self::ROUNDING) {
                 return Search::quiet(Watch::Violated);
             }
         }
-        self.search_beyond_bound(from, to, watch, noise)
-    }
-
-    fn search_beyond_bound(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
         if from >= to {
             Search::quiet(watch)
         } else if watch == Watch::Dormant && noise == 0.0 && from == 0.0 {
@@ -153,12 +135,31 @@ impl<const N: usize> Polynomial<N> {
         }
     }
 
-    fn search_pieces(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
-        if watch == Watch::Armed
-            && let Some(search) = first_fall(self, from, to)
-        {
-            return search;
+    /// The same for a guard that is armed.
+    #[inline(always)]
+    fn search_armed(&self, from: f64, to: f64, noise: f64) -> Search {
+        // As c₀ + Σ min(cₖ, 0) does from below.
+        let falls = sum_of(&self.coefficients, |c| (-c).max(0.0)) * (1.0 + Self::ROUNDING);
+        if self.coefficients[0] > falls {
+            return Search::above(self.coefficients[0] - falls);
         }
+        if from >= to {
+            return Search::quiet(Watch::Armed);
+        }
+        match first_fall(self, from, to) {
+            Some(search) => search,
+            None => self.search_pieces(from, to, Watch::Armed, noise),
+        }
+    }
+
+    /// The search, on 0 < s ≤ `to`, of a power of s times this polynomial, which is positive at s = 0: of a
+    /// guard that leaves zero upwards.
+    pub(in crate::hybrid) fn search_of_multiple(&self, to: f64) -> Search {
+        self.search_armed(0.0, to, 0.0).of_quotient()
+    }
+
+    #[inline(never)]
+    fn search_pieces(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
         if watch == Watch::Violated {
             let margin = Self::ROUNDING * sum_of(&self.coefficients, f64::abs);
             let mut bernstein = [0.0; N];
@@ -180,7 +181,7 @@ impl<const N: usize> Polynomial<N> {
             return Search::quiet(Watch::Dormant);
         }
         if coefficients[0] > 0.0 {
-            return quotient.search(0.0, to, Watch::Armed, 0.0).of_quotient();
+            return quotient.search_of_multiple(to);
         }
         // Cauchy: the quotient has no root nearer to 0 than this.
         let largest = coefficients[1..]
@@ -214,7 +215,7 @@ impl<const N: usize> Polynomial<N> {
         stretch(
             &self.coefficients,
             |own| *own,
-            (1.0, end),
+            (1.0, end, 0),
             &mut coefficients,
         );
         Self { coefficients }

@@ -1,6 +1,6 @@
 //! Dense output: the series itself.
 
-use super::series::{ORDERS, Series};
+use super::series::Series;
 use nalgebra::SVector;
 
 /// The motion within a step as the Taylor series about its start, which is what the method computed:
@@ -77,21 +77,36 @@ impl<const F: usize> TaylorDense<F> {
         )
     }
 
-    /// Writes the coefficients in powers of s = τ/length of `factor` times coordinate `index`, or its
-    /// rate; gives their number.
+    /// Number of coefficients of a coordinate, or of its rate.
     #[inline]
-    pub fn scaled(
-        &self,
-        (index, rate): (usize, bool),
-        factor: f64,
-        out: &mut [f64; ORDERS],
-    ) -> usize {
-        let (rows, count) = match rate {
-            false => (&self.series.q, self.order + 2),
-            true => (&self.series.v, self.order + 1),
+    pub fn count(&self, rate: bool) -> usize {
+        if rate { self.order + 1 } else { self.order + 2 }
+    }
+
+    /// `factor` times coordinate `index`, or its rate, at the start.
+    #[inline]
+    pub fn scaled_constant(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
+        let Series { q, v, .. } = &self.series;
+        if rate {
+            v[0][index] * factor
+        } else {
+            q[0][index] * factor
+        }
+    }
+
+    /// Writes the coefficients in powers of s = τ/length of `factor` times coordinate `index`, or its
+    /// rate, from a power on.
+    ///
+    /// # Panics
+    /// If there is no room for them.
+    #[inline]
+    pub fn scaled(&self, (index, rate): (usize, bool), factor: f64, from: usize, out: &mut [f64]) {
+        let rows = match rate {
+            false => &self.series.q,
+            true => &self.series.v,
         };
-        stretch(&rows[..count], |row| row[index], (factor, self.h), out);
-        count
+        let rows = &rows[..self.count(rate)];
+        stretch(rows, |row| row[index], (factor, self.h, from), out);
     }
 }
 
@@ -117,17 +132,21 @@ fn sum<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f6
     (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2
 }
 
-/// Of the coefficients in powers of s writes those of `factor` times the polynomial in powers of s/`scale`:
-/// two powers side by side, since a product waits for the one before.
+/// Of the coefficients in powers of s writes those of `factor` times the polynomial in powers of s/`scale`,
+/// from the power `first` on: two powers side by side, since a product waits for the one before.
 #[inline(always)]
 pub(crate) fn stretch<T>(
     from: &[T],
     coefficient: impl Fn(&T) -> f64,
-    (factor, scale): (f64, f64),
+    (factor, scale, first): (f64, f64, usize),
     out: &mut [f64],
 ) {
     let squared = scale * scale;
     let mut powers = [factor, factor * scale];
+    for _ in 0..first {
+        powers = [powers[1], powers[0] * squared];
+    }
+    let from = &from[first.min(from.len())..];
     let (pairs, last) = from.as_chunks::<2>();
     let (out_pairs, out_last) = out[..from.len()].as_chunks_mut::<2>();
     for (out, pair) in out_pairs.iter_mut().zip(pairs) {

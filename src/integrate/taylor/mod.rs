@@ -143,9 +143,7 @@ impl<const F: usize> Taylor<F> {
             v: *v,
             a: *a,
         };
-        self.start = self.end;
         self.lost = Lost::nothing();
-        self.lost_at_start = self.lost;
         self.open = None;
         self.stepped = false;
         self.restarted = true;
@@ -157,7 +155,7 @@ impl<const F: usize> Taylor<F> {
         self.order
     }
 
-    /// The state the last step started from.
+    /// The state the last step started from; after a restart, that of the step before it.
     pub fn start(&self) -> &State<F> {
         &self.start
     }
@@ -207,24 +205,26 @@ impl<const F: usize> Taylor<F> {
             self.end.t
         );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
-        let origin = *self.state();
+        self.state();
         self.restarted &= !self.stepped;
         // Before the expansion, so that no division is left to wait for behind it.
-        self.weights = self.weights_at(&origin);
-        self.expand(system, &origin)?;
-        let remaining = (t_end - origin.t) - self.lost.t;
-        let horizon = system.horizon(origin.t) - origin.t;
+        self.weights = self.weights_at(&self.end);
+        self.expand(system)?;
+        let from = self.end.t;
+        let remaining = (t_end - from) - self.lost.t;
+        let horizon = system.horizon(from) - from;
         self.length = self.accurate_length();
         let h = fit(self.length, remaining, h_max.min(horizon));
-        if origin.t + h == origin.t {
+        if from + h == from {
             return Err(StepError::Tolerance {
-                t: origin.t,
+                t: from,
                 h,
                 error: 1.0,
             });
         }
         let t = (h == remaining).then_some(t_end);
-        self.finish(&origin, self.lost, h, t);
+        self.start_here();
+        self.finish(h, t);
         self.dense.h = h;
         self.counters.steps += 1;
         Ok(self.report())
@@ -244,23 +244,20 @@ impl<const F: usize> Taylor<F> {
         h: f64,
     ) -> Result<StepReport, StepError> {
         assert!(h > 0.0, "h = {h} is not positive");
-        let origin = self.start;
         if !self.stepped {
-            self.expand(system, &origin)?;
+            self.expand(system)?;
+            self.start_here();
             self.dense.h = h;
         }
-        self.finish(&origin, self.lost_at_start, h, None);
+        self.finish(h, None);
         self.counters.retaken += 1;
         Ok(self.report())
     }
 
-    /// Expands the motion about `origin`.
-    fn expand<Y: Analytic<F>>(
-        &mut self,
-        system: &mut Y,
-        origin: &State<F>,
-    ) -> Result<(), StepError> {
+    /// Expands the motion about the end of the last step.
+    fn expand<Y: Analytic<F>>(&mut self, system: &mut Y) -> Result<(), StepError> {
         self.stepped = false;
+        let origin = &self.end;
         let t = origin.t;
         if let Some(what) = origin.not_finite() {
             return Err(StepError::NonFinite { t, h: 0.0, what });
@@ -273,7 +270,7 @@ impl<const F: usize> Taylor<F> {
             Some(inverse) => inverse,
             None => self.invert(&mass)?,
         };
-        let series = &mut self.dense.series;
+        let (origin, series) = (&self.end, &mut self.dense.series);
         // A restart gives the accelerations: zero where they are not told from it, so that the motion
         // leaves with the sign of the jerk.
         series.a[0] = match self.restarted {
@@ -367,13 +364,18 @@ impl<const F: usize> Taylor<F> {
         if lag < least { 0.0 } else { lag }
     }
 
-    /// Ends the step from `origin` after `h`, at `t` if that is given.
+    /// The step starts where the last one ended.
     #[inline]
-    fn finish(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, t: Option<f64>) {
-        (self.start, self.lost_at_start) = (*origin, lost);
+    fn start_here(&mut self) {
+        (self.start, self.lost_at_start) = (self.end, self.lost);
+    }
+
+    /// Ends the step after `h`, at `t` if that is given.
+    #[inline]
+    fn finish(&mut self, h: f64, t: Option<f64>) {
         (self.end.t, self.lost.t) = match t {
             Some(t) => (t, 0.0),
-            None => add(origin.t, h, lost.t),
+            None => add(self.start.t, h, self.lost_at_start.t),
         };
         self.dense.t_end = self.end.t;
         self.open = Some(h);
