@@ -401,7 +401,7 @@ fn coinciding_events_are_a_set() {
         1.0,
         &[Watch::Armed; 3],
         &mut found,
-        |i, from, to, watch| guards[i].search(from, to, watch, 0.0),
+        |i, from, to, watch, found| *found = guards[i].search(from, to, watch, 0.0),
     );
     assert_eq!((set.time, set.resolved), (Some(0.5_f64.next_up()), true));
     let kinds = found.map(|f| f.crossing.map(|c| c.kind));
@@ -417,9 +417,15 @@ fn signs_of_the_others_are_those_at_the_event() {
     let watches = [Watch::Armed, Watch::Violated, Watch::Violated];
     let mut found = blank::<3>();
     let mut find = |to| {
-        let set = earliest(0.0, to, &watches, &mut found, |i, from, to, watch| {
-            guards[i].search(from, to, watch, 0.0)
-        });
+        let set = earliest(
+            0.0,
+            to,
+            &watches,
+            &mut found,
+            |i, from, to, watch, found| {
+                *found = guards[i].search(from, to, watch, 0.0);
+            },
+        );
         (
             set.time,
             found.map(|f| f.crossing.is_some()),
@@ -454,7 +460,7 @@ fn neighbouring_brackets_are_one_set_in_any_order() {
             1.0,
             &[Watch::Armed; 4],
             &mut found,
-            |i, from, to, watch| search(|t| root(i) - t, from, to, watch, 0.0),
+            |i, from, to, watch, found| *found = search(|t| root(i) - t, from, to, watch, 0.0),
         );
         // The earliest bracket ends where the second begins; the third shares nothing with it.
         assert_eq!(set.time, Some(half.next_up().next_up()));

@@ -22,15 +22,12 @@ pub(super) struct Signs {
 }
 
 /// Result of [`cut`].
-pub(super) enum Cut<const F: usize> {
+pub(super) enum Cut {
     /// No event: the step, perhaps shortened, is the motion.
     Nothing,
-    /// A guard, by its index in the mode, is crossed `beyond` after the end of the shortened step.
-    Event {
-        guard: usize,
-        state: State<F>,
-        beyond: f64,
-    },
+    /// A guard, by its index in the mode, is crossed `beyond` after the end of the shortened step; the
+    /// state there was written.
+    Event { guard: usize, beyond: f64 },
     /// A guard that was zero at the start of the segment leaves it downwards.
     Violated { guard: usize },
 }
@@ -66,8 +63,8 @@ pub(super) fn cut<'a, const F: usize>(
     conditions: &mut Conditions,
     mode: &'static Mode,
     watched: &[Watched],
-    signs: &mut Signs,
-) -> Result<Cut<F>, Reason> {
+    (signs, landed): (&mut Signs, &mut State<F>),
+) -> Result<Cut, Reason> {
     let start = method.start().t;
     signs.from.fill(start);
     loop {
@@ -78,7 +75,7 @@ pub(super) fn cut<'a, const F: usize>(
             found,
             from,
         } = signs;
-        let hit = earliest(start, to, watches, found, |i, _, to, watch| {
+        let hit = earliest(start, to, watches, found, |i, _, to, watch, found| {
             let guard = &mode.guards[watched[i].guard];
             let window = (from[i].min(to), to);
             guards::search(
@@ -87,8 +84,8 @@ pub(super) fn cut<'a, const F: usize>(
                 dense,
                 (guard, watched[i]),
                 window,
-                watch,
-            )
+                (watch, found),
+            );
         });
         let Some(first) = hit
             .time
@@ -111,11 +108,10 @@ pub(super) fn cut<'a, const F: usize>(
             from[first] = crossing.outside;
             continue;
         }
-        match land(method, equations, conditions, guard, crossing)? {
-            Landing::On { state, beyond } => {
+        match land(method, equations, conditions, guard, crossing, landed)? {
+            Landing::On { beyond } => {
                 return Ok(Cut::Event {
                     guard: index,
-                    state,
                     beyond,
                 });
             }

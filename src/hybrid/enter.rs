@@ -110,14 +110,15 @@ impl Simulation<'_> {
     }
 
     /// Enters the present mode again after an event in it, where that takes no more than what most events
-    /// ask for: guards that are positive, or zero and rise. Gives free coordinates, velocities and
-    /// accelerations; `None`: the mode is to be entered as any other.
+    /// ask for: guards that are positive, or zero and rise. Given free coordinates and velocities, gives them
+    /// and the accelerations; `None`: the mode is to be entered as any other.
     pub fn enter_again<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
+        q: SVector<f64, F>,
+        v: SVector<f64, F>,
     ) -> Result<Option<[SVector<f64, F>; 3]>, Reason> {
         let mode = self.mode();
-        let [q, v, _] = self.here.free::<F>(mode.free);
         if mode.drifts.contains(&true)
             || self
                 .check_inertia(&kernel.inertia(&self.context, &q, &v))
@@ -293,7 +294,10 @@ mod tests {
         (simulation.here.q[0], simulation.here.v[0]) = (y, v);
         simulation.set_context();
         let mode = simulation.mode();
-        let again = with_kernel!(&mode.kernels, k => simulation.enter_again(k).unwrap().is_some());
+        let again = with_kernel!(&mode.kernels, k => {
+            let [q, v, _] = simulation.here.free(mode.free);
+            simulation.enter_again(k, q, v).unwrap().is_some()
+        });
         again.then(|| simulation.signs.watches[0])
     }
 

@@ -58,7 +58,13 @@ impl Simulation<'_> {
         self.visited.clear();
         self.fire_by(kernel, guard)?;
         match self.here.mode == mode && !self.is_over() {
-            true => self.enter_again(kernel),
+            true => {
+                // From what the reset has written: the copy of it waits for its way to memory.
+                let (n, free) = (self.here.q.len(), self.mode().free);
+                let gather = |from: usize| SVector::from_fn(|i, _| self.next[from + free[i]]);
+                let (q, v) = (gather(0), gather(n));
+                self.enter_again(kernel, q, v)
+            }
             false => Ok(None),
         }
     }

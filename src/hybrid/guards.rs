@@ -171,26 +171,32 @@ fn motion_at_stage<const F: usize>(
     [q, v, a]
 }
 
-/// Searches a guard on the window `from` < τ ≤ `to` of a step.
+/// Searches a guard on the window `from` < τ ≤ `to` of a step; writes what is found.
 pub(super) fn search<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
     (guard, watched): (&Guard, Watched),
     window: (f64, f64),
-    watch: Watch,
-) -> Search {
+    (watch, found): (Watch, &mut Search),
+) {
     match guard.shape {
         GuardShape::Linear { .. } if watched.condition.is_none() => {
-            search_linear(equations, dense, guard, window, watch)
+            search_linear(equations, dense, guard, window, (watch, found));
         }
         _ => {
             // A guard that acts together with conditions is judged by its own values where one of
             // them changes its sign; its series has its roots elsewhere, by the tolerance.
             if !conditions.are_part_of(guard)
-                && let Some(found) = search_series(equations, dense, guard, watched, window, watch)
+                && search_series(
+                    equations,
+                    dense,
+                    (guard, watched),
+                    window,
+                    (watch, &mut *found),
+                )
             {
-                return found;
+                return;
             }
             let accelerations = !matches!(
                 guard.shape,
@@ -223,7 +229,7 @@ pub(super) fn search<const F: usize>(
                     at,
                 )
             };
-            search_function(evaluate, window, watch)
+            *found = search_function(evaluate, window, watch);
         }
     }
 }
@@ -261,8 +267,8 @@ fn search_linear<const F: usize>(
     dense: &impl Motion<F>,
     guard: &Guard,
     window: (f64, f64),
-    watch: Watch,
-) -> Search {
+    (watch, found): (Watch, &mut Search),
+) {
     let GuardShape::Linear {
         index,
         rate,
@@ -295,25 +301,26 @@ fn search_linear<const F: usize>(
         constant,
         write: |first, out: &mut [f64]| dense.polynomial((index, rate), factor, first, out),
     };
-    search_polynomial(coefficients, dense, window, watch)
+    search_polynomial(coefficients, dense, window, (watch, found));
 }
 
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
 ///
-/// `None` if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
+/// False if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
 /// that the last terms are not small: two derivatives of the motion multiply its last term by order².
 fn search_series<const F: usize>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
-    guard: &Guard,
-    watched: Watched,
+    (guard, watched): (&Guard, Watched),
     window: (f64, f64),
-    watch: Watch,
-) -> Option<Search> {
-    let (series, orders) = dense.series()?;
+    (watch, found): (Watch, &mut Search),
+) -> bool {
+    let Some((series, orders)) = dense.series() else {
+        return false;
+    };
     let tau = dense.start();
     if !equations.expand_guards(tau, orders, series) {
-        return None;
+        return false;
     }
     let (kernel, context) = (equations.kernel, &*equations.context);
     let mut powers = [0.0; ORDERS];
@@ -347,8 +354,8 @@ fn search_series<const F: usize>(
             }
         },
     };
-    let search = search_polynomial(coefficients, dense, window, watch);
-    falls_off.then_some(search)
+    search_polynomial(coefficients, dense, window, (watch, found));
+    falls_off
 }
 
 /// A polynomial in s.
@@ -367,33 +374,32 @@ fn search_polynomial<const F: usize>(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     dense: &impl Motion<F>,
     (from, to): (f64, f64),
-    watch: Watch,
-) -> Search {
+    (watch, found): (Watch, &mut Search),
+) {
     let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
-    let mut search = search_window(coefficients, (local(from), local(to)), watch);
-    if let Some(crossing) = &mut search.crossing {
+    search_window(coefficients, (local(from), local(to)), (watch, &mut *found));
+    if let Some(crossing) = &mut found.crossing {
         crossing.inside = dense.start() + crossing.inside * dense.length();
         crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
     }
-    search
 }
 
 /// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
 pub(super) fn search_window(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     window: (f64, f64),
-    watch: Watch,
-) -> Search {
+    of: (Watch, &mut Search),
+) {
     // Work grows with the square of the room.
     match coefficients.count {
-        0..=4 => search_part::<4>(coefficients, window, watch),
-        5..=8 => search_part::<8>(coefficients, window, watch),
-        9..=12 => search_part::<12>(coefficients, window, watch),
-        13..=16 => search_part::<16>(coefficients, window, watch),
-        17..=20 => search_part::<20>(coefficients, window, watch),
-        21..=24 => search_part::<24>(coefficients, window, watch),
-        25..=28 => search_part::<28>(coefficients, window, watch),
-        _ => search_part::<ORDERS>(coefficients, window, watch),
+        0..=4 => search_part::<4>(coefficients, window, of),
+        5..=8 => search_part::<8>(coefficients, window, of),
+        9..=12 => search_part::<12>(coefficients, window, of),
+        13..=16 => search_part::<16>(coefficients, window, of),
+        17..=20 => search_part::<20>(coefficients, window, of),
+        21..=24 => search_part::<24>(coefficients, window, of),
+        25..=28 => search_part::<28>(coefficients, window, of),
+        _ => search_part::<ORDERS>(coefficients, window, of),
     }
 }
 
@@ -403,21 +409,24 @@ pub(super) fn search_window(
 fn search_part<const N: usize>(
     mut of: Coefficients<impl FnMut(usize, &mut [f64])>,
     (from, to): (f64, f64),
-    watch: Watch,
-) -> Search {
-    let zero = Polynomial {
+    (watch, found): (Watch, &mut Search),
+) {
+    let mut polynomial = Polynomial {
         coefficients: [0.0; N],
     };
-    if watch == Watch::Dormant && from == 0.0 && to > 0.0 && of.constant == 0.0 && of.count > 1 {
+    let dormant = watch == Watch::Dormant && from == 0.0 && to > 0.0;
+    if dormant && of.constant == 0.0 && of.count > 1 {
         // A guard that leaves zero upwards with a slope.
-        let mut quotient = zero;
-        (of.write)(1, &mut quotient.coefficients);
-        if quotient.coefficients[0] > 0.0 {
-            return quotient.search_of_multiple(to);
+        (of.write)(1, &mut polynomial.coefficients);
+        if polynomial.coefficients[0] > 0.0 {
+            return polynomial.search_of_multiple(to, found);
         }
+        polynomial.coefficients = [0.0; N];
     }
-    let mut polynomial = zero;
     (of.write)(0, &mut polynomial.coefficients);
     polynomial.coefficients[0] = of.constant;
-    polynomial.search(from, to, watch, 0.0)
+    match watch {
+        Watch::Armed => polynomial.search_armed(from, to, 0.0, found),
+        _ => *found = polynomial.search(from, to, watch, 0.0),
+    }
 }

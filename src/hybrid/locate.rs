@@ -15,11 +15,9 @@ use crate::model::{Guard, GuardShape};
 use nalgebra::SVector;
 
 /// Result of [`land`].
-pub(super) enum Landing<const F: usize> {
-    /// The state just beyond the crossing: the end of the step, moved on by `beyond`.
+pub(super) enum Landing {
+    /// The state just beyond the crossing was written: the end of the step, moved on by `beyond`.
     On {
-        /// State at `beyond` after the end of the step.
-        state: State<F>,
         /// Duration from the end of the step, s; may be negative.
         beyond: f64,
     },
@@ -31,14 +29,15 @@ pub(super) enum Landing<const F: usize> {
 /// leaves out is of the order of its cube, 2⁻⁵⁴ (cube root of the unit roundoff, rounded down).
 const TAYLOR: f64 = 3.8e-6;
 
-/// Retakes the last step so that it ends at `crossing` of `guard`.
+/// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
 pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: &Guard,
     crossing: Crossing,
-) -> Result<Landing<F>, Reason> {
+    landed: &mut State<F>,
+) -> Result<Landing, Reason> {
     let start = method.start().t;
     let window = method.end();
     // A guard that all but fell at the end of the step before does so within the rounding of the start.
@@ -58,24 +57,20 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let value = value_at(equations, conditions, guard, end);
         if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
             // There is no slope to follow: the place is as good as the dense output.
+            *landed = *end;
             return Ok(match crossing.kind == Kind::Touch || value < 0.0 {
-                true => Landing::On {
-                    state: *end,
-                    beyond: 0.0,
-                },
+                true => Landing::On { beyond: 0.0 },
                 false => Landing::Short,
             });
         }
         if conditions.are_part_of(guard) {
             // Guard and condition together have no slope of their own.
+            *landed = *end;
             return Ok(match value < 0.0 {
-                true => Landing::On {
-                    state: *end,
-                    beyond: 0.0,
-                },
+                true => Landing::On { beyond: 0.0 },
                 false => {
-                    let step = (start, window);
-                    beyond_the_crossing::<F, M>(equations, conditions, guard, end, 0.0, step)
+                    let (step, place) = ((start, window), (end, 0.0));
+                    beyond_the_crossing::<F, M>(equations, conditions, guard, place, step, landed)
                 }
             });
         }
@@ -83,18 +78,17 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let correction = -value / rate;
         if rate.is_nan() || rate >= 0.0 || end.t + correction > window {
             // No fall here: either the shortened step has its crossing earlier, or none at all.
+            *landed = *end;
             return Ok(match value < 0.0 && end.t == window {
-                true => Landing::On {
-                    state: *end,
-                    beyond: 0.0,
-                },
+                true => Landing::On { beyond: 0.0 },
                 false => Landing::Short,
             });
         }
         let step = (start, window);
         if correction.abs() <= TAYLOR * (window - start) {
+            let place = (end, correction);
             return Ok(beyond_the_crossing::<F, M>(
-                equations, conditions, guard, end, correction, step,
+                equations, conditions, guard, place, step, landed,
             ));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {
@@ -115,7 +109,7 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
     }
 }
 
-/// The first state on the far side, from the end of the step on by about `correction`.
+/// Writes the first state on the far side, from the end of the step on by about `correction`.
 ///
 /// The guard's own values decide. Its rounding may keep them at or above zero at the computed root: the
 /// move is lengthened by as much as that takes, doubled each time, until it is strictly crossed; after
@@ -126,10 +120,10 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: &Guard,
-    end: &State<F>,
-    correction: f64,
+    (end, correction): (&State<F>, f64),
     step: (f64, f64),
-) -> Landing<F> {
+    landed: &mut State<F>,
+) -> Landing {
     let of_accelerations = depends_on_accelerations(conditions, guard);
     let smooth = TAYLOR * (step.1 - step.0);
     let elapsed = end.t - step.0;
@@ -142,17 +136,17 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     let mut place = (f64::EPSILON * passed.max(correction.abs())).max(f64::MIN_POSITIVE);
     let mut beyond = correction;
     loop {
-        let mut state = moved(end, beyond);
+        *landed = moved(end, beyond);
         if of_accelerations {
-            accelerate(equations, &mut state);
+            accelerate(equations, landed);
         }
-        let value = value_at(equations, conditions, guard, &state);
+        let value = value_at(equations, conditions, guard, landed);
         if value < 0.0 || !value.is_finite() {
             // What the equations gave at the end is not exact here; a polynomial is as good in both places.
             if M::EXACT_ACCELERATIONS && !of_accelerations {
-                accelerate(equations, &mut state);
+                accelerate(equations, landed);
             }
-            return Landing::On { state, beyond };
+            return Landing::On { beyond };
         }
         if place > smooth {
             return Landing::Short;

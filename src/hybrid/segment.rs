@@ -202,6 +202,8 @@ impl Simulation<'_> {
         let stiffness = &mut self.stiffness[self.here.mode];
         stiffness.begin();
         let mut ledger_from = 0.0;
+        // The end of the step, or of what its first event leaves of it.
+        let mut state = *method.state();
         let relative = problem.accuracy.relative;
 
         loop {
@@ -213,7 +215,7 @@ impl Simulation<'_> {
                 &mut conditions,
                 mode,
                 watched,
-                &mut self.signs,
+                (&mut self.signs, &mut state),
             )?;
             let searched = Searched {
                 index: self.here.mode,
@@ -225,22 +227,17 @@ impl Simulation<'_> {
             };
             self.doubts
                 .look(&searched, method, &mut equations, &mut conditions);
-            let event = match cut {
-                Cut::Nothing => None,
-                Cut::Event {
-                    guard,
-                    state,
-                    beyond,
-                } => Some((guard, state, beyond)),
+            let (event, beyond) = match cut {
+                Cut::Nothing => {
+                    state = *method.state();
+                    (None, 0.0)
+                }
+                Cut::Event { guard, beyond } => (Some(guard), beyond),
                 Cut::Violated { guard } => {
                     return Ok(Stop::Violated(Violation { guard, rests: true }));
                 }
             };
 
-            let (state, beyond) = match event {
-                Some((_, state, beyond)) => (state, beyond),
-                None => (*method.state(), 0.0),
-            };
             let end = method.end();
             let dense = method.dense().expect("a step was made");
 
@@ -353,7 +350,7 @@ impl Simulation<'_> {
             }
 
             let h = end - method.start().t;
-            if let Some((guard, ..)) = event {
+            if let Some(guard) = event {
                 if chooses && !is_explicit {
                     stiffness.implicit_step(h);
                 }

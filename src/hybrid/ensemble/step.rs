@@ -3,7 +3,7 @@
 
 use super::super::guards;
 use super::super::instant::Instant;
-use super::super::roots::{Kind, Watch};
+use super::super::roots::{Kind, Search, Watch};
 use super::group::{Group, Outcome};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes};
@@ -207,7 +207,8 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
         true => Watch::Dormant,
         false => Watch::Armed,
     };
-    let search = guards::search_window(own, (0.0, 1.0), watch);
+    let mut search = Search::quiet(watch);
+    guards::search_window(own, (0.0, 1.0), (watch, &mut search));
     match search.crossing {
         None if search.watch == Watch::Armed => Some(f64::INFINITY),
         Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),

@@ -14,8 +14,8 @@ pub struct Earliest {
 
 /// The set of the earliest events of several guards in (`from`, `to`].
 ///
-/// `search(index, from, to, watch)` searches one guard, by [`Polynomial::search`] or by
-/// [`function::search`]. Events whose brackets share a double are one set. On return
+/// `search(index, from, to, watch, found)` searches one guard, by [`Polynomial::search`] or by
+/// [`function::search`], and writes what it finds. Events whose brackets share a double are one set. On return
 /// `found[index]` holds the crossing of each member, in the order of the guards, and of every guard
 /// the sign remembered at the time of the set (at `to`, where there is none); the answer does not
 /// depend on the order.
@@ -31,7 +31,7 @@ pub fn earliest(
     to: f64,
     watches: &[Watch],
     found: &mut [Search],
-    mut search: impl FnMut(usize, f64, f64, Watch) -> Search,
+    mut search: impl FnMut(usize, f64, f64, Watch, &mut Search),
 ) -> Earliest {
     assert_eq!(
         watches.len(),
@@ -40,7 +40,7 @@ pub fn earliest(
     );
     let mut happens = false;
     for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
-        *found = search(index, from, to, watch);
+        search(index, from, to, watch, found);
         happens |= found.crossing.is_some();
     }
     if let [only] = found {
@@ -64,7 +64,7 @@ pub fn earliest(
             // Without an event an unchanged sign has not changed on the way either.
             let sign_unknown = found.crossing.is_none() && found.watch != watch;
             if event_beyond || sign_unknown {
-                *found = search(index, from, end, watch);
+                search(index, from, end, watch, found);
             }
         }
     }

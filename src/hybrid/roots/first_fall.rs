@@ -22,13 +22,14 @@ const MOST_ITERATIONS: usize = 8;
 /// cube root of the unit roundoff.
 const LAST_STEP: f64 = 4.8e-6;
 
-/// The first event of an armed guard in `from` < s ≤ `to`, or that there is none; `None` where this
+/// Writes the first event of an armed guard in `from` < s ≤ `to`, or that there is none; false where this
 /// search cannot tell.
 pub(super) fn first_fall<const N: usize>(
     polynomial: &Polynomial<N>,
     from: f64,
     to: f64,
-) -> Option<Search> {
+    found: &mut Search,
+) -> bool {
     let size = sum_of(&polynomial.coefficients, f64::abs);
     let guard = Armed {
         polynomial,
@@ -38,7 +39,7 @@ pub(super) fn first_fall<const N: usize>(
     };
     let mut bernstein = [0.0; N];
     polynomial.bernstein(&mut bernstein);
-    guard.first_fall(&bernstein, (0.0, 1.0), 0)
+    guard.first_fall(&bernstein, (0.0, 1.0), 0, found)
 }
 
 /// An armed guard on a window.
@@ -54,21 +55,28 @@ struct Armed<'p, const N: usize> {
 impl<const N: usize> Armed<'_, N> {
     /// The same within a piece, given the Bernstein coefficients there, after so many cuts.
     #[inline]
-    fn first_fall(&self, bernstein: &[f64; N], piece: (f64, f64), cuts: usize) -> Option<Search> {
+    fn first_fall(
+        &self,
+        bernstein: &[f64; N],
+        piece: (f64, f64),
+        cuts: usize,
+        found: &mut Search,
+    ) -> bool {
         let (start, end) = piece;
         if end <= self.from || self.to <= start {
-            return Some(Search::quiet(Watch::Armed));
+            *found = Search::quiet(Watch::Armed);
+            return true;
         }
-        let search = match Changes::of(bernstein, (1 + cuts) as f64 * self.rounding) {
-            Changes::None => Search::quiet(Watch::Armed),
-            Changes::One(index) => self.only_fall((bernstein, index), piece)?,
-            Changes::Other if cuts == MOST_CUTS => return None,
-            Changes::Other => return self.first_fall_of_parts(bernstein, piece, cuts),
-        };
-        Some(match search.crossing {
-            Some(_) => search,
-            None => Search::above(least(bernstein)),
-        })
+        match Changes::of(bernstein, (1 + cuts) as f64 * self.rounding) {
+            Changes::None => {
+                *found = Search::above(least(bernstein));
+                true
+            }
+            Changes::One(index) => self.only_fall((bernstein, index), piece, found),
+            Changes::Other => {
+                cuts < MOST_CUTS && self.first_fall_of_parts(bernstein, piece, cuts, found)
+            }
+        }
     }
 
     /// The same, of two parts in turn.
@@ -78,7 +86,8 @@ impl<const N: usize> Armed<'_, N> {
         bernstein: &[f64; N],
         (start, end): (f64, f64),
         cuts: usize,
-    ) -> Option<Search> {
+        found: &mut Search,
+    ) -> bool {
         let part = part_before_rise(bernstein);
         let middle = start + part * (end - start);
         // At the start the powers lead there at less cost, and what is behind may not be needed.
@@ -94,17 +103,21 @@ impl<const N: usize> Armed<'_, N> {
                 Some(right)
             }
         };
-        let first = self.first_fall(&left, (start, middle), cuts + 1)?;
-        if first.crossing.is_some() {
-            return Some(first);
+        if !self.first_fall(&left, (start, middle), cuts + 1, found) {
+            return false;
         }
+        if found.crossing.is_some() {
+            return true;
+        }
+        let turn = found.turn;
         let right = right.unwrap_or_else(|| cut(bernstein, part).1);
-        let second = self.first_fall(&right, (middle, end), cuts + 1)?;
-        let turn = first.turn.min(second.turn);
-        Some(match second.crossing {
-            Some(_) => second,
-            None => Search { turn, ..second },
-        })
+        if !self.first_fall(&right, (middle, end), cuts + 1, found) {
+            return false;
+        }
+        if found.crossing.is_none() {
+            found.turn = found.turn.min(turn);
+        }
+        true
     }
 
     /// The event in a piece where the Bernstein coefficients change their sign once, at the one of index
@@ -114,11 +127,13 @@ impl<const N: usize> Armed<'_, N> {
         &self,
         (bernstein, falls): (&[f64; N], usize),
         (start, end): (f64, f64),
-    ) -> Option<Search> {
+        found: &mut Search,
+    ) -> bool {
         let (from, to) = (self.from.max(start), self.to.min(end));
         let at_end = self.polynomial.value(to);
         if at_end >= 0.0 {
-            return (to < end).then(|| Search::quiet(Watch::Armed));
+            *found = Search::above(least(bernstein));
+            return to < end;
         }
         // Where the polygon of the coefficients falls through zero.
         let (before, after) = (bernstein[falls - 1], bernstein[falls]);
@@ -130,10 +145,11 @@ impl<const N: usize> Armed<'_, N> {
             false => self.polynomial.value(from),
         };
         let (left, right) = ((from, at_start), (to, at_end));
-        match left.1 > 0.0 {
-            true => root(self.polynomial, left, right, s),
-            false => None,
+        let is_bracket = left.1 > 0.0;
+        if is_bracket {
+            *found = root(self.polynomial, left, right, s);
         }
+        is_bracket
     }
 }
 
@@ -206,7 +222,7 @@ fn root<const N: usize>(
     left: Point,
     right: Point,
     mut s: f64,
-) -> Option<Search> {
+) -> Search {
     let (mut l, mut r) = (left, right);
     let derivatives = polynomial.derivatives();
     let mut value = polynomial.value(s);
@@ -261,11 +277,11 @@ fn root<const N: usize>(
     }
     let (l, r) = close(&mut own, l, r);
     let event = Search::found(l.0, r.0, Kind::Fall, Watch::Violated);
-    Some(match parabola {
+    match parabola {
         // The bottom of the parabola where the iteration has ended.
         (value, slope, curvature) if curvature > 0.0 => {
             event.turning(value - slope * slope / (2.0 * curvature))
         }
         _ => event,
-    })
+    }
 }

@@ -219,9 +219,12 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
                     ));
                 }
                 let ends = (start, quotients[DEGREE]);
-                let quotient =
+                let mut quotient =
                     Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed);
-                return quotient.map(Search::of_quotient);
+                if let Some(search) = &mut quotient {
+                    search.of_quotient();
+                }
+                return quotient;
             }
             if !interpolant.is_resolved(noise) {
                 return None;

@@ -178,16 +178,13 @@ impl Search {
         }
     }
 
-    /// What was found of the guard divided by a power of the time since its zero: the events are the
-    /// same, the values are not.
-    pub(crate) fn of_quotient(self) -> Self {
-        Self {
-            turn: match self.crossing {
-                Some(_) => f64::NEG_INFINITY,
-                None => f64::INFINITY,
-            },
-            ..self
-        }
+    /// Of what was found of the guard divided by a power of the time since its zero makes what is found of the
+    /// guard: the events are the same, the values are not.
+    pub(crate) fn of_quotient(&mut self) {
+        self.turn = match self.crossing {
+            Some(_) => f64::NEG_INFINITY,
+            None => f64::INFINITY,
+        };
     }
 
     /// The same event, of a guard that would turn back at the value `turn`.

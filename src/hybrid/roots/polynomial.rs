@@ -115,8 +115,10 @@ impl<const N: usize> Polynomial<N> {
     /// divided out exactly; one that is dormant elsewhere is asleep until it exceeds the rounding
     /// error of its value, so expand a segment's polynomials about its start.
     pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
+        let mut search = Search::quiet(watch);
         if watch == Watch::Armed {
-            return self.search_armed(from, to, noise);
+            self.search_armed(from, to, noise, &mut search);
+            return search;
         }
         // c₀ + Σ max(cₖ, 0) bounds the polynomial on [0, 1] from above; c₀ itself is on the right side of 0,
         // or this bound tells nothing.
@@ -135,27 +137,32 @@ impl<const N: usize> Polynomial<N> {
         }
     }
 
-    /// The same for a guard that is armed.
+    /// The same for a guard that is armed. What is found is written where the caller reads it, since a copy
+    /// right after it would wait for what is on its way to memory.
     #[inline(always)]
-    fn search_armed(&self, from: f64, to: f64, noise: f64) -> Search {
+    pub(in crate::hybrid) fn search_armed(
+        &self,
+        from: f64,
+        to: f64,
+        noise: f64,
+        found: &mut Search,
+    ) {
         // As c₀ + Σ min(cₖ, 0) does from below.
         let falls = sum_of(&self.coefficients, |c| (-c).max(0.0)) * (1.0 + Self::ROUNDING);
         if self.coefficients[0] > falls {
-            return Search::above(self.coefficients[0] - falls);
-        }
-        if from >= to {
-            return Search::quiet(Watch::Armed);
-        }
-        match first_fall(self, from, to) {
-            Some(search) => search,
-            None => self.search_pieces(from, to, Watch::Armed, noise),
+            *found = Search::above(self.coefficients[0] - falls);
+        } else if from >= to {
+            *found = Search::quiet(Watch::Armed);
+        } else if !first_fall(self, from, to, found) {
+            *found = self.search_pieces(from, to, Watch::Armed, noise);
         }
     }
 
     /// The search, on 0 < s ≤ `to`, of a power of s times this polynomial, which is positive at s = 0: of a
     /// guard that leaves zero upwards.
-    pub(in crate::hybrid) fn search_of_multiple(&self, to: f64) -> Search {
-        self.search_armed(0.0, to, 0.0).of_quotient()
+    pub(in crate::hybrid) fn search_of_multiple(&self, to: f64, found: &mut Search) {
+        self.search_armed(0.0, to, 0.0, found);
+        found.of_quotient();
     }
 
     #[inline(never)]
@@ -181,7 +188,9 @@ impl<const N: usize> Polynomial<N> {
             return Search::quiet(Watch::Dormant);
         }
         if coefficients[0] > 0.0 {
-            return quotient.search_of_multiple(to);
+            let mut found = Search::quiet(Watch::Armed);
+            quotient.search_of_multiple(to, &mut found);
+            return found;
         }
         // Cauchy: the quotient has no root nearer to 0 than this.
         let largest = coefficients[1..]
@@ -227,7 +236,8 @@ impl<const N: usize> Polynomial<N> {
 pub(in crate::hybrid) fn sum_of(numbers: &[f64], part: impl Fn(f64) -> f64) -> f64 {
     let (fours, rest) = numbers.as_chunks::<4>();
     let mut sums = [0.0; 4];
-    for four in fours {
+    // From the last on, since the first may be on its way to memory.
+    for four in fours.iter().rev() {
         for (sum, &number) in sums.iter_mut().zip(four) {
             *sum += part(number);
         }

@@ -101,6 +101,8 @@ impl<const F: usize> TaylorDense<F> {
     /// If there is no room for them.
     #[inline]
     pub fn scaled(&self, (index, rate): (usize, bool), factor: f64, from: usize, out: &mut [f64]) {
+        // Once, so that two at a time need no other check.
+        assert!(index < F, "there is no coordinate {index}");
         let rows = match rate {
             false => &self.series.q,
             true => &self.series.v,
