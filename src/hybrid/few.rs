@@ -1,7 +1,12 @@
 //! Copies of a few numbers.
 
+use std::sync::atomic::{Ordering, compiler_fence};
+
 /// Copies as many numbers as a model has coordinates or discrete states: so few that a call of the C
 /// library, which a copy of unknown length becomes, takes longer than the copy.
+///
+/// One by one: each was written alone just before, and a load of two of them would have to wait until both
+/// are in memory.
 ///
 /// # Panics
 /// If the lengths differ.
@@ -10,8 +15,18 @@ pub(super) fn copy_few(from: &[f64], to: &mut [f64]) {
     match (from, to) {
         ([], []) => {}
         ([a], [to]) => *to = *a,
-        ([a, b], [to_a, to_b]) => (*to_a, *to_b) = (*a, *b),
-        ([a, b, c], [to_a, to_b, to_c]) => (*to_a, *to_b, *to_c) = (*a, *b, *c),
+        ([a, b], [to_a, to_b]) => {
+            *to_a = *a;
+            compiler_fence(Ordering::SeqCst);
+            *to_b = *b;
+        }
+        ([a, b, c], [to_a, to_b, to_c]) => {
+            *to_a = *a;
+            compiler_fence(Ordering::SeqCst);
+            *to_b = *b;
+            compiler_fence(Ordering::SeqCst);
+            *to_c = *c;
+        }
         (from, to) => to.copy_from_slice(from),
     }
 }

@@ -299,7 +299,13 @@ fn search_linear<const F: usize>(
     let coefficients = Coefficients {
         count: dense.coefficients(rate),
         constant,
-        write: |first, out: &mut [f64]| dense.polynomial((index, rate), factor, first, out),
+        rises: dense.slope((index, rate), factor) > 0.0,
+        write: |first, out: &mut [f64]| {
+            dense.polynomial((index, rate), factor, first, out);
+            if offset && first == 0 {
+                out[0] = constant;
+            }
+        },
     };
     search_polynomial(coefficients, dense, window, (watch, found));
 }
@@ -339,10 +345,12 @@ fn search_series<const F: usize>(
         a: &series.a[0],
     };
     let constant = kernel.guard(equations.context, &guard.kernel, at);
+    powers[0] = constant;
     let mut falls_off = true;
     let coefficients = Coefficients {
         count,
         constant,
+        rises: powers[1] * dense.length() > 0.0,
         write: |first, out: &mut [f64]| {
             let scale = (1.0, dense.length(), first);
             stretch(&powers[..count], |own| *own, scale, out);
@@ -364,7 +372,9 @@ pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
     pub count: usize,
     /// That of the power 0.
     pub constant: f64,
-    /// Writes the others, from a power on. (It may write one of the power 0, which does not count.)
+    /// Whether that of the power 1 is positive.
+    pub rises: bool,
+    /// Writes them, from a power on.
     pub write: W,
 }
 
@@ -414,17 +424,12 @@ fn search_part<const N: usize>(
     let mut polynomial = Polynomial {
         coefficients: [0.0; N],
     };
-    let dormant = watch == Watch::Dormant && from == 0.0 && to > 0.0;
-    if dormant && of.constant == 0.0 && of.count > 1 {
-        // A guard that leaves zero upwards with a slope.
+    let starts = watch == Watch::Dormant && from == 0.0 && to > 0.0 && of.constant == 0.0;
+    if starts && of.rises {
         (of.write)(1, &mut polynomial.coefficients);
-        if polynomial.coefficients[0] > 0.0 {
-            return polynomial.search_of_multiple(to, found);
-        }
-        polynomial.coefficients = [0.0; N];
+        return polynomial.search_of_multiple(to, found);
     }
     (of.write)(0, &mut polynomial.coefficients);
-    polynomial.coefficients[0] = of.constant;
     match watch {
         Watch::Armed => polynomial.search_armed(from, to, 0.0, found),
         _ => *found = polynomial.search(from, to, watch, 0.0),

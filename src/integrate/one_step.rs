@@ -94,6 +94,9 @@ pub trait Motion<const F: usize> {
     /// The coefficient of the power 0.
     fn constant(&self, of: (usize, bool), factor: f64) -> f64;
 
+    /// The coefficient of the power 1.
+    fn slope(&self, of: (usize, bool), factor: f64) -> f64;
+
     /// Writes these coefficients, in powers of s = (t − start)/length, of `factor` times coordinate `index`
     /// or its rate, from the power `first` on. What is beyond them stays as it was.
     ///
@@ -240,6 +243,13 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
         }
     }
 
+    fn slope(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
+        match rate {
+            true => 2.0 * (factor * self.coefficient(2)[index]) / self.length(),
+            false => factor * self.coefficient(1)[index],
+        }
+    }
+
     fn polynomial(&self, (index, rate): (usize, bool), factor: f64, first: usize, out: &mut [f64]) {
         let coefficient = |power: usize| factor * self.coefficient(power)[index];
         let powers = first..self.coefficients(rate);
@@ -277,6 +287,13 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
     #[inline]
     fn constant(&self, of: (usize, bool), factor: f64) -> f64 {
         self.scaled_constant(of, factor)
+    }
+
+    #[inline]
+    fn slope(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
+        let Series { q, v, .. } = self.series();
+        let power = if rate { v[1][index] } else { q[1][index] };
+        power * (factor * self.length())
     }
 
     #[inline]

@@ -167,6 +167,7 @@ fn the_polynomials_of_coordinates_and_rates_are_the_motion() {
             dense.polynomial((index, rate), factor, 2, &mut higher);
             assert_eq!(higher[..ORDERS - 2], coefficients[2..]);
             assert_eq!(dense.constant((index, rate), factor), coefficients[0]);
+            assert_eq!(dense.slope((index, rate), factor), coefficients[1]);
             for s in [0.0, 0.3, 1.0] {
                 let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
                 let (q, v, _) = dense.at_offset(s * dense.length());

@@ -197,9 +197,13 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
             true => 0.0,
             false => coefficients[0].0[lane],
         },
+        rises: coefficients.get(1).is_some_and(|slope| slope.0[lane] > 0.0),
         write: |first, out: &mut [f64]| {
             for (own, of) in out.iter_mut().zip(&coefficients[first..]) {
                 *own = of.0[lane];
+            }
+            if dormant && first == 0 {
+                out[0] = 0.0;
             }
         },
     };
