@@ -6,8 +6,8 @@
 //! The rest of the series is left out only once it moves nothing by more than the tolerances of
 //! the run.
 
-use super::few::copy_few;
 use super::instant::Instant;
+use crate::kernel::copy_few;
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 pub const LONGEST_PATTERN: usize = 8;

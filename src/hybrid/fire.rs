@@ -2,10 +2,10 @@
 
 use super::accumulation::Signature;
 use super::failure::Reason;
-use super::few::copy_few;
 use super::guards::Conditions;
 use super::plan::is_impact;
 use super::simulation::Simulation;
+use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::record::{EnergyJump, Jump};

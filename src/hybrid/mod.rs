@@ -12,7 +12,6 @@ mod ensemble;
 mod enter;
 mod equations;
 mod failure;
-mod few;
 mod fire;
 mod guards;
 mod instant;

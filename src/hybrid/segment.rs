@@ -203,7 +203,7 @@ impl Simulation<'_> {
         stiffness.begin();
         let mut ledger_from = 0.0;
         // The end of the step, or of what its first event leaves of it.
-        let mut state = *method.state();
+        let mut state = State::origin();
         let relative = problem.accuracy.relative;
 
         loop {

@@ -190,8 +190,9 @@ where
         let times = Stages::<S, F>::times(start.t, h, t_end);
         system.foresee(&times);
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
+        let mut residual = [SVector::zeros(); S];
         for iteration in 1..=limit {
-            let residual = stages.residual(system, &times);
+            stages.residual(system, &times, &mut residual);
             counters.residual_evaluations += S as u64;
             counters.newton_iterations += 1;
             let norm = self.correct(&residual, stages, &weight);
@@ -353,12 +354,16 @@ where
         times
     }
 
+    /// Writes the residuals of the stages where they are read: a copy right after them would wait.
     #[inline(always)]
-    fn residual<Y: System<F>>(&self, system: &mut Y, times: &[f64; S]) -> [SVector<f64, F>; S] {
-        let mut r = [SVector::zeros(); S];
+    fn residual<Y: System<F>>(
+        &self,
+        system: &mut Y,
+        times: &[f64; S],
+        r: &mut [SVector<f64, F>; S],
+    ) {
         for i in 0..S {
             system.residual(times[i], &self.q[i], &self.v[i], &self.a[i], &mut r[i]);
         }
-        r
     }
 }

@@ -16,6 +16,17 @@ pub struct State<const F: usize> {
 }
 
 impl<const F: usize> State<F> {
+    /// At rest at zero.
+    pub(crate) fn origin() -> Self {
+        let zero = SVector::zeros();
+        State {
+            q: zero,
+            v: zero,
+            a: zero,
+            t: 0.0,
+        }
+    }
+
     /// Name of the part that is not finite, if any.
     pub(super) fn not_finite(&self) -> Option<&'static str> {
         let finite = |x: &SVector<f64, F>| x.iter().all(|x| x.is_finite());

@@ -1,5 +1,6 @@
 //! What generated functions need besides the free coordinates.
 
+use super::few::copy_few;
 use super::{Array, RawContext};
 use crate::input::{LaneSignals, Side, Signals};
 use crate::integrate::ORDERS;
@@ -215,7 +216,7 @@ impl Context {
     pub fn set_foreseen_signals(&mut self, index: usize) {
         let width = self.arrays.signals.len();
         let row = &self.ahead[index * width..][..width];
-        self.arrays.signals.copy_from_slice(row);
+        copy_few(row, &mut self.arrays.signals);
         self.signals_at.0 = f64::NAN;
     }
 

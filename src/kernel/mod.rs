@@ -5,11 +5,13 @@
 //! it), and each [`Context`] was made for the model whose functions it is passed to.
 
 mod context;
+mod few;
 mod lanes;
 mod tables;
 
 use context::{Arrays, KeptAngle};
 pub use context::{Context, Dimensions};
+pub(crate) use few::copy_few;
 pub use lanes::{
     LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePast, LanePoint, LaneRows,
     LaneSeries, LaneSystem, processor_level,

@@ -88,12 +88,7 @@ impl<const F: usize> Taylor<F> {
     /// expansion takes so many convolutions; 0: the equations are linear.
     pub fn new(tolerances: &Tolerances<F>, convolutions: usize) -> Self {
         let zero = SVector::zeros();
-        let origin = State {
-            t: 0.0,
-            q: zero,
-            v: zero,
-            a: zero,
-        };
+        let origin = State::origin();
         let relative = tolerances.relative();
         let order = length::order(relative, convolutions, F);
         let implicit = match super::stages(relative) {
@@ -266,10 +261,10 @@ impl<const F: usize> Taylor<F> {
         let series = &mut self.dense.series;
         (series.q[0], series.v[0]) = (origin.q, origin.v);
         let (mass, load) = system.start(t, self.order, series);
-        let inverse = match self.inverse.filter(|_| system.mass_is_constant()) {
-            Some(inverse) => inverse,
-            None => self.invert(&mass)?,
-        };
+        if self.inverse.is_none() || !system.mass_is_constant() {
+            self.invert(&mass)?;
+        }
+        let inverse = self.inverse.as_ref().expect("it was inverted");
         let (origin, series) = (&self.end, &mut self.dense.series);
         // A restart gives the accelerations: zero where they are not told from it, so that the motion
         // leaves with the sign of the jerk.
@@ -278,7 +273,7 @@ impl<const F: usize> Taylor<F> {
             false => -(inverse * load),
         };
         (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
-        system.run(self.order, &inverse, series);
+        system.run(self.order, inverse, series);
         self.counters.residual_evaluations += self.order as u64;
         let a = &self.dense.series.a[..self.order];
         // What is not finite stays so in all higher orders.
@@ -297,7 +292,7 @@ impl<const F: usize> Taylor<F> {
     }
 
     /// Inverts the mass matrix.
-    fn invert(&mut self, mass: &SMatrix<f64, F, F>) -> Result<SMatrix<f64, F, F>, StepError> {
+    fn invert(&mut self, mass: &SMatrix<f64, F, F>) -> Result<(), StepError> {
         let t = self.dense.t0;
         let scale = self.tolerances.v_absolute();
         let lu = Lu::factorize(|i, j| mass[(i, j)], scale).map_err(|singular| {
@@ -315,7 +310,7 @@ impl<const F: usize> Taylor<F> {
         }
         self.counters.factorizations += 1;
         self.inverse = Some(inverse);
-        Ok(inverse)
+        Ok(())
     }
 
     /// Reciprocal tolerances of coordinates and velocities at a state.

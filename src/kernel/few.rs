@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{Ordering, compiler_fence};
 
-/// Copies as many numbers as a model has coordinates or discrete states: so few that a call of the C
+/// Copies as many numbers as a model has coordinates, discrete states or signals: so few that a call of the C
 /// library, which a copy of unknown length becomes, takes longer than the copy.
 ///
 /// One by one: each was written alone just before, and a load of two of them would have to wait until both
@@ -11,7 +11,7 @@ use std::sync::atomic::{Ordering, compiler_fence};
 /// # Panics
 /// If the lengths differ.
 #[inline(always)]
-pub(super) fn copy_few(from: &[f64], to: &mut [f64]) {
+pub(crate) fn copy_few(from: &[f64], to: &mut [f64]) {
     match (from, to) {
         ([], []) => {}
         ([a], [to]) => *to = *a,
