@@ -9,8 +9,9 @@ the convolution, is known before order k is begun. So is that of every other nod
 linear, since each obeys a product rule: an order first computes all interiors (interiors.py), and
 then walks the graph once in straight-line code.
 
-Without interiors the orders are unrolled: one with its number known is straight-line code. With them
-that hinders the vectors.
+Without interiors, and with so few that both halves of their sums fit into a block, the orders are unrolled:
+one with its number known is straight-line code. With more the code grows beyond what a processor keeps at
+hand.
 
 Nodes that are constant in time are recognised: a constant times a series is one product an order.
 Between what is not linear, an order is a linear map with coefficients that the start of the step
@@ -484,9 +485,8 @@ class Series:
         if few:
             orders.insert(0, f"  real last[{2 * few}] = {{0}};")
         if self.graph.interiors.halves == 2:
-            unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
-            if few:
-                unrolled.insert(0, orders[0])
+            last = orders[:-1]
+            unrolled = last + [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
             # A vector of eight lanes fills the processor without.
             orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]
         run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders), "DALEMBERT_CLONES")

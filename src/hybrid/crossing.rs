@@ -6,6 +6,7 @@ use super::guards::{self, Conditions};
 use super::locate::{Landing, land};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind, Search, Watch, earliest};
+use super::search::search;
 use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
 use crate::model::Mode;
@@ -78,7 +79,7 @@ pub(super) fn cut<'a, const F: usize>(
         let hit = earliest(start, to, watches, found, |i, _, to, watch, found| {
             let guard = &mode.guards[watched[i].guard];
             let window = (from[i].min(to), to);
-            guards::search(
+            search(
                 equations,
                 conditions,
                 dense,

@@ -2,8 +2,8 @@
 
 use super::failure::Reason;
 use super::guards::{Conditions, slope, value, watched_value};
+use super::requirements::check_requirements;
 use super::roots::Watch;
-use super::segment::check_requirements;
 use super::simulation::{Simulation, Violation};
 use crate::integrate::{determinant_sign, solve};
 use crate::kernel::{Context, Free, ModeKernel};

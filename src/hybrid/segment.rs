@@ -7,6 +7,7 @@ use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
+use super::requirements::check_requirements;
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
@@ -14,7 +15,7 @@ use crate::integrate::{
     Coefficients, Counters, Node, OneStep, Radau, RadauIia, State, Taylor, Tolerances,
     determinant_sign, stages,
 };
-use crate::kernel::{Context, Free, ModeKernel};
+use crate::kernel::{Free, ModeKernel};
 use crate::model::Mode;
 use crate::record::Progress;
 use nalgebra::SVector;
@@ -397,43 +398,6 @@ pub(super) fn tolerances<const F: usize>(problem: &Problem, mode: &Mode) -> Tole
         pick(&accuracy.v_absolute),
     )
     .expect("a problem's tolerances are positive")
-}
-
-/// Most requirements that a mode may have.
-const MOST_REQUIREMENTS: usize = 8;
-
-/// What the mode requires to be positive must be so.
-pub(super) fn check_requirements<const F: usize>(
-    kernel: &ModeKernel<F>,
-    context: &Context,
-    mode: &Mode,
-    at: Free<F>,
-) -> Result<(), Reason> {
-    if mode.requirements.is_empty() {
-        return Ok(());
-    }
-    let mut values = [0.0; MOST_REQUIREMENTS];
-    let values = &mut values[..mode.requirements.len()];
-    kernel.requirements(context, at, values);
-    // One that is not a number is not met.
-    match values.iter().all(|value| *value > 0.0) {
-        true => Ok(()),
-        false => Err(unmet(mode, values)),
-    }
-}
-
-#[cold]
-fn unmet(mode: &Mode, values: &[f64]) -> Reason {
-    let unmet = |value: &f64| value.is_nan() || *value <= 0.0;
-    let index = values.iter().position(unmet).expect("one is not met");
-    let requirement = &mode.requirements[index];
-    Reason::Requirement {
-        mode: mode.name,
-        failure: requirement.failure,
-        text: requirement.text,
-        value: values[index],
-        unit: requirement.unit,
-    }
 }
 
 /// Drifting coordinates move although they are frozen.

@@ -1,9 +1,9 @@
 //! A step of trajectories side by side. What the lanes hold does not depend on each other, nor on their
 //! number.
 
-use super::super::guards;
 use super::super::instant::Instant;
 use super::super::roots::{Kind, Search, Watch};
+use super::super::search::{Coefficients, search_window};
 use super::group::{Group, Outcome};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes};
@@ -191,7 +191,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
 /// else.
 #[cold]
 fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool) -> Option<f64> {
-    let own = guards::Coefficients {
+    let own = Coefficients {
         count: coefficients.len(),
         constant: match dormant {
             true => 0.0,
@@ -212,7 +212,7 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
         false => Watch::Armed,
     };
     let mut search = Search::quiet(watch);
-    guards::search_window(own, (0.0, 1.0), (watch, &mut search));
+    search_window(own, (0.0, 1.0), (watch, &mut search));
     match search.crossing {
         None if search.watch == Watch::Armed => Some(f64::INFINITY),
         Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),

@@ -1,0 +1,42 @@
+//! What a mode requires to be positive.
+
+use super::failure::Reason;
+use crate::kernel::{Context, Free, ModeKernel};
+use crate::model::Mode;
+
+/// Most requirements that a mode may have.
+const MOST_REQUIREMENTS: usize = 8;
+
+/// What the mode requires to be positive must be so.
+pub(super) fn check_requirements<const F: usize>(
+    kernel: &ModeKernel<F>,
+    context: &Context,
+    mode: &Mode,
+    at: Free<F>,
+) -> Result<(), Reason> {
+    if mode.requirements.is_empty() {
+        return Ok(());
+    }
+    let mut values = [0.0; MOST_REQUIREMENTS];
+    let values = &mut values[..mode.requirements.len()];
+    kernel.requirements(context, at, values);
+    // One that is not a number is not met.
+    match values.iter().all(|value| *value > 0.0) {
+        true => Ok(()),
+        false => Err(unmet(mode, values)),
+    }
+}
+
+#[cold]
+fn unmet(mode: &Mode, values: &[f64]) -> Reason {
+    let unmet = |value: &f64| value.is_nan() || *value <= 0.0;
+    let index = values.iter().position(unmet).expect("one is not met");
+    let requirement = &mode.requirements[index];
+    Reason::Requirement {
+        mode: mode.name,
+        failure: requirement.failure,
+        text: requirement.text,
+        value: values[index],
+        unit: requirement.unit,
+    }
+}

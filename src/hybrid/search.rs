@@ -1,0 +1,269 @@
+//! The search of a guard on a step's dense output.
+
+use super::equations::Equations;
+use super::guards::{Conditions, motion, motion_at_stage, slope, watched_value};
+use super::plan::Watched;
+use super::roots::{self, Polynomial, Search, Watch, sum_of};
+use crate::integrate::{Motion, ORDERS, System, stretch};
+use crate::kernel::Free;
+use crate::model::{Guard, GuardShape};
+use nalgebra::SVector;
+
+/// Searches a guard on the window `from` < τ ≤ `to` of a step; writes what is found.
+pub(super) fn search<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &impl Motion<F>,
+    (guard, watched): (&Guard, Watched),
+    window: (f64, f64),
+    (watch, found): (Watch, &mut Search),
+) {
+    match guard.shape {
+        GuardShape::Linear { .. } if watched.condition.is_none() => {
+            search_linear(equations, dense, guard, window, (watch, found));
+        }
+        _ => {
+            // A guard that acts together with conditions is judged by its own values where one of
+            // them changes its sign; its series has its roots elsewhere, by the tolerance.
+            if !conditions.are_part_of(guard)
+                && search_series(
+                    equations,
+                    dense,
+                    (guard, watched),
+                    window,
+                    (watch, &mut *found),
+                )
+            {
+                return;
+            }
+            let accelerations = !matches!(
+                guard.shape,
+                GuardShape::General {
+                    accelerations: false,
+                    ..
+                }
+            );
+            // Conditions may depend on more of the inputs than the equations of motion do.
+            let own = watched.condition.is_none() && !conditions.are_part_of(guard);
+            if own {
+                equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
+            }
+            let evaluate = |tau: f64| {
+                let [q, v, a] = match own {
+                    true => motion_at_stage(equations, dense, tau, accelerations),
+                    false => motion(equations, dense, tau, accelerations),
+                };
+                let at = Free {
+                    q: &q,
+                    v: &v,
+                    a: &a,
+                };
+                watched_value(
+                    equations.kernel,
+                    equations.context,
+                    conditions,
+                    guard,
+                    watched,
+                    at,
+                )
+            };
+            *found = search_function(evaluate, window, watch);
+        }
+    }
+}
+
+/// Local time at a part of a window.
+fn at_part(s: f64, (from, to): (f64, f64)) -> f64 {
+    if s < 1.0 { from + s * (to - from) } else { to }
+}
+
+/// Searches a function of local time, as one of s = (τ − start)/length of the window: so the search, which
+/// counts doubles, does not depend on the unit of time.
+fn search_function(
+    mut evaluate: impl FnMut(f64) -> f64,
+    window: (f64, f64),
+    watch: Watch,
+) -> Search {
+    let local = |s: f64| at_part(s, window);
+    let mut search = roots::search(|s| evaluate(local(s)), 0.0, 1.0, watch, 0.0);
+    if let Some(crossing) = &mut search.crossing {
+        crossing.inside = local(crossing.inside);
+        crossing.outside = local(crossing.outside);
+    }
+    search
+}
+
+/// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
+fn search_linear<const F: usize>(
+    equations: &mut Equations<F>,
+    dense: &impl Motion<F>,
+    guard: &Guard,
+    window: (f64, f64),
+    (watch, found): (Watch, &mut Search),
+) {
+    let GuardShape::Linear {
+        index,
+        rate,
+        factor,
+        discrete,
+        offset,
+    } = guard.shape
+    else {
+        unreachable!("the caller has asked for its shape")
+    };
+    let factor = slope((factor, discrete), equations.context);
+    let constant = dense.constant((index, rate), factor);
+    let constant = match offset {
+        false => constant,
+        // Its own value was zero; the first coefficient of the dense output may be off by a rounding.
+        true if watch == Watch::Dormant && window.0 == dense.start() => 0.0,
+        true => {
+            // What is added is what the guard is at the zero state.
+            let zero = SVector::<f64, F>::zeros();
+            let at = Free {
+                q: &zero,
+                v: &zero,
+                a: &zero,
+            };
+            constant + equations.kernel.guard(equations.context, &guard.kernel, at)
+        }
+    };
+    let coefficients = Coefficients {
+        count: dense.coefficients(rate),
+        constant,
+        rises: dense.slope((index, rate), factor) > 0.0,
+        write: |first, out: &mut [f64]| {
+            dense.polynomial((index, rate), factor, first, out);
+            if offset && first == 0 {
+                out[0] = constant;
+            }
+        },
+    };
+    search_polynomial(coefficients, dense, window, (watch, found));
+}
+
+/// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
+///
+/// False if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
+/// that the last terms are not small: two derivatives of the motion multiply its last term by order².
+fn search_series<const F: usize>(
+    equations: &mut Equations<F>,
+    dense: &impl Motion<F>,
+    (guard, watched): (&Guard, Watched),
+    window: (f64, f64),
+    (watch, found): (Watch, &mut Search),
+) -> bool {
+    let Some((series, orders)) = dense.series() else {
+        return false;
+    };
+    let tau = dense.start();
+    if !equations.expand_guards(tau, orders, series) {
+        return false;
+    }
+    let (kernel, context) = (equations.kernel, &*equations.context);
+    let mut powers = [0.0; ORDERS];
+    let given = kernel.guard_coefficients(context, watched.guard, orders);
+    for (power, given) in powers.iter_mut().zip(given) {
+        *power = given;
+    }
+    // Of a low degree where nothing moves.
+    let degree = powers[..orders].iter().rposition(|&c| c != 0.0);
+    let count = degree.map_or(1, |degree| degree + 1);
+    // The guard's own value decides on which side of zero it starts.
+    equations.at(tau);
+    let at = Free {
+        q: &series.q[0],
+        v: &series.v[0],
+        a: &series.a[0],
+    };
+    let constant = kernel.guard(equations.context, &guard.kernel, at);
+    powers[0] = constant;
+    let mut falls_off = true;
+    let coefficients = Coefficients {
+        count,
+        constant,
+        rises: powers[1] * dense.length() > 0.0,
+        write: |first, out: &mut [f64]| {
+            let scale = (1.0, dense.length(), first);
+            stretch(&powers[..count], |own| *own, scale, out);
+            if count + 2 > orders {
+                let size = |of: &[f64]| sum_of(of, f64::abs);
+                let all = (orders * orders) as f64 * size(&out[..count - first]);
+                falls_off =
+                    size(&out[orders - 2 - first..count - first]) <= equations.tolerance * all;
+            }
+        },
+    };
+    search_polynomial(coefficients, dense, window, (watch, found));
+    falls_off
+}
+
+/// A polynomial in s.
+pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
+    /// Their number.
+    pub count: usize,
+    /// That of the power 0.
+    pub constant: f64,
+    /// Whether that of the power 1 is positive.
+    pub rises: bool,
+    /// Writes them, from a power on.
+    pub write: W,
+}
+
+/// Searches a polynomial in s = (τ − start)/length of the step.
+#[inline]
+fn search_polynomial<const F: usize>(
+    coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
+    dense: &impl Motion<F>,
+    (from, to): (f64, f64),
+    (watch, found): (Watch, &mut Search),
+) {
+    let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
+    search_window(coefficients, (local(from), local(to)), (watch, &mut *found));
+    if let Some(crossing) = &mut found.crossing {
+        crossing.inside = dense.start() + crossing.inside * dense.length();
+        crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
+    }
+}
+
+/// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
+pub(super) fn search_window(
+    coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
+    window: (f64, f64),
+    of: (Watch, &mut Search),
+) {
+    // Work grows with the square of the room.
+    match coefficients.count {
+        0..=4 => search_part::<4>(coefficients, window, of),
+        5..=8 => search_part::<8>(coefficients, window, of),
+        9..=12 => search_part::<12>(coefficients, window, of),
+        13..=16 => search_part::<16>(coefficients, window, of),
+        17..=20 => search_part::<20>(coefficients, window, of),
+        21..=24 => search_part::<24>(coefficients, window, of),
+        25..=28 => search_part::<28>(coefficients, window, of),
+        _ => search_part::<ORDERS>(coefficients, window, of),
+    }
+}
+
+/// Searches a polynomial of at most `N` coefficients. They are written where they are read: a copy right
+/// after them would wait for what is on its way to memory.
+#[inline(never)]
+fn search_part<const N: usize>(
+    mut of: Coefficients<impl FnMut(usize, &mut [f64])>,
+    (from, to): (f64, f64),
+    (watch, found): (Watch, &mut Search),
+) {
+    let mut polynomial = Polynomial {
+        coefficients: [0.0; N],
+    };
+    let starts = watch == Watch::Dormant && from == 0.0 && to > 0.0 && of.constant == 0.0;
+    if starts && of.rises {
+        (of.write)(1, &mut polynomial.coefficients);
+        return polynomial.search_of_multiple(to, found);
+    }
+    (of.write)(0, &mut polynomial.coefficients);
+    match watch {
+        Watch::Armed => polynomial.search_armed(from, to, 0.0, found),
+        _ => *found = polynomial.search(from, to, watch, 0.0),
+    }
+}
