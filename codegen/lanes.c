@@ -405,6 +405,16 @@ void LANES(dalembert_lane_take)(size_t count, unsigned where, const real *from, 
   for (size_t i = 0; i < count; ++i) to[i] = pick(truth_of(where), from[i], to[i]);
 }
 
+/* Durations of steps of length h up to the parts `places` of them, all of them where these are more than one;
+ * the rounding of that; and the part `farthest` of h. */
+void LANES(dalembert_lane_durations)(const real *h, const real *places, double farthest, real *durations);
+void LANES(dalembert_lane_durations)(const real *h, const real *places, double farthest, real *durations) {
+  const real tau = *h * smaller(*places, REAL(1.0)), least = REAL(0x1p-1022);
+  durations[0] = pick(below(tau, least), least, tau);
+  durations[1] = durations[0] * 0x1p-52;
+  durations[2] = *h * farthest;
+}
+
 /* Numbers of coefficients that are told apart. */
 #define DEGREES(with) with(4) with(8) with(12) with(16) with(20) with(24) with(28) with(32)
 

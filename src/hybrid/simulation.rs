@@ -50,6 +50,17 @@ pub(super) struct Here {
     pub a: Box<[f64]>,
 }
 
+/// What does not fit a mode, of a coordinate by its index.
+#[derive(Debug, Clone, Copy)]
+enum Misfit {
+    /// It is below its minimum.
+    Below(usize, f64),
+    /// The mode holds it at another value.
+    HeldAt(usize, f64),
+    /// The mode holds its rate at another value.
+    HeldRate(usize, f64),
+}
+
 /// A guard that is not respected at the start of a segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Violation {
@@ -235,9 +246,9 @@ impl<'p> Simulation<'p> {
                     mode: modes[chosen].name,
                     why: "the scene freezes a coordinate that is free in it".into(),
                 }),
-                Some(why) => Err(Reason::Initial {
+                Some(misfit) => Err(Reason::Initial {
                     mode: modes[chosen].name,
-                    why,
+                    why: self.in_words(misfit),
                 }),
             };
         }
@@ -256,40 +267,47 @@ impl<'p> Simulation<'p> {
                 Ok(())
             }
             None => {
-                let why = self.misfit(&modes[fallback]).unwrap_or_default();
+                let misfit = self.misfit(&modes[fallback]);
                 Err(Reason::Initial {
                     mode: modes[fallback].name,
-                    why,
+                    why: misfit.map_or_else(String::new, |misfit| self.in_words(misfit)),
                 })
             }
         }
     }
 
-    /// What of the state does not fit a mode, in words.
-    fn misfit(&mut self, mode: &'static Mode) -> Option<String> {
+    /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
+    fn misfit(&mut self, mode: &'static Mode) -> Option<Misfit> {
         let model = self.problem.model;
-        let mut rates = vec![0.0; model.coordinates.len()];
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
             if let Some(minimum) = c.minimum
                 && self.here.q[i] < minimum
             {
-                return Some(format!("`{}` is below {minimum} {}", c.name, c.unit));
+                return Some(Misfit::Below(i, minimum));
             }
             if mode.free.contains(&i) {
                 return None;
             }
             match mode.held_at[i] {
-                Some(value) if self.here.q[i] != value => {
-                    Some(format!("it holds `{}` at {value} {}", c.name, c.unit))
-                }
-                _ if self.here.v[i] != rates[i] => Some(format!(
-                    "it holds `{}.rate` at {} {}/s",
-                    c.name, rates[i], c.unit
-                )),
+                Some(value) if self.here.q[i] != value => Some(Misfit::HeldAt(i, value)),
+                _ if self.here.v[i] != self.drift[i] => Some(Misfit::HeldRate(i, self.drift[i])),
                 _ => None,
             }
         })
+    }
+
+    /// A misfit in words.
+    fn in_words(&self, misfit: Misfit) -> String {
+        let coordinates = self.problem.model.coordinates;
+        let (Misfit::Below(i, value) | Misfit::HeldAt(i, value) | Misfit::HeldRate(i, value)) =
+            misfit;
+        let (name, unit) = (coordinates[i].name, coordinates[i].unit);
+        match misfit {
+            Misfit::Below(..) => format!("`{name}` is below {value} {unit}"),
+            Misfit::HeldAt(..) => format!("it holds `{name}` at {value} {unit}"),
+            Misfit::HeldRate(..) => format!("it holds `{name}.rate` at {value} {unit}/s"),
+        }
     }
 
     /// A scene that names a drifting mode need not state the drift's rate.

@@ -1,8 +1,8 @@
 //! Signals of trajectories side by side.
 
 use super::{INVERSES, Jet, Signals};
-use crate::integrate::Lanes;
-use crate::kernel::lane_antiderivative;
+use crate::integrate::{LaneMask, Lanes};
+use crate::kernel::{lane_antiderivative, lane_take};
 use crate::model::InputKind;
 
 /// Value, rate and antiderivatives of a function at times of its own for each lane.
@@ -57,12 +57,13 @@ impl<const W: usize> LaneSignals<W> {
         self.t = *t;
         for (c, jet) in signals.channels.iter().zip(&mut self.jets) {
             c.function.at_lanes(self.level, t, jet);
-            let [_, value, integral, double_integral] = jet.0;
-            u[c.signal] = value;
-            if c.kind == InputKind::Acceleration {
-                u[c.signal + 1] = integral;
-                u[c.signal + 2] = double_integral;
-            }
+            // As the lanes read them: in one piece.
+            let count = match c.kind {
+                InputKind::Acceleration => 3,
+                _ => 1,
+            };
+            let (from, to) = (&jet.0[1..=count], &mut u[c.signal..][..count]);
+            lane_take(self.level, LaneMask::ALL, from, to);
         }
     }
 

@@ -194,6 +194,7 @@ lane_functions!(
         length(usize, usize, In, In, In, In, In, In, In, In, Out, OutBits) -> Bits;
         first_fall(usize, usize, In, In, In, Out, Out, OutBits) -> Bits;
         cross(usize, usize, In, In, In, Bits, In, Out, Out);
+        durations(In, In, f64, Out);
         end(usize, usize, In, In, In, In, In, Out);
         take(usize, Bits, In, Out);
         is_apart(usize, usize, usize, Indices, Bits, f64, f64, In, In, In, In, In) -> Bits;
@@ -306,13 +307,13 @@ pub fn lane_begin<const F: usize, const W: usize>(
     at_start: LaneMask,
     system: &LaneSystem<F, W>,
     series: &mut LaneSeries<F, W>,
-) -> ([[Lanes<W>; F]; F], LaneMask) {
-    let mut inverse = [[Lanes::of(0.0); F]; F];
+    inverse: &mut [[Lanes<W>; F]; F],
+) -> LaneMask {
     let [q, v, a] =
         [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
     let begin = lane_functions::<W>(level).begin;
     // SAFETY: a point and a system of F coordinates, room for F × F numbers, three rows of each series.
-    let unclear = unsafe {
+    LaneMask(unsafe {
         begin(
             F,
             (&raw const *point).cast(),
@@ -323,8 +324,7 @@ pub fn lane_begin<const F: usize, const W: usize>(
             v,
             a,
         )
-    };
-    (inverse, LaneMask(unclear))
+    })
 }
 
 /// The lanes in which not all of some numbers are positive.
@@ -345,15 +345,14 @@ pub fn lane_length<const F: usize, const W: usize>(
     series: &LaneSeries<F, W>,
     point: &LanePoint<F, W>,
     [last, horizon]: [&Lanes<W>; 2],
-    unclear: &mut LaneMask,
-) -> (Lanes<W>, LaneMask) {
+    (h, unclear): (&mut Lanes<W>, &mut LaneMask),
+) -> LaneMask {
     let p = limits.order;
     assert!(p >= 5 && p + 2 <= ORDERS && limits.tolerances.len() == 1 + 2 * F);
-    let mut h = Lanes::of(0.0);
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let length = lane_functions::<W>(level).length;
     // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
-    let until = unsafe {
+    LaneMask(unsafe {
         length(
             F,
             p,
@@ -365,11 +364,10 @@ pub fn lane_length<const F: usize, const W: usize>(
             (&raw const *point).cast(),
             (&raw const *last).cast(),
             (&raw const *horizon).cast(),
-            (&raw mut h).cast(),
+            (&raw mut *h).cast(),
             &mut unclear.0,
         )
-    };
-    (h, LaneMask(until))
+    })
 }
 
 /// Looks for the first fall of a guard, factor · Σ `rows[k][i]` τᵏ + offset, on 0 < τ ≤ h. Where it is
@@ -416,7 +414,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
     lost: &Lanes<W>,
     guard: &LaneGuard<W>,
     lanes: LaneMask,
-    [tau, more, most]: [&mut Lanes<W>; 3],
+    [tau, more, most]: &mut [Lanes<W>; 3],
 ) {
     assert!(i < F && (1..=ORDERS).contains(&count));
     let row = rows.as_flattened()[i..].as_ptr().cast();
@@ -427,6 +425,22 @@ pub fn lane_cross<const F: usize, const W: usize>(
     // SAFETY: rows 1 … 32 are there, up to which a sum of `count` − 1 is filled up; the rest is one number
     // a lane each, and a guard.
     unsafe { cross(count, F, row, lost, guard, lanes.0, most, more, tau) };
+}
+
+/// Durations of steps of length `h` (s) up to the parts `places` of them, all of them where these are more than
+/// one; the rounding of that; and the part `farthest` of `h`.
+#[inline]
+pub fn lane_durations<const W: usize>(
+    level: usize,
+    h: &Lanes<W>,
+    places: &Lanes<W>,
+    farthest: f64,
+    durations: &mut [Lanes<W>; 3],
+) {
+    let (h, places) = ((&raw const *h).cast(), (&raw const *places).cast());
+    let durations = durations.as_mut_ptr().cast();
+    // SAFETY: one number a lane each, and room for three.
+    unsafe { (lane_functions::<W>(level).durations)(h, places, farthest, durations) };
 }
 
 /// The points to which series of order `p` lead from a point in the durations `tau` (s).
@@ -1015,7 +1029,7 @@ impl<const F: usize> ModeKernel<F> {
 
 impl<const W: usize> LaneContext<W> {
     /// The context as C sees it.
-    #[inline]
+    #[inline(always)]
     fn raw(&self, dimensions: &'static Dimensions) -> RawContext {
         assert!(
             std::ptr::eq(self.dimensions, dimensions)
@@ -1048,25 +1062,20 @@ impl<const F: usize> ModeKernel<F> {
         (level, quiet): (usize, bool),
         x: &mut LaneContext<W>,
         at: &mut LaneSeries<F, W>,
-    ) -> LaneSystem<F, W> {
+        out: &mut LaneSystem<F, W>,
+    ) {
         let kernel = self.lane_kernel::<W>(level);
         let series = if quiet {
             &kernel.quiet_series
         } else {
             &kernel.series
         };
-        let zero = Lanes::of(0.0);
-        let mut out = LaneSystem {
-            mass: [[zero; F]; F],
-            load: [zero; F],
-        };
         let raw = x.raw(self.dimensions);
         assert!(x.workspace.len() >= self.workspace());
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
         // SAFETY: as in `series_start`, with `W` numbers for each, which the level was compiled for.
-        unsafe { (series.start)(q, v, a, u, &raw, w.cast(), (&raw mut out).cast()) }
-        out
+        unsafe { (series.start)(q, v, a, u, &raw, w.cast(), (&raw mut *out).cast()) }
     }
 
     /// As [`Self::series_run`].

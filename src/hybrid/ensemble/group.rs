@@ -10,7 +10,8 @@ use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
 use crate::kernel::{
-    Free, LaneContext, LaneGuard, LanePast, LanePoint, LaneRows, ModeKernel, lane_departs,
+    Free, LaneContext, LaneGuard, LanePast, LanePoint, LaneRows, LaneSystem, ModeKernel,
+    lane_departs,
 };
 use crate::model::{GuardShape, Mode};
 use nalgebra::SVector;
@@ -49,6 +50,43 @@ pub(super) struct WatchedGuard<const W: usize> {
     pub coefficients: [Lanes<W>; ORDERS],
 }
 
+/// What a step computes on its way, where C writes and reads it in one piece: what is copied, or written lane
+/// by lane, has to be in memory before it can be read so.
+#[repr(C, align(64))]
+pub(super) struct Way<const F: usize, const W: usize> {
+    pub system: LaneSystem<F, W>,
+    /// Inverses of the mass matrices.
+    pub inverse: [[Lanes<W>; F]; F],
+    /// Absolute times of the analytic pieces of the inputs, s, and how long they last.
+    pub pieces: [Lanes<W>; 2],
+    /// Infinite.
+    pub unlimited: Lanes<W>,
+    /// Length of the step, s.
+    pub h: Lanes<W>,
+    /// Where the first guards fall, as parts of the step; infinite where none does.
+    pub places: Lanes<W>,
+    /// Duration up to there, s; what it may be lengthened by, and how far that may go.
+    pub durations: [Lanes<W>; 3],
+}
+
+impl<const F: usize, const W: usize> Way<F, W> {
+    fn new() -> Self {
+        let zero = Lanes::of(0.0);
+        Way {
+            system: LaneSystem {
+                mass: [[zero; F]; F],
+                load: [zero; F],
+            },
+            inverse: [[zero; F]; F],
+            pieces: [zero; 2],
+            unlimited: Lanes::of(f64::INFINITY),
+            h: zero,
+            places: zero,
+            durations: [zero; 3],
+        }
+    }
+}
+
 /// Up to `W` trajectories in one mode.
 pub(super) struct Group<const F: usize, const W: usize> {
     pub kernel: &'static ModeKernel<F>,
@@ -67,6 +105,8 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub here: LanePoint<F, W>,
     /// Where the step under way leads to.
     pub next: LanePoint<F, W>,
+    /// What a step computes on its way.
+    pub way: Way<F, W>,
     pub at_start: LaneMask,
     /// What was before the last step.
     pub past: LanePast<F, W>,
@@ -141,6 +181,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             guards: guards.collect(),
             here: LanePoint::zero(),
             next: LanePoint::zero(),
+            way: Way::new(),
             at_start: LaneMask::ALL,
             past: LanePast {
                 coordinates,

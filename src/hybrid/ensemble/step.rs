@@ -4,33 +4,30 @@
 use super::super::instant::Instant;
 use super::super::roots::{Kind, Search, Watch};
 use super::super::search::{Coefficients, search_window};
-use super::group::{Group, Outcome};
+use super::group::{Group, Outcome, Way};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes};
-use crate::kernel::lane_unmet;
+use crate::kernel::{lane_durations, lane_take, lane_unmet};
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
 /// [`super::super::locate`].
 const FARTHEST: f64 = 3.8e-6;
 
-/// The first falls of guards in a step.
-struct Falls<const W: usize> {
-    /// Lanes with one.
-    lanes: LaneMask,
-    /// Where, as parts of the step; infinite where none falls.
-    places: Lanes<W>,
-}
-
 impl<const F: usize, const W: usize> Group<F, W> {
     /// Makes a step in each occupied lane; gives the lanes that do not simply go on.
     pub fn step(&mut self, signals: &Signals) -> LaneMask {
-        let (t, horizon) = self.pieces(signals);
-        let mut unclear = self.expand(signals, &t);
-        let limits = [&self.last, &horizon];
-        let (h, reached) = self.taylor.length(&self.here, limits, &mut unclear);
-        let falls = self.first_falls(&h, &mut unclear);
-        unclear = unclear | self.land(&h, &falls);
-        let until = reached & !falls.lanes;
+        let in_pieces = self.find_pieces(signals);
+        let mut unclear = self.expand(signals, in_pieces);
+        let horizon = match in_pieces {
+            true => &self.way.pieces[1],
+            false => &self.way.unlimited,
+        };
+        let limits = [&self.last, horizon];
+        let to = (&mut self.way.h, &mut unclear);
+        let reached = self.taylor.length(&self.here, limits, to);
+        let falls = self.first_falls(&mut unclear);
+        unclear = unclear | self.land(falls);
+        let until = reached & !falls;
         unclear = unclear | self.unmet_at_end(signals) & !until;
 
         let made = self.occupied & !unclear;
@@ -43,8 +40,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
         for (lane, steps) in self.steps.iter_mut().enumerate() {
             *steps += u64::from(made.is(lane));
         }
-        let ended = (falls.lanes | until | unclear) & self.occupied;
-        for lane in (ended & !falls.lanes | unclear).lanes() {
+        let ended = (falls | until | unclear) & self.occupied;
+        for lane in (ended & !falls | unclear).lanes() {
             self.outcomes[lane] = match unclear.is(lane) {
                 true => Outcome::Unclear,
                 false => Outcome::Until,
@@ -59,35 +56,43 @@ impl<const F: usize, const W: usize> Group<F, W> {
         ended
     }
 
-    /// Absolute times of the analytic pieces of the inputs that act just after the present instants, and
-    /// their durations, s. As in [`super::super::equations::Clock`].
-    fn pieces(&self, signals: &Signals) -> (Lanes<W>, Lanes<W>) {
-        let (mut t, mut durations) = (self.here.t[0], Lanes::of(f64::INFINITY));
-        if t.0.iter().any(|&t| t < self.analytic_from) {
-            for lane in 0..W {
-                let now = self.now(lane);
-                (t.0[lane], durations.0[lane]) = piece(signals, now);
-            }
+    /// Sets the absolute times of the analytic pieces of the inputs that act just after the present instants,
+    /// and their durations; false where all lanes are in the last one. As in
+    /// [`super::super::equations::Clock`].
+    fn find_pieces(&mut self, signals: &Signals) -> bool {
+        let [high, _] = &self.here.t;
+        let in_pieces = high.0.iter().any(|&t| t < self.analytic_from);
+        for lane in (0..W).filter(|_| in_pieces) {
+            let now = self.now(lane);
+            let [t, durations] = &mut self.way.pieces;
+            (t.0[lane], durations.0[lane]) = piece(signals, now);
         }
-        (t, durations)
+        in_pieces
     }
 
     /// Expands the motion as a series; gives the lanes in which that is not as usual.
-    fn expand(&mut self, signals: &Signals, t: &Lanes<W>) -> LaneMask {
+    fn expand(&mut self, signals: &Signals, in_pieces: bool) -> LaneMask {
         let order = self.taylor.order();
         let context = &mut self.context;
         if !self.quiet {
+            let t = match in_pieces {
+                true => &self.way.pieces[0],
+                false => &self.here.t[0],
+            };
             let expanded = context.expanded();
             self.signals.set(signals, t, &mut context.signals);
             let rows = &mut context.signal_series[..(order + 1) * expanded.len()];
             self.signals.series(signals, expanded, rows);
         }
         let which = (self.level, self.quiet);
+        let (system, inverse) = (&mut self.way.system, &mut self.way.inverse);
+        self.taylor.start_at(&self.here);
         let series = &mut self.taylor.series;
-        (series.q[0], series.v[0]) = (self.here.q, self.here.v);
-        let system = self.kernel.lane_series_start(which, context, series);
-        let begun = self.taylor.begin(&self.here, self.at_start, &system);
-        let (inverse, mut unclear) = begun;
+        self.kernel
+            .lane_series_start(which, context, series, system);
+        let mut unclear = self
+            .taylor
+            .begin(&self.here, self.at_start, system, inverse);
         let series = &mut self.taylor.series;
         if std::mem::take(&mut self.unchecked) && !self.requirements.is_empty() {
             let at = [&series.q[0], &series.v[0], &series.a[0]];
@@ -97,20 +102,24 @@ impl<const F: usize, const W: usize> Group<F, W> {
             unclear = unclear | lane_unmet(self.level, requirements);
         }
         self.kernel
-            .lane_series_run(which, context, order, &inverse, series);
+            .lane_series_run(which, context, order, inverse, series);
         unclear
     }
 
-    /// The first fall of a guard in each lane.
-    fn first_falls(&mut self, h: &Lanes<W>, unclear: &mut LaneMask) -> Falls<W> {
-        let mut falls = Falls {
-            lanes: LaneMask::NONE,
-            places: Lanes::of(f64::INFINITY),
-        };
+    /// Looks for the first fall of a guard in each lane; gives the lanes with one.
+    fn first_falls(&mut self, unclear: &mut LaneMask) -> LaneMask {
+        let mut falls = LaneMask::NONE;
+        let Way {
+            h,
+            places,
+            unlimited,
+            ..
+        } = &mut self.way;
+        let (none, all) = (std::slice::from_ref(unlimited), LaneMask::ALL);
+        lane_take(self.level, all, none, std::slice::from_mut(places));
         for number in 0..self.guards.len() {
             let guard = &mut self.guards[number];
             let (linear, coefficients) = (&guard.linear, &mut guard.coefficients);
-            let places = &mut falls.places;
             let found = self
                 .taylor
                 .first_fall(guard.of, h, linear, coefficients, places);
@@ -130,30 +139,33 @@ impl<const F: usize, const W: usize> Group<F, W> {
             for before in &mut self.guards[..number] {
                 before.falls = before.falls & !first;
             }
-            falls.lanes = falls.lanes | first;
+            falls = falls | first;
         }
         falls
     }
 
     /// Goes to the end of the step, in `next`: for a fall to the first state on its far side. Gives the
     /// lanes that have none.
-    fn land(&mut self, h: &Lanes<W>, falls: &Falls<W>) -> LaneMask {
+    fn land(&mut self, falls: LaneMask) -> LaneMask {
         // A guard that all but fell at the end of the step before does so within the rounding of the start.
-        let tau = |lane: usize| h.0[lane] * falls.places.0[lane].min(1.0);
-        let mut tau = Lanes::from_fn(|lane| tau(lane).max(f64::MIN_POSITIVE));
+        let Way {
+            h,
+            places,
+            durations,
+            ..
+        } = &mut self.way;
+        lane_durations(self.level, h, places, FARTHEST, durations);
         let mut unclear = LaneMask::NONE;
-        if !falls.lanes.any() {
-            self.taylor.end(&self.here, &tau, &mut self.next);
+        if !falls.any() {
+            self.taylor.end(&self.here, &durations[0], &mut self.next);
             return unclear;
         }
-        let mut more = Lanes(tau.0.map(|tau| tau * f64::EPSILON));
-        let mut most = Lanes(h.0.map(|h| h * FARTHEST));
         for guard in &self.guards {
             let (linear, lanes) = (&guard.linear, guard.falls);
-            let durations = [&mut tau, &mut more, &mut most];
             (self.taylor).cross(&self.here, guard.of, linear, lanes, durations);
         }
-        self.taylor.end(&self.here, &tau, &mut self.next);
+        let tau = &durations[0];
+        self.taylor.end(&self.here, tau, &mut self.next);
         // The guards' own values decide: they may round an offset in another way.
         for guard in &self.guards {
             let at = [&self.next.q, &self.next.v, &self.next.a];

@@ -6,7 +6,7 @@ use super::length::{self, Terms};
 use super::series::ORDERS;
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_cross,
-    lane_end, lane_first_fall, lane_length,
+    lane_end, lane_first_fall, lane_length, lane_take,
 };
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
@@ -53,16 +53,26 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         self.limits.order
     }
 
-    /// Sets accelerations, and all that follows from the state without the series; gives the inverses of
-    /// the mass matrices. See [`lane_begin`].
+    /// Sets coordinates and velocities at the start of the step.
+    #[inline]
+    pub fn start_at(&mut self, point: &LanePoint<F, W>) {
+        let LaneSeries { q, v, .. } = &mut self.series;
+        lane_take(self.level, LaneMask::ALL, &point.q, &mut q[0]);
+        lane_take(self.level, LaneMask::ALL, &point.v, &mut v[0]);
+    }
+
+    /// Sets accelerations, and all that follows from the state without the series, and the inverses of the
+    /// mass matrices. See [`lane_begin`].
     #[inline]
     pub fn begin(
         &mut self,
         point: &LanePoint<F, W>,
         at_start: LaneMask,
         system: &LaneSystem<F, W>,
-    ) -> ([[Lanes<W>; F]; F], LaneMask) {
-        lane_begin(self.level, point, at_start, system, &mut self.series)
+        inverse: &mut [[Lanes<W>; F]; F],
+    ) -> LaneMask {
+        let series = &mut self.series;
+        lane_begin(self.level, point, at_start, system, series, inverse)
     }
 
     /// The length of the step, as a step of [`super::Taylor`]: see [`lane_length`].
@@ -71,16 +81,9 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         &self,
         point: &LanePoint<F, W>,
         limits: [&Lanes<W>; 2],
-        unclear: &mut LaneMask,
-    ) -> (Lanes<W>, LaneMask) {
-        lane_length(
-            self.level,
-            &self.limits,
-            &self.series,
-            point,
-            limits,
-            unclear,
-        )
+        to: (&mut Lanes<W>, &mut LaneMask),
+    ) -> LaneMask {
+        lane_length(self.level, &self.limits, &self.series, point, limits, to)
     }
 
     /// The point that the step from a point leads to in the durations `tau`, s.
@@ -117,7 +120,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         (index, rate): (usize, bool),
         guard: &LaneGuard<W>,
         lanes: LaneMask,
-        durations: [&mut Lanes<W>; 3],
+        durations: &mut [Lanes<W>; 3],
     ) {
         let (rows, count) = match rate {
             false => (&self.series.q, self.order() + 2),
