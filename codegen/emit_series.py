@@ -482,13 +482,12 @@ class Series:
         order = source.add_text(f"{name}_order", signature, _text(self.order), "DALEMBERT_INLINE")
         call = f"{order}(%s, q, v, a, u, x, w, out{', last' if few else ''});"
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
-        if few:
-            orders.insert(0, f"  real last[{2 * few}] = {{0}};")
         if self.graph.interiors.halves == 2:
-            last = orders[:-1]
-            unrolled = last + [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
+            unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
             # A vector of eight lanes fills the processor without.
             orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]
+        if few:
+            orders.insert(0, f"  real last[{2 * few}] = {{0}};")
         run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders), "DALEMBERT_CLONES")
         return start, run
 

@@ -70,7 +70,8 @@ class Interiors:
             f"    sums[n] = {'others[n] = ' if others else ''}DALEMBERT_ZERO;",
             f"    if (k % 2 == 0{' && k > 2' if self.few else ''}) sums[n] = {half}(DALEMBERT_LEFT(k / 2)[n] * DALEMBERT_RIGHT(k / 2)[n]);",
             "  }",
-            *(["#pragma GCC unroll 16"] if self.halves == 2 else []),
+            # Of an order that is unrolled.
+            *(["#ifndef LANES", "#pragma GCC unroll 16", "#endif"] if self.halves == 2 else []),
             f"  for (size_t j = (k - 1) / 2; j >= {first}; --j) {{",
             "    for (size_t n = 0; n < blocks; ++n) {",
             "      sums[n] += DALEMBERT_LEFT(j)[n] * DALEMBERT_RIGHT(k - j)[n];",

@@ -65,6 +65,19 @@ def least(rows, again):
     return [{**row, **{name: time(row, name) for name in ("least_us", "median_us")}} for row in again]
 
 
+def least_costs(before, again):
+    """The table of the cost of a step of another pass, each row with the least times of both passes; `before` may be empty."""
+    cells = lambda line: [cell.strip() for cell in line.strip("| ").split("|")]
+    known = {tuple(cells(line)[:4]): cells(line) for line in before.splitlines()[2:]}
+    lines = again.splitlines()
+    for i, line in enumerate(lines[2:], start=2):
+        *key, time, own, _ = cells(line)
+        earlier = known.get(tuple(key), [*key, time, own])
+        time, own = (min(int(a), int(b)) for a, b in zip((time, own), earlier[4:6]))
+        lines[i] = f"| {' | '.join(key)} | {time} | {own} | {100 * own / time:.0f} % |"
+    return "\n".join(lines) + "\n"
+
+
 def best(rows, problem, level):
     """Fastest row of each peer with every event and an end error of at most the level."""
     fastest = {}

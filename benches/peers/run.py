@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 from install import HERE, ROOT, RUNNABLE, Peers, call
-from rows import COLUMNS, PROBLEMS, collect, least, merged, table, with_summary
+from rows import COLUMNS, PROBLEMS, collect, least, least_costs, merged, table, with_summary
 
 # The names of the rows that a peer prints.
 PRINTS = {"sundials": {"CVODE", "ARKODE"}, "fortran": {"LSODAR", "RADAU5"}, "heyoka": {"heyoka", "heyoka less calls"}, "casadi": {"CasADi"}}
@@ -83,7 +83,9 @@ def main():
                 write(results / "results.csv", rows)
             if name == "dalembert" and problems:
                 shares = subprocess.run([*map(str, command), "overhead"], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
-                (results / "overhead.md").write_text(shares.stdout)
+                file = results / "overhead.md"
+                before = file.read_text() if arguments.again and file.exists() else ""
+                file.write_text(least_costs(before, shares.stdout))
         except subprocess.CalledProcessError as error:
             print(f"{name}: {error}; the others go on", file=sys.stderr)
             failed.append(name)

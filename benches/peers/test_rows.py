@@ -3,7 +3,7 @@
 import unittest
 
 import ensemble
-from rows import best, collect, frontier, least, merged, table, with_summary
+from rows import best, collect, frontier, least, least_costs, merged, table, with_summary
 from run import is_there
 
 REFERENCES = {
@@ -108,6 +108,14 @@ class Resume(unittest.TestCase):
             new = least(a_pass(*first), a_pass(*second))
             self.assertEqual([float(r["least_us"]) for r in new], [60, 40])
             self.assertEqual([float(r["median_us"]) for r in new], [60, 40])
+
+    def test_the_least_costs_of_a_step_count_where_the_steps_are_the_same(self):
+        head = "| problem | tolerance | method | steps | ns a step | own, ns | share |\n|---|--:|---|--:|--:|--:|--:|\n"
+        old = head + "| P1 | 1e-3 | Taylor | 11 | 800 | 90 | 11 % |\n| P2 | 1e-3 | Taylor | 55 | 100 | 10 | 10 % |\n"
+        new = head + "| P1 | 1e-3 | Taylor | 11 | 900 | 80 | 9 % |\n| P2 | 1e-3 | Taylor | 37 | 500 | 50 | 10 % |\n"
+        both = head + "| P1 | 1e-3 | Taylor | 11 | 800 | 80 | 10 % |\n| P2 | 1e-3 | Taylor | 37 | 500 | 50 | 10 % |\n"
+        self.assertEqual(least_costs(old, new), both)
+        self.assertEqual(least_costs("", new), new)
 
     def test_what_is_missing_is_known_by_the_names_that_a_peer_prints(self):
         rows = [row("CVODE", 1, 1)]

@@ -21,22 +21,21 @@ pub(super) fn check_requirements<const F: usize>(
     let values = &mut values[..mode.requirements.len()];
     kernel.requirements(context, at, values);
     // One that is not a number is not met.
-    match values.iter().all(|value| *value > 0.0) {
-        true => Ok(()),
-        false => Err(unmet(mode, values)),
+    let met = |value: &f64| *value > 0.0;
+    match values.iter().position(|value| !met(value)) {
+        None => Ok(()),
+        Some(index) => Err(unmet(mode, index, values[index])),
     }
 }
 
 #[cold]
-fn unmet(mode: &Mode, values: &[f64]) -> Reason {
-    let unmet = |value: &f64| value.is_nan() || *value <= 0.0;
-    let index = values.iter().position(unmet).expect("one is not met");
+fn unmet(mode: &Mode, index: usize, value: f64) -> Reason {
     let requirement = &mode.requirements[index];
     Reason::Requirement {
         mode: mode.name,
         failure: requirement.failure,
         text: requirement.text,
-        value: values[index],
+        value,
         unit: requirement.unit,
     }
 }

@@ -112,7 +112,7 @@ fn search_linear<const F: usize>(
         unreachable!("the caller has asked for its shape")
     };
     let factor = slope((factor, discrete), equations.context);
-    let constant = dense.constant((index, rate), factor);
+    let constant = dense.coefficient_of((index, rate), factor, 0);
     let constant = match offset {
         false => constant,
         // Its own value was zero; the first coefficient of the dense output may be off by a rounding.
@@ -131,7 +131,7 @@ fn search_linear<const F: usize>(
     let coefficients = Coefficients {
         count: dense.coefficients(rate),
         constant,
-        rises: dense.slope((index, rate), factor) > 0.0,
+        rises: dense.coefficient_of((index, rate), factor, 1) > 0.0,
         write: |first, out: &mut [f64]| {
             dense.polynomial((index, rate), factor, first, out);
             if offset && first == 0 {

@@ -91,18 +91,18 @@ pub trait Motion<const F: usize> {
     /// Number of coefficients of a coordinate, or of its `rate`; at most [`super::ORDERS`].
     fn coefficients(&self, rate: bool) -> usize;
 
-    /// The coefficient of the power 0.
-    fn constant(&self, of: (usize, bool), factor: f64) -> f64;
-
-    /// The coefficient of the power 1.
-    fn slope(&self, of: (usize, bool), factor: f64) -> f64;
-
     /// Writes these coefficients, in powers of s = (t − start)/length, of `factor` times coordinate `index`
-    /// or its rate, from the power `first` on. What is beyond them stays as it was.
-    ///
-    /// # Panics
-    /// If there is no room for them.
+    /// or its rate, from the power `first` on, as many as there is room for. What is beyond them stays as it
+    /// was.
     fn polynomial(&self, of: (usize, bool), factor: f64, first: usize, out: &mut [f64]);
+
+    /// One of them.
+    #[inline]
+    fn coefficient_of(&self, of: (usize, bool), factor: f64, power: usize) -> f64 {
+        let mut one = [0.0];
+        self.polynomial(of, factor, power, &mut one);
+        one[0]
+    }
 }
 
 impl<const S: usize, const F: usize, Y: System<F>> OneStep<F, Y> for Radau<S, F>
@@ -236,24 +236,10 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
         if rate { Self::DEGREE } else { Self::DEGREE + 1 }
     }
 
-    fn constant(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
-        match rate {
-            true => factor * self.coefficient(1)[index] / self.length(),
-            false => factor * self.coefficient(0)[index],
-        }
-    }
-
-    fn slope(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
-        match rate {
-            true => 2.0 * (factor * self.coefficient(2)[index]) / self.length(),
-            false => factor * self.coefficient(1)[index],
-        }
-    }
-
     fn polynomial(&self, (index, rate): (usize, bool), factor: f64, first: usize, out: &mut [f64]) {
         let coefficient = |power: usize| factor * self.coefficient(power)[index];
         let powers = first..self.coefficients(rate);
-        for (power, out) in powers.clone().zip(&mut out[..powers.len()]) {
+        for (power, out) in powers.zip(out) {
             *out = match rate {
                 true => (power + 1) as f64 * coefficient(power + 1) / self.length(),
                 false => coefficient(power),
@@ -282,18 +268,6 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
     #[inline]
     fn coefficients(&self, rate: bool) -> usize {
         self.count(rate)
-    }
-
-    #[inline]
-    fn constant(&self, of: (usize, bool), factor: f64) -> f64 {
-        self.scaled_constant(of, factor)
-    }
-
-    #[inline]
-    fn slope(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
-        let Series { q, v, .. } = self.series();
-        let power = if rate { v[1][index] } else { q[1][index] };
-        power * (factor * self.length())
     }
 
     #[inline]

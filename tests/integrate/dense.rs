@@ -166,8 +166,10 @@ fn the_polynomials_of_coordinates_and_rates_are_the_motion() {
             let mut higher = [0.0; ORDERS];
             dense.polynomial((index, rate), factor, 2, &mut higher);
             assert_eq!(higher[..ORDERS - 2], coefficients[2..]);
-            assert_eq!(dense.constant((index, rate), factor), coefficients[0]);
-            assert_eq!(dense.slope((index, rate), factor), coefficients[1]);
+            assert_eq!(
+                dense.coefficient_of((index, rate), factor, 1),
+                coefficients[1]
+            );
             for s in [0.0, 0.3, 1.0] {
                 let sum = coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c);
                 let (q, v, _) = dense.at_offset(s * dense.length());

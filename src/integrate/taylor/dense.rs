@@ -83,22 +83,8 @@ impl<const F: usize> TaylorDense<F> {
         if rate { self.order + 1 } else { self.order + 2 }
     }
 
-    /// `factor` times coordinate `index`, or its rate, at the start.
-    #[inline]
-    pub fn scaled_constant(&self, (index, rate): (usize, bool), factor: f64) -> f64 {
-        let Series { q, v, .. } = &self.series;
-        if rate {
-            v[0][index] * factor
-        } else {
-            q[0][index] * factor
-        }
-    }
-
     /// Writes the coefficients in powers of s = τ/length of `factor` times coordinate `index`, or its
-    /// rate, from a power on.
-    ///
-    /// # Panics
-    /// If there is no room for them.
+    /// rate, from a power on, as many as there is room for.
     #[inline]
     pub fn scaled(&self, (index, rate): (usize, bool), factor: f64, from: usize, out: &mut [f64]) {
         // Once, so that two at a time need no other check.
@@ -135,7 +121,8 @@ fn sum<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f6
 }
 
 /// Of the coefficients in powers of s writes those of `factor` times the polynomial in powers of s/`scale`,
-/// from the power `first` on: two powers side by side, since a product waits for the one before.
+/// from the power `first` on, as many as there is room for: two powers side by side, since a product waits for the
+/// one before.
 #[inline(always)]
 pub(crate) fn stretch<T>(
     from: &[T],
@@ -148,9 +135,10 @@ pub(crate) fn stretch<T>(
     for _ in 0..first {
         powers = [powers[1], powers[0] * squared];
     }
-    let from = &from[first.min(from.len())..];
-    let (pairs, last) = from.as_chunks::<2>();
-    let (out_pairs, out_last) = out[..from.len()].as_chunks_mut::<2>();
+    let from = &from[first..];
+    let count = from.len().min(out.len());
+    let (pairs, last) = from[..count].as_chunks::<2>();
+    let (out_pairs, out_last) = out[..count].as_chunks_mut::<2>();
     for (out, pair) in out_pairs.iter_mut().zip(pairs) {
         for k in 0..2 {
             out[k] = coefficient(&pair[k]) * powers[k];
