@@ -1,5 +1,6 @@
 //! Dense output: the motion within a step as one polynomial a coordinate.
 
+use super::state::State;
 use super::tableau::{Coefficients, RadauIia};
 use nalgebra::SVector;
 
@@ -98,28 +99,57 @@ impl<const S: usize, const F: usize> Dense<S, F> {
         (q, v, a)
     }
 
-    /// The coefficient of s^`power` in q, 0 ≤ `power` ≤ [`Self::DEGREE`], in the units of q.
+    /// The coefficient of s^`power` in coordinate `index`, 0 ≤ `power` ≤ [`Self::DEGREE`], in its units.
     #[inline]
-    pub fn coefficient(&self, power: usize) -> SVector<f64, F> {
+    pub fn coefficient(&self, index: usize, power: usize) -> f64 {
         match power {
-            0 => self.q0,
-            1 => self.v0 * self.h,
-            2 => self.p0 * (self.h * self.h),
-            _ => self.p[power - 3] * (self.h * self.h),
+            0 => self.q0[index],
+            1 => self.h * self.v0[index],
+            2 => self.h * self.h * self.p0[index],
+            _ => self.h * self.h * self.p[power - 3][index],
         }
     }
 
-    /// Sets P from the accelerations `a0` at the start and `stages`.
+    /// The coefficient of s^`power` in the velocity `index`, 0 ≤ `power` < [`Self::DEGREE`].
+    #[inline]
+    pub(super) fn rate_coefficient(&self, index: usize, power: usize) -> f64 {
+        match power {
+            0 => self.v0[index],
+            1 => 2.0 * self.h * self.p0[index],
+            _ => (power + 1) as f64 * self.h * self.p[power - 2][index],
+        }
+    }
+
+    pub(super) fn zero() -> Self {
+        let zero = SVector::zeros();
+        Dense {
+            t0: 0.0,
+            h: 0.0,
+            t_end: 0.0,
+            q0: zero,
+            v0: zero,
+            p0: zero,
+            p: [zero; S],
+        }
+    }
+
+    /// Makes this the motion in the step from `origin` with these accelerations at its `stages`; `times`: its
+    /// start, length and end. Written where it is read: a copy right after it would wait for what is on
+    /// its way to memory.
     #[inline]
     pub(super) fn interpolate(
         &mut self,
-        a0: &SVector<f64, F>,
+        times: (f64, f64, f64),
+        origin: &State<F>,
         stages: &[SVector<f64, F>; S],
         unresolved: &[bool; F],
     ) where
         RadauIia<S>: Coefficients<S>,
     {
         let tableau = RadauIia::<S>::TABLEAU;
+        (self.t0, self.h, self.t_end) = times;
+        (self.q0, self.v0) = (origin.q, origin.v);
+        let a0 = &origin.a;
         for i in 0..F {
             // One stage does not make an interpolant that reaches the end point.
             if S > 1 && !unresolved[i] {

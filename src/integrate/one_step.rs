@@ -237,13 +237,13 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
     }
 
     fn polynomial(&self, (index, rate): (usize, bool), factor: f64, first: usize, out: &mut [f64]) {
-        let coefficient = |power: usize| factor * self.coefficient(power)[index];
         let powers = first..self.coefficients(rate);
         for (power, out) in powers.zip(out) {
-            *out = match rate {
-                true => (power + 1) as f64 * coefficient(power + 1) / self.length(),
-                false => coefficient(power),
-            };
+            *out = factor
+                * match rate {
+                    true => self.rate_coefficient(index, power),
+                    false => self.coefficient(index, power),
+                };
         }
     }
 }

@@ -457,18 +457,9 @@ where
         self.end = end;
         self.lost_at_start = lost;
         self.lost = now_lost;
-        let zero = SVector::zeros();
-        let mut dense = Dense {
-            t0: origin.t,
-            h,
-            t_end: end.t,
-            q0: origin.q,
-            v0: origin.v,
-            p0: zero,
-            p: [zero; S],
-        };
-        dense.interpolate(&origin.a, &self.stages.a, &self.unresolved);
-        self.dense = Some(dense);
+        let times = (origin.t, h, end.t);
+        let dense = self.dense.get_or_insert_with(Dense::zero);
+        dense.interpolate(times, origin, &self.stages.a, &self.unresolved);
     }
 
     fn report(&self, error: f64, iterations: u32, discarded: u32) -> StepReport {
