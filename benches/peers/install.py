@@ -21,8 +21,9 @@ class Peers:
     """A method for each peer of `RUNNABLE`: it builds what is missing or older than its sources, and returns
     the command to which the names of problems are added."""
 
-    def __init__(self, scratch):
+    def __init__(self, scratch, floor=None):
         self.scratch = scratch
+        self.floor_source = floor
         self.python = scratch / "venv" / "bin" / "python"
         self.tank = scratch / "tank"
         self.ready = set()
@@ -64,6 +65,11 @@ class Peers:
         program = self.scratch / "sundials_rows"
         libraries = [prefix / "lib" / f"libsundials_{name}.a" for name in SUNDIALS_LIBRARIES]
         call([*CXX, "-I", prefix / "include", "-I", self.tank, HERE / "sundials.cpp", "-o", program, *libraries, self.tank / "libtank.a", "-lm"])
+        return [program]
+
+    def floor(self):
+        program = self.scratch / "floor_rows"
+        call([*CXX, self.floor_source, "-o", program])
         return [program]
 
     def fortran(self):

@@ -5,6 +5,8 @@ import math
 PROBLEMS = ["P1", "P2", "P3b", "P4", "P4S", "P5", "free", "plate"]
 LEVELS = [1e-3, 1e-6, 1e-9, 1e-12]
 COLUMNS = ["peer", "method", "problem", "tolerance", "least_us", "median_us", "repeats", "rhs", "jacobians", "steps", "events", "end_error", "event_time_error", "verdict"]
+# Bare code made for each problem: what can be reached, and no peer.
+FLOOR = "floor(own)"
 # The spring of P4S follows its load to 1e-9 m; the height at an impact is 0 by the reset.
 COMPARED = {"P4S": [0, 2], "P5": [1]}
 
@@ -88,20 +90,19 @@ def best(rows, problem, level):
     return fastest
 
 
-def table(rows, floors):
-    """Markdown: per problem and level each peer's best time, and our ratios."""
-    peers = sorted({row["peer"] for row in rows} - {"dalembert"})
-    lines = ["| problem | error | dalembert | " + " | ".join(peers) + " | to the best peer | to the floor |", "|---|--:|--:|" + "--:|" * (len(peers) + 2)]
+def table(rows):
+    """Markdown: per problem and level each peer's best time, that of the floor, and our ratios."""
+    peers = sorted({row["peer"] for row in rows} - {"dalembert", FLOOR})
+    lines = ["| problem | error | dalembert | " + " | ".join(peers) + " | floor | to the best peer | to the floor |", "|---|--:|--:|" + "--:|" * (len(peers) + 3)]
     for problem in PROBLEMS:
         for level in LEVELS:
             fastest = best(rows, problem, level)
             cell = lambda peer: f"{float(fastest[peer]['least_us']):.1f} ({fastest[peer]['method']}, {fastest[peer]['tolerance']})" if peer in fastest else "–"
             ours = float(fastest["dalembert"]["least_us"]) if "dalembert" in fastest else math.nan
-            others = [float(row["least_us"]) for peer, row in fastest.items() if peer != "dalembert"]
-            ratio = f"{ours / min(others):.2f}" if others and not math.isnan(ours) else "–"
-            floor = floors.get(problem, {}).get(f"{level:g}")
-            of_floor = f"{ours / floor:.2f}" if floor and not math.isnan(ours) else "–"
-            lines.append(f"| {problem} | {level:g} | {cell('dalembert')} | " + " | ".join(map(cell, peers)) + f" | {ratio} | {of_floor} |")
+            times = lambda names: [float(fastest[peer]["least_us"]) for peer in names if peer in fastest]
+            ratio = lambda others: f"{ours / min(others):.2f}" if others and not math.isnan(ours) else "–"
+            cells = [*map(cell, ["dalembert", *peers, FLOOR]), ratio(times(peers)), ratio(times([FLOOR]))]
+            lines.append(f"| {problem} | {level:g} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -111,6 +112,7 @@ def summary(rows):
     for problem in PROBLEMS:
         for level in (1e-3, 1e-6, 1e-12):
             fastest = best(rows, problem, level)
+            fastest.pop(FLOOR, None)
             ours = fastest.pop("dalembert", None)
             if ours and fastest:
                 other = min(fastest.values(), key=lambda row: float(row["least_us"]))
@@ -146,14 +148,14 @@ def figure(rows, path):
 
     grey = "#808080"  # is readable on white and on black
     plt.rcParams.update({"svg.hashsalt": "peers", "text.color": grey, "axes.edgecolor": grey, "axes.labelcolor": grey, "xtick.color": grey, "ytick.color": grey})
-    peers = sorted({row["peer"] for row in rows}, key=lambda peer: (peer != "dalembert", peer))
-    colours = dict(zip(peers, plt.get_cmap("tab10").colors))
+    peers = sorted({row["peer"] for row in rows}, key=lambda peer: (peer != "dalembert", peer == FLOOR, peer))
+    colours = dict(zip(peers, plt.get_cmap("tab10").colors)) | {FLOOR: grey}
     panels, axes = plt.subplots(2, 4, figsize=(13, 7), sharex=True)
     for axis, problem in zip(axes.flat, PROBLEMS):
         for peer in peers:
             points = frontier((float(r["end_error"]), float(r["least_us"])) for r in rows if (r["peer"], r["problem"], r["verdict"]) == (peer, problem, "ok"))
             ours = peer == "dalembert"
-            axis.loglog([max(e, 1e-16) for e, _ in points], [t for _, t in points], "-o", ms=3, lw=3 if ours else 1.2, color=colours[peer], label=peer)
+            axis.loglog([max(e, 1e-16) for e, _ in points], [t for _, t in points], ":" if peer == FLOOR else "-o", ms=3, lw=3 if ours else 1.2, color=colours[peer], label=peer)
         axis.set_title(problem, color=grey)
         axis.set_xlim(3e-1, 1e-16)
         axis.grid(alpha=0.3)

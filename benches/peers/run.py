@@ -13,10 +13,10 @@ import subprocess
 import sys
 
 from install import HERE, ROOT, RUNNABLE, Peers, call
-from rows import COLUMNS, PROBLEMS, collect, least, least_costs, merged, table, with_summary
+from rows import COLUMNS, FLOOR, PROBLEMS, collect, least, least_costs, merged, table, with_summary
 
 # The names of the rows that a peer prints.
-PRINTS = {"sundials": {"CVODE", "ARKODE"}, "fortran": {"LSODAR", "RADAU5"}, "heyoka": {"heyoka", "heyoka less calls"}, "casadi": {"CasADi"}}
+PRINTS = {"sundials": {"CVODE", "ARKODE"}, "fortran": {"LSODAR", "RADAU5"}, "heyoka": {"heyoka", "heyoka less calls"}, "casadi": {"CasADi"}, "floor": {FLOOR}}
 
 
 def read(path):
@@ -46,13 +46,15 @@ def is_there(rows, name, problem):
 def rows_of(command, problem, reference):
     """Runs a peer on a problem."""
     done = subprocess.run([*map(str, command), problem], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
-    return [collect(line, reference) for line in done.stdout.splitlines() if line.count("|") == len(COLUMNS) - 1]
+    rows = [line for line in done.stdout.splitlines() if line.count("|") == len(COLUMNS) - 1]
+    return [collect(line, reference) for line in rows if line.split("|")[2] == problem]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scratch", type=pathlib.Path, help="folder for what is installed and built")
-    parser.add_argument("--only", default="", help=f"peers and problems, separated by commas: {', '.join(RUNNABLE + PROBLEMS)}; other rows stay")
+    parser.add_argument("--only", default="", help=f"peers and problems, separated by commas: {', '.join(RUNNABLE + ['floor'] + PROBLEMS)}; other rows stay")
+    parser.add_argument("--floor", type=pathlib.Path, help="C++ source of a program that prints rows of bare code made for each problem; not part of the project")
     parser.add_argument("--missing", action="store_true", help="only what has no rows yet: goes on after an interruption")
     parser.add_argument("--again", action="store_true", help="another pass of the same programs: the least times of both count")
     parser.add_argument("--quick", action="store_true", help="a trial, written into SCRATCH: every third tolerance, few repeats")
@@ -60,7 +62,8 @@ def main():
     scratch = arguments.scratch.resolve()
     scratch.mkdir(parents=True, exist_ok=True)
     only = [word for word in arguments.only.split(",") if word]
-    unknown = set(only) - set(RUNNABLE + PROBLEMS)
+    runnable = RUNNABLE + (["floor"] if arguments.floor else [])
+    unknown = set(only) - set(runnable + PROBLEMS)
     if unknown:
         parser.error(f"--only: no peer or problem is named {', '.join(sorted(unknown))}")
     if arguments.quick:
@@ -68,9 +71,9 @@ def main():
     reference = json.loads((HERE / "reference.json").read_text())
     results, figure = (scratch, scratch / "peers.svg") if arguments.quick else (HERE, ROOT / "docs" / "peers.svg")
     rows = read(results / "results.csv")
-    peers = Peers(scratch)
+    peers = Peers(scratch, arguments.floor)
     failed = []
-    for name in [r for r in RUNNABLE if r in only] or RUNNABLE:
+    for name in [r for r in runnable if r in only] or runnable:
         problems = [p for p in PROBLEMS if p in only] or PROBLEMS
         if arguments.missing:
             problems = [p for p in problems if not is_there(rows, name, p)]
@@ -89,7 +92,7 @@ def main():
         except subprocess.CalledProcessError as error:
             print(f"{name}: {error}; the others go on", file=sys.stderr)
             failed.append(name)
-    text = table(rows, reference["floors"])
+    text = table(rows)
     (results / "best.md").write_text(text)
     print(text)
     page = ROOT / "README.md"

@@ -60,9 +60,11 @@ class Best(unittest.TestCase):
         self.assertEqual({peer: r["least_us"] for peer, r in best(self.ROWS, "P1", 1e-6).items()}, {"dalembert": "12"})
 
     def test_the_table_has_ratios_to_the_best_peer_and_to_the_floor(self):
-        lines = table(self.ROWS, {"P1": {"0.001": 5.0}}).splitlines()
+        floor = [row("floor(own)", 2, 1e-2), row("floor(own)", 5, 1e-4)]
+        lines = table(self.ROWS + floor).splitlines()
         [line] = [one for one in lines if one.startswith("| P1 | 0.001 |")]
-        self.assertTrue(line.endswith("| 0.33 | 2.00 |"), line)
+        self.assertEqual(line, "| P1 | 0.001 | 10.0 (m, 0.001) | 30.0 (m, 0.001) | – | 5.0 (m, 0.001) | 0.33 | 2.00 |")
+        self.assertNotIn("floor", with_summary("| problem | error | dalembert / µs | best other / µs | ratio |\n\n\n", self.ROWS + floor))
 
     def test_the_table_of_the_readme_is_replaced_and_nothing_else(self):
         old = "| problem | error | dalembert / µs | best other / µs | ratio |\n|---|--:|--:|---|--:|\n| old |\n"
