@@ -336,7 +336,8 @@ struct guard {
   unsigned starts_at_zero;
 };
 
-/* The lanes in which an event before the time `last` certainly ends neither an accumulation nor a standstill:
+/* The lanes in which an event before the time `last` certainly ends neither a standstill nor an accumulation that
+ * is as short as its rounding, and those in which it may end another accumulation:
  * src/hybrid/accumulation.rs, which has the reasons. index: of the free coordinates among all. tolerances: as
  * for `length`. point: before the event, reset: all coordinates, velocities and discrete states after it,
  * after: the free ones, the time and the discrete states after the event before; where these are not numbers
@@ -345,10 +346,12 @@ struct guard {
  */
 unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
                                         unsigned rests, double hardly, double shortest, const double *tolerances,
-                                        const real *point, const real *reset, const real *after, const real *last);
+                                        const real *point, const real *reset, const real *after, const real *last,
+                                        unsigned *may_rest);
 unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
                                         unsigned rests, double hardly, double shortest, const double *tolerances,
-                                        const real *point, const real *reset, const real *after, const real *last) {
+                                        const real *point, const real *reset, const real *after, const real *last,
+                                        unsigned *may_rest) {
   const real now = point[5 * free];
   truth still = truth_of(~0U), near = still, alike = still;
   for (size_t i = 0; i < 2 * free; ++i) {
@@ -363,8 +366,8 @@ unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t 
   }
   const truth at_once = at_most(now - after[2 * free], shortest * now);
   const truth first = (truth)~same(after[2 * free], after[2 * free]);
-  const truth rest = rests ? (truth)((near | alike) & ~first) : truth_of(0);
-  return bits((truth)(below(now, *last) & ~(still | at_once | rest)));
+  *may_rest = rests ? bits((truth)((near | alike) & ~first)) : 0;
+  return bits((truth)(below(now, *last) & ~(still | at_once)));
 }
 
 /* Makes a guard factor * (discrete state) with the offset that it has one at the start of a step, where it is
@@ -527,11 +530,14 @@ unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const rea
                                           const struct guard *guard, real *c, real *place, unsigned *unclear) {
   const size_t room = (count + 3) / 4 * 4;
   const real h2 = *h * *h;
-  real power[2] = {guard->factor, guard->factor * *h};
-  for (size_t k = 0; k < count; ++k) {
-    c[k] = row[k * stride] * power[k % 2];
-    power[k % 2] *= h2;
+  real even = guard->factor, odd = guard->factor * *h;
+  for (size_t k = 0; k + 1 < count; k += 2) {
+    c[k] = row[k * stride] * even;
+    c[k + 1] = row[(k + 1) * stride] * odd;
+    even *= h2;
+    odd *= h2;
   }
+  if (count % 2) c[count - 1] = row[(count - 1) * stride] * even;
   for (size_t k = count; k < room; ++k) c[k] = REAL(0.0);
   c[0] += guard->offset;
   const truth rises = truth_of(guard->starts_at_zero);

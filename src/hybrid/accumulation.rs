@@ -34,7 +34,7 @@ pub struct Signature {
 
 impl Signature {
     /// All of it, and whether the event was an impact, in one number. A model has fewer of each than 2¹⁶.
-    fn key(self, impact: bool) -> u64 {
+    pub fn key(self, impact: bool) -> u64 {
         let [guard, transition, mode] = [self.guard, self.transition, self.mode].map(|i| i as u64);
         guard | transition << 16 | mode << 32 | u64::from(impact) << 48
     }
@@ -144,23 +144,23 @@ impl Accumulation {
             && hardly_moved(before.iter().map(own).zip(self.state(0).iter().map(own)));
         let still = if is_still { self.still + 1 } else { 0 };
         let n = state[0].len();
-        let record = self.push_apart(signature, impact, at);
+        let record = self.push_apart(signature.key(impact), at);
         copy_few(state[0], &mut record[..n]);
         copy_few(state[1], &mut record[n..][..state[1].len()]);
         copy_few(discrete, &mut record[n + state[1].len()..]);
         self.still = still;
     }
 
-    /// Remembers an event before which something has moved since the one before; gives room for coordinates,
-    /// velocities and discrete states after it.
+    /// Remembers an event before which something has moved since the one before, by the bits of what makes it the
+    /// same as others ([`Signature::key`]); gives room for coordinates, velocities and discrete states after it.
     #[inline]
-    pub fn push_apart(&mut self, signature: Signature, impact: bool, at: Instant) -> &mut [f64] {
+    pub fn push_apart(&mut self, key: u64, at: Instant) -> &mut [f64] {
         self.still = 0;
         self.count += 1;
         let start = self.start(0);
         let record = &mut self.records[start..][..STATE + self.width + self.discretes];
         [record[TIME], record[TIME + 1]] = at.parts();
-        record[KEY] = f64::from_bits(signature.key(impact));
+        record[KEY] = f64::from_bits(key);
         &mut record[STATE..]
     }
 

@@ -390,8 +390,8 @@ impl<'p> Simulation<'p> {
             || after.is_some_and(|(_, count)| self.counted >= count)
     }
 
-    /// Goes to the limit of an accumulation, if the last events have one.
-    pub fn look_for_accumulation(&mut self) -> Result<(), Reason> {
+    /// The mode and the limit of an accumulation that the last events make certain.
+    pub fn rest(&self) -> Option<(usize, Limit)> {
         let accuracy = &self.problem.accuracy;
         let n = self.here.q.len();
         let tolerance = |i: usize, value: f64| {
@@ -402,10 +402,14 @@ impl<'p> Simulation<'p> {
             };
             absolute + accuracy.relative * value.abs()
         };
-        if let Some(rest) = self.plan.rest(self.mode())
-            && let Some(limit) = self.accumulation.limit(accuracy.relative, tolerance)
-            && limit.at.seconds() < self.problem.end.time
-        {
+        let rest = self.plan.rest(self.mode())?;
+        let limit = self.accumulation.limit(accuracy.relative, tolerance)?;
+        (limit.at.seconds() < self.problem.end.time).then_some((rest, limit))
+    }
+
+    /// Goes to the limit of an accumulation, if the last events have one.
+    pub fn look_for_accumulation(&mut self) -> Result<(), Reason> {
+        if let Some((rest, limit)) = self.rest() {
             return self.come_to_rest(rest, Some(limit));
         }
         if self.accumulation.stands_still() {

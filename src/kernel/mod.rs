@@ -197,7 +197,7 @@ lane_functions!(
         durations(In, In, f64, Out);
         end(usize, usize, In, In, In, In, In, Out);
         take(usize, Bits, In, Out);
-        is_apart(usize, usize, usize, Indices, Bits, f64, f64, In, In, In, In, In) -> Bits;
+        is_apart(usize, usize, usize, Indices, Bits, f64, f64, In, In, In, In, In, OutBits) -> Bits;
         departs(In, In, f64, In, Out) -> Bits;
         leap(usize, usize, usize, Indices, Bits, In, Out, Out);
     )
@@ -503,7 +503,8 @@ pub fn lane_take<const W: usize>(
 }
 
 /// The lanes in which an event, with the states before and after it, is before `last` (s) and certainly ends
-/// neither an accumulation nor a standstill.
+/// neither a standstill nor an accumulation as short as its rounding; and those in which it may end another
+/// accumulation.
 #[inline]
 pub fn lane_is_apart<const F: usize, const W: usize>(
     level: usize,
@@ -511,11 +512,12 @@ pub fn lane_is_apart<const F: usize, const W: usize>(
     point: &LanePoint<F, W>,
     reset: &[Lanes<W>],
     last: &Lanes<W>,
-) -> LaneMask {
+) -> [LaneMask; 2] {
     let discretes = past.check(reset);
     let is_apart = lane_functions::<W>(level).is_apart;
+    let mut may_rest = 0;
     // SAFETY: all lengths and indices were checked; the rest is a point and one number a lane.
-    LaneMask(unsafe {
+    let apart = unsafe {
         is_apart(
             F,
             past.coordinates,
@@ -529,8 +531,10 @@ pub fn lane_is_apart<const F: usize, const W: usize>(
             reset.as_ptr().cast(),
             past.after.as_ptr().cast(),
             (&raw const *last).cast(),
+            &mut may_rest,
         )
-    })
+    };
+    [LaneMask(apart), LaneMask(may_rest)]
 }
 
 /// Goes on in some lanes from the state that a reset gives, and remembers it.

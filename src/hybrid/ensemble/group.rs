@@ -1,9 +1,10 @@
 //! Trajectories of one mode side by side, from one event of each to its next.
 
-use super::super::accumulation::{Accumulation, SHORTEST_PATTERN};
+use super::super::accumulation::{Accumulation, SHORTEST_PATTERN, Signature};
 use super::super::crossing::Signs;
 use super::super::guards::slope;
 use super::super::instant::Instant;
+use super::super::plan::is_impact;
 use super::super::roots::Watch;
 use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
@@ -38,8 +39,11 @@ pub(super) struct WatchedGuard<const W: usize> {
     /// Whether something is added.
     pub offset: bool,
     pub linear: LaneGuard<W>,
-    /// Its transition, if lanes can take it side by side.
+    /// Its transition, if lanes can take it side by side; the name of that, and what makes its events the same
+    /// ([`Signature::key`]).
     pub transition: Option<usize>,
+    pub name: &'static str,
+    pub key: u64,
     /// Lanes in which it falls in the last step.
     pub falls: LaneMask,
     /// All coordinates, velocities and discrete states after the transition.
@@ -154,13 +158,22 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 offset: Lanes::of(0.0),
                 starts_at_zero: LaneMask::NONE,
             };
+            let own = &mode.guards[watched.guard];
+            let transition = transition_in_lanes(kernel, like, watched.guard);
+            let signature = Signature {
+                guard: watched.guard,
+                transition: transition.unwrap_or_default(),
+                mode: like.here.mode,
+            };
             WatchedGuard {
                 guard: watched.guard,
                 of: (index, rate),
                 factor: (factor, discrete),
                 offset,
                 linear,
-                transition: transition_in_lanes(kernel, like, watched.guard),
+                transition,
+                name: transition.map_or("", |t| own.transitions[t].name),
+                key: signature.key(is_impact(own)),
                 falls: LaneMask::NONE,
                 reset: LaneRows::zeros(2 * coordinates + discretes),
                 after: linear,

@@ -1,8 +1,6 @@
 //! Transitions of lanes side by side: those that most events are. A guard falls, the reset leads to the same
-//! mode, nothing accumulates, and no guard acts at once. All others are taken by the engine for single runs.
+//! mode, nothing stands still, and no guard acts at once. All others are taken by the engine for single runs.
 
-use super::super::accumulation::Signature;
-use super::super::plan::is_impact;
 use super::super::simulation::Simulation;
 use super::group::{Group, Outcome};
 use crate::integrate::{LaneMask, Lanes};
@@ -11,36 +9,38 @@ use crate::record::Jump;
 
 impl<const F: usize, const W: usize> Group<F, W> {
     /// Takes the transitions of lanes that have just come to an event, where they are plain; gives these
-    /// lanes, which go on. Nothing has changed in the others.
-    pub fn transit(&mut self) -> LaneMask {
-        let mut gone = LaneMask::NONE;
+    /// lanes, which go on, and those of them in which events may accumulate. Nothing has changed in the others.
+    pub fn transit(&mut self) -> [LaneMask; 2] {
+        let [mut gone, mut may_rest] = [LaneMask::NONE; 2];
         for number in 0..self.guards.len() {
             let guard = &self.guards[number];
             if let Some(transition) = guard.transition
                 && guard.falls.any()
             {
-                gone = gone | self.take(number, transition);
+                let taken = self.take(number, transition);
+                [gone, may_rest] = [gone | taken[0], may_rest | taken[1]];
             }
         }
         self.unchecked |= gone.any();
-        gone
+        [gone, may_rest]
     }
 
     /// The same for the events of a guard.
-    fn take(&mut self, number: usize, transition: usize) -> LaneMask {
+    fn take(&mut self, number: usize, transition: usize) -> [LaneMask; 2] {
         let (level, kernel) = (self.level, self.kernel);
         let guard = &mut self.guards[number];
         let (event, lanes) = (guard.guard, guard.falls);
         let mut reset = std::mem::take(&mut guard.reset);
         let at = [&self.here.q, &self.here.v, &self.here.a];
         kernel.lane_reset(level, &self.context, (event, transition), at, &mut reset);
-        let tried = lanes & lane_is_apart(level, &self.past, &self.here, &reset, &self.last);
+        let [apart, may_rest] = lane_is_apart(level, &self.past, &self.here, &reset, &self.last);
+        let tried = lanes & apart;
         let plain = match tried.any() {
             true => self.arrive(tried, &reset),
             false => tried,
         };
         self.guards[number].reset = reset;
-        plain
+        [plain, plain & may_rest]
     }
 
     /// Sets lanes to the state after a reset, where no guard acts there at once: gives these lanes.
@@ -88,27 +88,20 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let Outcome::Event(event) = self.outcomes[lane] else {
             unreachable!("it has taken a transition")
         };
-        let guards = &mut self.guards.iter();
-        let guard = guards.find(|guard| guard.guard == event);
+        let guard = self.guards.iter().find(|guard| guard.guard == event);
         let guard = guard.expect("it is watched");
-        let transition = guard.transition.expect("it was taken");
-        let (at, own) = (self.now(lane), &self.mode.guards[event]);
+        let at = self.now(lane);
         let here = &mut into.here;
         here.j += 1;
         into.jumps.push(Jump {
             t: at.seconds(),
             j: here.j,
-            transition: own.transitions[transition].name,
+            transition: guard.name,
             from: self.index,
             to: self.index,
             energy: None,
         });
-        let signature = Signature {
-            guard: event,
-            transition,
-            mode: self.index,
-        };
-        let after = (into.accumulation).push_apart(signature, is_impact(own), at);
+        let after = into.accumulation.push_apart(guard.key, at);
         for (after, row) in after.iter_mut().zip(&*guard.reset) {
             *after = row.0[lane];
         }

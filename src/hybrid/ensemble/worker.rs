@@ -15,7 +15,7 @@ trait AnyGroup<const W: usize> {
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
-    fn step(&mut self, signals: &Signals) -> [LaneMask; 2];
+    fn step(&mut self, signals: &Signals) -> [LaneMask; 3];
     fn record(&self, lane: usize, into: &mut Simulation);
     fn outcome(&self, lane: usize) -> Outcome;
 }
@@ -33,10 +33,10 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
     }
-    fn step(&mut self, signals: &Signals) -> [LaneMask; 2] {
+    fn step(&mut self, signals: &Signals) -> [LaneMask; 3] {
         let ended = Group::step(self, signals);
-        let gone = self.transit();
-        [gone, ended & !gone]
+        let [gone, may_rest] = self.transit();
+        [gone, may_rest, ended & !gone]
     }
     fn record(&self, lane: usize, into: &mut Simulation) {
         Group::record(self, lane, into)
@@ -163,10 +163,22 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// A step of a group, and what follows from it.
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
-        let [gone, ended] = lanes.group.step(&self.ensemble.problem.signals);
+        let [gone, may_rest, ended] = lanes.group.step(&self.ensemble.problem.signals);
+        let mut at_rest = LaneMask::NONE;
         for lane in gone.lanes() {
             let slot = lanes.slots[lane].expect("what goes on is in a lane");
-            lanes.group.record(lane, &mut self.slots[slot].simulation);
+            let simulation = &mut self.slots[slot].simulation;
+            lanes.group.record(lane, simulation);
+            at_rest.set(lane, may_rest.is(lane) && simulation.rest().is_some());
+        }
+        for lane in at_rest.lanes() {
+            let lanes = self.lanes[mode].as_mut().expect("it is occupied");
+            let slot = lanes.slots[lane].expect("what goes on is in a lane");
+            let simulation = &mut self.slots[slot].simulation;
+            lanes.group.unload(lane, simulation);
+            simulation.visited.clear();
+            let passed = simulation.look_for_accumulation();
+            self.leave(mode, lane, passed.map(|()| true), false, take);
         }
         for lane in ended.lanes() {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
@@ -194,14 +206,27 @@ impl<'a, const W: usize> Worker<'a, W> {
             if stays && lanes.group.go_on(lane, simulation) {
                 continue;
             }
-            lanes.group.vacate(lane);
-            lanes.slots[lane] = None;
-            lanes.occupied -= 1;
-            self.vacancies = true;
-            self.go_on(slot, passed, unclear, take);
-            if self.slots[slot].state == State::Waiting {
-                self.find_lane(slot);
-            }
+            self.leave(mode, lane, passed, unclear, take);
+        }
+    }
+
+    /// Takes the slot out of a lane of a mode, and goes on with it as [`Self::go_on`].
+    fn leave(
+        &mut self,
+        mode: usize,
+        lane: usize,
+        passed: Result<bool, Reason>,
+        alone: bool,
+        take: &mut impl FnMut(usize, Finished),
+    ) {
+        let lanes = self.lanes[mode].as_mut().expect("it is occupied");
+        let slot = lanes.slots[lane].take().expect("it is occupied");
+        lanes.group.vacate(lane);
+        lanes.occupied -= 1;
+        self.vacancies = true;
+        self.go_on(slot, passed, alone, take);
+        if self.slots[slot].state == State::Waiting {
+            self.find_lane(slot);
         }
     }
 
