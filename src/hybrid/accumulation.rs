@@ -175,17 +175,21 @@ impl Accumulation {
         self.first + (self.count - 1 - back) % ROOM * self.stride
     }
 
-    fn at(&self, back: usize) -> Instant {
-        let start = self.start(back);
-        Instant::of_parts([self.records[start + TIME], self.records[start + TIME + 1]])
+    /// When an event happened, and what makes it the same as others.
+    #[inline]
+    fn head(&self, back: usize) -> (Instant, u64) {
+        let record = self.records[self.start(back)..].first_chunk::<STATE>();
+        let record = record.expect("a record is longer");
+        let at = Instant::of_parts([record[TIME], record[TIME + 1]]);
+        (at, record[KEY].to_bits())
     }
 
-    fn key(&self, back: usize) -> u64 {
-        self.records[self.start(back) + KEY].to_bits()
+    fn at(&self, back: usize) -> Instant {
+        self.head(back).0
     }
 
     fn is_impact(&self, back: usize) -> bool {
-        self.key(back) >> 48 != 0
+        self.head(back).1 >> 48 != 0
     }
 
     fn state(&self, back: usize) -> &[f64] {
@@ -199,7 +203,7 @@ impl Accumulation {
     /// Whether two events are the same but for time and state.
     #[inline]
     fn are_alike(&self, one: usize, other: usize) -> bool {
-        if self.key(one) != self.key(other) {
+        if self.head(one).1 != self.head(other).1 {
             return false;
         }
         let mut pairs = self.discrete(one).iter().zip(self.discrete(other));
@@ -211,34 +215,61 @@ impl Accumulation {
     /// the limit's time.
     pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
         let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
-        let longest = match known > 1 && self.may_end_a_pattern(&tolerance) {
-            true => known,
-            false => known.min(1),
-        };
+        if known == 0 {
+            return None;
+        }
         // What repeats after p events repeats after a multiple of p, and leaves as much.
-        let series = (1..=longest).find_map(|p| self.series(p, relative))?;
+        let single = (self.are_alike(0, 1) && self.may_be_last(&tolerance))
+            .then(|| self.series(1, relative))
+            .flatten();
+        let series = match single {
+            Some(series) => series,
+            None if known > 1 && self.may_end_a_pattern(&tolerance) => {
+                (2..=known).find_map(|p| self.series(p, relative))?
+            }
+            None => return None,
+        };
         let ends = self.is_negligible(&series, tolerance);
         ends.then(|| self.end_of(&series))
     }
 
+    /// Whether the time since the last event but one is so short that the rest of a series, at least
+    /// last²/middle with the durations of the last two patterns, may not advance the time t, which middle is
+    /// less than: shorter than √ε t.
+    fn is_short(&self) -> bool {
+        let [now, before] = [0, 1].map(|back| self.at(back).seconds());
+        now - before <= SHORTEST_PATTERN * now
+    }
+
+    /// Whether what is left of a pattern of one event, if it is one, may be negligible
+    /// ([`Self::is_negligible`]): looked at first, since it seldom is.
+    fn may_be_last(&self, tolerance: impl Fn(usize, f64) -> f64) -> bool {
+        let at = [0, 1, 2].map(|back| self.at(back));
+        let [last, middle] = [at[0].since(at[1]), at[1].since(at[2])];
+        let mut pairs = self.state(0).iter().zip(self.state(1)).enumerate();
+        let little = |(i, (now, before)): (usize, (&f64, &f64))| {
+            (now - before).abs() * last <= tolerance(i, *now) * (middle - last)
+        };
+        pairs.all(little) || self.is_short()
+    }
+
     /// Whether the last event may end a pattern of several events whose rest is negligible
-    /// ([`Self::is_negligible`]). Then the event before is within the tolerances of it; or the rest of the series,
-    /// at least last²/middle with the durations of the last two patterns, does not advance the time t, which
-    /// middle is less than: so that the last one is shorter than √ε t.
+    /// ([`Self::is_negligible`]). Then the event before is within the tolerances of it, or no rest can be seen.
     fn may_end_a_pattern(&self, tolerance: impl Fn(usize, f64) -> f64) -> bool {
         let near =
             |(i, (now, before)): (usize, (&f64, &f64))| (now - before).abs() <= tolerance(i, *now);
         let mut pairs = self.state(0).iter().zip(self.state(1)).enumerate();
-        let [now, before] = [0, 1].map(|back| self.at(back).seconds());
-        now - before <= SHORTEST_PATTERN * now || pairs.all(near)
+        self.is_short() || pairs.all(near)
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
+    #[inline]
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
-        if !self.are_alike(0, p) {
+        let heads = [0, 1, 2, 3].map(|k| self.head(k * p));
+        if heads[0].1 != heads[1].1 {
             return None;
         }
-        let at = [0, 1, 2, 3].map(|k| self.at(k * p));
+        let at = heads.map(|(at, _)| at);
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
         // The last may be shorter than the resolution of an instant.
         if !(0.0 <= last && last < middle && middle < first) {
@@ -248,7 +279,7 @@ impl Accumulation {
         if ratio >= LARGEST_RATIO || ratio_before >= LARGEST_RATIO {
             return None;
         }
-        let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
+        let repeats = (0..2 * p).all(|i| self.are_alike(i, i + p));
         // Only impacts come to rest; stick and slip alone have modes of their own.
         if !repeats || !(0..p).any(|i| self.is_impact(i)) {
             return None;
