@@ -93,6 +93,8 @@ pub(super) struct Equations<'a, const F: usize> {
     foresees: bool,
     /// Local times for which the equations' signals are known ahead; NaN: none.
     ahead: [f64; Context::MOST_AHEAD],
+    /// The one of them that the context was last set for.
+    at_ahead: usize,
     /// Local time about which the guards were last expanded; NaN: none.
     guards_expanded_at: f64,
     /// The piece of the inputs in which the last expansion was.
@@ -118,6 +120,7 @@ impl<'a, const F: usize> Equations<'a, F> {
             complete: false,
             foresees,
             ahead: [f64::NAN; Context::MOST_AHEAD],
+            at_ahead: 0,
             guards_expanded_at: f64::NAN,
             // None yet: it has ended before all times.
             piece: Piece {
@@ -142,8 +145,15 @@ impl<'a, const F: usize> Equations<'a, F> {
         if tau == self.set_for {
             return;
         }
-        match self.ahead.iter().position(|&ahead| ahead == tau) {
+        // They are asked for one after the other.
+        let next = (self.at_ahead + 1) % Context::MOST_AHEAD;
+        let index = match self.ahead[next] == tau {
+            true => Some(next),
+            false => self.ahead.iter().position(|&ahead| ahead == tau),
+        };
+        match index {
             Some(index) => {
+                self.at_ahead = index;
                 self.context.set_foreseen_signals(index);
                 self.clock.set_held(tau, self.context);
                 (self.set_for, self.complete) = (tau, false);
@@ -219,9 +229,11 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         for (at, &tau) in at.iter_mut().zip(times) {
             *at = clock.instant(tau);
         }
-        self.context.foresee_signals(clock.signals, &at);
+        self.context
+            .foresee_signals(clock.signals, &at[..times.len()]);
         self.ahead.fill(f64::NAN);
         self.ahead[..times.len()].copy_from_slice(times);
+        self.at_ahead = Context::MOST_AHEAD - 1;
     }
 
     fn resolution(&self, t: f64) -> f64 {

@@ -79,12 +79,17 @@ impl Function {
             .fold(Jet::default(), |sum, term| sum + term.at(t, side))
     }
 
-    /// The values alone at several instants.
-    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
-        match &self.terms[..] {
-            [Term::Sine(sine)] => sine.values(at),
-            _ => at.map(|(t, side)| self.at(t, side).value),
+    /// The values alone at up to eight instants; the others are zero.
+    #[inline]
+    pub(super) fn values(&self, at: &[(f64, Side)]) -> [f64; 8] {
+        if let [Term::Sine(sine)] = &self.terms[..] {
+            return sine.values(at);
         }
+        let mut values = [0.0; 8];
+        for (value, &(t, side)) in values.iter_mut().zip(at) {
+            *value = self.at(t, side).value;
+        }
+        values
     }
 
     /// Fills every `stride`-th entry of `out` with the coefficients of f(t + τ) in powers of τ, of the

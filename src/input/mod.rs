@@ -99,13 +99,13 @@ impl Signals {
         }
     }
 
-    /// Fills a row of `rows` with the signals of each of eight instants, as [`Signals::jets`] does,
-    /// antiderivatives left out.
-    pub fn values(&self, at: &[(f64, Side); 8], rows: &mut [f64]) {
-        let width = rows.len() / at.len();
+    /// Fills a row of `rows`, each `width` long, with the signals of each of up to eight instants, as
+    /// [`Signals::jets`] does, antiderivatives left out.
+    pub fn values(&self, at: &[(f64, Side)], width: usize, rows: &mut [f64]) {
         for c in &self.channels {
-            for (i, value) in c.function.values(at).into_iter().enumerate() {
-                rows[width * i + c.signal] = value;
+            let values = c.function.values(at);
+            for (value, row) in values[..at.len()].iter().zip(rows.chunks_exact_mut(width)) {
+                row[c.signal] = *value;
             }
         }
     }

@@ -77,18 +77,23 @@ impl Sine {
         )
     }
 
-    /// The value alone at each of several instants.
-    pub(super) fn values(&self, at: &[(f64, Side); 8]) -> [f64; 8] {
-        let [sines, cosines] = sin_cos_of_eight(&at.map(|(t, _)| 0.5 * self.angle(t)));
-        std::array::from_fn(|i| {
-            let (t, side) = at[i];
-            let (sin, cos) = (sines[i], cosines[i]);
-            let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
-            match self.acts(t, side) {
-                true => self.amplitude * (sin_shifted * cos + cos_shifted * sin),
-                false => 0.0,
+    /// The value alone at each of up to eight instants; the others are zero.
+    #[inline]
+    pub(super) fn values(&self, at: &[(f64, Side)]) -> [f64; 8] {
+        let mut angles = [0.0; 8];
+        for (angle, (t, _)) in angles.iter_mut().zip(at) {
+            *angle = 0.5 * self.angle(*t);
+        }
+        let [sines, cosines] = sin_cos_of_eight(&angles);
+        let mut values = [0.0; 8];
+        for (i, &(t, side)) in at.iter().enumerate().take(8) {
+            if self.acts(t, side) {
+                let (sin, cos) = (sines[i], cosines[i]);
+                let (sin_shifted, cos_shifted) = self.shifted((sin, cos));
+                values[i] = self.amplitude * (sin_shifted * cos + cos_shifted * sin);
             }
-        })
+        }
+        values
     }
 
     /// Whether it acts at an instant.

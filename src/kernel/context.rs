@@ -195,7 +195,7 @@ impl Context {
         }
     }
 
-    /// Number of instants of [`Context::foresee_signals`].
+    /// Most instants of [`Context::foresee_signals`].
     pub const MOST_AHEAD: usize = 8;
 
     /// Whether [`Context::foresee_signals`] gives all that the equations of motion need: they depend on
@@ -204,10 +204,10 @@ impl Context {
         !self.quiet && !signals.want_antiderivatives(self.dimensions.expanded)
     }
 
-    /// Computes the signals at several instants side by side, for [`Context::set_foreseen_signals`];
-    /// antiderivatives are left out.
-    pub fn foresee_signals(&mut self, signals: &Signals, at: &[(f64, Side); Self::MOST_AHEAD]) {
-        signals.values(at, &mut self.ahead);
+    /// Computes the signals at up to [`Context::MOST_AHEAD`] instants side by side, for
+    /// [`Context::set_foreseen_signals`]; antiderivatives are left out.
+    pub fn foresee_signals(&mut self, signals: &Signals, at: &[(f64, Side)]) {
+        signals.values(at, self.arrays.signals.len(), &mut self.ahead);
     }
 
     /// Sets the signals to those of an instant that was foreseen, by its index: enough for the equations
