@@ -161,14 +161,14 @@ fn search_series<const F: usize>(
         return false;
     }
     let (kernel, context) = (equations.kernel, &*equations.context);
-    let mut powers = [0.0; ORDERS];
-    let given = kernel.guard_coefficients(context, watched.guard, orders);
-    for (power, given) in powers.iter_mut().zip(given) {
-        *power = given;
-    }
     // Of a low degree where nothing moves.
-    let degree = powers[..orders].iter().rposition(|&c| c != 0.0);
+    let power = |k: usize| kernel.guard_coefficient(context, watched.guard, k);
+    let degree = (1..orders).rev().find(|&k| power(k) != 0.0);
     let count = degree.map_or(1, |degree| degree + 1);
+    let mut powers = [0.0; ORDERS];
+    for (k, own) in powers[..count].iter_mut().enumerate() {
+        *own = power(k);
+    }
     // The guard's own value decides on which side of zero it starts.
     equations.at(tau);
     let at = Free {

@@ -323,6 +323,17 @@ where
         }
     }
 
+    /// Stages without acceleration.
+    #[inline(always)]
+    pub fn drift(&mut self, start: &State<F>, h: f64) {
+        let tableau = RadauIia::<S>::TABLEAU;
+        for i in 0..S {
+            self.a[i] = SVector::zeros();
+            self.v[i] = start.v;
+            self.q[i] = start.q + start.v * (tableau.c[i] * h);
+        }
+    }
+
     /// Velocities and coordinates that belong to the accelerations.
     #[inline(always)]
     pub fn extend(&mut self, start: &State<F>, h: f64) {

@@ -380,6 +380,9 @@ where
         let t = origin.t;
         let tableau = RadauIia::<S>::TABLEAU;
         match &self.dense {
+            // The first iteration solves a linear system, wherever it starts from. Seven stages serve
+            // tolerances at which rounding counts: there the correction is kept small.
+            _ if S <= 5 && system.is_linear() => self.stages.drift(origin, h),
             // One stage: the polynomial passes through the end points, its second derivative says
             // nothing.
             Some(dense) if S > 1 => {
@@ -387,10 +390,13 @@ where
                 for i in 0..S {
                     self.stages.a[i] = dense.acceleration(offset + tableau.c[i] * h);
                 }
+                self.stages.extend(origin, h);
             }
-            _ => self.stages.a = [origin.a; S],
+            _ => {
+                self.stages.a = [origin.a; S];
+                self.stages.extend(origin, h);
+            }
         }
-        self.stages.extend(origin, h);
         if self.linearization.is_none() {
             // At a stage inside, the matrices are closer to those at all stages than at the start.
             self.linearize(system, &self.stages.state(S / 2, t, h));

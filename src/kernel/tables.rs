@@ -124,16 +124,11 @@ impl<const F: usize> ModeKernel<F> {
         all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
     }
 
-    /// Coefficients of a guard, by its index in the mode, in the order of the powers of time; set by
+    /// The coefficient of a guard, by its index in the mode, for a power of time; set by
     /// [`Self::guard_series`].
-    pub fn guard_coefficients<'x>(
-        &self,
-        x: &'x Context,
-        guard: usize,
-        orders: usize,
-    ) -> impl Iterator<Item = f64> + use<'x, F> {
-        let all = x.guard_series[guard..].iter().step_by(self.guards);
-        all.take(orders).copied()
+    #[inline]
+    pub fn guard_coefficient(&self, x: &Context, guard: usize, power: usize) -> f64 {
+        x.guard_series[power * self.guards + guard]
     }
 
     /// Whether trajectories of this mode can go side by side.
