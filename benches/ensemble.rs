@@ -24,7 +24,7 @@ const MEMBERS: usize = 512;
 const SAMPLE: usize = 16;
 
 /// Repeats of which the fastest counts.
-const REPEATS: usize = 20;
+const REPEATS: usize = 100;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
