@@ -155,7 +155,7 @@ def figure(rows, path):
         for peer in peers:
             points = frontier((float(r["end_error"]), float(r["least_us"])) for r in rows if (r["peer"], r["problem"], r["verdict"]) == (peer, problem, "ok"))
             ours = peer == "dalembert"
-            axis.loglog([max(e, 1e-16) for e, _ in points], [t for _, t in points], ":" if peer == FLOOR else "-o", ms=3, lw=3 if ours else 1.2, color=colours[peer], label=peer)
+            axis.loglog([max(e, 1e-16) for e, _ in points], [t for _, t in points], ":" if peer == FLOOR else "-o", ms=3, lw=3 if ours else 1.2, color=colours[peer], label="bare code" if peer == FLOOR else peer)
         axis.set_title(problem, color=grey)
         axis.set_xlim(3e-1, 1e-16)
         axis.grid(alpha=0.3)
