@@ -2,7 +2,7 @@
 
 mod common;
 use common::*;
-use dalembert::hybrid::{Problem, Reason, simulate};
+use dalembert::hybrid::{Method, Problem, Reason, simulate};
 use dalembert::record::{Failure, Run, Silent};
 
 /// Runs a problem that stops early.
@@ -56,6 +56,27 @@ fn a_block_that_would_leave_the_ground_stops() {
         failure.reason
     );
     assert_eq!(failure.at.t, 0.0);
+}
+
+#[test]
+fn a_block_that_is_thrown_over_stops_where_a_step_shows_that_it_lifts_off() {
+    // Its centre, at R from the pivot, falls freely there: g = R (cos φ θ'² + p² sin² φ), φ = α − θ, p² = 3g/4R.
+    let (radius, alpha, g) = (1.0, 0.25, 9.81);
+    for method in [Method::Taylor, Method::Radau] {
+        for relative in [1e-6, 1e-9, 1e-12] {
+            let parameters = [("R", radius), ("alpha", alpha), ("g", g)];
+            let mut problem = problem("rocking_block", &parameters);
+            problem.set_initial("theta.rate", 2.5).unwrap();
+            problem.set_tolerance(relative);
+            (problem.method, problem.end.time) = (method, 10.0);
+            let (run, failure) = stopped(&problem);
+            let (theta, rate) = (failure.at.state.q[0], failure.at.state.v[0]);
+            let (sin, cos) = (alpha - theta).sin_cos();
+            let held = g - radius * cos * rate * rate - 0.75 * g * sin * sin;
+            assert!(held.abs() < 10.0 * relative * g, "{method:?}: {held:e}");
+            assert!(run.trajectory.t.iter().all(|t| *t <= failure.at.t));
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! What a mode requires to be positive.
 
+use super::equations::Equations;
 use super::failure::Reason;
+use super::guards;
+use crate::integrate::{ORDERS, OneStep, State};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 
@@ -37,5 +40,57 @@ fn unmet(mode: &Mode, index: usize, value: f64) -> Reason {
         text: requirement.text,
         value,
         unit: requirement.unit,
+    }
+}
+
+/// Makes the last step end at the first instant, to rounding, at which something the mode requires does not hold,
+/// if it does not at `end`. The dense output is looked at in as many places as a step's polynomial has coefficients
+/// at most, since it swings no more often; between two of them steps of the method decide.
+#[cold]
+pub(super) fn end_where_unmet<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
+    equations: &mut Equations<'a, F>,
+    mode: &Mode,
+    end: f64,
+) -> Result<(), Reason> {
+    let holds = |equations: &mut Equations<'a, F>, state: &State<F>| {
+        equations.at(state.t);
+        let at = free_of(state);
+        check_requirements(equations.kernel, equations.context, mode, at).is_ok()
+    };
+    let start = method.start().t;
+    let place = |k: usize| start + (end - start) * (k as f64 / ORDERS as f64);
+    let dense = method.dense().expect("a step was made");
+    let fails = (1..ORDERS).find(|&k| {
+        let t = place(k);
+        let [q, v, a] = guards::motion(equations, dense, t, true);
+        !holds(equations, &State { t, q, v, a })
+    });
+    let (mut met, mut unmet) = match fails {
+        Some(k) => (place(k - 1), place(k)),
+        None => (place(ORDERS - 1), end),
+    };
+    loop {
+        let middle = 0.5 * (met + unmet);
+        if !(met < middle && middle < unmet) {
+            // A step has a length.
+            let last = unmet.max(start.next_up());
+            method.step_exactly(equations, last - start)?;
+            return Ok(());
+        }
+        method.step_exactly(equations, middle - start)?;
+        match holds(equations, method.state()) {
+            true => met = middle,
+            false => unmet = middle,
+        }
+    }
+}
+
+/// A state without its time.
+pub(super) fn free_of<const F: usize>(state: &State<F>) -> Free<'_, F> {
+    Free {
+        q: &state.q,
+        v: &state.v,
+        a: &state.a,
     }
 }

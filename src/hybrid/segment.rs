@@ -7,7 +7,7 @@ use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
-use super::requirements::check_requirements;
+use super::requirements::{check_requirements, end_where_unmet, free_of};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
@@ -228,7 +228,7 @@ impl Simulation<'_> {
             };
             self.doubts
                 .look(&searched, method, &mut equations, &mut conditions);
-            let (event, beyond) = match cut {
+            let (mut event, mut beyond) = match cut {
                 Cut::Nothing => {
                     state = *method.state();
                     (None, 0.0)
@@ -238,6 +238,17 @@ impl Simulation<'_> {
                     return Ok(Stop::Violated(Violation { guard, rests: true }));
                 }
             };
+
+            let mut unmet = None;
+            if !mode.requirements.is_empty() {
+                equations.at(state.t);
+                let at = free_of(&state);
+                if let Err(reason) = check_requirements(kernel, equations.context, mode, at) {
+                    // The step ends where that begins; an event behind it does not happen.
+                    end_where_unmet(method, &mut equations, mode, state.t)?;
+                    (state, event, beyond, unmet) = (*method.state(), None, 0.0, Some(reason));
+                }
+            }
 
             let end = method.end();
             let dense = method.dense().expect("a step was made");
@@ -287,11 +298,7 @@ impl Simulation<'_> {
             if looks_at_ends {
                 equations.at(state.t);
             }
-            let at = Free {
-                q: &state.q,
-                v: &state.v,
-                a: &state.a,
-            };
+            let at = free_of(&state);
             if let Some(ledger) = &mut self.ledger {
                 if F == 0 {
                     let part = (ledger_from, end);
@@ -299,12 +306,8 @@ impl Simulation<'_> {
                 } else {
                     for Node { weight, state } in method.nodes() {
                         equations.at(state.t);
-                        let at = Free {
-                            q: &state.q,
-                            v: &state.v,
-                            a: &state.a,
-                        };
-                        ledger.add_powers(kernel.powers(equations.context, at), weight);
+                        let powers = kernel.powers(equations.context, free_of(&state));
+                        ledger.add_powers(powers, weight);
                     }
                 }
                 equations.at(state.t);
@@ -329,7 +332,6 @@ impl Simulation<'_> {
                 }
                 determinant = sign;
             }
-            check_requirements(kernel, equations.context, mode, at)?;
             if problem.record.every.is_none() {
                 let Here { q, v, .. } = &self.here;
                 let row = Row {
@@ -342,6 +344,9 @@ impl Simulation<'_> {
                     .push_row(self.here.now.seconds(), self.here.mode, |values| {
                         row.fill(kernel, equations.context, at, values)
                     });
+            }
+            if let Some(reason) = unmet {
+                return Err(reason);
             }
             if progress
                 .advance(self.here.now.seconds(), self.here.j)
