@@ -219,16 +219,12 @@ impl Accumulation {
             return None;
         }
         // What repeats after p events repeats after a multiple of p, and leaves as much.
-        let single = (self.are_alike(0, 1) && self.may_be_last(&tolerance))
-            .then(|| self.series(1, relative))
-            .flatten();
-        let series = match single {
-            Some(series) => series,
-            None if known > 1 && self.may_end_a_pattern(&tolerance) => {
-                (2..=known).find_map(|p| self.series(p, relative))?
-            }
-            None => return None,
-        };
+        let single = self.are_alike(0, 1) && self.may_be_last(&tolerance);
+        let several = known > 1 && self.may_end_a_pattern(&tolerance);
+        let patterns = (if single { 1 } else { 2 })..=(if several { known } else { 1 });
+        let series = patterns
+            .into_iter()
+            .find_map(|p| self.series(p, relative))?;
         let ends = self.is_negligible(&series, tolerance);
         ends.then(|| self.end_of(&series))
     }
@@ -265,11 +261,10 @@ impl Accumulation {
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
     #[inline]
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
-        let heads = [0, 1, 2, 3].map(|k| self.head(k * p));
-        if heads[0].1 != heads[1].1 {
+        if !self.are_alike(0, p) {
             return None;
         }
-        let at = heads.map(|(at, _)| at);
+        let at = [0, 1, 2, 3].map(|k| self.at(k * p));
         let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
         // The last may be shorter than the resolution of an instant.
         if !(0.0 <= last && last < middle && middle < first) {
@@ -279,7 +274,7 @@ impl Accumulation {
         if ratio >= LARGEST_RATIO || ratio_before >= LARGEST_RATIO {
             return None;
         }
-        let repeats = (0..2 * p).all(|i| self.are_alike(i, i + p));
+        let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
         // Only impacts come to rest; stick and slip alone have modes of their own.
         if !repeats || !(0..p).any(|i| self.is_impact(i)) {
             return None;

@@ -2,7 +2,7 @@
 
 use super::instant::Instant;
 use crate::input::{Side, Signals};
-use crate::integrate::{Analytic, Series, Singular, System, solve};
+use crate::integrate::{Analytic, Series, Singular, State, System, solve};
 use crate::kernel::{Context, Free, ModeKernel};
 use nalgebra::{SMatrix, SVector};
 
@@ -320,5 +320,14 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
             true => f64::INFINITY,
             false => self.clock.piece(t, self.piece).1.limit,
         }
+    }
+}
+
+/// A state without its time.
+pub(super) fn free_of<const F: usize>(state: &State<F>) -> Free<'_, F> {
+    Free {
+        q: &state.q,
+        v: &state.v,
+        a: &state.a,
     }
 }

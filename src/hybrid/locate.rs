@@ -5,12 +5,11 @@
 //! the guard is off by at this end point is removed by Newton's method on the length, and last by
 //! the motion's own Taylor polynomial.
 
-use super::equations::Equations;
+use super::equations::{Equations, free_of};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::roots::{Crossing, Kind};
 use crate::integrate::{OneStep, State, System};
-use crate::kernel::Free;
 use crate::model::{Guard, GuardShape};
 use nalgebra::SVector;
 
@@ -186,11 +185,7 @@ fn value_at<const F: usize>(
     state: &State<F>,
 ) -> f64 {
     equations.at(state.t);
-    let at = Free {
-        q: &state.q,
-        v: &state.v,
-        a: &state.a,
-    };
+    let at = free_of(state);
     guards::value(equations.kernel, equations.context, conditions, guard, at)
 }
 
@@ -200,11 +195,7 @@ pub(super) fn rate_at<const F: usize>(
     guard: &Guard,
     state: &State<F>,
 ) -> f64 {
-    let at = Free {
-        q: &state.q,
-        v: &state.v,
-        a: &state.a,
-    };
+    let at = free_of(state);
     if let GuardShape::Linear {
         index,
         rate,

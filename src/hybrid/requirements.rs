@@ -1,6 +1,6 @@
 //! What a mode requires to be positive.
 
-use super::equations::Equations;
+use super::equations::{Equations, free_of};
 use super::failure::Reason;
 use super::guards;
 use crate::integrate::{ORDERS, OneStep, State};
@@ -83,14 +83,5 @@ pub(super) fn end_where_unmet<'a, const F: usize, M: OneStep<F, Equations<'a, F>
             true => met = middle,
             false => unmet = middle,
         }
-    }
-}
-
-/// A state without its time.
-pub(super) fn free_of<const F: usize>(state: &State<F>) -> Free<'_, F> {
-    Free {
-        q: &state.q,
-        v: &state.v,
-        a: &state.a,
     }
 }

@@ -2,12 +2,12 @@
 
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
-use super::equations::{Clock, Equations};
+use super::equations::{Clock, Equations, free_of};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
-use super::requirements::{check_requirements, end_where_unmet, free_of};
+use super::requirements::{check_requirements, end_where_unmet};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;

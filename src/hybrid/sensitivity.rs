@@ -1,6 +1,6 @@
 //! What errors of the motion do to a guard, and how near to zero it comes in a step.
 
-use super::equations::Equations;
+use super::equations::{Equations, free_of};
 use super::guards::{Conditions, motion, watched_value};
 use super::locate::rate_at;
 use super::plan::Watched;
@@ -79,11 +79,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         if self.watched.condition.is_some() {
             return 0.0;
         }
-        let at = Free {
-            q: &state.q,
-            v: &state.v,
-            a: &state.a,
-        };
+        let at = free_of(state);
         let (kernel, context) = (self.equations.kernel, &*self.equations.context);
         let magnitude = kernel.guard_magnitude(context, &self.guard.kernel, at);
         self.accuracy.relative * magnitude

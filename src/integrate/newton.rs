@@ -325,7 +325,7 @@ where
 
     /// Stages without acceleration.
     #[inline(always)]
-    pub fn drift(&mut self, start: &State<F>, h: f64) {
+    pub fn coast(&mut self, start: &State<F>, h: f64) {
         let tableau = RadauIia::<S>::TABLEAU;
         for i in 0..S {
             self.a[i] = SVector::zeros();

@@ -382,7 +382,7 @@ where
         match &self.dense {
             // The first iteration solves a linear system, wherever it starts from. Seven stages serve
             // tolerances at which rounding counts: there the correction is kept small.
-            _ if S <= 5 && system.is_linear() => self.stages.drift(origin, h),
+            _ if S <= 5 && system.is_linear() => self.stages.coast(origin, h),
             // One stage: the polynomial passes through the end points, its second derivative says
             // nothing.
             Some(dense) if S > 1 => {
