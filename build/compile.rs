@@ -13,7 +13,7 @@ use super::parallel;
 const KIND: &str = "libraries";
 
 /// C that generated code and the crate call, relative to the project, and for lanes; what they include.
-const ELEMENTARY: [&str; 2] = ["codegen/elementary.c", "codegen/sums.c"];
+const ELEMENTARY: [&str; 3] = ["codegen/elementary.c", "codegen/ranges.c", "codegen/sums.c"];
 const LANES: &str = "codegen/lanes.c";
 const INCLUDED: [&str; 3] = [
     "codegen/elementary.h",

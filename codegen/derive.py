@@ -125,7 +125,8 @@ class Substitution:
 class ModeEquations:
     """Everything that is generated for one mode, as expressions in its own symbols.
 
-    `held` are the symbols of the values at which coordinates are frozen.
+    `held` are the symbols of the values at which coordinates are frozen; `radii` those of what coordinates,
+    velocities and accelerations may differ by from given ones, for bounds.
     """
 
     def __init__(self, model, mode, full_residual, held):
@@ -150,6 +151,7 @@ class ModeEquations:
         self.v = pick([s.rate for s in symbols])
         self.a = pick([s.acceleration for s in symbols])
         self.j = pick([s.jerk for s in symbols])
+        self.radii = ca.SX.sym("radius", 3 * len(self.free))
         self.r = pick(ca.vertsplit(residual)) if self.free else ca.SX(0, 1)
         self.frictionless = pick(ca.vertsplit(frictionless)) if self.free else ca.SX(0, 1)
         self.reactions = [

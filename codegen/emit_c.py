@@ -81,12 +81,12 @@ KEPT_ANGLES = 4
 
 _BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
 # Functions of the C library, whose last bits may differ between systems; sine and cosine are not
-# among them (see `sin_cos`), and sqrt and fabs are exact by IEEE 754.
+# among them (see `sin_cos`), and sqrt, fabs and fmax are exact by IEEE 754.
 _CALLS = {
     getattr(ca, "OP_" + name.upper()): name
     for name in ("tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "sinh",
                  "cosh", "tanh", "asinh", "acosh", "atanh", "expm1", "log1p", "pow", "atan2", "hypot",
-                 "erf")
+                 "erf", "fmax")
 }
 _CALLS[ca.OP_CONSTPOW] = "pow"
 

@@ -20,7 +20,7 @@ SERIES = ("series", "quiet_series", "guard_series")
 """What is emitted as a Taylor series."""
 
 
-LANES = ("series", "quiet_series", "requirements", "guard")
+LANES = ("series", "quiet_series", "requirement_bounds", "guard")
 """What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and resets that stay in the mode."""
 
 LEVELS = (("v1", ""), ("v3", '#[cfg(target_arch = "x86_64")] '), ("v4", '#[cfg(target_arch = "x86_64")] '))
@@ -71,7 +71,8 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
               f"    coordinates: {len(model.coordinates)},", f"    motions: {len(model.motions)},",
               f"    signals: {signals},", f"    discretes: {len(model.discretes)},",
               f"    parameters: {len(model.parameters)},", f"    constants: {constants_count},",
-              f"    angles: {KEPT_ANGLES},", f"    expanded: &[{', '.join(map(_bool, _expanded(variants)))}],", "};", ""]
+              f"    angles: {KEPT_ANGLES},", f"    expanded: &[{_flags(_used(variants, (*SERIES, 'requirements')))}],",
+              f"    required: &{[i for i, used in enumerate(_used(variants, ('requirements',))) if used]},", "};", ""]
     lines += [f"/// {model.title}.", f"pub static {name.upper()}: Model = Model {{"]
     lines += [
         f"    name: {_text(name)},", f"    title: {_text(model.title)},", f"    source: {_text(model.source)},",
@@ -97,6 +98,10 @@ def _text(value):
 
 def _bool(value):
     return "true" if value else "false"
+
+
+def _flags(values):
+    return ", ".join(map(_bool, values))
 
 
 def _number(value):
@@ -164,7 +169,7 @@ def _variant(variant):
     model = variant.model
     yield "        Variant {"
     yield f"            options: &[{', '.join(_text(c[3]) for c in model.choices)}],"
-    yield f"            defaults: &[{', '.join(_bool(c[3] == c[4]) for c in model.choices)}],"
+    yield f"            defaults: &[{_flags(c[3] == c[4] for c in model.choices)}],"
     yield "            modes: &["
     for i, equations in enumerate(variant.modes):
         yield from _mode(variant, i, equations)
@@ -181,7 +186,7 @@ def _mode(variant, i, equations):
         raise ModelError(f"mode `{mode.name}` has {free} free coordinates; at most {MOST_FREE} are supported", model.file)
     held = ", ".join(
         _option(mode.held.get(c.name), _number) for c in model.coordinates)
-    drifts = ", ".join(_bool(c.name in mode.drift) for c in model.coordinates)
+    drifts = _flags(c.name in mode.drift for c in model.coordinates)
     index = {m.name: k for k, m in enumerate(model.modes)}
     rest = None if mode.rest is None else index[mode.rest.name]
     pad = " " * 16
@@ -220,6 +225,7 @@ def _mode(variant, i, equations):
     for what in _MODE_FUNCTIONS:
         yield f"{pad}        {what}: {functions[(what,)].symbol},"
     yield f"{pad}        requirements: ({functions[('requirements',)].symbol}, {len(mode.requirements)}),"
+    yield f"{pad}        requirement_bounds: {functions[('requirement_bounds',)].symbol},"
     for what in SERIES:
         series = functions[(what,)]
         yield f"{pad}        {what}: {_option(series.symbol and series, _series)},"
@@ -257,7 +263,7 @@ def _lanes(variant, i, functions):
         sets.append(
             f"{only}LaneKernel {{ series: {_series(functions[('series',)], '_' + level)}, "
             f"quiet_series: {_series(functions[('quiet_series',)], '_' + level)}, "
-            f"requirements: {functions[('requirements',)].symbol}_{level}, guards: &[{guards}], resets: &[{resets}] }}")
+            f"requirement_bounds: {functions[('requirement_bounds',)].symbol}_{level}, guards: &[{guards}], resets: &[{resets}] }}")
     return f"&[{', '.join(sets)}]"
 
 
@@ -314,9 +320,9 @@ def _signals(model):
     return [s for i in model.inputs for s in i.signals]
 
 
-def _expanded(variants):
-    """Of each signal, whether the equations of motion or the guards of some mode depend on it."""
-    outputs = [f.output for v in variants for slot, f in v.functions.items() if slot[1] in SERIES]
+def _used(variants, slots):
+    """Of each signal, whether these functions of some mode depend on it."""
+    outputs = [f.output for v in variants for slot, f in v.functions.items() if slot[1] in slots]
     present = {s.element_hash() for output in outputs for s in ca.symvar(output)}
     return [s.element_hash() in present for s in _signals(variants[0].model)]
 

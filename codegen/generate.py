@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import derive, emit_rust, emit_series, graph, units
+from . import bounds, derive, emit_rust, emit_series, graph, units
 from .emit_c import Source
 from .errors import ModelError, error_location
 from .model import build
@@ -73,9 +73,11 @@ def generate(folder, for_tests=False):
             if slot[1] in emit_rust.SERIES:
                 _emit_series(source, prefix, variant, slot[1], function, constants)
                 continue
+            is_bound = slot[1] == "requirement_bounds"
             arguments = [
-                ("q", equations.q), ("v", equations.v), ("a", equations.a), ("j", equations.j),
-                ("u", _signals(variant.model)), ("u_dot", _signal_rates(variant.model)),
+                ("q", equations.q), ("v", equations.v), ("a", equations.a),
+                ("j", equations.radii if is_bound else equations.j), ("u", _signals(variant.model)),
+                ("u_dot", _signal_radii(variant.model) if is_bound else _signal_rates(variant.model)),
                 ("d", _discretes(variant.model)), ("h", equations.held), ("c", constants.symbols),
             ]
             function.symbol = source.add(f"{prefix}_{function.name}", arguments, function.output)
@@ -156,6 +158,12 @@ def _signal_rates(model):
             rates.append(ca.SX.sym(f"{declaration.name}.signal{k}.dot"))
     known = model.__dict__.setdefault("_signal_rates", ca.vertcat(*rates))
     return known
+
+
+def _signal_radii(model):
+    """Radii of the signals, for bounds."""
+    radii = [ca.SX.sym(f"{i.name}.signal{k}.radius") for i in model.inputs for k in range(len(i.signals))]
+    return model.__dict__.setdefault("_signal_radii", ca.vertcat(*radii))
 
 
 def _discretes(model):
@@ -239,9 +247,20 @@ def _mode_functions(variant, equations, slot, prefix):
         ("powers", equations.powers()),
         ("momenta", equations.momenta()),
         ("requirements", requirements),
+        ("requirement_bounds", _bounds(model, equations, requirements)),
         ("held_rates", equations.freeze(equations.rates_of_held)),
     ):
         _add(variant, prefix + what, output, equations, slot + (what,))
+
+
+def _bounds(model, equations, column):
+    """Lower bounds of a column while what moves stays within radii of its values."""
+    moving = ca.vertcat(equations.q, equations.v, equations.a, _signals(model))
+    radii = ca.vertcat(equations.radii, _signal_radii(model))
+    known = {moving[i].element_hash(): radii[i] for i in range(moving.numel())}
+    drifting = [equations.held[i] for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
+    known.update((symbol.element_hash(), None) for symbol in drifting)
+    return ca.vertcat(*[bounds.lower_bound(entry, known) for entry in (column[i] for i in range(column.numel()))])
 
 
 def _quiet(model, expression):

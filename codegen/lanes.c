@@ -213,6 +213,56 @@ DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau
   return (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2;
 }
 
+/* Ranges that polynomials of `count` rows do not leave in the time tau: codegen/ranges.c. */
+DALEMBERT_INLINE void range(size_t count, size_t stride, const real *row, real tau, real *low, real *high) {
+  enum { FIRST = 8 };
+  real least = REAL(0.0), most = REAL(0.0), others = REAL(0.0);
+  for (size_t k = count; k-- > FIRST;) others = others * tau + size_of(row[k * stride]);
+  const real tau2 = tau * tau, tau4 = tau2 * tau2;
+  others *= tau4 * tau4;
+  for (size_t k = FIRST; k-- > 0;) {
+    least = row[k * stride] + smaller(least * tau, REAL(0.0));
+    most = row[k * stride] + greater(most * tau, REAL(0.0));
+  }
+  *low = least - others;
+  *high = most + others;
+}
+
+DALEMBERT_INLINE void ranges(const size_t free, size_t count, const real *q, const real *v, const real *a, real tau,
+                             real *middles, real *radii) {
+  for (size_t i = 0; i < free; ++i) {
+    real low[3], high[3];
+    range(count, free, q + i, tau, low, high);
+    range(count, free, v + i, tau, low + 1, high + 1);
+    range(count, free, a + i, tau, low + 2, high + 2);
+    middles[i] = q[i];
+    radii[i] = greater(q[i] - low[0], high[0] - q[i]);
+    for (size_t n = 1; n < 3; ++n) {
+      middles[n * free + i] = 0.5 * (low[n] + high[n]);
+      radii[n * free + i] = 0.5 * (high[n] - low[n]);
+    }
+  }
+}
+
+void LANES(dalembert_lane_ranges)(size_t free, size_t count, const real *q, const real *v, const real *a,
+                                  const real *tau, real *middles, real *radii);
+void LANES(dalembert_lane_ranges)(size_t free, size_t count, const real *q, const real *v, const real *a,
+                                  const real *tau, real *middles, real *radii) {
+  switch (free) {
+#define CASE(n) case n: ranges(n, count, q, v, a, *tau, middles, radii); break;
+    FREE(CASE)
+#undef CASE
+  }
+}
+
+/* By how much the signal whose coefficients are given changes at most in the times tau. */
+void LANES(dalembert_lane_signal_radius)(size_t count, size_t stride, const real *row, const real *tau, real *out);
+void LANES(dalembert_lane_signal_radius)(size_t count, size_t stride, const real *row, const real *tau, real *out) {
+  real change = REAL(0.0);
+  for (size_t k = count - 1; k > 0; --k) change = (change + size_of(row[k * stride])) * *tau;
+  *out = change;
+}
+
 /* 2^(-x) to a percent for 0 <= x <= 1: src/integrate/logarithm.rs. */
 DALEMBERT_INLINE real inverse_power(real x) {
   const real fraction = 1.0 - x;

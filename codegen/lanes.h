@@ -39,7 +39,7 @@ DALEMBERT_BY_LANE(acos) DALEMBERT_BY_LANE(atan) DALEMBERT_BY_LANE(exp) DALEMBERT
 DALEMBERT_BY_LANE(sinh) DALEMBERT_BY_LANE(cosh) DALEMBERT_BY_LANE(tanh) DALEMBERT_BY_LANE(asinh)
 DALEMBERT_BY_LANE(acosh) DALEMBERT_BY_LANE(atanh) DALEMBERT_BY_LANE(expm1) DALEMBERT_BY_LANE(log1p)
 DALEMBERT_BY_LANE(erf) DALEMBERT_BY_LANE_OF_TWO(pow) DALEMBERT_BY_LANE_OF_TWO(atan2)
-DALEMBERT_BY_LANE_OF_TWO(hypot)
+DALEMBERT_BY_LANE_OF_TWO(hypot) DALEMBERT_BY_LANE_OF_TWO(fmax)
 #define sqrt(x) dalembert_lanes_sqrt(x)
 #define fabs(x) dalembert_lanes_fabs(x)
 #define tan(x) dalembert_lanes_tan(x)
@@ -60,6 +60,7 @@ DALEMBERT_BY_LANE_OF_TWO(hypot)
 #define pow(x, y) dalembert_lanes_pow(x, y)
 #define atan2(x, y) dalembert_lanes_atan2(x, y)
 #define hypot(x, y) dalembert_lanes_hypot(x, y)
+#define fmax(x, y) dalembert_lanes_fmax(REAL(x), REAL(y))
 
 
 /* Sine and cosine with the bits of elementary.c: the loops become ones of vectors where no angle needs the

@@ -1,9 +1,11 @@
 //! What a mode requires to be positive.
 
-use super::equations::{Equations, free_of};
+use super::equations::Equations;
 use super::failure::Reason;
-use super::guards;
-use crate::integrate::{ORDERS, OneStep, State};
+use super::guards::motion;
+use super::roots::Watch;
+use super::search::search_function;
+use crate::integrate::{Motion, State};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 
@@ -43,45 +45,72 @@ fn unmet(mode: &Mode, index: usize, value: f64) -> Reason {
     }
 }
 
-/// Makes the last step end at the first instant, to rounding, at which something the mode requires does not hold,
-/// if it does not at `end`. The dense output is looked at in as many places as a step's polynomial has coefficients
-/// at most, since it swings no more often; between two of them steps of the method decide.
-#[cold]
-pub(super) fn end_where_unmet<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
-    method: &mut M,
-    equations: &mut Equations<'a, F>,
+/// When in the last step, up to the state `end`, something that the mode requires ceases to hold, local time;
+/// `None` if all of it holds as far as can be seen.
+#[inline]
+pub(super) fn first_unmet<const F: usize>(
+    equations: &mut Equations<F>,
     mode: &Mode,
-    end: f64,
-) -> Result<(), Reason> {
-    let holds = |equations: &mut Equations<'a, F>, state: &State<F>| {
-        equations.at(state.t);
-        let at = free_of(state);
-        check_requirements(equations.kernel, equations.context, mode, at).is_ok()
+    dense: &impl Motion<F>,
+    end: &State<F>,
+) -> Option<f64> {
+    if mode.requirements.is_empty() || hold_throughout(equations, mode, dense, end.t) {
+        return None;
+    }
+    search_unmet(equations, mode, dense, end)
+}
+
+/// Whether bounds show that all holds up to time `to`: far from zero they do, at less than the cost of an
+/// evaluation of the motion. Those of the Taylor method are bounds of its polynomial.
+#[inline]
+fn hold_throughout<const F: usize>(
+    equations: &mut Equations<F>,
+    mode: &Mode,
+    dense: &impl Motion<F>,
+    to: f64,
+) -> bool {
+    let Some(series) = dense.series() else {
+        return false;
     };
-    let start = method.start().t;
-    let place = |k: usize| start + (end - start) * (k as f64 / ORDERS as f64);
-    let dense = method.dense().expect("a step was made");
-    let fails = (1..ORDERS).find(|&k| {
-        let t = place(k);
-        let [q, v, a] = guards::motion(equations, dense, t, true);
-        !holds(equations, &State { t, q, v, a })
-    });
-    let (mut met, mut unmet) = match fails {
-        Some(k) => (place(k - 1), place(k)),
-        None => (place(ORDERS - 1), end),
-    };
-    loop {
-        let middle = 0.5 * (met + unmet);
-        if !(met < middle && middle < unmet) {
-            // A step has a length.
-            let last = unmet.max(start.next_up());
-            method.step_exactly(equations, last - start)?;
-            return Ok(());
-        }
-        method.step_exactly(equations, middle - start)?;
-        match holds(equations, method.state()) {
-            true => met = middle,
-            false => unmet = middle,
+    let mut bounds = [0.0; MOST_REQUIREMENTS];
+    let bounds = &mut bounds[..mode.requirements.len()];
+    let tau = to - dense.start();
+    (equations.kernel).requirement_bounds(equations.context, series, tau, bounds);
+    bounds.iter().all(|bound| *bound > 0.0)
+}
+
+/// Searches what the mode requires as a guard is searched.
+#[inline(never)]
+fn search_unmet<const F: usize>(
+    equations: &mut Equations<F>,
+    mode: &Mode,
+    dense: &impl Motion<F>,
+    end: &State<F>,
+) -> Option<f64> {
+    let (from, mut to) = (dense.start(), end.t);
+    let mut first = None;
+    for requirement in 0..mode.requirements.len() {
+        let value = |tau: f64| {
+            let [q, v, a] = match tau == end.t {
+                true => [end.q, end.v, end.a],
+                false => motion(equations, dense, tau, true),
+            };
+            equations.at(tau);
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            let mut values = [0.0; MOST_REQUIREMENTS];
+            let values = &mut values[..mode.requirements.len()];
+            equations.kernel.requirements(equations.context, at, values);
+            values[requirement]
+        };
+        let found = search_function(value, (from, to), Watch::Armed);
+        if let Some(crossing) = found.crossing {
+            to = crossing.outside;
+            first = Some(to);
         }
     }
+    first
 }

@@ -79,7 +79,7 @@ fn at_part(s: f64, (from, to): (f64, f64)) -> f64 {
 
 /// Searches a function of local time, as one of s = (τ − start)/length of the window: so the search, which
 /// counts doubles, does not depend on the unit of time.
-fn search_function(
+pub(super) fn search_function(
     mut evaluate: impl FnMut(f64) -> f64,
     window: (f64, f64),
     watch: Watch,

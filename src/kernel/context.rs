@@ -25,8 +25,10 @@ pub struct Dimensions {
     pub constants: usize,
     /// Angles whose sines and cosines are kept.
     pub angles: usize,
-    /// Of each signal, whether the equations of motion or the guards of some mode depend on it.
+    /// Of each signal, whether the equations of motion, the guards or the requirements of some mode depend on it.
     pub expanded: &'static [bool],
+    /// The signals on which what some mode requires depends.
+    pub required: &'static [usize],
 }
 
 /// What a generated function needs besides the free coordinates. Its arrays keep the lengths that
@@ -43,6 +45,8 @@ pub struct Context {
     pub quiet: bool,
     /// Taylor coefficients of the signals, one row an order.
     pub(super) signal_series: Box<[f64]>,
+    /// By how much signals change at most while a step lasts.
+    pub(super) signal_radii: Box<[f64]>,
     /// Signals at instants that will be asked for soon, a row each; antiderivatives are not among them.
     ahead: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
@@ -78,6 +82,7 @@ impl Clone for Context {
             signals_at: self.signals_at,
             quiet: self.quiet,
             signal_series: self.signal_series.clone(),
+            signal_radii: self.signal_radii.clone(),
             ahead: self.ahead.clone(),
             guard_series: self.guard_series.clone(),
             workspace: self.workspace.clone(),
@@ -134,6 +139,7 @@ impl Context {
             quiet: false,
             ahead: vec![0.0; Self::MOST_AHEAD * dimensions.signals].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
+            signal_radii: vec![0.0; dimensions.signals].into(),
             guard_series: vec![0.0; ORDERS * guards].into(),
             workspace: vec![0.0; workspace].into(),
         }
@@ -244,6 +250,21 @@ impl Context {
             let rows = &mut self.signal_series[..orders * self.arrays.signals.len()];
             let known = [&*self.arrays.signals, &self.arrays.signal_rates];
             signals.series(t, known, self.dimensions.expanded, rows);
+        }
+    }
+    /// Sets by how much the signals change at most while time goes on by `tau` (s) from where they were expanded
+    /// last, as far as their series say that are known to so many orders.
+    #[inline]
+    pub(super) fn set_signal_radii(&mut self, orders: usize, tau: f64) {
+        let width = self.signal_radii.len();
+        for &i in self.dimensions.required.iter().filter(|_| !self.quiet) {
+            let rows = self.signal_series[..orders * width].chunks_exact(width);
+            let (mut radius, mut power) = (0.0, 1.0);
+            for row in rows.skip(1) {
+                power *= tau;
+                radius += row[i].abs() * power;
+            }
+            self.signal_radii[i] = radius;
         }
     }
 }

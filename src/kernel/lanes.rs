@@ -98,6 +98,8 @@ pub struct LaneContext<const W: usize> {
     pub signals: LaneRows<W>,
     /// Taylor coefficients of the signals, one row an order.
     pub signal_series: LaneRows<W>,
+    /// By how much signals change at most while a step lasts.
+    pub(super) signal_radii: LaneRows<W>,
     pub(super) discrete: LaneRows<W>,
     pub(super) held: LaneRows<W>,
     pub(super) constants: LaneRows<W>,
@@ -113,6 +115,7 @@ impl<const W: usize> LaneContext<W> {
             dimensions: like.dimensions,
             signals: zeros(like.arrays.signals.len()),
             signal_series: zeros(like.signal_series.len()),
+            signal_radii: zeros(like.arrays.signals.len()),
             discrete: zeros(like.arrays.discrete.len()),
             held: zeros(like.arrays.held.len()),
             constants: zeros(like.arrays.constants.len()),

@@ -148,6 +148,19 @@ unsafe extern "C" {
 
     /// Takes `n` factors, `n` rows of `n` entries, and room for `n` sums.
     fn dalembert_triangular_sums(n: usize, factors: *const f64, table: *const f64, out: *mut f64);
+
+    /// Takes so many rows of so many coefficients of q, v and a, a time, and room for three times as many middles
+    /// and radii.
+    fn dalembert_ranges(
+        free: usize,
+        rows: usize,
+        q: *const f64,
+        v: *const f64,
+        a: *const f64,
+        tau: f64,
+        middles: *mut f64,
+        radii: *mut f64,
+    );
 }
 
 /// What codegen/lanes.c has for every mode, at each level of the processor.
@@ -191,6 +204,8 @@ lane_functions!(
         antiderivative(usize, usize, In, In, Out);
         begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
         unmet(usize, In) -> Bits;
+        ranges(usize, usize, In, In, In, In, Out, Out);
+        signal_radius(usize, usize, In, In, Out);
         length(usize, usize, In, In, In, In, In, In, In, In, Out, OutBits) -> Bits;
         first_fall(usize, usize, In, In, In, Out, Out, OutBits) -> Bits;
         cross(usize, usize, In, In, In, Bits, In, Out, Out);
@@ -928,6 +943,44 @@ impl<const F: usize> ModeKernel<F> {
         unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
     }
 
+    /// Lower bounds of what must be positive, while time goes on by `tau` (s) from where the series of motion
+    /// and signals, of so many orders, were begun. Not positive or not a number where nothing is known.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a requirement, or `orders` is 0 or more than [`ORDERS`].
+    #[inline]
+    pub fn requirement_bounds(
+        &self,
+        x: &mut Context,
+        (at, orders): (&Series<F>, usize),
+        tau: f64,
+        out: &mut [f64],
+    ) {
+        assert_eq!(out.len(), self.requirements.1);
+        assert!(orders + 2 <= ORDERS);
+        let zero = [SVector::<f64, F>::zeros(); 3];
+        let (mut middles, mut radii) = (zero, zero);
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
+        let (to_middles, to_radii) = (middles.as_mut_ptr().cast(), radii.as_mut_ptr().cast());
+        // SAFETY: F entries a row, and so many rows are there; room for three times F.
+        unsafe { dalembert_ranges(F, orders + 2, q, v, a, tau, to_middles, to_radii) };
+        x.set_signal_radii(orders, tau);
+        let u = match x.quiet {
+            true => x.arrays.signals.as_ptr(),
+            false => x.signal_series.as_ptr(),
+        };
+        let raw = RawContext {
+            u,
+            u_dot: x.signal_radii.as_ptr(),
+            j: radii.as_ptr().cast(),
+            ..*x.raw(self.dimensions)
+        };
+        let [q, v, a] = middles.each_ref().map(|of| of.as_ptr());
+        // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
+        // radii.
+        unsafe { (self.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
+    }
+
     /// Constant rates of the frozen coordinates (0 where one rests or is free).
     pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
         assert_eq!(out.len(), self.dimensions.coordinates);
@@ -1107,19 +1160,51 @@ impl<const F: usize> ModeKernel<F> {
         unsafe { (series.run)(n, q, v, a, u, &raw, w.cast(), inverse) }
     }
 
-    /// As [`Self::requirements`], one lane entry a requirement.
-    pub fn lane_requirements<const W: usize>(
+    /// As [`Self::requirement_bounds`], one lane entry a requirement; `quiet`: no input acts.
+    pub fn lane_requirement_bounds<const W: usize>(
         &self,
-        level: usize,
-        x: &LaneContext<W>,
-        [q, v, a]: [&[Lanes<W>; F]; 3],
+        (level, quiet): (usize, bool),
+        x: &mut LaneContext<W>,
+        (at, orders): (&LaneSeries<F, W>, usize),
+        tau: &Lanes<W>,
         out: &mut [Lanes<W>],
     ) {
         assert_eq!(out.len(), self.requirements.1);
-        let function = self.lane_kernel::<W>(level).requirements;
+        assert!(orders + 2 <= ORDERS);
+        let functions = lane_functions::<W>(level);
+        let zero = [[Lanes::<W>::of(0.0); F]; 3];
+        let (mut middles, mut radii) = (zero, zero);
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
+        let (to_middles, to_radii) = (middles.as_mut_ptr().cast(), radii.as_mut_ptr().cast());
+        let tau = (&raw const *tau).cast();
+        // SAFETY: as in `requirement_bounds`.
+        unsafe { (functions.ranges)(F, orders + 2, q, v, a, tau, to_middles, to_radii) }
+        let signals = self.dimensions.signals;
+        assert_eq!(x.signal_radii.len(), signals);
         let raw = x.raw(self.dimensions);
-        let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
-        // SAFETY: the length was checked; the level was compiled for `W` lanes.
+        let u = x.signal_series.as_ptr().cast();
+        for &i in self.dimensions.required.iter().filter(|_| !quiet) {
+            let own = (&raw mut x.signal_radii[i]).cast();
+            // SAFETY: a row an order, each with an entry a signal, and this one is there.
+            unsafe {
+                (functions.signal_radius)(
+                    orders,
+                    signals,
+                    x.signal_series[i..].as_ptr().cast(),
+                    tau,
+                    own,
+                )
+            }
+        }
+        let raw = RawContext {
+            u,
+            u_dot: x.signal_radii.as_ptr().cast(),
+            j: radii.as_ptr().cast(),
+            ..raw
+        };
+        let [q, v, a] = middles.each_ref().map(|of| of.as_ptr().cast());
+        let function = self.lane_kernel::<W>(level).requirement_bounds;
+        // SAFETY: as in `requirement_bounds`; the level was compiled for `W` lanes.
         unsafe { function(q, v, a, &raw, out.as_mut_ptr().cast()) }
     }
 

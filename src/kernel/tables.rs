@@ -48,6 +48,8 @@ pub struct ModeKernel<const F: usize> {
     pub(super) powers: Raw,
     pub(super) momenta: Raw,
     pub(super) requirements: (Raw, usize),
+    /// In place of rates of signals and of jerks it takes radii.
+    pub(super) requirement_bounds: Raw,
     pub(super) series: Option<SeriesKernel>,
     /// The same where no input acts.
     pub(super) quiet_series: Option<SeriesKernel>,
@@ -65,7 +67,7 @@ pub struct LaneKernel {
     pub(super) series: SeriesKernel,
     /// The same where no input acts.
     pub(super) quiet_series: SeriesKernel,
-    pub(super) requirements: Raw,
+    pub(super) requirement_bounds: Raw,
     pub(super) guards: &'static [Raw],
     /// Of each guard the resets of its transitions: of those that lead to the same mode, change nothing
     /// that it holds, and depend on no signal.

@@ -52,6 +52,7 @@ impl Fixture {
             ("elementary.h", include_str!("../../codegen/elementary.h")),
             ("lanes.c", include_str!("../../codegen/lanes.c")),
             ("lanes.h", include_str!("../../codegen/lanes.h")),
+            ("ranges.c", include_str!("../../codegen/ranges.c")),
             ("sums.c", include_str!("../../codegen/sums.c")),
             ("vectors.h", include_str!("../../codegen/vectors.h")),
         ] {

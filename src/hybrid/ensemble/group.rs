@@ -120,9 +120,8 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub last: Lanes<W>,
     /// Time after which the inputs are analytic, s.
     pub analytic_from: f64,
+    /// Lower bounds, in the last step, of what the mode requires to be positive.
     pub requirements: LaneRows<W>,
-    /// Whether a lane has just been set: what the mode requires has not been looked at.
-    pub unchecked: bool,
     /// What became of each lane that does not go on.
     pub outcomes: [Outcome; W],
     /// Steps made in each lane since it was loaded.
@@ -209,7 +208,6 @@ impl<const F: usize, const W: usize> Group<F, W> {
             last: Lanes::of(f64::INFINITY),
             analytic_from: analytic_from(&problem.signals),
             requirements: LaneRows::zeros(mode.requirements.len()),
-            unchecked: true,
             outcomes: [Outcome::Unclear; W],
             steps: [0; W],
             occupied: LaneMask::NONE,
@@ -238,7 +236,6 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let breakpoint = problem.signals.next_breakpoint(from.here.now.seconds());
         self.last.0[lane] = breakpoint.min(problem.end.time);
         self.at_start.set(lane, true);
-        self.unchecked = true;
         self.steps[lane] = 0;
         self.occupied.set(lane, true);
     }
@@ -267,7 +264,6 @@ impl<const F: usize, const W: usize> Group<F, W> {
             }
         }
         self.at_start.set(lane, false);
-        self.unchecked = true;
         true
     }
 

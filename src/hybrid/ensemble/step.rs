@@ -27,8 +27,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let reached = self.taylor.length(&self.here, limits, to);
         let falls = self.first_falls(&mut unclear);
         unclear = unclear | self.land(falls);
+        unclear = unclear | self.unmet();
         let until = reached & !falls;
-        unclear = unclear | self.unmet_at_end(signals) & !until;
 
         let made = self.occupied & !unclear;
         self.here.take(self.level, made, &self.next);
@@ -90,17 +90,10 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let series = &mut self.taylor.series;
         self.kernel
             .lane_series_start(which, context, series, system);
-        let mut unclear = self
+        let unclear = self
             .taylor
             .begin(&self.here, self.at_start, system, inverse);
         let series = &mut self.taylor.series;
-        if std::mem::take(&mut self.unchecked) && !self.requirements.is_empty() {
-            let at = [&series.q[0], &series.v[0], &series.a[0]];
-            let requirements = &mut self.requirements;
-            self.kernel
-                .lane_requirements(self.level, context, at, requirements);
-            unclear = unclear | lane_unmet(self.level, requirements);
-        }
         self.kernel
             .lane_series_run(which, context, order, inverse, series);
         unclear
@@ -180,22 +173,18 @@ impl<const F: usize, const W: usize> Group<F, W> {
         unclear
     }
 
-    /// The lanes in which something that the mode requires does not hold at the end of the step; at the
-    /// end of a segment the caller looks.
-    fn unmet_at_end(&mut self, signals: &Signals) -> LaneMask {
+    /// The lanes in which it is not certain that all that the mode requires holds in the whole step.
+    fn unmet(&mut self) -> LaneMask {
         if self.requirements.is_empty() {
             return LaneMask::NONE;
         }
-        let context = &mut self.context;
-        if !self.quiet {
-            self.signals
-                .set(signals, &self.next.t[0], &mut context.signals);
-        }
-        let at = [&self.next.q, &self.next.v, &self.next.a];
-        let requirements = &mut self.requirements;
+        let which = (self.level, self.quiet);
+        let series = (&self.taylor.series, self.taylor.order());
+        let [tau, ..] = &self.way.durations;
+        let bounds = &mut self.requirements;
         self.kernel
-            .lane_requirements(self.level, context, at, requirements);
-        lane_unmet(self.level, requirements)
+            .lane_requirement_bounds(which, &mut self.context, series, tau, bounds);
+        lane_unmet(self.level, bounds)
     }
 }
 

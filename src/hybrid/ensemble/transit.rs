@@ -21,7 +21,6 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 [gone, may_rest] = [gone | taken[0], may_rest | taken[1]];
             }
         }
-        self.unchecked |= gone.any();
         [gone, may_rest]
     }
 

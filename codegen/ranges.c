@@ -1,0 +1,81 @@
+/* Ranges that the polynomials of a step do not leave. Of the first coefficients it is that of Horner's scheme in interval
+ * arithmetic (Moore 1966), which tells growth from oscillation; the others are small, and enter by their sizes. What
+ * waits for the coefficient before is short so.
+ */
+#include "vectors.h"
+
+enum { FIRST = 8 };
+
+void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,
+                      double *middles, double *radii);
+
+#if DALEMBERT_BLOCK == 4
+/* The part of x that is on one side of zero; its size. */
+typedef int64_t mask __attribute__((vector_size(32)));
+#define PART(x, side) ((dalembert_block)((mask)(x) & (mask)((x) side 0.0)))
+#define SIZE(x) ((dalembert_block)((mask)(x) & INT64_MAX))
+
+#define FOUR(row) ((dalembert_block){(row)[0], (row)[free], (row)[2 * free], (row)[3 * free]})
+#define SUM(x) ((x[0] + x[2]) + (x[1] + x[3]))
+
+static inline __attribute__((always_inline)) void ranges(size_t free, size_t count, const double *q, const double *v,
+                                                         const double *a, double tau, double *low, double *high) {
+  const double tau2 = tau * tau, tau4 = tau2 * tau2, tau8 = tau4 * tau4;
+  dalembert_block power = {tau8, tau8 * tau, tau8 * tau2, tau8 * tau2 * tau};
+  dalembert_block of_q = {0.0}, of_v = {0.0}, of_a = {0.0};
+  for (size_t k = FIRST; k < count; k += 4) {
+    of_q += SIZE(FOUR(q + k * free)) * power;
+    of_v += SIZE(FOUR(v + k * free)) * power;
+    of_a += SIZE(FOUR(a + k * free)) * power;
+    power *= tau4;
+  }
+  dalembert_block least = {0.0}, most = {0.0};
+  for (size_t k = FIRST; k-- > 0;) {
+    const dalembert_block own = {q[k * free], v[k * free], a[k * free], 0.0};
+    least = own + PART(least * tau, <);
+    most = own + PART(most * tau, >);
+  }
+  const dalembert_block others = {SUM(of_q), SUM(of_v), SUM(of_a), 0.0};
+  least -= others, most += others;
+  for (size_t n = 0; n < 3; ++n) low[n] = least[n], high[n] = most[n];
+}
+#else
+static void ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau, double *low,
+                   double *high) {
+  const double *const rows[] = {q, v, a};
+  for (size_t n = 0; n < 3; ++n) {
+    double others = 0.0, power = 1.0, least = 0.0, most = 0.0;
+    for (size_t k = 1; k < count; ++k) {
+      power *= tau;
+      const double own = rows[n][k * free];
+      if (k >= FIRST) others += (own < 0.0 ? -own : own) * power;
+    }
+    for (size_t k = FIRST; k-- > 0;) {
+      const double down = least * tau, up = most * tau, own = rows[n][k * free];
+      least = own + (down < 0.0 ? down : 0.0);
+      most = own + (up > 0.0 ? up : 0.0);
+    }
+    low[n] = least - others, high[n] = most + others;
+  }
+}
+#endif
+
+/* Of coordinates, velocities and accelerations in the time tau > 0, given `count` rows of coefficients, which end with
+ * zeros that fill up fours and are eight at least: middles of their ranges, and by how much they differ from these at
+ * most. The middles of coordinates are where they start, whose sines and cosines are known.
+ */
+DALEMBERT_CLONES void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a,
+                                       double tau, double *middles, double *radii) {
+  for (size_t i = 0; i < free; ++i) {
+    double low[3], high[3];
+    if (free == 1) ranges(1, count, q, v, a, tau, low, high);
+    else ranges(free, count, q + i, v + i, a + i, tau, low, high);
+    const double below = q[i] - low[0], above = high[0] - q[i];
+    middles[i] = q[i];
+    radii[i] = below > above ? below : above;
+    for (size_t n = 1; n < 3; ++n) {
+      middles[n * free + i] = 0.5 * (low[n] + high[n]);
+      radii[n * free + i] = 0.5 * (high[n] - low[n]);
+    }
+  }
+}
