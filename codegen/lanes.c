@@ -626,3 +626,9 @@ void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, c
   *tau = taus[0];
   *more = mores[0];
 }
+
+/* The lanes in which the value of a guard is negative after tau, which is not more than h. */
+unsigned LANES(dalembert_lane_crossed)(const real *value, const real *tau, const real *h);
+unsigned LANES(dalembert_lane_crossed)(const real *value, const real *tau, const real *h) {
+  return bits((truth)(below(*value, REAL(0.0)) & at_most(*tau, *h)));
+}
