@@ -153,6 +153,15 @@ void LANES(dalembert_lane_antiderivative)(size_t count, size_t stride, const dou
   for (size_t k = 1; k < count; ++k) row[k * stride] = row[(k - 1) * stride - 1] * inverses[k];
 }
 
+/* Coordinates and velocities at the start of a step: the first rows of their series. */
+void LANES(dalembert_lane_start)(size_t free, const real *point, real *q, real *v);
+void LANES(dalembert_lane_start)(size_t free, const real *point, real *q, real *v) {
+  for (size_t i = 0; i < free; ++i) {
+    q[i] = point[i];
+    v[i] = point[free + i];
+  }
+}
+
 /* Inverse of a mass matrix by elimination without exchanges, and the accelerations, which are given where a
  * segment starts; with them the first rows of the series. system: the matrix by columns, then the load.
  * Gives the lanes in which not all pivots are positive. A pivot within the rounding of its own sum is not
@@ -555,14 +564,26 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   return pick(falls & ~moving & below(REAL(0.0), s) & at_most(s, REAL(1.0)), s, found);
 }
 
-DALEMBERT_INLINE real first_fall_of(size_t count, const real *c) {
-  /* With their number known the compiler keeps all of them in registers. */
-  switch (count) {
-#define CASE(n) case n: return first_fall(n, c);
-    DEGREES(CASE)
-#undef CASE
+/* The same of a guard up to h, of `count` rows; the others up to n are filled up with zeros. c gets the coefficients
+ * in powers of tau/h.
+ */
+DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, const real *row, real h,
+                                    const struct guard *guard, real *c) {
+  const truth rises = truth_of(guard->starts_at_zero);
+  const real h2 = h * h;
+  real powers[2] = {guard->factor, guard->factor * h}, own[33];
+#pragma GCC unroll 32
+  for (int k = 0; k < n; ++k) {
+    own[k] = k < n - 3 || (size_t)k < count ? row[k * stride] * powers[k % 2] : REAL(0.0);
+    if (k == 0) own[0] += guard->offset;
+    c[k] = own[k];
+    powers[k % 2] *= h2;
   }
-  return REAL(NAN);
+  own[n] = REAL(0.0);
+  /* What is zero at the start: its sum by tau/h. */
+#pragma GCC unroll 32
+  for (int k = 0; k < n; ++k) own[k] = pick(rises, own[k + 1], own[k]);
+  return first_fall(n, own);
 }
 
 /* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
@@ -573,23 +594,14 @@ unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const rea
                                           const struct guard *guard, real *c, real *place, unsigned *unclear);
 unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
                                           const struct guard *guard, real *c, real *place, unsigned *unclear) {
-  const size_t room = (count + 3) / 4 * 4;
-  const real h2 = *h * *h;
-  real even = guard->factor, odd = guard->factor * *h;
-  for (size_t k = 0; k + 1 < count; k += 2) {
-    c[k] = row[k * stride] * even;
-    c[k + 1] = row[(k + 1) * stride] * odd;
-    even *= h2;
-    odd *= h2;
+  real found = REAL(NAN);
+  /* With their number known the compiler keeps all coefficients in registers. */
+  switch ((count + 3) / 4 * 4) {
+#define CASE(n) \
+  case n: found = first_fall_of(n, count, stride, row, *h, guard, c); break;
+    DEGREES(CASE)
+#undef CASE
   }
-  if (count % 2) c[count - 1] = row[(count - 1) * stride] * even;
-  for (size_t k = count; k < room; ++k) c[k] = REAL(0.0);
-  c[0] += guard->offset;
-  const truth rises = truth_of(guard->starts_at_zero);
-  real rising[32];
-  if (any(rises))
-    for (size_t k = 0; k < room; ++k) rising[k] = pick(rises, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
-  const real found = first_fall_of(room, any(rises) ? rising : c);
   const truth first = at_most(found, REAL(1.0)) & below(found, *place);
   *place = pick(first, found, *place);
   *unclear = bits((truth)~same(found, found));

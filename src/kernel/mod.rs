@@ -188,6 +188,7 @@ lane_functions!(
         sine(In, In, Out);
         sine_series(usize, usize, f64, In, In, Out);
         antiderivative(usize, usize, In, In, Out);
+        start(usize, In, Out, Out);
         begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
         unmet(usize, In) -> Bits;
         length(usize, usize, In, In, In, In, In, In, In, In, Out, OutBits) -> Bits;
@@ -297,6 +298,18 @@ pub fn lane_antiderivative<const W: usize>(
     // SAFETY: the last of the rows is (count − 1) · stride < their number, and one entry is before each;
     // the inverses are as many.
     unsafe { antiderivative(count, stride, inverses.as_ptr(), value, row) };
+}
+
+/// Sets coordinates and velocities at the start of a step, the first rows of their series.
+#[inline]
+pub fn lane_start<const F: usize, const W: usize>(
+    level: LaneLevel<W>,
+    point: &LanePoint<F, W>,
+    series: &mut LaneSeries<F, W>,
+) {
+    let [q, v] = [&mut series.q, &mut series.v].map(|rows| rows.as_mut_ptr().cast());
+    // SAFETY: a point of F coordinates, and rows of as many.
+    unsafe { (level.functions.start)(F, (&raw const *point).cast(), q, v) };
 }
 
 /// Inverts the mass matrices, sets the accelerations (those of `point` where a segment starts) and the

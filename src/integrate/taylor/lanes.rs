@@ -6,7 +6,7 @@ use super::length::{self, Terms};
 use super::series::ORDERS;
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
-    lane_cross, lane_end, lane_first_fall, lane_length, lane_take,
+    lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
 };
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
@@ -54,9 +54,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// Sets coordinates and velocities at the start of the step.
     #[inline]
     pub fn start_at(&mut self, point: &LanePoint<F, W>) {
-        let LaneSeries { q, v, .. } = &mut self.series;
-        lane_take(self.level, LaneMask::ALL, &point.q, &mut q[0]);
-        lane_take(self.level, LaneMask::ALL, &point.v, &mut v[0]);
+        lane_start(self.level, point, &mut self.series);
     }
 
     /// Sets accelerations, and all that follows from the state without the series, and the inverses of the
