@@ -116,8 +116,8 @@ impl<'a, const W: usize> Worker<'a, W> {
     pub fn new(ensemble: &'a Ensemble, members: &'a [Member<'a>]) -> Self {
         let modes = ensemble.problem.variant.modes.len();
         let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
-        // As many again as there are lanes, so that a full group can be found.
-        let count = ((going + 1) * W).min(members.len());
+        // The fewest of which, however they are spread over the modes, some mode has as many as lanes.
+        let count = (going * (W - 1) + 1).min(members.len());
         let slot = |_| Slot {
             simulation: Simulation::new(&ensemble.problem).expect("the scene was prepared"),
             member: 0,
