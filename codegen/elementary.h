@@ -30,11 +30,7 @@ static inline double two_sum(double a, double b, double *sum) {
 }
 
 /* For 0 <= x <= DIRECT (Cody and Waite 1980). */
-static inline struct angle reduced(double x) {
-  if (x <= NEAR) { /* What follows gives the same, later. */
-    const struct angle itself = {x, 0.0, 0};
-    return itself;
-  }
+static inline struct angle reduced_in_parts(double x) {
   /* To the nearest whole number, which the last bits then show. */
   const double round = 0x1.8p52, shifted = x * 0x1.45f306dc9c883p-1 + round, n = shifted - round;
   double sum = x - n * P1; /* exact: Sterbenz */
@@ -55,6 +51,15 @@ static inline struct angle reduced(double x) {
   angle.far = (sum - angle.near) + rest;
   angle.n = bits_of(shifted);
   return angle;
+}
+
+/* The same, earlier where nothing is to be reduced. */
+static inline struct angle reduced(double x) {
+  if (x <= NEAR) {
+    const struct angle itself = {x, 0.0, 0};
+    return itself;
+  }
+  return reduced_in_parts(x);
 }
 
 /* `sign` is the sign bit of the angle that was reduced. */

@@ -11,8 +11,9 @@
 #include <immintrin.h>
 #endif
 
-/* The bits of a number. */
+/* The bits of a number, and numbers that are not negative. */
 typedef long long word __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
+typedef unsigned long long counts __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
 
 /* Yes or no for each lane, in registers: a bit a lane where the processor compares so, else all bits of a
  * lane or none. Between functions it is a bit a lane.
@@ -27,6 +28,7 @@ DALEMBERT_INLINE real pick(truth where, real yes, real no) {
 DALEMBERT_INLINE truth below(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LT_OQ); }
 DALEMBERT_INLINE truth at_most(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_LE_OQ); }
 DALEMBERT_INLINE truth same(real x, real y) { return _mm512_cmp_pd_mask((__m512d)x, (__m512d)y, _CMP_EQ_OQ); }
+DALEMBERT_INLINE truth is_negative(word x) { return _mm512_movepi64_mask((__m512i)x); }
 #else
 typedef word truth;
 DALEMBERT_INLINE truth truth_of(unsigned bits) {
@@ -52,12 +54,25 @@ DALEMBERT_INLINE real pick(truth where, real yes, real no) {
 DALEMBERT_INLINE truth below(real x, real y) { return x < y; }
 DALEMBERT_INLINE truth at_most(real x, real y) { return x <= y; }
 DALEMBERT_INLINE truth same(real x, real y) { return x == y; }
+DALEMBERT_INLINE truth is_negative(word x) { return x < 0; }
 #endif
 DALEMBERT_INLINE int any(truth x) { return bits(x) != 0; }
 
 DALEMBERT_INLINE real size_of(real x) { return (real)((word)x & 0x7fffffffffffffff); }
+/* The second one where they are equal or not to be compared, as the instructions have it. */
+#if DALEMBERT_LANES == 8
+DALEMBERT_INLINE real greater(real x, real y) { return (real)_mm512_max_pd((__m512d)x, (__m512d)y); }
+DALEMBERT_INLINE real smaller(real x, real y) { return (real)_mm512_min_pd((__m512d)x, (__m512d)y); }
+#elif DALEMBERT_LANES == 4
+DALEMBERT_INLINE real greater(real x, real y) { return (real)_mm256_max_pd((__m256d)x, (__m256d)y); }
+DALEMBERT_INLINE real smaller(real x, real y) { return (real)_mm256_min_pd((__m256d)x, (__m256d)y); }
+#elif defined(__x86_64__)
+DALEMBERT_INLINE real greater(real x, real y) { return (real)_mm_max_pd((__m128d)x, (__m128d)y); }
+DALEMBERT_INLINE real smaller(real x, real y) { return (real)_mm_min_pd((__m128d)x, (__m128d)y); }
+#else
 DALEMBERT_INLINE real greater(real x, real y) { return pick(below(y, x), x, y); }
 DALEMBERT_INLINE real smaller(real x, real y) { return pick(below(x, y), x, y); }
+#endif
 
 /* a + b = sum + what is returned, exactly (Knuth). */
 DALEMBERT_INLINE real two_sum_of(real a, real b, real *sum) {
@@ -138,6 +153,15 @@ void LANES(dalembert_lane_antiderivative)(size_t count, size_t stride, const dou
   for (size_t k = 1; k < count; ++k) row[k * stride] = row[(k - 1) * stride - 1] * inverses[k];
 }
 
+/* Coordinates and velocities at the start of a step: the first rows of their series. */
+void LANES(dalembert_lane_start)(size_t free, const real *point, real *q, real *v);
+void LANES(dalembert_lane_start)(size_t free, const real *point, real *q, real *v) {
+  for (size_t i = 0; i < free; ++i) {
+    q[i] = point[i];
+    v[i] = point[free + i];
+  }
+}
+
 /* Inverse of a mass matrix by elimination without exchanges, and the accelerations, which are given where a
  * segment starts; with them the first rows of the series. system: the matrix by columns, then the load.
  * Gives the lanes in which not all pivots are positive. A pivot within the rounding of its own sum is not
@@ -202,15 +226,38 @@ unsigned LANES(dalembert_lane_unmet)(size_t count, const real *x) {
   return bits((truth)~met);
 }
 
-/* Sum of row k times tau to the power k, for k < count: in powers of tau^4 for every fourth. Rows that fill
- * up the last four are zero.
+/* Sums that keep a processor busy while each of them waits for its last operation, and fit into its registers. */
+#if DALEMBERT_LANES == 8
+enum { SIDE_BY_SIDE = 4 };
+#else
+enum { SIDE_BY_SIDE = 2 };
+#endif
+
+/* Sums of row k times tau to the power k, for k < count and some taus side by side: in powers of tau^4 for every
+ * fourth. Rows that fill up the last four are zero.
  */
-DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau) {
-  const real tau2 = tau * tau, tau4 = tau2 * tau2;
-  real sums[4] = {{0}};
+DALEMBERT_INLINE void sums(const int taus, size_t count, size_t stride, const real *row, const real *tau, real *out) {
+  real tau2[SIDE_BY_SIDE], tau4[SIDE_BY_SIDE], parts[SIDE_BY_SIDE][4] = {{{0}}};
+  for (int of = 0; of < taus; ++of) {
+    tau2[of] = tau[of] * tau[of];
+    tau4[of] = tau2[of] * tau2[of];
+  }
   for (size_t k = (count + 3) / 4 * 4; k > 0; k -= 4)
-    for (size_t i = 0; i < 4; ++i) sums[i] = sums[i] * tau4 + row[(k - 4 + i) * stride];
-  return (sums[0] + sums[1] * tau) + (sums[2] + sums[3] * tau) * tau2;
+#pragma GCC unroll 4
+    for (size_t i = 0; i < 4; ++i) {
+      const real own = row[(k - 4 + i) * stride];
+#pragma GCC unroll 4
+      for (int of = 0; of < taus; ++of) parts[of][i] = parts[of][i] * tau4[of] + own;
+    }
+  for (int of = 0; of < taus; ++of)
+    out[of] = (parts[of][0] + parts[of][1] * tau[of]) + (parts[of][2] + parts[of][3] * tau[of]) * tau2[of];
+}
+
+/* The same for one tau. */
+DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau) {
+  real out;
+  sums(1, count, stride, row, &tau, &out);
+  return out;
 }
 
 /* Ranges that polynomials of `count` rows do not leave in the time tau: codegen/ranges.c. */
@@ -531,19 +578,26 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
 #pragma GCC unroll 32
     for (int k = n - 1; k >= first; --k) b[k] += b[k - 1];
   }
-  /* Whether all are certainly positive up to some place and certainly negative from there on. */
-  truth positive = below(margin, b[0]), once = positive;
-  real changes = REAL(0.5); /* in the middle between the last positive one and the first negative one */
+  /* Whether all are certainly positive up to some place and certainly negative from there on: the first is
+   * positive, none is near zero, and none rises from a negative one to a positive one. No chain of comparisons
+   * that wait for each other. Where one is not a number the margin is none either, and nothing is above it. */
+  real least_size[2] = {size_of(b[0]), size_of(b[1])};
+  word rises = {0};
+  counts negative = {0};
 #pragma GCC unroll 32
   for (int k = 1; k < n; ++k) {
-    positive &= below(margin, b[k]);
-    once &= positive | below(b[k], -margin);
-    changes = pick(positive, changes + 1.0, changes);
+    if (k > 1) least_size[k % 2] = smaller(size_of(b[k]), least_size[k % 2]);
+    rises |= (word)b[k - 1] & ~(word)b[k];
+    negative += (counts)b[k] >> 63;
   }
-  const truth falls = once & ~positive;
-  real found = pick(positive, none, REAL(NAN));
+  const truth once = below(margin, b[0]) & below(margin, smaller(least_size[0], least_size[1]))
+                     & (truth)~is_negative(rises);
+  const real fallen = __builtin_convertvector((word)negative, real);
+  const truth falls = once & below(REAL(0.0), fallen);
+  real found = pick(once & (truth)~falls, none, REAL(NAN));
   if (!any(falls)) return found;
-  real s = changes * (1.0 / (n - 1));
+  /* In the middle between the last positive one and the first negative one. */
+  real s = ((n - 0.5) - fallen) * (1.0 / (n - 1));
   truth moving = falls;
   for (int i = 0; i < MOST_ITERATIONS && any(moving); ++i) {
     const struct local at = local(n, c, s);
@@ -560,14 +614,26 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   return pick(falls & ~moving & below(REAL(0.0), s) & at_most(s, REAL(1.0)), s, found);
 }
 
-DALEMBERT_INLINE real first_fall_of(size_t count, const real *c) {
-  /* With their number known the compiler keeps all of them in registers. */
-  switch (count) {
-#define CASE(n) case n: return first_fall(n, c);
-    DEGREES(CASE)
-#undef CASE
+/* The same of a guard up to h, of `count` rows; the others up to n are filled up with zeros. c gets the coefficients
+ * in powers of tau/h.
+ */
+DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, const real *row, real h,
+                                    const struct guard *guard, real *c) {
+  const truth rises = truth_of(guard->starts_at_zero);
+  const real h2 = h * h;
+  real powers[2] = {guard->factor, guard->factor * h}, own[33];
+#pragma GCC unroll 32
+  for (int k = 0; k < n; ++k) {
+    own[k] = k < n - 3 || (size_t)k < count ? row[k * stride] * powers[k % 2] : REAL(0.0);
+    if (k == 0) own[0] += guard->offset;
+    c[k] = own[k];
+    powers[k % 2] *= h2;
   }
-  return REAL(NAN);
+  own[n] = REAL(0.0);
+  /* What is zero at the start: its sum by tau/h. */
+#pragma GCC unroll 32
+  for (int k = 0; k < n; ++k) own[k] = pick(rises, own[k + 1], own[k]);
+  return first_fall(n, own);
 }
 
 /* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
@@ -578,23 +644,14 @@ unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const rea
                                           const struct guard *guard, real *c, real *place, unsigned *unclear);
 unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
                                           const struct guard *guard, real *c, real *place, unsigned *unclear) {
-  const size_t room = (count + 3) / 4 * 4;
-  const real h2 = *h * *h;
-  real even = guard->factor, odd = guard->factor * *h;
-  for (size_t k = 0; k + 1 < count; k += 2) {
-    c[k] = row[k * stride] * even;
-    c[k + 1] = row[(k + 1) * stride] * odd;
-    even *= h2;
-    odd *= h2;
+  real found = REAL(NAN);
+  /* With their number known the compiler keeps all coefficients in registers. */
+  switch ((count + 3) / 4 * 4) {
+#define CASE(n) \
+  case n: found = first_fall_of(n, count, stride, row, *h, guard, c); break;
+    DEGREES(CASE)
+#undef CASE
   }
-  if (count % 2) c[count - 1] = row[(count - 1) * stride] * even;
-  for (size_t k = count; k < room; ++k) c[k] = REAL(0.0);
-  c[0] += guard->offset;
-  const truth rises = truth_of(guard->starts_at_zero);
-  real rising[32];
-  if (any(rises))
-    for (size_t k = 0; k < room; ++k) rising[k] = pick(rises, k + 1 < room ? c[k + 1] : REAL(0.0), c[k]);
-  const real found = first_fall_of(room, any(rises) ? rising : c);
   const truth first = at_most(found, REAL(1.0)) & below(found, *place);
   *place = pick(first, found, *place);
   *unclear = bits((truth)~same(found, found));
@@ -602,18 +659,38 @@ unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const rea
 }
 
 /* Moves tau of some lanes on until the guard factor * (row k times tau^k) + offset is negative there: by `more`,
- * twice as much each time, but not beyond `most`.
+ * twice as much each time, but not beyond `most`. The next places are looked at before it is known whether they are
+ * needed.
  */
 void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
                                  const struct guard *guard, unsigned where, const real *most, real *more, real *tau);
 void LANES(dalembert_lane_cross)(size_t count, size_t stride, const real *row, const real *lost,
                                  const struct guard *guard, unsigned where, const real *most, real *more, real *tau) {
+  const struct guard own = *guard;
+  const real start = *row, left = *lost, farthest = *most;
+  real taus[SIDE_BY_SIDE + 1], mores[SIDE_BY_SIDE + 1], changes[SIDE_BY_SIDE];
   truth moving = truth_of(where);
-  for (;;) {
-    const real x = *row + (sum(count - 1, stride, row + stride, *tau) * *tau + *lost);
-    moving &= ~below(guard->factor * x + guard->offset, REAL(0.0)) & at_most(*more, *most);
-    if (!any(moving)) return;
-    *tau = pick(moving, *tau + *more, *tau);
-    *more = pick(moving, 2.0 * *more, *more);
+  taus[0] = *tau;
+  mores[0] = *more;
+  while (any(moving)) {
+    for (int i = 0; i < SIDE_BY_SIDE; ++i) {
+      taus[i + 1] = taus[i] + mores[i];
+      mores[i + 1] = 2.0 * mores[i];
+    }
+    sums(SIDE_BY_SIDE, count - 1, stride, row + stride, taus, changes);
+    for (int i = 0; i < SIDE_BY_SIDE; ++i) {
+      const real x = start + (changes[i] * taus[i] + left);
+      moving &= (truth)~below(own.factor * x + own.offset, REAL(0.0)) & at_most(mores[i], farthest);
+      taus[0] = pick(moving, taus[i + 1], taus[0]);
+      mores[0] = pick(moving, mores[i + 1], mores[0]);
+    }
   }
+  *tau = taus[0];
+  *more = mores[0];
+}
+
+/* The lanes in which the value of a guard is negative after tau, which is not more than h. */
+unsigned LANES(dalembert_lane_crossed)(const real *value, const real *tau, const real *h);
+unsigned LANES(dalembert_lane_crossed)(const real *value, const real *tau, const real *h) {
+  return bits((truth)(below(*value, REAL(0.0)) & at_most(*tau, *h)));
 }

@@ -64,18 +64,20 @@ DALEMBERT_BY_LANE_OF_TWO(hypot) DALEMBERT_BY_LANE_OF_TWO(fmax)
 
 
 /* Sine and cosine with the bits of elementary.c: the loops become ones of vectors where no angle needs the
- * long reduction, and short ones where none needs any.
+ * long reduction, and short ones where none needs any. Where some do all take the same way, or the compiler would
+ * have every lane go both.
  */
 struct dalembert_pair dalembert_sin_cos(double x);
 struct dalembert_sin_cos { real sin, cos; };
 DALEMBERT_INLINE struct dalembert_sin_cos dalembert_lanes_sin_cos(real x) {
   double angle[DALEMBERT_LANES], sin[DALEMBERT_LANES], cos[DALEMBERT_LANES];
   memcpy(angle, &x, sizeof x);
-  int near = 1, direct = 1;
+  uint64_t most = 0; /* of the bits of their sizes, which are in the order of the numbers */
   for (int i = 0; i < DALEMBERT_LANES; ++i) {
-    near &= angle[i] <= NEAR && angle[i] >= -NEAR;
-    direct &= angle[i] <= DIRECT && angle[i] >= -DIRECT;
+    const uint64_t size = bits_of(angle[i]) & ~((uint64_t)1 << 63);
+    most = size > most ? size : most;
   }
+  const int near = most <= bits_of(NEAR), direct = most <= bits_of(DIRECT);
   for (int i = 0; near && i < DALEMBERT_LANES; ++i) {
     const uint64_t sign = bits_of(angle[i]) & (uint64_t)1 << 63;
     const struct angle itself = {of_bits(bits_of(angle[i]) ^ sign), 0.0, 0};
@@ -85,7 +87,8 @@ DALEMBERT_INLINE struct dalembert_sin_cos dalembert_lanes_sin_cos(real x) {
   }
   for (int i = 0; !near && direct && i < DALEMBERT_LANES; ++i) {
     const uint64_t sign = bits_of(angle[i]) & (uint64_t)1 << 63;
-    const struct dalembert_pair pair = sin_cos_of(reduced(of_bits(bits_of(angle[i]) ^ sign)), sign);
+    const struct angle reduced = reduced_in_parts(of_bits(bits_of(angle[i]) ^ sign));
+    const struct dalembert_pair pair = sin_cos_of(reduced, sign);
     sin[i] = pair.sin;
     cos[i] = pair.cos;
   }

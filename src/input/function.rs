@@ -3,6 +3,7 @@
 use super::lanes::LaneJet;
 use super::{Signals, Sine, Table};
 use crate::integrate::Lanes;
+use crate::kernel::LaneLevel;
 
 /// Which one-sided limit is meant at a breakpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,7 +118,7 @@ impl Function {
     #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
-        level: usize,
+        level: LaneLevel<W>,
         t: &Lanes<W>,
         jet: &mut LaneJet<W>,
     ) {
@@ -131,7 +132,7 @@ impl Function {
     #[inline]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,
-        level: usize,
+        level: LaneLevel<W>,
         t: &Lanes<W>,
         jet: &LaneJet<W>,
         stride: usize,

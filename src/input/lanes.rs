@@ -2,7 +2,7 @@
 
 use super::{INVERSES, Jet, Signals};
 use crate::integrate::{LaneMask, Lanes};
-use crate::kernel::{lane_antiderivative, lane_take};
+use crate::kernel::{LaneLevel, lane_antiderivative, lane_take};
 use crate::model::InputKind;
 
 /// Value, rate and antiderivatives of a function at times of its own for each lane.
@@ -25,10 +25,8 @@ impl<const W: usize> LaneJet<W> {
 }
 
 /// The signals of several trajectories, each at its own time.
-#[derive(Debug, Clone)]
 pub struct LaneSignals<const W: usize> {
-    /// Level of the processor, as in [`crate::kernel::LANES_OF_LEVELS`].
-    level: usize,
+    level: LaneLevel<W>,
     /// Times that the signals are set for, s; NaN: none.
     t: Lanes<W>,
     /// Of each channel.
@@ -37,7 +35,7 @@ pub struct LaneSignals<const W: usize> {
 
 impl<const W: usize> LaneSignals<W> {
     /// Not set for any time yet.
-    pub fn new(level: usize, signals: &Signals) -> Self {
+    pub fn new(level: LaneLevel<W>, signals: &Signals) -> Self {
         let zero = LaneJet([Lanes::of(0.0); 4]);
         LaneSignals {
             level,
@@ -50,7 +48,8 @@ impl<const W: usize> LaneSignals<W> {
     /// before.
     #[inline]
     pub fn set(&mut self, signals: &Signals, t: &Lanes<W>, u: &mut [Lanes<W>]) {
-        let known = self.t.0.iter().zip(&t.0).all(|(known, t)| known == t);
+        let same = |known: bool, lane: usize| known & (self.t.0[lane] == t.0[lane]);
+        let known = (0..W).fold(true, same);
         if known {
             return;
         }

@@ -3,7 +3,7 @@
 use super::lanes::LaneJet;
 use super::{Jet, Side, Signals};
 use crate::integrate::Lanes;
-use crate::kernel::{lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
+use crate::kernel::{LaneLevel, lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
 
 /// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
 const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
@@ -109,7 +109,7 @@ impl Sine {
     #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
-        level: usize,
+        level: LaneLevel<W>,
         t: &Lanes<W>,
         jet: &mut LaneJet<W>,
     ) {
@@ -191,7 +191,7 @@ impl Sine {
     #[inline]
     pub(super) fn fill_series_of_lanes<const W: usize>(
         &self,
-        level: usize,
+        level: LaneLevel<W>,
         jet: &LaneJet<W>,
         stride: usize,
         out: &mut [Lanes<W>],

@@ -1,9 +1,8 @@
 //! What generated functions need, and give, for trajectories side by side.
 
-use super::ModeKernel;
 use super::context::{Context, Dimensions};
+use super::{LaneFunctions, ModeKernel};
 use crate::integrate::{LaneMask, Lanes, ORDERS};
-use std::ops::{Deref, DerefMut};
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
 /// build/compile.rs.
@@ -35,6 +34,14 @@ pub fn processor_level() -> usize {
     0
 }
 
+/// What is called for trajectories side by side at a level of the processor, which has `W` lanes.
+#[derive(Clone, Copy)]
+pub struct LaneLevel<const W: usize> {
+    /// Index into [`LANES_OF_LEVELS`].
+    pub(super) index: usize,
+    pub(super) functions: &'static LaneFunctions,
+}
+
 /// As many lanes as fill some lines of the cache.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
@@ -48,8 +55,9 @@ impl<const W: usize> Block<W> {
 /// An array of lanes that begins with a line of the cache: a vector of a whole line is read at once.
 #[derive(Debug, Clone)]
 pub struct LaneRows<const W: usize> {
-    blocks: Box<[Block<W>]>,
-    count: usize,
+    pub(super) blocks: Box<[Block<W>]>,
+    /// Number of lanes, of which the blocks have no fewer.
+    pub(super) count: usize,
 }
 
 impl<const W: usize> LaneRows<W> {
@@ -71,21 +79,6 @@ impl<const W: usize> LaneRows<W> {
 impl<const W: usize> Default for LaneRows<W> {
     fn default() -> Self {
         Self::zeros(0)
-    }
-}
-
-impl<const W: usize> Deref for LaneRows<W> {
-    type Target = [Lanes<W>];
-    #[inline]
-    fn deref(&self) -> &[Lanes<W>] {
-        &super::lanes_of(&self.blocks)[..self.count]
-    }
-}
-
-impl<const W: usize> DerefMut for LaneRows<W> {
-    #[inline]
-    fn deref_mut(&mut self) -> &mut [Lanes<W>] {
-        &mut super::lanes_of_mut(&mut self.blocks)[..self.count]
     }
 }
 

@@ -13,8 +13,8 @@ use context::{Arrays, KeptAngle};
 pub use context::{Context, Dimensions};
 pub(crate) use few::copy_few;
 pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLimits, LanePast, LanePoint, LaneRows,
-    LaneSeries, LaneSystem, processor_level,
+    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLevel, LaneLimits, LanePast, LanePoint,
+    LaneRows, LaneSeries, LaneSystem, processor_level,
 };
 pub use tables::{
     ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_CONDITIONS, MOST_FREE, ModeKernel,
@@ -24,7 +24,6 @@ use tables::{LaneKernel, SeriesKernel};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
-use lanes::Block;
 use nalgebra::{SMatrix, SVector};
 use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
@@ -202,6 +201,7 @@ lane_functions!(
         sine(In, In, Out);
         sine_series(usize, usize, f64, In, In, Out);
         antiderivative(usize, usize, In, In, Out);
+        start(usize, In, Out, Out);
         begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
         unmet(usize, In) -> Bits;
         ranges(usize, usize, In, In, In, In, Out, Out);
@@ -211,6 +211,7 @@ lane_functions!(
         cross(usize, usize, In, In, In, Bits, In, Out, Out);
         durations(In, In, f64, Out);
         end(usize, usize, In, In, In, In, In, Out);
+        crossed(In, In, In) -> Bits;
         take(usize, Bits, In, Out);
         is_apart(usize, usize, usize, Indices, Bits, f64, f64, In, In, In, In, In, OutBits) -> Bits;
         departs(In, In, f64, In, Out) -> Bits;
@@ -218,32 +219,34 @@ lane_functions!(
     )
 );
 
-/// The functions of a level.
-///
-/// # Panics
-/// If it does not have `W` lanes, which all calls rely on.
-#[inline]
-fn lane_functions<const W: usize>(level: usize) -> &'static LaneFunctions {
-    assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
-    &LANE_FUNCTIONS[level]
+impl<const W: usize> LaneLevel<W> {
+    /// The level of an index into [`LANES_OF_LEVELS`].
+    ///
+    /// # Panics
+    /// If it does not have `W` lanes, which all calls rely on.
+    pub fn new(index: usize) -> Self {
+        assert_eq!(LANES_OF_LEVELS[index], W, "width of the level");
+        LaneLevel {
+            index,
+            functions: &LANE_FUNCTIONS[index],
+        }
+    }
 }
 
 /// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
-///
-/// # Panics
-/// If `W` is not the number of lanes of the level; so do the other functions for lanes.
 #[inline]
-pub fn lane_sin_cos<const W: usize>(level: usize, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
+pub fn lane_sin_cos<const W: usize>(level: LaneLevel<W>, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
     let (mut sin, mut cos) = (x, x);
     let (to_sin, to_cos) = ((&raw mut sin).cast(), (&raw mut cos).cast());
     // SAFETY: one number a lane each.
-    unsafe { (lane_functions::<W>(level).sin_cos)((&raw const x).cast(), to_sin, to_cos) };
+    unsafe { (level.functions.sin_cos)((&raw const x).cast(), to_sin, to_cos) };
     (sin, cos)
 }
 
 /// Sines and cosines of eight angles (rad), side by side in lanes of this processor.
 pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
     fn in_lanes<const W: usize>(level: usize, x: &[f64; 8]) -> [[f64; 8]; 2] {
+        let level = LaneLevel::new(level);
         let [mut sines, mut cosines] = [[0.0; 8]; 2];
         for from in (0..8).step_by(W) {
             let (sin, cos) = lane_sin_cos(level, Lanes::<W>::from_fn(|lane| x[from + lane]));
@@ -264,21 +267,21 @@ pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
 /// of a sine are those of [`crate::input::Sine`].
 #[inline]
 pub fn lane_sine<const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     sine: &[f64; 8],
     t: &Lanes<W>,
     jet: &mut [Lanes<W>; 4],
 ) {
     let (t, jet) = ((&raw const *t).cast(), jet.as_mut_ptr().cast());
     // SAFETY: eight numbers, one number a lane, four a lane.
-    unsafe { (lane_functions::<W>(level).sine)(sine.as_ptr(), t, jet) };
+    unsafe { (level.functions.sine)(sine.as_ptr(), t, jet) };
 }
 
 /// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet. Each is the
 /// last but one times the factor and its inverse.
 #[inline]
 pub fn lane_sine_series<const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     (factor, inverses): (f64, &[f64]),
     jet: &[Lanes<W>; 4],
     stride: usize,
@@ -287,7 +290,7 @@ pub fn lane_sine_series<const W: usize>(
     let count = rows.len().div_ceil(stride);
     assert!(inverses.len() >= count);
     let (row, jet) = (rows.as_mut_ptr().cast(), jet.as_ptr().cast());
-    let series = lane_functions::<W>(level).sine_series;
+    let series = level.functions.sine_series;
     // SAFETY: the last of the rows is (count − 1) · stride < their number; inverses are as many.
     unsafe { series(count, stride, factor, inverses.as_ptr(), jet, row) };
 }
@@ -296,7 +299,7 @@ pub fn lane_sine_series<const W: usize>(
 /// on, given its value; the entries before are those of its derivative. `inverses`: 1/k.
 #[inline]
 pub fn lane_antiderivative<const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     inverses: &[f64],
     value: &Lanes<W>,
     rows: &mut [Lanes<W>],
@@ -306,10 +309,22 @@ pub fn lane_antiderivative<const W: usize>(
     let count = own.len().div_ceil(stride);
     assert!(inverses.len() >= count);
     let (row, value) = (own.as_mut_ptr().cast(), (&raw const *value).cast());
-    let antiderivative = lane_functions::<W>(level).antiderivative;
+    let antiderivative = level.functions.antiderivative;
     // SAFETY: the last of the rows is (count − 1) · stride < their number, and one entry is before each;
     // the inverses are as many.
     unsafe { antiderivative(count, stride, inverses.as_ptr(), value, row) };
+}
+
+/// Sets coordinates and velocities at the start of a step, the first rows of their series.
+#[inline]
+pub fn lane_start<const F: usize, const W: usize>(
+    level: LaneLevel<W>,
+    point: &LanePoint<F, W>,
+    series: &mut LaneSeries<F, W>,
+) {
+    let [q, v] = [&mut series.q, &mut series.v].map(|rows| rows.as_mut_ptr().cast());
+    // SAFETY: a point of F coordinates, and rows of as many.
+    unsafe { (level.functions.start)(F, (&raw const *point).cast(), q, v) };
 }
 
 /// Inverts the mass matrices, sets the accelerations (those of `point` where a segment starts) and the
@@ -317,7 +332,7 @@ pub fn lane_antiderivative<const W: usize>(
 /// pivots.
 #[inline]
 pub fn lane_begin<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     point: &LanePoint<F, W>,
     at_start: LaneMask,
     system: &LaneSystem<F, W>,
@@ -326,7 +341,7 @@ pub fn lane_begin<const F: usize, const W: usize>(
 ) -> LaneMask {
     let [q, v, a] =
         [&mut series.q, &mut series.v, &mut series.a].map(|rows| rows.as_mut_ptr().cast());
-    let begin = lane_functions::<W>(level).begin;
+    let begin = level.functions.begin;
     // SAFETY: a point and a system of F coordinates, room for F × F numbers, three rows of each series.
     LaneMask(unsafe {
         begin(
@@ -344,8 +359,8 @@ pub fn lane_begin<const F: usize, const W: usize>(
 
 /// The lanes in which not all of some numbers are positive.
 #[inline]
-pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>]) -> LaneMask {
-    let unmet = lane_functions::<W>(level).unmet;
+pub fn lane_unmet<const W: usize>(level: LaneLevel<W>, numbers: &[Lanes<W>]) -> LaneMask {
+    let unmet = level.functions.unmet;
     // SAFETY: as many numbers a lane.
     LaneMask(unsafe { unmet(numbers.len(), numbers.as_ptr().cast()) })
 }
@@ -355,7 +370,7 @@ pub fn lane_unmet<const W: usize>(level: usize, numbers: &[Lanes<W>]) -> LaneMas
 /// those that are `unclear`, as their series is not finite or their time does not advance.
 #[inline]
 pub fn lane_length<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     limits: &LaneLimits,
     series: &LaneSeries<F, W>,
     point: &LanePoint<F, W>,
@@ -365,7 +380,7 @@ pub fn lane_length<const F: usize, const W: usize>(
     let p = limits.order;
     assert!(p >= 5 && p + 2 <= ORDERS && limits.tolerances.len() == 1 + 2 * F);
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
-    let length = lane_functions::<W>(level).length;
+    let length = level.functions.length;
     // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
     LaneMask(unsafe {
         length(
@@ -390,7 +405,7 @@ pub fn lane_length<const F: usize, const W: usize>(
 /// lanes with such a fall, and those where it takes a closer look.
 #[inline]
 pub fn lane_first_fall<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     (rows, i): (&[[Lanes<W>; F]], usize),
     h: &Lanes<W>,
     guard: &LaneGuard<W>,
@@ -400,7 +415,7 @@ pub fn lane_first_fall<const F: usize, const W: usize>(
     assert!(i < F && (2..=ORDERS).contains(&rows.len()));
     let mut unclear = 0;
     let row = rows.as_flattened()[i..].as_ptr().cast();
-    let first_fall = lane_functions::<W>(level).first_fall;
+    let first_fall = level.functions.first_fall;
     // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
     // coefficients; the rest is one number a lane each, and a guard.
     let first = unsafe {
@@ -423,7 +438,7 @@ pub fn lane_first_fall<const F: usize, const W: usize>(
 /// row.
 #[inline]
 pub fn lane_cross<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     (rows, i): (&[[Lanes<W>; F]; LANE_ROWS], usize),
     count: usize,
     lost: &Lanes<W>,
@@ -436,7 +451,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
     let lost = (&raw const *lost).cast();
     let [tau, more, most] = [tau, more, most].map(|x| (&raw mut *x).cast());
     let guard = (&raw const *guard).cast();
-    let cross = lane_functions::<W>(level).cross;
+    let cross = level.functions.cross;
     // SAFETY: rows 1 … 32 are there, up to which a sum of `count` − 1 is filled up; the rest is one number
     // a lane each, and a guard.
     unsafe { cross(count, F, row, lost, guard, lanes.0, most, more, tau) };
@@ -446,7 +461,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
 /// one; the rounding of that; and the part `farthest` of `h`.
 #[inline]
 pub fn lane_durations<const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     h: &Lanes<W>,
     places: &Lanes<W>,
     farthest: f64,
@@ -455,13 +470,24 @@ pub fn lane_durations<const W: usize>(
     let (h, places) = ((&raw const *h).cast(), (&raw const *places).cast());
     let durations = durations.as_mut_ptr().cast();
     // SAFETY: one number a lane each, and room for three.
-    unsafe { (lane_functions::<W>(level).durations)(h, places, farthest, durations) };
+    unsafe { (level.functions.durations)(h, places, farthest, durations) };
+}
+
+/// The lanes in which the value of a guard is negative after `tau`, which is not more than `h` (s).
+#[inline]
+pub fn lane_crossed<const W: usize>(
+    level: LaneLevel<W>,
+    [value, tau, h]: [&Lanes<W>; 3],
+) -> LaneMask {
+    let [value, tau, h] = [value, tau, h].map(|x| (&raw const *x).cast());
+    // SAFETY: one number a lane each.
+    LaneMask(unsafe { (level.functions.crossed)(value, tau, h) })
 }
 
 /// The points to which series of order `p` lead from a point in the durations `tau` (s).
 #[inline]
 pub fn lane_end<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     p: usize,
     series: &LaneSeries<F, W>,
     point: &LanePoint<F, W>,
@@ -471,7 +497,7 @@ pub fn lane_end<const F: usize, const W: usize>(
     assert!(p + 2 <= ORDERS);
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let (point, tau) = ((&raw const *point).cast(), (&raw const *tau).cast());
-    let end = lane_functions::<W>(level).end;
+    let end = level.functions.end;
     // SAFETY: rows 1 … 32 are there, up to which a sum of p + 1 ≤ 31 rows is filled up; the points are
     // those of F coordinates.
     unsafe { end(F, p, q, v, a, point, tau, (&raw mut *to).cast()) };
@@ -480,22 +506,22 @@ pub fn lane_end<const F: usize, const W: usize>(
 impl<const F: usize, const W: usize> LanePoint<F, W> {
     /// Takes over those of some lanes.
     #[inline]
-    pub fn take(&mut self, level: usize, lanes: LaneMask, from: &Self) {
+    pub fn take(&mut self, level: LaneLevel<W>, lanes: LaneMask, from: &Self) {
         let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
         // SAFETY: a point has as many numbers a lane, one after the other.
-        unsafe { (lane_functions::<W>(level).take)(5 * F + 2, lanes.0, from, to) };
+        unsafe { (level.functions.take)(5 * F + 2, lanes.0, from, to) };
     }
 }
 
 impl<const W: usize> LaneGuard<W> {
     /// Takes over those of some lanes.
     #[inline]
-    pub fn take(&mut self, level: usize, lanes: LaneMask, from: &Self) {
+    pub fn take(&mut self, level: LaneLevel<W>, lanes: LaneMask, from: &Self) {
         let zero = &mut self.starts_at_zero;
         *zero = *zero & !lanes | from.starts_at_zero & lanes;
         let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
         // SAFETY: a guard begins with two numbers a lane.
-        unsafe { (lane_functions::<W>(level).take)(2, lanes.0, from, to) };
+        unsafe { (level.functions.take)(2, lanes.0, from, to) };
     }
 }
 
@@ -505,7 +531,7 @@ impl<const W: usize> LaneGuard<W> {
 /// If they are not as many.
 #[inline]
 pub fn lane_take<const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     lanes: LaneMask,
     from: &[Lanes<W>],
     to: &mut [Lanes<W>],
@@ -514,7 +540,7 @@ pub fn lane_take<const W: usize>(
     let count = from.len();
     let (from, to) = (from.as_ptr().cast(), to.as_mut_ptr().cast());
     // SAFETY: the length was checked.
-    unsafe { (lane_functions::<W>(level).take)(count, lanes.0, from, to) };
+    unsafe { (level.functions.take)(count, lanes.0, from, to) };
 }
 
 /// The lanes in which an event, with the states before and after it, is before `last` (s) and certainly ends
@@ -522,14 +548,14 @@ pub fn lane_take<const W: usize>(
 /// accumulation.
 #[inline]
 pub fn lane_is_apart<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     past: &LanePast<F, W>,
     point: &LanePoint<F, W>,
     reset: &[Lanes<W>],
     last: &Lanes<W>,
 ) -> [LaneMask; 2] {
     let discretes = past.check(reset);
-    let is_apart = lane_functions::<W>(level).is_apart;
+    let is_apart = level.functions.is_apart;
     let mut may_rest = 0;
     // SAFETY: all lengths and indices were checked; the rest is a point and one number a lane.
     let apart = unsafe {
@@ -555,14 +581,14 @@ pub fn lane_is_apart<const F: usize, const W: usize>(
 /// Goes on in some lanes from the state that a reset gives, and remembers it.
 #[inline]
 pub fn lane_leap<const F: usize, const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     lanes: LaneMask,
     reset: &[Lanes<W>],
     point: &mut LanePoint<F, W>,
     past: &mut LanePast<F, W>,
 ) {
     let discretes = past.check(reset);
-    let leap = lane_functions::<W>(level).leap;
+    let leap = level.functions.leap;
     // SAFETY: all lengths and indices were checked; the rest is a point.
     unsafe {
         leap(
@@ -599,7 +625,7 @@ impl<const F: usize, const W: usize> LanePast<F, W> {
 /// `rate` of the coordinate.
 #[inline]
 pub fn lane_departs<const W: usize>(
-    level: usize,
+    level: LaneLevel<W>,
     (x, rate): (&Lanes<W>, Option<&Lanes<W>>),
     factor: f64,
     discrete: Option<&Lanes<W>>,
@@ -607,23 +633,27 @@ pub fn lane_departs<const W: usize>(
 ) -> LaneMask {
     let pointer = |x: Option<&Lanes<W>>| x.map_or(std::ptr::null(), |x| (&raw const *x).cast());
     let (x, rate, discrete) = (pointer(Some(x)), pointer(rate), pointer(discrete));
-    let departs = lane_functions::<W>(level).departs;
+    let departs = level.functions.departs;
     // SAFETY: one number a lane each, where it is given, and a guard.
     LaneMask(unsafe { departs(x, rate, factor, discrete, (&raw mut *guard).cast()) })
 }
 
-/// The numbers of blocks.
-fn lanes_of<const W: usize>(blocks: &[Block<W>]) -> &[Lanes<W>] {
-    let count = blocks.len() * Block::<W>::LANES;
-    // SAFETY: a block is nothing but so many numbers a lane, without gaps: its size is a multiple of 64.
-    unsafe { std::slice::from_raw_parts(blocks.as_ptr().cast(), count) }
+impl<const W: usize> Deref for LaneRows<W> {
+    type Target = [Lanes<W>];
+    #[inline]
+    fn deref(&self) -> &[Lanes<W>] {
+        // SAFETY: a block is nothing but numbers a lane, without gaps: its size is a multiple of 64. Since they
+        // were made there are blocks for so many.
+        unsafe { std::slice::from_raw_parts(self.blocks.as_ptr().cast(), self.count) }
+    }
 }
 
-/// The same to write to.
-fn lanes_of_mut<const W: usize>(blocks: &mut [Block<W>]) -> &mut [Lanes<W>] {
-    let count = blocks.len() * Block::<W>::LANES;
-    // SAFETY: as in `lanes_of`; the blocks are borrowed for as long.
-    unsafe { std::slice::from_raw_parts_mut(blocks.as_mut_ptr().cast(), count) }
+impl<const W: usize> DerefMut for LaneRows<W> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [Lanes<W>] {
+        // SAFETY: as in `deref`.
+        unsafe { std::slice::from_raw_parts_mut(self.blocks.as_mut_ptr().cast(), self.count) }
+    }
 }
 
 /// Sine and cosine of `x` (rad), by the same function as in generated code: by the same bits on every
@@ -1112,16 +1142,15 @@ impl<const F: usize> ModeKernel<F> {
     /// As [`Self::series_start`]; `quiet`: no input acts.
     ///
     /// # Panics
-    /// If the mode does not go in lanes, or `W` is not the number of lanes of the level; so do the
-    /// other functions for lanes.
+    /// If the mode does not go in lanes; so do the other functions for lanes.
     pub fn lane_series_start<const W: usize>(
         &self,
-        (level, quiet): (usize, bool),
+        (level, quiet): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
         at: &mut LaneSeries<F, W>,
         out: &mut LaneSystem<F, W>,
     ) {
-        let kernel = self.lane_kernel::<W>(level);
+        let kernel = self.lane_kernel(level);
         let series = if quiet {
             &kernel.quiet_series
         } else {
@@ -1138,13 +1167,13 @@ impl<const F: usize> ModeKernel<F> {
     /// As [`Self::series_run`].
     pub fn lane_series_run<const W: usize>(
         &self,
-        (level, quiet): (usize, bool),
+        (level, quiet): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
         n: usize,
         inverse: &[[Lanes<W>; F]; F],
         at: &mut LaneSeries<F, W>,
     ) {
-        let kernel = self.lane_kernel::<W>(level);
+        let kernel = self.lane_kernel(level);
         let series = if quiet {
             &kernel.quiet_series
         } else {
@@ -1163,7 +1192,7 @@ impl<const F: usize> ModeKernel<F> {
     /// As [`Self::requirement_bounds`], one lane entry a requirement; `quiet`: no input acts.
     pub fn lane_requirement_bounds<const W: usize>(
         &self,
-        (level, quiet): (usize, bool),
+        (level, quiet): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
         (at, orders): (&LaneSeries<F, W>, usize),
         tau: &Lanes<W>,
@@ -1171,7 +1200,7 @@ impl<const F: usize> ModeKernel<F> {
     ) {
         assert_eq!(out.len(), self.requirements.1);
         assert!(orders + 2 <= ORDERS);
-        let functions = lane_functions::<W>(level);
+        let functions = level.functions;
         let zero = [[Lanes::<W>::of(0.0); F]; 3];
         let (mut middles, mut radii) = (zero, zero);
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
@@ -1203,7 +1232,7 @@ impl<const F: usize> ModeKernel<F> {
             ..raw
         };
         let [q, v, a] = middles.each_ref().map(|of| of.as_ptr().cast());
-        let function = self.lane_kernel::<W>(level).requirement_bounds;
+        let function = self.lane_kernel(level).requirement_bounds;
         // SAFETY: as in `requirement_bounds`; the level was compiled for `W` lanes.
         unsafe { function(q, v, a, &raw, out.as_mut_ptr().cast()) }
     }
@@ -1211,12 +1240,12 @@ impl<const F: usize> ModeKernel<F> {
     /// As [`Self::guard`], by the index of the guard in the mode.
     pub fn lane_guard<const W: usize>(
         &self,
-        level: usize,
+        level: LaneLevel<W>,
         x: &LaneContext<W>,
         guard: usize,
         [q, v, a]: [&[Lanes<W>; F]; 3],
     ) -> Lanes<W> {
-        let function = self.lane_kernel::<W>(level).guards[guard];
+        let function = self.lane_kernel(level).guards[guard];
         let raw = x.raw(self.dimensions);
         let mut out = Lanes::of(0.0);
         let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
@@ -1232,7 +1261,7 @@ impl<const F: usize> ModeKernel<F> {
     /// state.
     pub fn lane_reset<const W: usize>(
         &self,
-        level: usize,
+        level: LaneLevel<W>,
         x: &LaneContext<W>,
         (guard, transition): (usize, usize),
         [q, v, a]: [&[Lanes<W>; F]; 3],
@@ -1240,7 +1269,7 @@ impl<const F: usize> ModeKernel<F> {
     ) {
         let dimensions = self.dimensions;
         assert_eq!(out.len(), 2 * dimensions.coordinates + dimensions.discretes);
-        let function = self.lane_kernel::<W>(level).resets[guard][transition];
+        let function = self.lane_kernel(level).resets[guard][transition];
         let function = function.expect("the transition stays in lanes");
         let raw = x.raw(dimensions);
         let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());

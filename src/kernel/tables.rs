@@ -1,7 +1,7 @@
 //! What the generated tables hold: functions, typed by the numbers of coordinates, and what is known of
 //! them without a call.
 
-use super::{Context, Dimensions, LANES_OF_LEVELS, Raw, RawRun, RawStart};
+use super::{Context, Dimensions, LaneLevel, Raw, RawRun, RawStart};
 use crate::integrate::ORDERS;
 use nalgebra::{SMatrix, SVector};
 
@@ -144,9 +144,9 @@ impl<const F: usize> ModeKernel<F> {
         resets.is_some_and(|resets| resets[guard][transition].is_some())
     }
 
-    pub(super) fn lane_kernel<const W: usize>(&self, level: usize) -> &'static LaneKernel {
-        assert_eq!(LANES_OF_LEVELS[level], W, "width of the level");
-        &self.lanes[level]
+    #[inline]
+    pub(super) fn lane_kernel<const W: usize>(&self, level: LaneLevel<W>) -> &'static LaneKernel {
+        &self.lanes[level.index]
     }
 }
 

@@ -11,7 +11,7 @@ use super::super::simulation::Simulation;
 use crate::input::{LaneSignals, Signals};
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
 use crate::kernel::{
-    Free, LaneContext, LaneGuard, LanePast, LanePoint, LaneRows, LaneSystem, ModeKernel,
+    Free, LaneContext, LaneGuard, LaneLevel, LanePast, LanePoint, LaneRows, LaneSystem, ModeKernel,
     lane_departs,
 };
 use crate::model::{GuardShape, Mode};
@@ -98,7 +98,7 @@ pub(super) struct Group<const F: usize, const W: usize> {
     /// Index of the mode.
     pub index: usize,
     /// Level of the processor.
-    pub level: usize,
+    pub level: LaneLevel<W>,
     /// Whether no input ever acts.
     pub quiet: bool,
     pub taylor: LaneTaylor<F, W>,
@@ -122,10 +122,11 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub analytic_from: f64,
     /// Lower bounds, in the last step, of what the mode requires to be positive.
     pub requirements: LaneRows<W>,
-    /// What became of each lane that does not go on.
-    pub outcomes: [Outcome; W],
-    /// Steps made in each lane since it was loaded.
-    pub steps: [u64; W],
+    /// Lanes that have not made the last step.
+    pub unclear: LaneMask,
+    /// Steps of the group, and how many of them each lane has not made since it was loaded or came before.
+    pub steps: u64,
+    pub missed: [u64; W],
     /// Which lanes hold a trajectory.
     pub occupied: LaneMask,
 }
@@ -134,7 +135,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
     /// An empty group for the mode of a simulation, whose state is put into the empty lanes.
     pub fn new(
         kernel: &'static ModeKernel<F>,
-        level: usize,
+        level: LaneLevel<W>,
         quiet: bool,
         like: &Simulation,
     ) -> Self {
@@ -208,8 +209,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
             last: Lanes::of(f64::INFINITY),
             analytic_from: analytic_from(&problem.signals),
             requirements: LaneRows::zeros(mode.requirements.len()),
-            outcomes: [Outcome::Unclear; W],
-            steps: [0; W],
+            unclear: LaneMask::NONE,
+            steps: 0,
+            missed: [0; W],
             occupied: LaneMask::NONE,
         };
         for lane in 0..W {
@@ -236,7 +238,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let breakpoint = problem.signals.next_breakpoint(from.here.now.seconds());
         self.last.0[lane] = breakpoint.min(problem.end.time);
         self.at_start.set(lane, true);
-        self.steps[lane] = 0;
+        self.missed[lane] = self.steps;
         self.occupied.set(lane, true);
     }
 
@@ -311,6 +313,16 @@ impl<const F: usize, const W: usize> Group<F, W> {
         Instant::of_parts(self.here.t.map(|part| part.0[lane]))
     }
 
+    /// What became of a lane that does not simply go on after the last step.
+    pub fn outcome(&self, lane: usize) -> Outcome {
+        let fallen = self.guards.iter().find(|guard| guard.falls.is(lane));
+        match fallen {
+            _ if self.unclear.is(lane) => Outcome::Unclear,
+            Some(guard) => Outcome::Event(guard.guard),
+            None => Outcome::Until,
+        }
+    }
+
     /// Takes a trajectory out of its lane, where it may be left for [`Group::go_on`].
     pub fn unload(&mut self, lane: usize, into: &mut Simulation) {
         let column = |rows: &[Lanes<W>; F]| SVector::<f64, F>::from_fn(|i, _| rows[i].0[lane]);
@@ -321,18 +333,20 @@ impl<const F: usize, const W: usize> Group<F, W> {
         for (into, of) in discrete.zip(self.context.discrete()) {
             *into = of.0[lane];
         }
-        into.here.now = match self.outcomes[lane] {
+        let outcome = self.outcome(lane);
+        into.here.now = match outcome {
             Outcome::Until => Instant::new(self.last.0[lane]),
             _ => self.now(lane),
         };
         let t = into.here.now.seconds();
-        if !self.quiet && self.outcomes[lane] != Outcome::Until && t == self.signals.time(lane) {
+        if !self.quiet && outcome != Outcome::Until && t == self.signals.time(lane) {
             let signals = &into.problem.signals;
             (into.context).set_signals_of_lane(&self.signals, lane, signals);
         }
-        into.solver.steps += self.steps[lane];
-        into.solver.residual_evaluations += self.steps[lane] * self.taylor.order() as u64;
-        self.steps[lane] = 0;
+        let steps = self.steps - self.missed[lane];
+        into.solver.steps += steps;
+        into.solver.residual_evaluations += steps * self.taylor.order() as u64;
+        self.missed[lane] = self.steps;
     }
 
     /// Leaves a lane empty.

@@ -4,10 +4,10 @@
 use super::super::instant::Instant;
 use super::super::roots::{Kind, Search, Watch};
 use super::super::search::{Coefficients, search_window};
-use super::group::{Group, Outcome, Way};
+use super::group::{Group, Way};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes};
-use crate::kernel::{lane_durations, lane_take, lane_unmet};
+use crate::kernel::{lane_crossed, lane_durations, lane_take, lane_unmet};
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
 /// [`super::super::locate`].
@@ -36,24 +36,14 @@ impl<const F: usize, const W: usize> Group<F, W> {
         for guard in &mut self.guards {
             let zero = &mut guard.linear.starts_at_zero;
             *zero = *zero & !made;
-        }
-        for (lane, steps) in self.steps.iter_mut().enumerate() {
-            *steps += u64::from(made.is(lane));
-        }
-        let ended = (falls | until | unclear) & self.occupied;
-        for lane in (ended & !falls | unclear).lanes() {
-            self.outcomes[lane] = match unclear.is(lane) {
-                true => Outcome::Unclear,
-                false => Outcome::Until,
-            };
-        }
-        for guard in &mut self.guards {
             guard.falls = guard.falls & made;
-            for lane in guard.falls.lanes() {
-                self.outcomes[lane] = Outcome::Event(guard.guard);
-            }
         }
-        ended
+        self.steps += 1;
+        self.unclear = unclear & self.occupied;
+        for lane in self.unclear.lanes() {
+            self.missed[lane] += 1;
+        }
+        (falls | until | unclear) & self.occupied
     }
 
     /// Sets the absolute times of the analytic pieces of the inputs that act just after the present instants,
@@ -61,7 +51,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
     /// [`super::super::equations::Clock`].
     fn find_pieces(&mut self, signals: &Signals) -> bool {
         let [high, _] = &self.here.t;
-        let in_pieces = high.0.iter().any(|&t| t < self.analytic_from);
+        let from = self.analytic_from;
+        let in_pieces = high.0.iter().fold(false, |any, &t| any | (t < from));
         for lane in (0..W).filter(|_| in_pieces) {
             let now = self.now(lane);
             let [t, durations] = &mut self.way.pieces;
@@ -164,11 +155,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
             let at = [&self.next.q, &self.next.v, &self.next.a];
             let (kernel, context) = (self.kernel, &self.context);
             let value = kernel.lane_guard(self.level, context, guard.guard, at);
-            for lane in guard.falls.lanes() {
-                // Beyond the rounding of the polynomial there is no such state.
-                let crossed = value.0[lane] < 0.0 && tau.0[lane] <= h.0[lane];
-                unclear.set(lane, !crossed);
-            }
+            // Beyond the rounding of the polynomial there is no such state.
+            let crossed = lane_crossed(self.level, [&value, tau, h]);
+            unclear = unclear | guard.falls & !crossed;
         }
         unclear
     }

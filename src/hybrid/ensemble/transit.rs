@@ -2,7 +2,7 @@
 //! mode, nothing stands still, and no guard acts at once. All others are taken by the engine for single runs.
 
 use super::super::simulation::Simulation;
-use super::group::{Group, Outcome};
+use super::group::{Group, WatchedGuard};
 use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{lane_departs, lane_is_apart, lane_leap, lane_take};
 use crate::record::Jump;
@@ -81,14 +81,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
         plain
     }
 
-    /// Records the transition that a lane has just taken: as [`Simulation::fire`], where the time advances
+    /// Records the transition of a guard that a lane has just taken: as [`Simulation::fire`], where the time advances
     /// before the next one, no transition is counted, and nothing is asked about doubts.
-    pub fn record(&self, lane: usize, into: &mut Simulation) {
-        let Outcome::Event(event) = self.outcomes[lane] else {
-            unreachable!("it has taken a transition")
-        };
-        let guard = self.guards.iter().find(|guard| guard.guard == event);
-        let guard = guard.expect("it is watched");
+    pub fn record(&self, guard: &WatchedGuard<W>, lane: usize, into: &mut Simulation) {
         let at = self.now(lane);
         let here = &mut into.here;
         here.j += 1;

@@ -6,7 +6,7 @@ use super::group::{Group, Outcome};
 use super::{Ensemble, Finished, Member};
 use crate::input::Signals;
 use crate::integrate::LaneMask;
-use crate::kernel::with_kernel;
+use crate::kernel::{LaneLevel, with_kernel};
 use crate::record::Silent;
 
 /// A group, whatever its number of free coordinates.
@@ -16,7 +16,15 @@ trait AnyGroup<const W: usize> {
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
     fn step(&mut self, signals: &Signals) -> [LaneMask; 3];
-    fn record(&self, lane: usize, into: &mut Simulation);
+    /// Records the transitions that lanes have just taken, whose slots are told; gives the lanes among
+    /// `may_rest` in which events accumulate.
+    fn record(
+        &self,
+        gone: LaneMask,
+        may_rest: LaneMask,
+        slots: &[Option<usize>; W],
+        all: &mut [Slot],
+    ) -> LaneMask;
     fn outcome(&self, lane: usize) -> Outcome;
 }
 
@@ -38,11 +46,28 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
         let [gone, may_rest] = self.transit();
         [gone, may_rest, ended & !gone]
     }
-    fn record(&self, lane: usize, into: &mut Simulation) {
-        Group::record(self, lane, into)
+    fn record(
+        &self,
+        gone: LaneMask,
+        may_rest: LaneMask,
+        slots: &[Option<usize>; W],
+        all: &mut [Slot],
+    ) -> LaneMask {
+        let mut at_rest = LaneMask::NONE;
+        for guard in &self.guards {
+            for lane in (guard.falls & gone).lanes() {
+                let slot = slots[lane].expect("what goes on is in a lane");
+                let simulation = &mut all[slot].simulation;
+                Group::record(self, guard, lane, simulation);
+                if may_rest.is(lane) {
+                    at_rest.set(lane, simulation.rest().is_some());
+                }
+            }
+        }
+        at_rest
     }
     fn outcome(&self, lane: usize) -> Outcome {
-        self.outcomes[lane]
+        Group::outcome(self, lane)
     }
 }
 
@@ -83,6 +108,7 @@ pub(super) struct Worker<'a, const W: usize> {
     /// Whether a slot or a lane has become free.
     vacancies: bool,
     quiet: bool,
+    level: LaneLevel<W>,
 }
 
 impl<'a, const W: usize> Worker<'a, W> {
@@ -90,8 +116,8 @@ impl<'a, const W: usize> Worker<'a, W> {
     pub fn new(ensemble: &'a Ensemble, members: &'a [Member<'a>]) -> Self {
         let modes = ensemble.problem.variant.modes.len();
         let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
-        // As many again as there are lanes, so that a full group can be found.
-        let count = ((going + 1) * W).min(members.len());
+        // The fewest of which, however they are spread over the modes, some mode has as many as lanes.
+        let count = (going * (W - 1) + 1).min(members.len());
         let slot = |_| Slot {
             simulation: Simulation::new(&ensemble.problem).expect("the scene was prepared"),
             member: 0,
@@ -105,6 +131,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             lanes: (0..modes).map(|_| None).collect(),
             vacancies: true,
             quiet: ensemble.problem.signals.is_zero(),
+            level: LaneLevel::new(ensemble.level),
         }
     }
 
@@ -141,7 +168,7 @@ impl<'a, const W: usize> Worker<'a, W> {
     fn find_lane(&mut self, slot: usize) {
         let simulation = &self.slots[slot].simulation;
         let mode = simulation.here.mode;
-        let (level, quiet) = (self.ensemble.level, self.quiet);
+        let (level, quiet) = (self.level, self.quiet);
         let lanes = self.lanes[mode].get_or_insert_with(|| {
             let kernels = &simulation.mode().kernels;
             let group: Box<dyn AnyGroup<W>> =
@@ -164,13 +191,7 @@ impl<'a, const W: usize> Worker<'a, W> {
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
         let [gone, may_rest, ended] = lanes.group.step(&self.ensemble.problem.signals);
-        let mut at_rest = LaneMask::NONE;
-        for lane in gone.lanes() {
-            let slot = lanes.slots[lane].expect("what goes on is in a lane");
-            let simulation = &mut self.slots[slot].simulation;
-            lanes.group.record(lane, simulation);
-            at_rest.set(lane, may_rest.is(lane) && simulation.rest().is_some());
-        }
+        let at_rest = (lanes.group).record(gone, may_rest, &lanes.slots, &mut self.slots);
         for lane in at_rest.lanes() {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
             let slot = lanes.slots[lane].expect("what goes on is in a lane");

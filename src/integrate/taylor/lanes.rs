@@ -5,23 +5,21 @@ use super::super::tolerances::Tolerances;
 use super::length::{self, Terms};
 use super::series::ORDERS;
 use crate::kernel::{
-    LANE_ROWS, LaneGuard, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin, lane_cross,
-    lane_end, lane_first_fall, lane_length, lane_take,
+    LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
+    lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
 };
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
-#[derive(Debug, Clone)]
 pub struct LaneTaylor<const F: usize, const W: usize> {
     /// Coefficients about the start of the step.
     pub series: LaneSeries<F, W>,
-    /// Level of the processor, as in [`crate::kernel::LANES_OF_LEVELS`].
-    level: usize,
+    level: LaneLevel<W>,
     limits: LaneLimits,
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// A method of the order that [`super::Taylor::new`] chooses.
-    pub fn new(level: usize, tolerances: &Tolerances<F>, convolutions: usize) -> Self {
+    pub fn new(level: LaneLevel<W>, tolerances: &Tolerances<F>, convolutions: usize) -> Self {
         let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
@@ -56,9 +54,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// Sets coordinates and velocities at the start of the step.
     #[inline]
     pub fn start_at(&mut self, point: &LanePoint<F, W>) {
-        let LaneSeries { q, v, .. } = &mut self.series;
-        lane_take(self.level, LaneMask::ALL, &point.q, &mut q[0]);
-        lane_take(self.level, LaneMask::ALL, &point.v, &mut v[0]);
+        lane_start(self.level, point, &mut self.series);
     }
 
     /// Sets accelerations, and all that follows from the state without the series, and the inverses of the
