@@ -260,34 +260,30 @@ DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau
   return out;
 }
 
-/* Ranges that polynomials of `count` rows do not leave in the time tau: codegen/ranges.c. */
-DALEMBERT_INLINE void range(size_t count, size_t stride, const real *row, real tau, real *low, real *high) {
+/* Middle of a range that a polynomial of `count` rows does not leave in the time tau, and half its width:
+ * codegen/ranges.c.
+ */
+DALEMBERT_INLINE real range(size_t count, size_t stride, const real *row, real tau, real *radius) {
   enum { FIRST = 8 };
   real least = REAL(0.0), most = REAL(0.0), others = REAL(0.0);
   for (size_t k = count; k-- > FIRST;) others = others * tau + size_of(row[k * stride]);
   const real tau2 = tau * tau, tau4 = tau2 * tau2;
-  others *= tau4 * tau4;
   for (size_t k = FIRST; k-- > 0;) {
     least = row[k * stride] + smaller(least * tau, REAL(0.0));
     most = row[k * stride] + greater(most * tau, REAL(0.0));
   }
-  *low = least - others;
-  *high = most + others;
+  *radius = 0.5 * (most - least) + others * (tau4 * tau4);
+  return 0.5 * (least + most);
 }
 
 DALEMBERT_INLINE void ranges(const size_t free, size_t count, const real *q, const real *v, const real *a, real tau,
                              real *middles, real *radii) {
   for (size_t i = 0; i < free; ++i) {
-    real low[3], high[3];
-    range(count, free, q + i, tau, low, high);
-    range(count, free, v + i, tau, low + 1, high + 1);
-    range(count, free, a + i, tau, low + 2, high + 2);
+    const real middle = range(count, free, q + i, tau, radii + i);
+    radii[i] += size_of(middle - q[i]);
     middles[i] = q[i];
-    radii[i] = greater(q[i] - low[0], high[0] - q[i]);
-    for (size_t n = 1; n < 3; ++n) {
-      middles[n * free + i] = 0.5 * (low[n] + high[n]);
-      radii[n * free + i] = 0.5 * (high[n] - low[n]);
-    }
+    middles[free + i] = range(count, free, v + i, tau, radii + free + i);
+    middles[2 * free + i] = range(count, free, a + i, tau, radii + 2 * free + i);
   }
 }
 

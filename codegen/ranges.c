@@ -4,6 +4,7 @@
  */
 #include "vectors.h"
 
+/* Seven are too few for half a period of an oscillation, a step of the Taylor method. */
 enum { FIRST = 8 };
 
 void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,
@@ -19,9 +20,9 @@ typedef int64_t mask __attribute__((vector_size(32)));
 #define SUM(x) ((x[0] + x[2]) + (x[1] + x[3]))
 
 static inline __attribute__((always_inline)) void ranges(size_t free, size_t count, const double *q, const double *v,
-                                                         const double *a, double tau, double *low, double *high) {
-  const double tau2 = tau * tau, tau4 = tau2 * tau2, tau8 = tau4 * tau4;
-  dalembert_block power = {tau8, tau8 * tau, tau8 * tau2, tau8 * tau2 * tau};
+                                                         const double *a, double tau, double *middles, double *radii) {
+  const double tau2 = tau * tau, tau4 = tau2 * tau2, first = tau4 * tau4;
+  dalembert_block power = {first, first * tau, first * tau2, first * tau2 * tau};
   dalembert_block of_q = {0.0}, of_v = {0.0}, of_a = {0.0};
   for (size_t k = FIRST; k < count; k += 4) {
     of_q += SIZE(FOUR(q + k * free)) * power;
@@ -36,12 +37,15 @@ static inline __attribute__((always_inline)) void ranges(size_t free, size_t cou
     most = own + PART(most * tau, >);
   }
   const dalembert_block others = {SUM(of_q), SUM(of_v), SUM(of_a), 0.0};
-  least -= others, most += others;
-  for (size_t n = 0; n < 3; ++n) low[n] = least[n], high[n] = most[n];
+  const dalembert_block middle = 0.5 * (least + most);
+  dalembert_block centre = middle;
+  centre[0] = q[0];
+  const dalembert_block radius = 0.5 * (most - least) + SIZE(middle - centre) + others;
+  for (size_t n = 0; n < 3; ++n) middles[n * free] = centre[n], radii[n * free] = radius[n];
 }
 #else
-static void ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau, double *low,
-                   double *high) {
+static void ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,
+                   double *middles, double *radii) {
   const double *const rows[] = {q, v, a};
   for (size_t n = 0; n < 3; ++n) {
     double others = 0.0, power = 1.0, least = 0.0, most = 0.0;
@@ -55,7 +59,9 @@ static void ranges(size_t free, size_t count, const double *q, const double *v, 
       least = own + (down < 0.0 ? down : 0.0);
       most = own + (up > 0.0 ? up : 0.0);
     }
-    low[n] = least - others, high[n] = most + others;
+    const double middle = 0.5 * (least + most), centre = n == 0 ? q[0] : middle, off = middle - centre;
+    middles[n * free] = centre;
+    radii[n * free] = 0.5 * (most - least) + (off < 0.0 ? -off : off) + others;
   }
 }
 #endif
@@ -66,16 +72,9 @@ static void ranges(size_t free, size_t count, const double *q, const double *v, 
  */
 DALEMBERT_CLONES void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a,
                                        double tau, double *middles, double *radii) {
-  for (size_t i = 0; i < free; ++i) {
-    double low[3], high[3];
-    if (free == 1) ranges(1, count, q, v, a, tau, low, high);
-    else ranges(free, count, q + i, v + i, a + i, tau, low, high);
-    const double below = q[i] - low[0], above = high[0] - q[i];
-    middles[i] = q[i];
-    radii[i] = below > above ? below : above;
-    for (size_t n = 1; n < 3; ++n) {
-      middles[n * free + i] = 0.5 * (low[n] + high[n]);
-      radii[n * free + i] = 0.5 * (high[n] - low[n]);
-    }
+  if (free == 1) {
+    ranges(1, count, q, v, a, tau, middles, radii);
+    return;
   }
+  for (size_t i = 0; i < free; ++i) ranges(free, count, q + i, v + i, a + i, tau, middles + i, radii + i);
 }

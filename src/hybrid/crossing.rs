@@ -24,12 +24,12 @@ pub(super) struct Signs {
 
 /// Result of [`cut`].
 pub(super) enum Cut {
-    /// No event: the step, perhaps shortened, is the motion.
+    /// No event: the step, perhaps shortened, is the motion; its end was written.
     Nothing,
     /// A guard, by its index in the mode, is crossed `beyond` after the end of the shortened step; the
     /// state there was written.
     Event { guard: usize, beyond: f64 },
-    /// A guard that was zero at the start of the segment leaves it downwards.
+    /// A guard that was zero at the start of the segment leaves it downwards; the start was written.
     Violated { guard: usize },
 }
 
@@ -56,14 +56,13 @@ impl Signs {
     }
 }
 
-/// Cuts the last step at its first event. The shortened step is searched again, since it
+/// Cuts the last step at its first event, and writes the state there. The shortened step is searched again, since it
 /// is a better solution than the dense output of the longer one.
 pub(super) fn cut<'a, const F: usize>(
     method: &mut impl OneStep<F, Equations<'a, F>>,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
-    mode: &'static Mode,
-    watched: &[Watched],
+    (mode, watched): (&'static Mode, &[Watched]),
     (signs, landed): (&mut Signs, &mut State<F>),
 ) -> Result<Cut, Reason> {
     let start = method.start().t;
@@ -92,12 +91,14 @@ pub(super) fn cut<'a, const F: usize>(
             .time
             .and_then(|_| found.iter().position(|f| f.crossing.is_some()))
         else {
+            *landed = *method.state();
             return Ok(Cut::Nothing);
         };
         let crossing = found[first].crossing.expect("it was found by it");
         let index = watched[first].guard;
         let guard = &mode.guards[index];
         if crossing.kind == Kind::LeavesNegative && start == 0.0 && !conditions.are_part_of(guard) {
+            *landed = *method.start();
             return Ok(Cut::Violated { guard: index });
         }
         let is_event = crossing.kind != Kind::Pole
@@ -119,6 +120,7 @@ pub(super) fn cut<'a, const F: usize>(
             Landing::Short if method.end() == to => {
                 // The end point itself, more accurate than the dense output, is not across.
                 found[first] = Search::quiet(Watch::Armed);
+                *landed = *method.state();
                 return Ok(Cut::Nothing);
             }
             Landing::Short => {}

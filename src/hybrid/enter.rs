@@ -111,7 +111,8 @@ impl Simulation<'_> {
 
     /// Enters the present mode again after an event in it, where that takes no more than what most events
     /// ask for: guards that are positive, or zero and rise. Given free coordinates and velocities, gives them
-    /// and the accelerations; `None`: the mode is to be entered as any other.
+    /// and the accelerations; `None`: the mode is to be entered as any other. What the mode requires is looked at in
+    /// the first step.
     pub fn enter_again<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
@@ -160,12 +161,6 @@ impl Simulation<'_> {
         let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
             return Ok(None);
         };
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
-        };
-        check_requirements(kernel, &self.context, mode, at)?;
         self.here.set_free(mode.free, [&q, &v, &a]);
         self.flush_samples();
         Ok(Some([q, v, a]))

@@ -7,7 +7,7 @@ use super::failure::Reason;
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
-use super::requirements::{check_requirements, first_unmet};
+use super::requirements::{cut_where_unmet, hold_throughout};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::work::work;
@@ -148,7 +148,6 @@ impl Simulation<'_> {
     }
 
     /// Integrates until something happens.
-    #[inline(never)]
     fn follow<const F: usize, M>(
         &mut self,
         stay: &Stay<F>,
@@ -211,46 +210,33 @@ impl Simulation<'_> {
         loop {
             method.step(&mut equations, until)?;
 
-            // Where something that the mode requires fails, the step ends, and is searched again: it is a better
-            // solution than the dense output of the longer one.
-            let (mut unmet, mut fails) = (None, f64::INFINITY);
-            let event = loop {
-                let cut = cut(
+            let mut found = cut(
+                method,
+                &mut equations,
+                &mut conditions,
+                (mode, watched),
+                (&mut self.signs, &mut state),
+            )?;
+            let mut unmet = None;
+            if !mode.requirements.is_empty()
+                && !hold_throughout(method, &mut equations, mode, state.t)
+            {
+                (found, unmet) = cut_where_unmet(
                     method,
                     &mut equations,
                     &mut conditions,
-                    mode,
-                    watched,
+                    (mode, watched),
                     (&mut self.signs, &mut state),
+                    found,
                 )?;
-                let event = match cut {
-                    Cut::Nothing => {
-                        state = *method.state();
-                        None
-                    }
-                    Cut::Event { guard, beyond } => Some((guard, beyond)),
-                    Cut::Violated { guard } => {
-                        return Ok(Stop::Violated(Violation { guard, rests: true }));
-                    }
-                };
-                let dense = method.dense().expect("a step was made");
-                match first_unmet(&mut equations, mode, dense, &state) {
-                    Some(t) if t < fails.min(state.t) => {
-                        fails = t;
-                        // A step has a length.
-                        let start = method.start().t;
-                        method.step_exactly(&mut equations, t.max(start.next_up()) - start)?;
-                    }
-                    Some(_) => {
-                        equations.at(state.t);
-                        let at = free_of(&state);
-                        unmet = check_requirements(kernel, equations.context, mode, at).err();
-                        break event.filter(|_| unmet.is_none());
-                    }
-                    None => break event,
+            }
+            let (event, beyond) = match found {
+                Cut::Nothing => (None, 0.0),
+                Cut::Event { guard, beyond } => (Some(guard), beyond),
+                Cut::Violated { guard } => {
+                    return Ok(Stop::Violated(Violation { guard, rests: true }));
                 }
             };
-            let beyond = event.map_or(0.0, |(_, beyond)| beyond);
             let searched = Searched {
                 index: self.here.mode,
                 mode,
@@ -368,7 +354,7 @@ impl Simulation<'_> {
             }
 
             let h = end - method.start().t;
-            if let Some((guard, _)) = event {
+            if let Some(guard) = event {
                 if chooses && !is_explicit {
                     stiffness.implicit_step(h);
                 }

@@ -1,0 +1,56 @@
+//! What a mode requires holds wherever a run says that it went: within steps too.
+
+mod common;
+
+use common::problem;
+use dalembert::hybrid::{Method, simulate};
+use dalembert::input::Sine;
+use dalembert::record::Silent;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::f64::consts::TAU;
+
+proptest! {
+    // The cases are the same in every run: a suite must not fail by chance.
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(2),
+        ..ProptestConfig::with_cases(300)
+    })]
+
+    /// A block that is thrown or shaken until it falls over: its normal force vanishes, and is back soon after.
+    #[test]
+    fn the_normal_force_is_positive_at_every_sample(
+        radius in 0.3..2.0,
+        alpha in 0.1..0.5,
+        throw in 0.0..3.5,
+        amplitude in 0.0..6.0,
+        frequency in 0.3..3.0,
+        relative in prop::sample::select(vec![1e-3, 1e-6, 1e-9]),
+        method in prop::sample::select(vec![Method::Taylor, Method::Radau]),
+    ) {
+        let mut problem = problem("rocking_block", &[("R", radius), ("alpha", alpha)]);
+        problem.set_initial("theta", 0.3 * alpha).unwrap();
+        problem.set_initial("theta.rate", throw).unwrap();
+        let shaking = Sine::new(amplitude, TAU * frequency, 0.7);
+        problem.set_input("ground_acceleration", shaking.into()).unwrap();
+        problem.set_tolerance(relative);
+        problem.method = method;
+        problem.end.time = 2.0;
+        problem.record.every = Some(1e-3);
+        problem.record.columns.reactions = true;
+        let run = simulate(&problem, &mut Silent).unwrap();
+        let column = run.trajectory.column("reaction.y").unwrap();
+        let fails = run.failure.as_ref().map_or(f64::INFINITY, |failure| failure.at.t);
+        for i in (0..run.trajectory.len()).take_while(|&i| run.trajectory.t[i] < fails) {
+            let (t, force) = (run.trajectory.t[i], run.trajectory.row(i)[column]);
+            // A sample within the tolerance of the weight of zero may be on either side.
+            prop_assert!(force > -10.0 * relative * 9.81, "{force:e} at {t}, fails at {fails}");
+        }
+        if let Some(failure) = &run.failure {
+            prop_assert!(failure.reason.contains("leave the ground"), "{failure:?}");
+            let lift = failure.at.t;
+            prop_assert!(run.trajectory.t.iter().all(|t| *t <= lift), "samples after {lift}");
+        }
+    }
+}
