@@ -17,7 +17,8 @@ import os
 import casadi as ca
 
 CONTEXT_FIELDS = ("u", "u_dot", "d", "h", "c", "j")
-"""Context arrays: signals, their rates, discrete states, held coordinates, constants, jerks."""
+"""Context arrays: signals, their rates, discrete states, held coordinates, constants, jerks. Where bounds are
+computed, radii of signals stand in place of their rates, and radii of q, v and a in place of jerks."""
 
 HEADER = """\
 #include <math.h>

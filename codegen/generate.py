@@ -152,18 +152,17 @@ def _signals(model):
 
 
 def _signal_rates(model):
-    rates = []
-    for declaration in model.inputs:
-        for k in range(len(declaration.signals)):
-            rates.append(ca.SX.sym(f"{declaration.name}.signal{k}.dot"))
-    known = model.__dict__.setdefault("_signal_rates", ca.vertcat(*rates))
-    return known
+    return _of_signals(model, "dot")
 
 
 def _signal_radii(model):
-    """Radii of the signals, for bounds."""
-    radii = [ca.SX.sym(f"{i.name}.signal{k}.radius") for i in model.inputs for k in range(len(i.signals))]
-    return model.__dict__.setdefault("_signal_radii", ca.vertcat(*radii))
+    return _of_signals(model, "radius")
+
+
+def _of_signals(model, what):
+    """A symbol for each signal: always the same ones."""
+    names = [f"{i.name}.signal{k}.{what}" for i in model.inputs for k in range(len(i.signals))]
+    return model.__dict__.setdefault(f"_signals_{what}", ca.vertcat(*[ca.SX.sym(name) for name in names]))
 
 
 def _discretes(model):
@@ -260,7 +259,7 @@ def _bounds(model, equations, column):
     known = {moving[i].element_hash(): radii[i] for i in range(moving.numel())}
     drifting = [equations.held[i] for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
     known.update((symbol.element_hash(), None) for symbol in drifting)
-    return ca.vertcat(*[bounds.lower_bound(entry, known) for entry in (column[i] for i in range(column.numel()))])
+    return ca.vertcat(*[bounds.lower_bound(column[i], known) for i in range(column.numel())])
 
 
 def _quiet(model, expression):

@@ -4,7 +4,7 @@
  */
 #include "vectors.h"
 
-/* Seven are too few for half a period of an oscillation, a step of the Taylor method. */
+/* Six are too few for half a period of an oscillation, a step of the Taylor method. As in lanes.c. */
 enum { FIRST = 8 };
 
 void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{numbers, problem, reference};
+use common::{lifted_slider, numbers, problem, reference};
 use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
 use dalembert::input::{Function, Sine};
 use dalembert::kernel::processor_level;
@@ -318,6 +318,29 @@ fn a_member_that_fails_says_why_and_leaves_the_others_alone() {
             i > 0 && i % 3 == 0,
             "member {i}: {one:?}"
         );
+    }
+}
+
+/// What is required fails within a step of some members, and holds again at its end: lanes hand that over.
+#[test]
+fn requirements_that_fail_within_a_step_are_seen_in_lanes() {
+    for relative in [1e-3, 1e-9] {
+        let lifted = |i: usize| match i % 4 {
+            0 => lifted_slider(0.5, 9.99, relative),
+            1 => lifted_slider(0.5, 10.01 + 0.01 * i as f64, relative),
+            2 => lifted_slider(0.91, 5.0 - 0.1 * i as f64, relative),
+            _ => lifted_slider(0.89, 5.0, relative),
+        };
+        let sliders: Vec<_> = (0..24).map(lifted).collect();
+        let (single, ends) = (alone(&sliders), together(&sliders, processor_level(), 1));
+        assert_eq!(single, ends);
+        for (i, end) in single.iter().enumerate() {
+            assert_eq!(
+                end.failure.is_some(),
+                (1..=2).contains(&(i % 4)),
+                "member {i}"
+            );
+        }
     }
 }
 

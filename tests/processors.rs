@@ -12,8 +12,8 @@ fn output(command: &mut Command) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// Prints the bits of the Taylor series of the rocking block's motion, of sums by a table, and of sines and
-/// cosines.
+/// Prints the bits of the Taylor series of the rocking block's motion, of sums by a table, of ranges, and of sines
+/// and cosines.
 const MAIN: &str = r#"
 #include <inttypes.h>
 #include <stdio.h>
@@ -26,6 +26,8 @@ static void print(const char *what, const double *x, int n) {
   }
 }
 void dalembert_triangular_sums(size_t n, const double *factors, const double *table, double *out);
+void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,
+                      double *middles, double *radii);
 int main(void) {
   enum { ORDER = 24 };
   for (int n = 1; n <= 32; ++n) {
@@ -52,6 +54,10 @@ int main(void) {
     dalembert_rocking_block_rocks_series_run(ORDER, q, v, a, u, &x, w, &inverse);
     print("q", q, ORDER + 2);
     print("a", a, ORDER);
+    double middles[3], radii[3];
+    dalembert_ranges(1, ORDER + 2, q, v, a, 0.01 * i, middles, radii);
+    print("middles", middles, 3);
+    print("radii", radii, 3);
   }
   for (double x = 1e-4; x < 1e100; x *= 1.7) {
     const struct dalembert_sin_cos y = dalembert_sin_cos(x);
@@ -77,7 +83,8 @@ fn the_bits_do_not_depend_on_the_instructions() {
         .arg("--out")
         .arg(folder.path());
     output(&mut generate);
-    let others = ["elementary.c", "sums.c"].map(|file| project.join("codegen").join(file));
+    let others =
+        ["elementary.c", "ranges.c", "sums.c"].map(|file| project.join("codegen").join(file));
     let model = folder.path().join("rocking_block/rocking_block.c");
     let main = folder.path().join("main.c");
     std::fs::write(&main, format!("#include {model:?}\n{MAIN}")).unwrap();

@@ -73,7 +73,6 @@ pub(super) fn hold_throughout<'a, const F: usize>(
 /// Cuts the last step, which was cut at its first event `found`, where something that the mode requires ceases to
 /// hold, if it does before: says what. The shortened step is searched again, since it is a better solution than the
 /// dense output of the longer one.
-#[cold]
 #[inline(never)]
 pub(super) fn cut_where_unmet<'a, const F: usize>(
     method: &mut impl OneStep<F, Equations<'a, F>>,

@@ -252,6 +252,7 @@ impl Context {
             signals.series(t, known, self.dimensions.expanded, rows);
         }
     }
+
     /// Sets by how much the signals change at most while time goes on by `tau` (s) from where they were expanded
     /// last, as far as their series say that are known to so many orders.
     #[inline]

@@ -148,8 +148,8 @@ unsafe extern "C" {
     /// Takes `n` factors, `n` rows of `n` entries, and room for `n` sums.
     fn dalembert_triangular_sums(n: usize, factors: *const f64, table: *const f64, out: *mut f64);
 
-    /// Takes so many rows of so many coefficients of q, v and a, a time, and room for three times as many middles
-    /// and radii.
+    /// Takes so many coefficients a row of q, v and a, of which so many rows are read, filled up to fours and to
+    /// eight; a time; and room for three times as many middles and radii.
     fn dalembert_ranges(
         free: usize,
         rows: usize,
@@ -977,7 +977,7 @@ impl<const F: usize> ModeKernel<F> {
     /// and signals, of so many orders, were begun. Not positive or not a number where nothing is known.
     ///
     /// # Panics
-    /// If `out` has not one entry a requirement, or `orders` is 0 or more than [`ORDERS`].
+    /// If `out` has not one entry a requirement, or `orders` is more than [`ORDERS`] − 2.
     #[inline]
     pub fn requirement_bounds(
         &self,
@@ -992,7 +992,7 @@ impl<const F: usize> ModeKernel<F> {
         let (mut middles, mut radii) = (zero, zero);
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
         let (to_middles, to_radii) = (middles.as_mut_ptr().cast(), radii.as_mut_ptr().cast());
-        // SAFETY: F entries a row, and so many rows are there; room for three times F.
+        // SAFETY: F entries a row, and all 32 rows are there, those beyond the order zero; room for three times F.
         unsafe { dalembert_ranges(F, orders + 2, q, v, a, tau, to_middles, to_radii) };
         x.set_signal_radii(orders, tau);
         let u = match x.quiet {

@@ -101,3 +101,14 @@ pub fn mode(problem: &Problem, name: &str) -> usize {
 pub fn transitions(run: &Run) -> Vec<&'static str> {
     run.events.iter().map(|e| e.transition).collect()
 }
+
+/// A slider x = a cos 2t that an input pulls upwards by p sin 3t, for 1.9 s.
+pub fn lifted_slider(a: f64, p: f64, relative: f64) -> Problem {
+    let mut slider = problem("lifted_slider", &[("lift", p)]);
+    slider.set_initial("x", a).unwrap();
+    let pull = dalembert::input::Sine::new(1.0, 3.0, 0.0);
+    slider.set_input("pull", pull.into()).unwrap();
+    slider.set_tolerance(relative);
+    slider.end.time = 1.9;
+    slider
+}
