@@ -234,13 +234,15 @@ pub(super) fn search_window(
 ) {
     // Work grows with the square of the room.
     match coefficients.count {
-        0..=4 => search_part::<4>(coefficients, window, of),
+        0..=3 => search_part::<3>(coefficients, window, of),
+        4 => search_part::<4>(coefficients, window, of),
         5..=8 => search_part::<8>(coefficients, window, of),
         9..=12 => search_part::<12>(coefficients, window, of),
         13..=16 => search_part::<16>(coefficients, window, of),
         17..=20 => search_part::<20>(coefficients, window, of),
         21..=24 => search_part::<24>(coefficients, window, of),
         25..=28 => search_part::<28>(coefficients, window, of),
+        29..=32 => search_part::<32>(coefficients, window, of),
         _ => search_part::<ORDERS>(coefficients, window, of),
     }
 }

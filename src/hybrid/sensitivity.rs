@@ -89,26 +89,30 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     pub fn least(&mut self, method: &mut impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
         let end = *method.state();
         let (start, dense) = (method.start(), dense_of(method));
-        if self.watched.condition.is_none() {
-            if rate_at(self.equations, self.guard, &end) <= 0.0 {
-                return Some((end.t, self.value(end.t, &end.q, &end.v)));
-            }
-            if rate_at(self.equations, self.guard, start) >= 0.0 {
-                return None;
-            }
-        }
-        let mut own = |t: f64| {
-            let [q, v, _] = motion(self.equations, dense, t, false);
-            self.value(t, &q, &v)
-        };
         let length = end.t - start.t;
         let place = |k: usize| match k {
             PARTS => end.t,
             k => start.t + k as f64 / PARTS as f64 * length,
         };
-        let values: [f64; PARTS + 1] = std::array::from_fn(|k| own(place(k)));
+        let values: [f64; PARTS + 1] = std::array::from_fn(|k| match k {
+            // More accurate than the dense output.
+            PARTS => self.value(end.t, &end.q, &end.v),
+            k => self.value_within(dense, place(k)),
+        });
         let least = (0..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
+        // At an end its slope tells at once that it is least there.
+        let slope = |state, own: &mut Self| match own.watched.condition {
+            None => rate_at(own.equations, own.guard, state),
+            Some(_) => f64::NAN,
+        };
+        if least == 0 && slope(start, self) >= 0.0 {
+            return None;
+        }
+        if least == PARTS && slope(&end, self) <= 0.0 {
+            return Some((end.t, values[PARTS]));
+        }
         let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
+        let mut own = |t: f64| self.value_within(dense, t);
         let (t, value) = minimum(&mut own, (place(low), place(high)));
         match value < values[0] {
             true if value < values[PARTS] => Some((t, value)),
@@ -117,7 +121,13 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         }
     }
 
-    /// The same where the last step is at local time `t`.
+    /// Its value on the dense output at local time `t`.
+    fn value_within(&mut self, dense: &impl Motion<F>, t: f64) -> f64 {
+        let [q, v, _] = motion(self.equations, dense, t, false);
+        self.value(t, &q, &v)
+    }
+
+    /// What errors of one tolerance change it by where the last step is at local time `t`.
     pub fn error_at(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
         let [q, v, _] = motion(self.equations, dense_of(method), t, false);
         self.error(t, &q, &v)

@@ -4,12 +4,12 @@
 //! root (Descartes' rule): then a Newton iteration of third order leads to it. Where they have more, the
 //! polynomial is cut in two by de Casteljau's rule, and the first part is looked at first (Lane, J. M. and
 //! Riesenfeld, R. F. (1981), BIT 21, 112–117). Whatever does not fit, such as a touch, is left to the
-//! general search.
+//! general search. A parabola has its root in closed form.
 
 use super::bracket::{Point, close};
 use super::doubles::{above, below};
 use super::polynomial::{Polynomial, sum_of};
-use super::{Kind, Search, Watch};
+use super::{Kind, Search, Watch, quadratic};
 
 /// Cuts into halves of halves before the general search is cheaper: what has not become one root or none by
 /// then is a touch or nearly one.
@@ -30,6 +30,9 @@ pub(super) fn first_fall<const N: usize>(
     to: f64,
     found: &mut Search,
 ) -> bool {
+    if N == quadratic::ROOM {
+        return quadratic::first_fall(polynomial, from, to, found);
+    }
     let size = sum_of(&polynomial.coefficients, f64::abs);
     let guard = Armed {
         polynomial,
@@ -69,7 +72,7 @@ impl<const N: usize> Armed<'_, N> {
         }
         match Changes::of(bernstein, (1 + cuts) as f64 * self.rounding) {
             Changes::None => {
-                *found = Search::above(least(bernstein));
+                *found = Search::above(least_after_start(bernstein));
                 true
             }
             Changes::One(index) => self.only_fall((bernstein, index), piece, found),
@@ -132,7 +135,12 @@ impl<const N: usize> Armed<'_, N> {
         let (from, to) = (self.from.max(start), self.to.min(end));
         let at_end = self.polynomial.value(to);
         if at_end >= 0.0 {
-            *found = Search::above(least(bernstein));
+            if to < end {
+                // What it falls to behind the window tells nothing.
+                let mut within = [0.0; N];
+                self.polynomial.on(to).bernstein(&mut within);
+                *found = Search::above(least_after_start(&within));
+            }
             return to < end;
         }
         // Where the polygon of the coefficients falls through zero.
@@ -178,11 +186,11 @@ fn cut<const N: usize>(bernstein: &[f64; N], part: f64) -> ([f64; N], [f64; N]) 
     (left, right)
 }
 
-/// The least Bernstein coefficient, which the polynomial does not fall below; four side by side, since
-/// each comparison waits for the one before.
-fn least<const N: usize>(bernstein: &[f64; N]) -> f64 {
+/// The least Bernstein coefficient but the first, which is the value at the start of the piece: where it rises from
+/// near zero it does not turn there. Four side by side, since each comparison waits for the one before.
+fn least_after_start<const N: usize>(bernstein: &[f64; N]) -> f64 {
     let lower = |a: f64, b: f64| if b < a { b } else { a };
-    let (fours, rest) = bernstein.as_chunks::<4>();
+    let (fours, rest) = bernstein[1..].as_chunks::<4>();
     let mut least = [f64::INFINITY; 4];
     for four in fours {
         for (least, &b) in least.iter_mut().zip(four) {
@@ -215,6 +223,32 @@ impl Changes {
     }
 }
 
+/// Moves the end of a bracket whose value has the sign of a point's there.
+#[inline(always)]
+fn narrow((left, right): (&mut Point, &mut Point), point: Point) {
+    if point.1 < 0.0 {
+        *right = point
+    } else {
+        *left = point
+    }
+}
+
+/// The fall in a bracket, next to a point within it that is off by rounding only. That may have left one end of the
+/// bracket far away: its neighbour is looked at first.
+#[inline(always)]
+pub(super) fn fall_beside(
+    value: &mut impl FnMut(f64) -> f64,
+    (mut l, mut r): (Point, Point),
+    point: Point,
+) -> Search {
+    let (s, here) = point;
+    let beside = if here < 0.0 { below(s) } else { above(s) };
+    narrow((&mut l, &mut r), point);
+    narrow((&mut l, &mut r), (beside, value(beside)));
+    let (l, r) = close(value, l, r);
+    Search::found(l.0, r.0, Kind::Fall, Watch::Violated)
+}
+
 /// The only root between two places at which the polynomial has different signs, sought from `s` on.
 #[inline(always)]
 fn root<const N: usize>(
@@ -228,11 +262,7 @@ fn root<const N: usize>(
     let mut value = polynomial.value(s);
     let mut parabola = (value, 0.0, 0.0);
     for _ in 0..MOST_ITERATIONS {
-        if value < 0.0 {
-            r = (s, value)
-        } else {
-            l = (s, value)
-        }
+        narrow((&mut l, &mut r), (s, value));
         let [slope, curvature] = [0, 1].map(|order| derivatives[order].sum(s));
         let discriminant = slope * slope - 2.0 * curvature * value;
         parabola = (value, slope, curvature);
@@ -251,32 +281,7 @@ fn root<const N: usize>(
             break;
         }
     }
-    if value < 0.0 {
-        r = (s, value)
-    } else {
-        l = (s, value)
-    }
-    // Rounding may have left one end of the bracket far away: look beside the other one first.
-    let mut own = |s: f64| polynomial.value(s);
-    if value < 0.0 {
-        let s = below(r.0);
-        let value = own(s);
-        if value >= 0.0 {
-            l = (s, value)
-        } else {
-            r = (s, value)
-        }
-    } else {
-        let s = above(l.0);
-        let value = own(s);
-        if value < 0.0 {
-            r = (s, value)
-        } else {
-            l = (s, value)
-        }
-    }
-    let (l, r) = close(&mut own, l, r);
-    let event = Search::found(l.0, r.0, Kind::Fall, Watch::Violated);
+    let event = fall_beside(&mut |s| polynomial.value(s), (l, r), (s, value));
     match parabola {
         // The bottom of the parabola where the iteration has ended.
         (value, slope, curvature) if curvature > 0.0 => {

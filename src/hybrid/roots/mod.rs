@@ -66,6 +66,7 @@ mod extrema;
 mod first_fall;
 mod function;
 mod polynomial;
+mod quadratic;
 mod walk;
 
 pub(super) use bracket::minimum;
@@ -138,7 +139,8 @@ pub struct Search {
     /// them may have been missed; a shorter window or a `noise` bound helps.
     pub resolved: bool,
     /// How near to zero the guard turns, in its unit. With an event: a value down to which it falls (0
-    /// for a touch), in the window or as its slope and curvature tell; −∞ where it does not turn. Without one, of a guard that stays armed: a value that it stays above; ∞ of others.
+    /// for a touch), in the window or as its slope and curvature tell; −∞ where it does not turn. Without one, of a guard
+    /// that stays armed: a value that it stays above, but where it rises from its start; ∞ of others.
     pub turn: f64,
 }
 

@@ -150,7 +150,9 @@ impl<const N: usize> Polynomial<N> {
         // As c₀ + Σ min(cₖ, 0) does from below.
         let falls = sum_of(&self.coefficients, |c| (-c).max(0.0)) * (1.0 + Self::ROUNDING);
         if self.coefficients[0] > falls {
-            *found = Search::above(self.coefficients[0] - falls);
+            // Where it rises from near zero it does not turn: a bound of all Bernstein coefficients but the first.
+            let rise = self.coefficients[1].max(0.0) / (N - 1) as f64;
+            *found = Search::above(self.coefficients[0] + rise - falls);
         } else if from >= to {
             *found = Search::quiet(Watch::Armed);
         } else if !first_fall(self, from, to, found) {

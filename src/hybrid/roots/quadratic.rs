@@ -1,0 +1,60 @@
+//! The first fall of a guard that is a parabola, such as the height in a free flight, or a straight line.
+
+use super::Search;
+use super::first_fall::fall_beside;
+use super::polynomial::{Polynomial, sum_of};
+
+/// Coefficients of a parabola.
+pub(super) const ROOM: usize = 3;
+
+/// Writes the first event of an armed guard c₀ + c₁ s + c₂ s² in `from` < s ≤ `to`, or that there is none; false where
+/// rounding decides.
+#[inline(always)]
+pub(super) fn first_fall<const N: usize>(
+    polynomial: &Polynomial<N>,
+    from: f64,
+    to: f64,
+    found: &mut Search,
+) -> bool {
+    let own = &polynomial.coefficients;
+    let (c0, c1, c2) = (own[0], own[1], own[2]);
+    let start = match from == 0.0 {
+        true => c0,
+        false => polynomial.value(from),
+    };
+    let end = polynomial.value(to);
+    let margin = Polynomial::<N>::ROUNDING * sum_of(own, f64::abs);
+    // Where it would turn: a minimum for c₂ > 0.
+    let turn = c0 - 0.25 * c1 * (c1 / c2);
+    if end < 0.0 && start > 0.0 {
+        // Of two roots the one at which it falls, without a difference of nearly equal numbers.
+        let root_of_discriminant = (c1 * c1 - 4.0 * c0 * c2).max(0.0).sqrt();
+        let s = match c1 > 0.0 {
+            true => (c1 + root_of_discriminant) / (-2.0 * c2),
+            false => 2.0 * c0 / (root_of_discriminant - c1),
+        };
+        let ends = ((from, start), (to, end));
+        // A place outside is one by rounding.
+        let s = if from < s && s < to { s } else { to };
+        let mut value = |s: f64| polynomial.value(s);
+        let point = (s, value(s));
+        let event = fall_beside(&mut value, ends, point);
+        *found = match c2 > 0.0 {
+            true => event.turning(turn),
+            false => event,
+        };
+        return true;
+    }
+    let place = -0.5 * (c1 / c2);
+    let turns = c2 > 0.0 && from < place && place < to;
+    // Where it rises from near zero it does not turn there.
+    let least = match from == 0.0 && c1 > 0.0 {
+        true => end,
+        false => start.min(end).min(if turns { turn } else { start }),
+    };
+    let is_clear = start > 0.0 && least > margin; // not if one of them is not a number
+    if is_clear {
+        *found = Search::above(least - margin);
+    }
+    is_clear
+}
