@@ -54,7 +54,7 @@ DALEMBERT_INLINE struct dalembert_sin_cos dalembert_kept_sin_cos(struct dalember
 #define DALEMBERT_SIN_COS(n, angle) dalembert_kept_sin_cos(x->angles + (n), angle)
 """
 
-MOST_ORDERS = 32
+MOST_ORDERS = 36
 """Coefficients of a series, the one of order 0 included: `ORDERS` in src/integrate/taylor/series.rs."""
 
 _INVERSES = (f"static const double dalembert_inverses[] = {{0.0, "

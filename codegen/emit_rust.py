@@ -245,8 +245,9 @@ def _mode(variant, i, equations):
 
 
 def _series(function, level=""):
-    (start, run), (lead, row, convolutions) = function.symbol, function.workspace
-    return f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row}, convolutions: {convolutions} }}"
+    (start, run), (lead, row, convolutions, ends) = function.symbol, function.workspace
+    return (f"SeriesKernel {{ start: {start}{level}, run: {run}{level}, lead: {lead}, row: {row}, "
+            f"convolutions: {convolutions}, ends: {_bool(ends)} }}")
 
 
 def _lanes(variant, i, functions):

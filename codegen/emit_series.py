@@ -439,6 +439,8 @@ class Series:
     `moving` lists (C array, column of symbols) of what varies in time, one row of the array an
     order; `constant` what does not. `drift` maps the index of a held coordinate to the expression of
     its constant rate; the other `held` ones rest.
+
+    `ends`: whether no coefficient of an order beyond 0, or beyond those of the arguments, differs from zero.
     """
 
     def __init__(self, output, moving, constant, held, drift):
@@ -500,6 +502,7 @@ class Outputs(Series):
         for i, node in enumerate(self.nodes):
             value = "0.0" if node.constant else self.graph.value(node)
             self.graph.state(f"out[{len(self.nodes)} * k + {i}] = REAL({value});")
+        self.ends = not self.graph.interiors
         self.finish()
 
 
@@ -514,6 +517,7 @@ class Equations(Series):
     def __init__(self, free, output, **arguments):
         super().__init__(output, **arguments)
         graph = self.graph
+        self.ends = all(node.constant for node in self.nodes[:free * (free + 1)])
         for i in range(free):
             load = self.nodes[free * free + i]
             forms = [] if load.constant else [graph.form(load)]

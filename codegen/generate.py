@@ -132,7 +132,7 @@ def _emit_series(source, prefix, variant, slot, function, constants):
         function.symbol = None
         return
     function.symbol = series.add_to(source, f"{prefix}_{function.name}")
-    function.workspace = (series.lead, series.row, len(series.graph.interiors))
+    function.workspace = (series.lead, series.row, len(series.graph.interiors), series.ends)
     function.operations = series.operations
 
 

@@ -512,7 +512,7 @@ void LANES(dalembert_lane_durations)(const real *h, const real *places, double f
 }
 
 /* Numbers of coefficients that are told apart. */
-#define DEGREES(with) with(4) with(8) with(12) with(16) with(20) with(24) with(28) with(32)
+#define DEGREES(with) with(4) with(8) with(12) with(16) with(20) with(24) with(28) with(32) with(36)
 
 /* Steps to a root: the fourth order needs two from a tenth of the window away; more where it is nearly
  * tangent. LAST_STEP is a relative step after which the iteration has ended, since it leaves the fourth
@@ -528,7 +528,7 @@ struct local { real value, slope, second, third; };
 DALEMBERT_INLINE struct local local(const int n, const real *c, real s) {
   const real x = s * s;
   real value[2] = {c[n - 2], c[n - 1]}, slope[2] = {{0}}, second[2] = {{0}}, third[2] = {{0}};
-#pragma GCC unroll 32
+#pragma GCC unroll 36
   for (int k = n - 4; k >= 0; k -= 2) {
     for (int odd = 0; odd < 2; ++odd) {
       third[odd] = third[odd] * x + second[odd];
@@ -552,7 +552,7 @@ DALEMBERT_INLINE struct local local(const int n, const real *c, real s) {
  */
 DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   real sizes[2] = {size_of(c[0]), size_of(c[1])}, least[2] = {c[0], smaller(c[1], REAL(0.0))};
-#pragma GCC unroll 32
+#pragma GCC unroll 36
   for (int k = 2; k < n; ++k) {
     sizes[k % 2] += size_of(c[k]);
     least[k % 2] += smaller(c[k], REAL(0.0));
@@ -562,16 +562,16 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   const real none = REAL(INFINITY);
   /* Where the negative terms cannot outweigh the first there is no fall. */
   if (!any((truth)~below(margin, least[0] + least[1]))) return none;
-  real b[32];
+  real b[36];
   double binomial = 1.0; /* n - 1 over k */
-#pragma GCC unroll 32
+#pragma GCC unroll 36
   for (int k = 0; k < n; ++k) {
     b[k] = c[k] * (1.0 / binomial);
     binomial = binomial * (n - 1 - k) / (k + 1);
   }
-#pragma GCC unroll 32
+#pragma GCC unroll 36
   for (int first = 1; first < n; ++first) {
-#pragma GCC unroll 32
+#pragma GCC unroll 36
     for (int k = n - 1; k >= first; --k) b[k] += b[k - 1];
   }
   /* Whether all are certainly positive up to some place and certainly negative from there on: the first is
@@ -580,7 +580,7 @@ DALEMBERT_INLINE real first_fall(const int n, const real *c) {
   real least_size[2] = {size_of(b[0]), size_of(b[1])};
   word rises = {0};
   counts negative = {0};
-#pragma GCC unroll 32
+#pragma GCC unroll 36
   for (int k = 1; k < n; ++k) {
     if (k > 1) least_size[k % 2] = smaller(size_of(b[k]), least_size[k % 2]);
     rises |= (word)b[k - 1] & ~(word)b[k];
@@ -617,8 +617,8 @@ DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, co
                                     const struct guard *guard, real *c) {
   const truth rises = truth_of(guard->starts_at_zero);
   const real h2 = h * h;
-  real powers[2] = {guard->factor, guard->factor * h}, own[33];
-#pragma GCC unroll 32
+  real powers[2] = {guard->factor, guard->factor * h}, own[37];
+#pragma GCC unroll 36
   for (int k = 0; k < n; ++k) {
     own[k] = k < n - 3 || (size_t)k < count ? row[k * stride] * powers[k % 2] : REAL(0.0);
     if (k == 0) own[0] += guard->offset;
@@ -627,7 +627,7 @@ DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, co
   }
   own[n] = REAL(0.0);
   /* What is zero at the start: its sum by tau/h. */
-#pragma GCC unroll 32
+#pragma GCC unroll 36
   for (int k = 0; k < n; ++k) own[k] = pick(rises, own[k + 1], own[k]);
   return first_fall(n, own);
 }

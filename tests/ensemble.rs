@@ -344,6 +344,33 @@ fn requirements_that_fail_within_a_step_are_seen_in_lanes() {
     }
 }
 
+/// Thousands of steps of a linear motion are of a lower order than the last ones.
+#[test]
+fn oscillations_of_thousands_of_periods_are_those_of_single_runs() {
+    let slider = |i: usize| {
+        // So long a rope does not break, however wide the bounds of x.
+        let parameters = [("k", 3e10 + 5e9 * i as f64), ("length", 1e9)];
+        let mut slider = problem("lifted_slider", &parameters);
+        slider.set_initial("x", 0.5).unwrap();
+        slider.set_tolerance(1e-12);
+        slider.end.time = 0.13;
+        slider
+    };
+    let sliders: Vec<_> = (0..10).map(slider).collect();
+    let single = alone(&sliders);
+    assert_eq!(single, together(&sliders, processor_level(), 1));
+    for (end, slider) in single.iter().zip(&sliders) {
+        let omega = slider.parameters[1].sqrt();
+        let exact = 0.5 * (omega * slider.end.time).cos();
+        // Rounding of the phase, and a tolerance a radian.
+        let bound = 1e-12 * omega * slider.end.time;
+        assert!(
+            end.failure.is_none() && (end.state[0] - exact).abs() < bound,
+            "{end:?} {exact}"
+        );
+    }
+}
+
 #[test]
 fn members_start_where_their_initial_state_says() {
     let initial = |h: f64| Initial {

@@ -141,7 +141,7 @@ fn functions<const F: usize>(kernel: &ModeKernel<F>, problem: &Problem, mode: &M
     );
     let tolerances = Tolerances::new(accuracy.relative, q_absolute, v_absolute);
     let tolerances = tolerances.expect("they are those of the run");
-    let order = Taylor::<F>::new(&tolerances, kernel.convolutions(&context)).order();
+    let order = Taylor::<F>::new(&tolerances, kernel.series_kind(&context)).order();
     let mut motion = Series::<F>::zero();
     (motion.q[0], motion.v[0], motion.a[0]) = (q, v, a);
     (motion.q[1], motion.v[1], motion.q[2]) = (v, a, a * 0.5);

@@ -54,8 +54,8 @@ impl Simulation<'_> {
         };
         match stages(problem.accuracy.relative) {
             _ if explicit && kernel.is_analytic() => {
-                let convolutions = kernel.convolutions(&self.context);
-                let make = || Taylor::new(&tolerances(problem, mode), convolutions);
+                let kind = kernel.series_kind(&self.context);
+                let make = || Taylor::new(&tolerances(problem, mode), kind);
                 let method = self.solvers.take(self.here.mode, make);
                 self.integrate(kernel, method, stays, progress)
             }

@@ -170,7 +170,7 @@ impl Signals {
     }
 
     /// Most orders of [`Signals::series`].
-    pub const MOST_ORDERS: usize = 32;
+    pub const MOST_ORDERS: usize = 36;
 
     fn fill_values(&self, t: f64, side: Side, u: &mut [f64]) {
         for c in &self.channels {

@@ -29,7 +29,7 @@ fn inverse_power(x: f64) -> f64 {
 }
 
 /// Largest n of [`root`].
-const MOST: usize = 32;
+const MOST: usize = super::ORDERS - 1;
 
 /// ⌈2³⁶/n⌉: times a number below 2¹⁸ it is 2³⁶ times the quotient by n, and less than 2³⁶/n more, so that
 /// the whole part is right.
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn roots_are_good_enough_for_step_lengths() {
-        for n in 1..=25 {
+        for n in 1..=MOST {
             for i in 0..2000 {
                 let x = 10f64.powf(f64::from(i) * 0.3 - 300.0);
                 let exact = x.powf(-1.0 / n as f64);
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn roots_of_powers_of_two_are_exact_factors() {
-        for n in 1..=31 {
+        for n in 1..=MOST as i32 {
             for i in 0..200 {
                 let x = 10f64.powf(f64::from(i) * 0.03 - 3.0);
                 for c in [-20, -3, 1, 10, 25] {

@@ -50,5 +50,5 @@ pub use state::{Node, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};
 pub(crate) use taylor::stretch;
-pub use taylor::{Analytic, LaneTaylor, ORDERS, Series, Taylor, TaylorDense};
+pub use taylor::{Analytic, LaneTaylor, ORDERS, Series, SeriesKind, Taylor, TaylorDense};
 pub use tolerances::{ToleranceError, Tolerances};

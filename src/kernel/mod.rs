@@ -452,7 +452,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
     let [tau, more, most] = [tau, more, most].map(|x| (&raw mut *x).cast());
     let guard = (&raw const *guard).cast();
     let cross = level.functions.cross;
-    // SAFETY: rows 1 … 32 are there, up to which a sum of `count` − 1 is filled up; the rest is one number
+    // SAFETY: rows 1 … ORDERS are there, up to which a sum of `count` − 1 is filled up; the rest is one number
     // a lane each, and a guard.
     unsafe { cross(count, F, row, lost, guard, lanes.0, most, more, tau) };
 }
@@ -498,7 +498,7 @@ pub fn lane_end<const F: usize, const W: usize>(
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let (point, tau) = ((&raw const *point).cast(), (&raw const *tau).cast());
     let end = level.functions.end;
-    // SAFETY: rows 1 … 32 are there, up to which a sum of p + 1 ≤ 31 rows is filled up; the points are
+    // SAFETY: rows 1 … ORDERS are there, up to which a sum of p + 1 rows is filled up; the points are
     // those of F coordinates.
     unsafe { end(F, p, q, v, a, point, tau, (&raw mut *to).cast()) };
 }
@@ -992,7 +992,7 @@ impl<const F: usize> ModeKernel<F> {
         let (mut middles, mut radii) = (zero, zero);
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
         let (to_middles, to_radii) = (middles.as_mut_ptr().cast(), radii.as_mut_ptr().cast());
-        // SAFETY: F entries a row, and all 32 rows are there, those beyond the order zero; room for three times F.
+        // SAFETY: F entries a row, and all ORDERS rows are there, those beyond the order zero; room for three times F.
         unsafe { dalembert_ranges(F, orders + 2, q, v, a, tau, to_middles, to_radii) };
         x.set_signal_radii(orders, tau);
         let u = match x.quiet {

@@ -2,7 +2,7 @@
 //! them without a call.
 
 use super::{Context, Dimensions, LaneLevel, Raw, RawRun, RawStart};
-use crate::integrate::ORDERS;
+use crate::integrate::{ORDERS, SeriesKind};
 use nalgebra::{SMatrix, SVector};
 
 /// What depends on parameters alone.
@@ -85,6 +85,8 @@ pub struct SeriesKernel {
     pub(super) row: usize,
     /// Convolutions that an order takes.
     pub(super) convolutions: usize,
+    /// Whether all coefficients vanish beyond order 0, or of guards beyond the orders of the motion.
+    pub(super) ends: bool,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -104,11 +106,19 @@ impl<const F: usize> ModeKernel<F> {
         self.series.is_some()
     }
 
-    /// Convolutions of an order of the Taylor series of the motion.
-    pub fn convolutions(&self, x: &Context) -> usize {
-        // Each has a left and a right factor in the workspace.
-        self.motion_series(x)
-            .map_or(0, |series| series.convolutions)
+    /// What the equations tell about the Taylor series of the motion.
+    ///
+    /// # Panics
+    /// If the mode is not analytic.
+    pub fn series_kind(&self, x: &Context) -> SeriesKind {
+        let series = self.motion_series(x).expect("the mode is analytic");
+        // Guards are expanded as far as the motion, and may depend on inputs where the motion does not.
+        let guards_end = self.guard_series.as_ref().is_none_or(|guards| guards.ends);
+        match series.convolutions {
+            0 if series.ends && guards_end && x.quiet => SeriesKind::Ends,
+            0 => SeriesKind::Entire,
+            convolutions => SeriesKind::Convolved(convolutions),
+        }
     }
 
     #[inline]

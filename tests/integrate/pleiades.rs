@@ -4,7 +4,7 @@
 use crate::problems::Pleiades;
 use crate::references::{data, numbers};
 use crate::tolerances;
-use dalembert::integrate::{Analytic, ORDERS, Series, State, System, Taylor};
+use dalembert::integrate::{Analytic, ORDERS, Series, SeriesKind, State, System, Taylor};
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of (dx, dy) and r⁻³ of each pair of bodies i < j.
@@ -124,7 +124,10 @@ fn motion(relative: f64) -> (State<14>, u64) {
     let mut a = SVector::zeros();
     bodies.acceleration(0.0, &q, &v, &mut a).unwrap();
     // Products of an order: six a pair.
-    let mut taylor = Taylor::<14>::new(&tolerances(relative, 0.1, 0.1), 6 * 21);
+    let mut taylor = Taylor::<14>::new(
+        &tolerances(relative, 0.1, 0.1),
+        SeriesKind::Convolved(6 * 21),
+    );
     taylor.restart(0.0, &q, &v, &a);
     while taylor.state().t < 3.0 {
         taylor.step(&mut bodies, 3.0, f64::INFINITY).unwrap();

@@ -181,14 +181,14 @@ impl<const F: usize, const W: usize> Group<F, W> {
             }
         });
         let tolerances = tolerances(problem, mode);
-        let convolutions = kernel.convolutions(&like.context);
+        let kind = kernel.series_kind(&like.context);
         let mut group = Group {
             kernel,
             mode,
             index: like.here.mode,
             level,
             quiet,
-            taylor: LaneTaylor::new(level, &tolerances, convolutions),
+            taylor: LaneTaylor::new(level, &tolerances, kind),
             context,
             signals: LaneSignals::new(level, &problem.signals),
             guards: guards.collect(),

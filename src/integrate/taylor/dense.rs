@@ -16,7 +16,7 @@ pub struct TaylorDense<const F: usize> {
     /// Order p: highest coefficients are q_{p+1}, v_p, a_{p−1}; less than the order of the method
     /// where the coefficients beyond vanish.
     pub(super) order: usize,
-    /// Order of the method: up to it the coefficients are known, zero or not.
+    /// Order of the step, that of the method or the lower one: up to it the coefficients are known, zero or not.
     pub(super) known: usize,
     pub(super) series: Series<F>,
 }

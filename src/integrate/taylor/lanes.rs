@@ -3,7 +3,7 @@
 use super::super::lanes::{LaneMask, Lanes};
 use super::super::tolerances::Tolerances;
 use super::length::{self, Terms};
-use super::series::ORDERS;
+use super::series::{ORDERS, SeriesKind};
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
     lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
@@ -15,17 +15,19 @@ pub struct LaneTaylor<const F: usize, const W: usize> {
     pub series: LaneSeries<F, W>,
     level: LaneLevel<W>,
     limits: LaneLimits,
+    /// Whether the method of a single trajectory has a lower order where there are many steps.
+    has_lower_order: bool,
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// A method of the order that [`super::Taylor::new`] chooses.
-    pub fn new(level: LaneLevel<W>, tolerances: &Tolerances<F>, convolutions: usize) -> Self {
+    pub fn new(level: LaneLevel<W>, tolerances: &Tolerances<F>, kind: SeriesKind) -> Self {
         let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
-        let order = length::order(relative, convolutions, F);
-        let terms = Terms::new(relative, order, convolutions);
+        let order = length::order(relative, kind, F);
+        let terms = Terms::new(relative, order, kind);
         LaneTaylor {
             series: LaneSeries {
                 q: rows,
@@ -33,6 +35,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
                 a: rows,
             },
             level,
+            has_lower_order: length::half_period(relative, kind).is_some(),
             limits: LaneLimits {
                 order,
                 tolerances: std::iter::once(relative).chain(absolute).collect(),
@@ -79,7 +82,18 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         limits: [&Lanes<W>; 2],
         to: (&mut Lanes<W>, &mut LaneMask),
     ) -> LaneMask {
-        lane_length(self.level, &self.limits, &self.series, point, limits, to)
+        let (h, unclear) = to;
+        let to = (&mut *h, &mut *unclear);
+        let reached = lane_length(self.level, &self.limits, &self.series, point, limits, to);
+        if self.has_lower_order {
+            // Twice as soon: what decides is the single trajectory.
+            let [last, horizon] = limits;
+            let limit = |i: usize| (last.0[i] - point.t[0].0[i]).min(horizon.0[i]);
+            for i in (0..W).filter(|&i| 0.5 * length::MANY * h.0[i] < limit(i)) {
+                unclear.set(i, true);
+            }
+        }
+        reached
     }
 
     /// The point that the step from a point leads to in the durations `tau`, s.

@@ -1,7 +1,8 @@
 //! Order and length of a step.
 
 use super::super::logarithm::{binary_logarithm, natural_logarithm, root};
-use super::series::ORDERS;
+use super::super::stages;
+use super::series::{ORDERS, SeriesKind};
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
 /// costs for each coordinate, and what a product in a convolution costs, in ns. Their ratios decide, and these
@@ -12,12 +13,23 @@ const STEP: f64 = 200.0;
 const ORDER: f64 = 4.0;
 const PRODUCT: f64 = 0.25;
 
-/// Least order: five terms decide about the length, and the term of order 6 about that of a Radau IIA step of
-/// five stages ([`super::Implicit`]).
+/// Least order: five terms decide about the length, and the term of order s + 1 about that of a Radau IIA step of
+/// s ≥ 5 stages ([`super::Implicit`]).
 const LEAST: usize = 6;
 
 /// The search for events works on coefficients by fours, of which a coordinate has two more than orders.
 const FULL: usize = 4;
+
+/// λh of the longest step of a linear motion: seven eighths of a period. An oscillation that comes to an event comes to
+/// it within a period mostly, as a stick-slip oscillator does, and then each flight is one step. Longer ones cost more:
+/// behind the fall of a guard they see it rise again, and the search has to tell the two from each other. The eighth
+/// is left since the last terms tell λ to some per cent only. The largest terms, e^5.5 times the motion, leave rounding
+/// errors of 3e-14.
+const LONGEST: f64 = 0.875 * std::f64::consts::TAU;
+
+/// Where so many steps or more are still to be made, those of a linear motion take half a period only
+/// ([`half_period`]): there no flight is one step, and the coefficients of high orders would overflow.
+pub(super) const MANY: f64 = 4096.0;
 
 /// Cost of the series of an order, in ns.
 fn series(order: usize, convolutions: usize, coordinates: usize) -> f64 {
@@ -39,36 +51,52 @@ fn cheap(convolutions: usize, coordinates: usize) -> usize {
 /// A step of order p costs a + b p + c p²/2 with c in proportion to the number of convolutions. A
 /// series with radius of convergence ρ meets ε with h = ρ ε^(1/p) (Jorba and Zou 2005, section 3.2).
 /// Where there is no convolution the motion is a sum of exponentials, whose terms are (λh)^p/p!, so
-/// that h = (p! ε)^(1/p)/λ grows with p nearly at no cost. Half a period, λh = π, is enough: within
-/// longer steps guards swing to and fro, and their roots take longer to find than a further step.
-pub(super) fn order(tolerance: f64, convolutions: usize, coordinates: usize) -> usize {
+/// that h = (p! ε)^(1/p)/λ grows with p nearly at no cost, up to a period ([`LONGEST`]).
+/// A series that ends has no need of more orders than those that are looked at.
+pub(super) fn order(tolerance: f64, kind: SeriesKind, coordinates: usize) -> usize {
+    match kind {
+        SeriesKind::Ends => LEAST.max(stages(tolerance) + 1),
+        SeriesKind::Entire => entire(tolerance, LONGEST),
+        SeriesKind::Convolved(convolutions) => {
+            let cheap = cheap(convolutions, coordinates);
+            cheapest(tolerance, convolutions, coordinates).max(cheap)
+        }
+    }
+}
+
+/// The order of a linear motion where there are [`MANY`] steps, if it is less than [`order`].
+pub(super) fn half_period(tolerance: f64, kind: SeriesKind) -> Option<usize> {
+    let order = entire(tolerance, std::f64::consts::PI);
+    (kind == SeriesKind::Entire && order < entire(tolerance, LONGEST)).then_some(order)
+}
+
+/// The least order p for which (λh)^p/p! meets a tolerance, as far as there are so many.
+fn entire(tolerance: f64, angle: f64) -> usize {
     let digits = natural_logarithm(tolerance);
-    let half_period = natural_logarithm(std::f64::consts::PI);
+    let angle = natural_logarithm(angle);
     let mut factorial = 0.0; // its logarithm
-    let mut best = (LEAST, f64::INFINITY);
-    for order in 1..=ORDERS - 2 {
+    for order in 1..ORDERS - 2 {
         let p = order as f64;
         factorial += natural_logarithm(p);
-        if order < LEAST {
-            continue;
+        if order >= LEAST && factorial + digits >= p * angle {
+            return order;
         }
-        if convolutions == 0 {
-            best.0 = order;
-            if factorial + digits >= p * half_period {
-                break;
-            }
-            continue;
-        }
+    }
+    ORDERS - 2
+}
+
+/// The order at which ρ ε^(1/p) costs least.
+fn cheapest(tolerance: f64, convolutions: usize, coordinates: usize) -> usize {
+    let digits = natural_logarithm(tolerance);
+    let mut best = (LEAST, f64::INFINITY);
+    for order in LEAST..=ORDERS - 2 {
         let cost = STEP + series(order, convolutions, coordinates);
-        let cost = natural_logarithm(cost) - digits / p;
+        let cost = natural_logarithm(cost) - digits / order as f64;
         if cost < best.1 {
             best = (order, cost);
         }
     }
-    match convolutions {
-        0 => best.0,
-        _ => best.0.max(cheap(convolutions, coordinates)),
-    }
+    best.0
 }
 
 /// The terms that limit the length of a step of order p ≥ 6: those of order p − 1, p and p + 1, and before
@@ -94,13 +122,13 @@ pub(super) struct Terms {
 
 impl Terms {
     /// Those of a method of order `p`.
-    pub fn new(tolerance: f64, p: usize, convolutions: usize) -> Self {
+    pub fn new(tolerance: f64, p: usize, kind: SeriesKind) -> Self {
         let powers = [p - 1, p, p + 1, p - 3, p - 2];
         let factors = powers.map(|power| match power + 1 < p {
             true => {
-                let growth = match convolutions {
-                    0 => p as f64 / power as f64,
-                    _ => 1.0,
+                let growth = match kind {
+                    SeriesKind::Convolved(_) => 1.0,
+                    _ => p as f64 / power as f64,
                 };
                 growth * root(tolerance, power) / root(tolerance, p)
             }
@@ -121,6 +149,9 @@ impl Terms {
     /// tell which it is, so that one root is taken.
     #[inline]
     pub fn length(&self, sizes: [f64; 5]) -> f64 {
+        if sizes.iter().all(|&size| size == 0.0) {
+            return f64::INFINITY;
+        }
         let mut logarithms = [0.0; 5];
         for k in 0..5 {
             logarithms[k] = binary_logarithm(sizes[k]) * self.inverses[k] - self.logarithms[k];
@@ -141,36 +172,52 @@ mod tests {
 
     #[test]
     fn the_order_follows_tolerance_and_costs() {
-        let orders = |convolutions| [1e-3, 1e-6, 1e-9, 1e-12].map(|e| order(e, convolutions, 1));
-        for convolutions in [0, 2, 100] {
-            let orders = orders(convolutions);
+        let orders = |kind| [1e-3, 1e-6, 1e-9, 1e-12].map(|e| order(e, kind, 1));
+        for kind in [
+            SeriesKind::Ends,
+            SeriesKind::Entire,
+            SeriesKind::Convolved(2),
+            SeriesKind::Convolved(100),
+        ] {
+            let orders = orders(kind);
             assert!(orders.is_sorted() && orders[3] <= ORDERS - 2, "{orders:?}");
         }
         // Where convolutions are all that costs, p = 1 − ½ ln ε (Jorba and Zou).
-        assert!(orders(10_000)[3].abs_diff(14) <= 1, "{:?}", orders(10_000));
-        assert!(orders(2)[3] > orders(100)[3]);
+        let costly = orders(SeriesKind::Convolved(10_000));
+        assert!(costly[3].abs_diff(14) <= 1, "{costly:?}");
+        assert!(orders(SeriesKind::Convolved(2))[3] > orders(SeriesKind::Convolved(100))[3]);
     }
 
     #[test]
     fn a_series_that_costs_little_is_not_cut_short() {
         assert_eq!(
-            [1e-3, 1e-6, 1e-9, 1e-12].map(|e| order(e, 3, 1)),
+            [1e-3, 1e-6, 1e-9, 1e-12].map(|e| order(e, SeriesKind::Convolved(3), 1)),
             [18, 18, 22, 26]
         );
         for (convolutions, coordinates) in [(1, 1), (2, 1), (3, 1), (5, 2), (12, 3), (34, 3)] {
             let cheap = cheap(convolutions, coordinates);
             let next = series(cheap + FULL, convolutions, coordinates);
             assert!(cheap == ORDERS - 2 || next > STEP, "{cheap}");
-            assert!(order(1e-3, convolutions, coordinates) >= cheap);
+            assert!(order(1e-3, SeriesKind::Convolved(convolutions), coordinates) >= cheap);
             assert_eq!((cheap + 2) % FULL, 0);
         }
         // Where the series is what costs, the tolerance alone decides.
-        assert!(order(1e-3, 34, 3) < 10 && cheap(34, 3) == LEAST);
+        assert!(order(1e-3, SeriesKind::Convolved(34), 3) < 10 && cheap(34, 3) == LEAST);
+    }
+
+    #[test]
+    fn a_step_of_a_linear_motion_is_as_long_as_it_may_be() {
+        for tolerance in [1e-3, 1e-6, 1e-9] {
+            let p = order(tolerance, SeriesKind::Entire, 1);
+            let factorial = |p: usize| (1..=p).map(|k| k as f64).product::<f64>();
+            let length = |p| f64::powf(factorial(p) * tolerance, 1.0 / p as f64);
+            assert!(length(p) >= LONGEST && length(p - 1) < LONGEST, "{p}");
+        }
     }
 
     #[test]
     fn the_length_is_the_shortest_that_a_term_allows() {
-        let terms = Terms::new(1e-9, 13, 3);
+        let terms = Terms::new(1e-9, 13, SeriesKind::Convolved(3));
         let mut state = 1_u64;
         let mut draw = || {
             // Knuth's multiplier: any scatter will do.

@@ -19,7 +19,7 @@ use length::Terms;
 pub use dense::TaylorDense;
 pub(crate) use dense::stretch;
 pub use lanes::LaneTaylor;
-pub use series::{Analytic, ORDERS, Series};
+pub use series::{Analytic, ORDERS, Series, SeriesKind};
 
 use super::linear::Lu;
 use super::logarithm::root;
@@ -58,6 +58,8 @@ impl Implicit {
 pub struct Taylor<const F: usize> {
     tolerances: Tolerances<F>,
     order: usize,
+    /// The lower order where there are many steps.
+    lower: Option<(usize, Terms)>,
     /// Parts of a step in its quadrature.
     panels: usize,
     terms: Terms,
@@ -84,13 +86,12 @@ pub struct Taylor<const F: usize> {
 }
 
 impl<const F: usize> Taylor<F> {
-    /// An integrator at rest at zero; call [`Taylor::restart`] before the first step. An order of the
-    /// expansion takes so many convolutions; 0: the equations are linear.
-    pub fn new(tolerances: &Tolerances<F>, convolutions: usize) -> Self {
+    /// An integrator at rest at zero; call [`Taylor::restart`] before the first step.
+    pub fn new(tolerances: &Tolerances<F>, kind: SeriesKind) -> Self {
         let zero = SVector::zeros();
         let origin = State::origin();
         let relative = tolerances.relative();
-        let order = length::order(relative, convolutions, F);
+        let order = length::order(relative, kind, F);
         let implicit = match super::stages(relative) {
             5 => Implicit::new::<5, F>(tolerances),
             _ => Implicit::new::<7, F>(tolerances),
@@ -101,8 +102,9 @@ impl<const F: usize> Taylor<F> {
             length: f64::INFINITY,
             tolerances: *tolerances,
             order,
-            panels: quadrature::panels(convolutions),
-            terms: Terms::new(relative, order, convolutions),
+            lower: length::half_period(relative, kind).map(|p| (p, Terms::new(relative, p, kind))),
+            panels: quadrature::panels(kind),
+            terms: Terms::new(relative, order, kind),
             start: origin,
             end: origin,
             lost_at_start: Lost::nothing(),
@@ -209,6 +211,13 @@ impl<const F: usize> Taylor<F> {
         let remaining = (t_end - from) - self.lost.t;
         let horizon = system.horizon(from) - from;
         self.length = self.accurate_length();
+        if let Some((lower, _)) = self.lower
+            && lower < self.dense.known
+            && self.length * length::MANY < remaining.min(horizon)
+        {
+            self.lower_order(lower);
+            self.length = self.accurate_length();
+        }
         let h = fit(self.length, remaining, h_max.min(horizon));
         if from + h == from {
             return Err(StepError::Tolerance {
@@ -275,20 +284,44 @@ impl<const F: usize> Taylor<F> {
         (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
         system.run(self.order, inverse, series);
         self.counters.residual_evaluations += self.order as u64;
-        let a = &self.dense.series.a[..self.order];
+        self.dense.known = self.order;
         // What is not finite stays so in all higher orders.
-        match a[self.order - 1].iter().all(|x| x.is_finite()) {
-            true => {
-                let last = a.iter().rposition(|a| a.iter().any(|x| *x != 0.0));
-                self.dense.order = last.map_or(1, |last| last + 1);
-                Ok(())
+        let is_finite = |order: usize| self.dense.series.a[order - 1].iter().all(|x| x.is_finite());
+        match self.lower {
+            _ if is_finite(self.order) => {}
+            Some((lower, _)) if is_finite(lower) => {
+                self.lower_order(lower);
+                return Ok(());
             }
-            false => Err(StepError::NonFinite {
-                t,
-                h: 0.0,
-                what: "the Taylor series of the motion",
-            }),
+            _ => {
+                return Err(StepError::NonFinite {
+                    t,
+                    h: 0.0,
+                    what: "the Taylor series of the motion",
+                });
+            }
         }
+        self.find_last();
+        Ok(())
+    }
+
+    /// Leaves out the coefficients that a method of lower order does not have.
+    #[cold]
+    fn lower_order(&mut self, order: usize) {
+        let series = &mut self.dense.series;
+        series.a[order..].fill(SVector::zeros());
+        series.v[order + 1..].fill(SVector::zeros());
+        series.q[order + 2..].fill(SVector::zeros());
+        self.dense.known = order;
+        self.find_last();
+    }
+
+    /// Looks for the last coefficients that differ from zero.
+    #[inline(always)]
+    fn find_last(&mut self) {
+        let a = &self.dense.series.a[..self.dense.known];
+        let last = a.iter().rposition(|a| a.iter().any(|x| *x != 0.0));
+        self.dense.order = last.map_or(1, |last| last + 1);
     }
 
     /// Inverts the mass matrix.
@@ -331,7 +364,7 @@ impl<const F: usize> Taylor<F> {
         let [of_q, of_v] = &self.weights;
         let of_q = |power: usize| largest(&q[power], of_q);
         let of_v = |power: usize| largest(&v[power], of_v);
-        let p = self.order;
+        let p = self.dense.known;
         let sizes = [
             of_v(p - 1),
             f64::max(of_v(p), of_q(p)),
@@ -339,7 +372,10 @@ impl<const F: usize> Taylor<F> {
             of_v(p - 3),
             of_v(p - 2),
         ];
-        self.terms.length(sizes)
+        match &self.lower {
+            Some((lower, terms)) if *lower == p => terms.length(sizes),
+            _ => self.terms.length(sizes),
+        }
     }
 
     /// Length of a step of Radau IIA, as the term of its error estimate allows, ÷ that of the last step, as

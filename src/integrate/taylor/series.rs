@@ -3,9 +3,20 @@
 use crate::integrate::System;
 use nalgebra::{SMatrix, SVector};
 
-/// Most coefficients of a series, the one of order 0 included. Order 30 serves the smallest relative
+/// Most coefficients of a series, the one of order 0 included. Order 34 serves the smallest relative
 /// tolerance (see `length`); accelerations have one order less than velocities, coordinates one more.
-pub const ORDERS: usize = 32;
+pub const ORDERS: usize = 36;
+
+/// What the equations tell about the Taylor series of their motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeriesKind {
+    /// It ends: the accelerations are constant, and guards are polynomials of the same degree.
+    Ends,
+    /// The equations are linear, the motion is a sum of exponentials: it converges everywhere.
+    Entire,
+    /// An order takes so many convolutions, one or more.
+    Convolved(usize),
+}
 
 /// Taylor coefficients of the motion about some time: x(t + τ) = Σ x_k τᵏ.
 #[derive(Debug, Clone, Copy, PartialEq)]
