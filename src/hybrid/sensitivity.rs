@@ -86,9 +86,20 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     }
 
     /// Place and value of its least value in the last step; `None` if that is at the start.
-    pub fn least(&mut self, method: &mut impl OneStep<F, Equations<'a, F>>) -> Option<(f64, f64)> {
+    pub fn least<M: OneStep<F, Equations<'a, F>>>(&mut self, method: &mut M) -> Option<(f64, f64)> {
         let end = *method.state();
         let (start, dense) = (method.start(), dense_of(method));
+        let slope = |state, own: &mut Self| match own.watched.condition {
+            None => rate_at(own.equations, own.guard, state),
+            Some(_) => f64::NAN,
+        };
+        // In a step of an implicit method a guard turns once at most; one of the Taylor method may be a period.
+        if !M::EXPLICIT && slope(&end, self) <= 0.0 {
+            return Some((end.t, self.value(end.t, &end.q, &end.v)));
+        }
+        if !M::EXPLICIT && slope(start, self) >= 0.0 {
+            return None;
+        }
         let length = end.t - start.t;
         let place = |k: usize| match k {
             PARTS => end.t,
@@ -101,10 +112,6 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         });
         let least = (0..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
         // At an end its slope tells at once that it is least there.
-        let slope = |state, own: &mut Self| match own.watched.condition {
-            None => rate_at(own.equations, own.guard, state),
-            Some(_) => f64::NAN,
-        };
         if least == 0 && slope(start, self) >= 0.0 {
             return None;
         }
