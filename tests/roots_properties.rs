@@ -225,14 +225,15 @@ proptest! {
         windows in windows(),
     ) {
         let degree: usize = roots.values().sum();
-        prop_assume!(degree <= 2);
+        // What is zero at the very end of the windows falls behind them.
+        prop_assume!(degree <= 2 && !roots.contains_key(&64));
         let roots = roots.into_iter().map(|(k, times)| (f64::from(k) / 64.0, times)).collect();
         let all = Planted { roots, sign: if positive { 1.0 } else { -1.0 } };
         let p = all.polynomial::<3>();
         let find = |from, to, watch| p.search(from, to, watch, 0.0);
         let events = all_events(&windows, all.start(), find, |s| p.value(s))?;
         let mut inside = all.clone();
-        inside.roots.retain(|root| 0.0 <= root.0 && root.0 <= 1.0);
+        inside.roots.retain(|root| 0.0 <= root.0 && root.0 < 1.0);
         let beyond = all.roots.iter().filter(|root| root.0 > 1.0).map(|root| root.1).sum::<usize>();
         inside.sign *= if beyond % 2 == 1 { -1.0 } else { 1.0 };
         assert_places(&events, &inside, 1.0, |s| rounding(&p, s))?;
