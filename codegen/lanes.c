@@ -335,9 +335,10 @@ DALEMBERT_INLINE real inverse_root(struct logarithm x, real n, real inverse) {
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
  * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
  * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
- * p - 3 and p - 2, their inverses, the factors of the lengths that they tell, and their
- * logarithms, which tell the shortest: src/integrate/logarithm.rs, src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are
- * those whose series is not finite or whose time would not advance.
+ * p - 3 and p - 2, their inverses, the factors of the lengths that they tell, and factors and
+ * offsets that make logarithms of bits, which tell the shortest: src/integrate/logarithm.rs,
+ * src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are those whose series is not
+ * finite or whose time would not advance.
  */
 DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
                              const double *tolerances, const double *terms, const real *point, const real *last,
@@ -359,21 +360,18 @@ DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *
     sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
     finite &= below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
-  struct logarithm of_shortest = {REAL(0.0), REAL(0.0)};
-  real shortest = REAL(-INFINITY), n = REAL(1.0), inverse = REAL(1.0), factor = REAL(INFINITY);
+  real size = REAL(1.0), shortest = REAL(-INFINITY), n = REAL(1.0), inverse = REAL(1.0), factor = REAL(INFINITY);
 #pragma GCC unroll 5
   for (int k = 0; k < 5; ++k) {
-    const struct logarithm own = binary_logarithm(sizes[k]);
-    const real logarithm = (own.exponent + own.fraction) * terms[5 + k] - terms[15 + k];
+    const real logarithm = __builtin_convertvector((word)sizes[k], real) * terms[15 + k] - terms[20 + k];
     const truth shorter = below(shortest, logarithm) & at_most(REAL(0x1p-1022), sizes[k]);
     shortest = pick(shorter, logarithm, shortest);
-    of_shortest.exponent = pick(shorter, own.exponent, of_shortest.exponent);
-    of_shortest.fraction = pick(shorter, own.fraction, of_shortest.fraction);
+    size = pick(shorter, sizes[k], size);
     n = pick(shorter, REAL(terms[k]), n);
     inverse = pick(shorter, REAL(terms[5 + k]), inverse);
     factor = pick(shorter, REAL(terms[10 + k]), factor);
   }
-  const real longest = smaller(factor * inverse_root(of_shortest, n, inverse), *horizon);
+  const real longest = smaller(factor * inverse_root(binary_logarithm(size), n, inverse), *horizon);
   const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
   *h = pick(at_most(remaining, longest), remaining, half);
   *unclear |= bits((truth)~finite | same(now + *h, now));

@@ -1,10 +1,13 @@
-/* Ranges that the polynomials of a step do not leave. Of the first coefficients it is that of Horner's scheme in interval
- * arithmetic (Moore 1966), which tells growth from oscillation; the others are small, and enter by their sizes. What
- * waits for the coefficient before is short so.
+/* Ranges that the polynomials of a step do not leave. Of the first terms it is that of Horner's scheme in interval
+ * arithmetic (Moore 1966), which tells growth from oscillation: a sum of the terms from k on lies between the kth and
+ * what it adds to sums below and above zero. The others are small, and enter by their sizes. What waits for the term
+ * before is short so.
  */
 #include "vectors.h"
 
-/* Six are too few for half a period of an oscillation, a step of the Taylor method. As in lanes.c. */
+/* Six are too few for half a period of an oscillation, about a step of the Taylor method where a series costs
+ * something; over the period of a linear motion eight tell little. As in lanes.c.
+ */
 enum { FIRST = 8 };
 
 void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,
@@ -21,8 +24,10 @@ typedef int64_t mask __attribute__((vector_size(32)));
 
 static inline __attribute__((always_inline)) void ranges(size_t free, size_t count, const double *q, const double *v,
                                                          const double *a, double tau, double *middles, double *radii) {
-  const double tau2 = tau * tau, tau4 = tau2 * tau2, first = tau4 * tau4;
-  dalembert_block power = {first, first * tau, first * tau2, first * tau2 * tau};
+  /* In registers: a block read from numbers written one by one waits for all of them to reach memory. */
+  const double tau2 = tau * tau, tau3 = tau2 * tau, tau4 = tau2 * tau2;
+  const double powers[FIRST] = {1.0, tau, tau2, tau3, tau4, tau4 * tau, tau4 * tau2, tau4 * tau3};
+  dalembert_block power = (dalembert_block){1.0, tau, tau2, tau3} * (tau4 * tau4);
   dalembert_block of_q = {0.0}, of_v = {0.0}, of_a = {0.0};
   for (size_t k = FIRST; k < count; k += 4) {
     of_q += SIZE(FOUR(q + k * free)) * power;
@@ -32,14 +37,16 @@ static inline __attribute__((always_inline)) void ranges(size_t free, size_t cou
   }
   dalembert_block least = {0.0}, most = {0.0};
   for (size_t k = FIRST; k-- > 0;) {
-    const dalembert_block own = {q[k * free], v[k * free], a[k * free], 0.0};
-    least = own + PART(least * tau, <);
-    most = own + PART(most * tau, >);
+    const dalembert_block own = (dalembert_block){q[k * free], v[k * free], a[k * free], 0.0} * powers[k];
+    least = own + PART(least, <);
+    most = own + PART(most, >);
   }
   const dalembert_block others = {SUM(of_q), SUM(of_v), SUM(of_a), 0.0};
   const dalembert_block middle = 0.5 * (least + most);
-  dalembert_block centre = middle;
-  centre[0] = q[0];
+  /* Not by an element of its own, which would be a way through memory. */
+  const mask is_q = {-1};
+  const dalembert_block start = {q[0]};
+  const dalembert_block centre = (dalembert_block)(((mask)start & is_q) | ((mask)middle & ~is_q));
   const dalembert_block radius = 0.5 * (most - least) + SIZE(middle - centre) + others;
   for (size_t n = 0; n < 3; ++n) middles[n * free] = centre[n], radii[n * free] = radius[n];
 }
@@ -48,16 +55,15 @@ static void ranges(size_t free, size_t count, const double *q, const double *v, 
                    double *middles, double *radii) {
   const double *const rows[] = {q, v, a};
   for (size_t n = 0; n < 3; ++n) {
-    double others = 0.0, power = 1.0, least = 0.0, most = 0.0;
-    for (size_t k = 1; k < count; ++k) {
-      power *= tau;
-      const double own = rows[n][k * free];
-      if (k >= FIRST) others += (own < 0.0 ? -own : own) * power;
+    double others = 0.0, power = 1.0, least = 0.0, most = 0.0, terms[FIRST];
+    for (size_t k = 0; k < count; ++k, power *= tau) {
+      const double own = rows[n][k * free] * power;
+      if (k < FIRST) terms[k] = own;
+      else others += own < 0.0 ? -own : own;
     }
     for (size_t k = FIRST; k-- > 0;) {
-      const double down = least * tau, up = most * tau, own = rows[n][k * free];
-      least = own + (down < 0.0 ? down : 0.0);
-      most = own + (up > 0.0 ? up : 0.0);
+      least = terms[k] + (least < 0.0 ? least : 0.0);
+      most = terms[k] + (most > 0.0 ? most : 0.0);
     }
     const double middle = 0.5 * (least + most), centre = n == 0 ? q[0] : middle, off = middle - centre;
     middles[n * free] = centre;

@@ -218,11 +218,14 @@ impl Accumulation {
         if known == 0 {
             return None;
         }
-        let (change, is_short) = (self.last_change(&tolerance), self.is_short());
+        let is_short = self.is_short();
         // What repeats after p events repeats after a multiple of p, and leaves as much.
-        let single = (is_short || self.may_be_last(change)) && self.are_alike(0, 1);
+        let single = (is_short || self.may_be_last(&tolerance)) && self.are_alike(0, 1);
         // The last event of a pattern of several whose rest is negligible is within the tolerances of the one before.
-        let several = known > 1 && (is_short || change <= 1.0);
+        let several = known > 1 && (is_short || self.changes_within((1.0, 1.0), &tolerance));
+        if !single && !several {
+            return None;
+        }
         let patterns = (if single { 1 } else { 2 })..=(if several { known } else { 1 });
         let series = patterns
             .into_iter()
@@ -239,19 +242,24 @@ impl Accumulation {
         now - before <= SHORTEST_PATTERN * now
     }
 
-    /// By how much the last event differs from the one before, in units of the tolerances.
-    fn last_change(&self, tolerance: impl Fn(usize, f64) -> f64) -> f64 {
-        let pairs = self.state(0).iter().zip(self.state(1)).enumerate();
-        let changes = pairs.map(|(i, (now, before))| (now - before).abs() / tolerance(i, *now));
-        changes.fold(0.0, f64::max)
+    /// Whether `part` of what the last event differs by from the one before is within `room` times the tolerances.
+    #[inline]
+    fn changes_within(
+        &self,
+        (part, room): (f64, f64),
+        tolerance: impl Fn(usize, f64) -> f64,
+    ) -> bool {
+        let mut pairs = self.state(0).iter().zip(self.state(1)).enumerate();
+        pairs.all(|(i, (now, before))| part * (now - before).abs() <= room * tolerance(i, *now))
     }
 
     /// Whether what is left of a pattern of one event, if it is one, may be negligible
-    /// ([`Self::is_negligible`]), given the last change: looked at first, since it seldom is.
-    fn may_be_last(&self, change: f64) -> bool {
+    /// ([`Self::is_negligible`]): looked at first, since it seldom is.
+    #[inline]
+    fn may_be_last(&self, tolerance: impl Fn(usize, f64) -> f64) -> bool {
         let at = [0, 1, 2].map(|back| self.at(back));
         let [last, middle] = [at[0].since(at[1]), at[1].since(at[2])];
-        change * last <= middle - last
+        last < middle && self.changes_within((last, middle - last), tolerance)
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.

@@ -172,18 +172,17 @@ impl Sine {
     ) {
         let factor = -(self.angular_frequency * self.angular_frequency);
         // Two at a time, which do not wait for each other.
-        let mut rest = out;
-        for inverses in INVERSES_OF_PAIRS.as_chunks::<2>().0 {
-            if rest.len() <= stride {
-                break;
-            }
-            (rest[0], rest[stride]) = (now, next);
+        let mut pairs = out.chunks_exact_mut(2 * stride);
+        for (pair, inverses) in pairs.by_ref().zip(INVERSES_OF_PAIRS.as_chunks::<2>().0) {
+            (pair[0], pair[stride]) = (now, next);
             now *= factor * inverses[0];
             next *= factor * inverses[1];
-            rest = rest.get_mut(2 * stride..).unwrap_or(&mut []);
         }
-        if let Some(last) = rest.first_mut() {
-            *last = now;
+        let rest = pairs.into_remainder();
+        for (at, coefficient) in [(0, now), (stride, next)] {
+            if let Some(rest) = rest.get_mut(at) {
+                *rest = coefficient;
+            }
         }
     }
 

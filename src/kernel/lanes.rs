@@ -260,6 +260,6 @@ pub struct LaneLimits {
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     pub tolerances: Box<[f64]>,
     /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
-    /// factors of the lengths that they tell, and their logarithms.
-    pub terms: [[f64; 5]; 4],
+    /// factors of the lengths that they tell; factors and offsets that make logarithms of these of their bits.
+    pub terms: [[f64; 5]; 5],
 }

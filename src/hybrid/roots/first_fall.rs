@@ -133,15 +133,17 @@ impl<const N: usize> Armed<'_, N> {
         found: &mut Search,
     ) -> bool {
         let (from, to) = (self.from.max(start), self.to.min(end));
-        let at_end = self.polynomial.value(to);
+        // At the end of the piece it is certainly negative: the last coefficient but for rounding.
+        let at_end = match to == end {
+            true => bernstein[N - 1],
+            false => self.polynomial.value(to),
+        };
         if at_end >= 0.0 {
-            if to < end {
-                // What it falls to behind the window tells nothing.
-                let mut within = [0.0; N];
-                self.polynomial.on(to).bernstein(&mut within);
-                *found = Search::above(least_after_start(&within));
-            }
-            return to < end;
+            // What it falls to behind the window tells nothing.
+            let mut within = [0.0; N];
+            self.polynomial.on(to).bernstein(&mut within);
+            *found = Search::above(least_after_start(&within));
+            return true;
         }
         // Where the polygon of the coefficients falls through zero.
         let (before, after) = (bernstein[falls - 1], bernstein[falls]);

@@ -43,7 +43,8 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
                     terms.powers.map(|n| n as f64),
                     terms.inverses,
                     terms.factors,
-                    terms.logarithms,
+                    terms.logarithms.map(|[scale, _]| scale),
+                    terms.logarithms.map(|[_, offset]| offset),
                 ],
             },
         }

@@ -31,6 +31,10 @@ const LONGEST: f64 = 0.875 * std::f64::consts::TAU;
 /// ([`half_period`]): there no flight is one step, and the coefficients of high orders would overflow.
 pub(super) const MANY: f64 = 4096.0;
 
+/// A double's bits as a whole number grow by this where its exponent grows by one, which is stored with a bias.
+const ONE_EXPONENT: f64 = (1_u64 << 52) as f64;
+const BIAS: f64 = 1023.0;
+
 /// Cost of the series of an order, in ns.
 fn series(order: usize, convolutions: usize, coordinates: usize) -> f64 {
     let p = order as f64;
@@ -116,8 +120,9 @@ pub(super) struct Terms {
     pub inverses: [f64; 5],
     /// What the length at which a term equals the tolerance is multiplied with.
     pub factors: [f64; 5],
-    /// Their logarithms to base 2.
-    pub logarithms: [f64; 5],
+    /// Binary logarithm of the reciprocal of a length: a factor of the term's bits as a whole number, and what is
+    /// subtracted. The bits are its logarithm to 0.09, which is 2 % of the length for the least power.
+    pub logarithms: [[f64; 2]; 5],
 }
 
 impl Terms {
@@ -138,9 +143,13 @@ impl Terms {
             powers,
             inverses: powers.map(|power| 1.0 / power as f64),
             factors,
-            logarithms: factors.map(|factor| match factor == 1.0 {
-                true => 0.0,
-                false => binary_logarithm(factor),
+            logarithms: std::array::from_fn(|k| {
+                let of_factor = match factors[k] == 1.0 {
+                    true => 0.0,
+                    false => binary_logarithm(factors[k]),
+                };
+                let scale = 1.0 / (powers[k] as f64 * ONE_EXPONENT);
+                [scale, BIAS * scale * ONE_EXPONENT + of_factor]
             }),
         }
     }
@@ -152,16 +161,15 @@ impl Terms {
         if sizes.iter().all(|&size| size == 0.0) {
             return f64::INFINITY;
         }
-        let mut logarithms = [0.0; 5];
-        for k in 0..5 {
-            logarithms[k] = binary_logarithm(sizes[k]) * self.inverses[k] - self.logarithms[k];
-        }
-        let (mut largest, mut shortest) = (f64::NEG_INFINITY, 0);
-        for k in 0..5 {
-            if logarithms[k] > largest && sizes[k] >= f64::MIN_POSITIVE {
-                (largest, shortest) = (logarithms[k], k);
+        let logarithms: [f64; 5] = std::array::from_fn(|k| {
+            let [scale, offset] = self.logarithms[k];
+            match sizes[k] >= f64::MIN_POSITIVE {
+                true => sizes[k].to_bits() as i64 as f64 * scale - offset,
+                false => f64::NEG_INFINITY,
             }
-        }
+        });
+        let larger = |i: usize, j: usize| if logarithms[j] > logarithms[i] { j } else { i };
+        let shortest = larger(larger(larger(0, 1), larger(2, 3)), 4);
         self.factors[shortest] * root(sizes[shortest], self.powers[shortest])
     }
 }
