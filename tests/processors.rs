@@ -29,9 +29,9 @@ void dalembert_triangular_sums(size_t n, const double *factors, const double *ta
 void dalembert_ranges(size_t free, size_t count, const double *q, const double *v, const double *a, double tau,
                       double *middles, double *radii);
 int main(void) {
-  enum { ORDER = 24 };
-  for (int n = 1; n <= 32; ++n) {
-    double factors[32], table[32 * 32] = {0.0}, out[32];
+  enum { ORDER = 34, ROWS = 36 };
+  for (int n = 1; n <= ROWS; ++n) {
+    double factors[ROWS], table[ROWS * ROWS] = {0.0}, out[ROWS];
     for (int k = 0; k < n; ++k) {
       factors[k] = 1.0 / (3.0 + k) - 0.1;
       for (int j = k; j < n; ++j) table[n * k + j] = 1.0 / (1.0 + k + 2.0 * j);
@@ -40,9 +40,9 @@ int main(void) {
     print("sums", out, n);
   }
   for (int i = 0; i < 50; ++i) {
-    double q[32] = {0.17 - 0.003 * i}, v[32] = {0.3 + 0.01 * i}, a[32] = {0.0}, u[3 * 32], w[1024], out[2];
+    double q[ROWS] = {0.17 - 0.003 * i}, v[ROWS] = {0.3 + 0.01 * i}, a[ROWS] = {0.0}, u[3 * ROWS], w[1024], out[2];
     double p[8] = {0.25, 1.5, 1.0, 0.9, 9.81, 1.0, 1.0, 1.0}, c[256], d[1] = {1.0}, h[8] = {0.0};
-    for (int k = 0; k < 3 * 32; ++k) u[k] = 1.0 / (3.0 + k + i);
+    for (int k = 0; k < 3 * ROWS; ++k) u[k] = 1.0 / (3.0 + k + i);
     struct dalembert_angle angles[4] = {{0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}};
     const struct dalembert_context x = {u, u, d, h, c, a, angles};
     dalembert_rocking_block_constants(p, p, p, &x, c);

@@ -56,7 +56,7 @@ proptest! {
 }
 
 /// A slider x = a cos 2t that is pulled upwards by p sin 3t: each of its requirements fails where m g = p sin 3t, or
-/// strength = tension/(1 + x/length), and holds again 30 to 200 ms later.
+/// strength = tension/(1 + x/length), and holds again 30 to 210 ms later.
 #[test]
 fn requirements_that_fail_for_a_moment_stop_the_run_there() {
     for (a, p, exact, reason) in [

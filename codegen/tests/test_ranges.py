@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 SOURCE = os.path.join(os.path.dirname(os.path.dirname(__file__)), "ranges.c")
-ROWS = 32
+ROWS = 36
 Numbers = ctypes.POINTER(ctypes.c_double)
 
 

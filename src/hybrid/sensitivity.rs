@@ -11,8 +11,8 @@ use crate::kernel::Free;
 use crate::model::{Guard, Mode};
 use nalgebra::SVector;
 
-/// Parts of a step among which its least value is looked for. Steps resolve the motion, so that a guard
-/// turns once or twice in one.
+/// Parts of a step among which its least value is looked for: a step is a period at most, in which a guard
+/// turns twice.
 const PARTS: usize = 8;
 
 fn dense_of<'m, 'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
@@ -93,7 +93,8 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
             None => rate_at(own.equations, own.guard, state),
             Some(_) => f64::NAN,
         };
-        // In a step of an implicit method a guard turns once at most; one of the Taylor method may be a period.
+        // A step of an implicit method is a fraction of a period mostly, in which a guard that falls at the end, or
+        // rises at the start, is least there; one of the Taylor method may be the whole of it.
         if !M::EXPLICIT && slope(&end, self) <= 0.0 {
             return Some((end.t, self.value(end.t, &end.q, &end.v)));
         }

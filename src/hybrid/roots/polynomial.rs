@@ -65,11 +65,14 @@ impl<const N: usize> Polynomial<N> {
             return value;
         }
         let (fours, rest) = self.coefficients.as_chunks::<4>();
-        let mut sums = [0.0; 4];
-        sums[..rest.len()].copy_from_slice(rest);
+        let mut fours = fours.iter().rev();
+        let mut sums = match rest.is_empty() {
+            true => *fours.next().expect("there are six coefficients"),
+            false => std::array::from_fn(|k| rest.get(k).copied().unwrap_or(0.0)),
+        };
         let s2 = s * s;
         let s4 = s2 * s2;
-        for four in fours.iter().rev() {
+        for four in fours {
             for (sum, coefficient) in sums.iter_mut().zip(four) {
                 *sum = *sum * s4 + coefficient;
             }
@@ -151,7 +154,10 @@ impl<const N: usize> Polynomial<N> {
         let falls = sum_of(&self.coefficients, |c| (-c).max(0.0)) * (1.0 + Self::ROUNDING);
         if self.coefficients[0] > falls {
             // Where it rises from near zero it does not turn: a bound of all Bernstein coefficients but the first.
-            let rise = self.coefficients[1].max(0.0) / (N - 1) as f64;
+            let rise = self
+                .coefficients
+                .get(1)
+                .map_or(0.0, |c| c.max(0.0) / (N - 1) as f64);
             *found = Search::above(self.coefficients[0] + rise - falls);
         } else if from >= to {
             *found = Search::quiet(Watch::Armed);

@@ -289,10 +289,7 @@ impl<const F: usize> Taylor<F> {
         let is_finite = |order: usize| self.dense.series.a[order - 1].iter().all(|x| x.is_finite());
         match self.lower {
             _ if is_finite(self.order) => {}
-            Some((lower, _)) if is_finite(lower) => {
-                self.lower_order(lower);
-                return Ok(());
-            }
+            Some((lower, _)) if is_finite(lower) => self.lower_order(lower),
             _ => {
                 return Err(StepError::NonFinite {
                     t,
