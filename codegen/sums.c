@@ -1,28 +1,38 @@
 /* Sums by a triangular table, four side by side: the Bernstein coefficients of a polynomial are such. */
 #include "vectors.h"
 
+/* As many coefficients as the highest order has. */
+enum { MOST = 36 };
+
 void dalembert_triangular_sums(size_t n, const double *factors, const double *table, double *out);
+
+#if DALEMBERT_BLOCK == 4
+/* Of a number that the compiler knows: each factor is read once for all columns. */
+static inline __attribute__((always_inline)) void sums_of(const size_t n, const double *factors, const double *table,
+                                                          double *out) {
+  dalembert_block sums[MOST / 4] = {{0.0}};
+#pragma GCC unroll 36
+  for (size_t k = 0; k < n; ++k)
+#pragma GCC unroll 9
+    for (size_t block = k / 4; block < n / 4; ++block)
+      sums[block] += factors[k] * ((const dalembert_block *)(table + n * k))[block];
+#pragma GCC unroll 9
+  for (size_t block = 0; block < n / 4; ++block) ((dalembert_block *)out)[block] = sums[block];
+}
+#endif
 
 /* out[j] = sum over k <= j of factors[k] * table[n k + j], in this order; the table is zero for k > j. */
 DALEMBERT_CLONES void dalembert_triangular_sums(size_t n, const double *factors, const double *table, double *out) {
-  size_t from = 0;
 #if DALEMBERT_BLOCK == 4
-  for (; from + 4 <= n; from += 4) {
-    const double *column = table + from;
-    dalembert_block sums = {0.0};
-    for (size_t k = 0; k < from + 4; k += 4) {
-      sums += factors[k] * *(const dalembert_block *)column;
-      sums += factors[k + 1] * *(const dalembert_block *)(column + n);
-      sums += factors[k + 2] * *(const dalembert_block *)(column + 2 * n);
-      sums += factors[k + 3] * *(const dalembert_block *)(column + 3 * n);
-      column += 4 * n;
-    }
-    *(dalembert_block *)(out + from) = sums;
+  switch (n) {
+#define CASE(n) case n: sums_of(n, factors, table, out); return;
+    CASE(4) CASE(8) CASE(12) CASE(16) CASE(20) CASE(24) CASE(28) CASE(32) CASE(MOST)
+#undef CASE
   }
 #endif
-  for (; from < n; ++from) {
+  for (size_t j = 0; j < n; ++j) {
     double sum = 0.0;
-    for (size_t k = 0; k <= from; ++k) sum += factors[k] * table[n * k + from];
-    out[from] = sum;
+    for (size_t k = 0; k <= j; ++k) sum += factors[k] * table[n * k + j];
+    out[j] = sum;
   }
 }
