@@ -93,7 +93,8 @@ pub struct Accumulation {
     /// Where the first record begins, and how long one is.
     first: usize,
     stride: usize,
-    /// Number of coordinates and velocities, and of discrete states.
+    /// Absolute tolerances of coordinates and velocities; number of both, and of discrete states.
+    absolute: Box<[f64]>,
     width: usize,
     discretes: usize,
     count: usize,
@@ -109,14 +110,17 @@ impl Accumulation {
     /// many units in the last place as events are remembered.
     pub const HARDLY: f64 = Self::MEMORY as f64 * f64::EPSILON;
 
-    /// No events yet; `width` is the number of coordinates and velocities.
-    pub fn new(width: usize, discretes: usize) -> Self {
+    /// No events yet. Given are the absolute tolerances of coordinates and velocities, and the number of discrete
+    /// states.
+    pub fn new(absolute: Box<[f64]>, discretes: usize) -> Self {
+        let width = absolute.len();
         let stride = (STATE + width + discretes).next_multiple_of(LINE);
         let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
         Accumulation {
             first: records.as_ptr().align_offset(LINE * size_of::<f64>()) % LINE,
             records,
             stride,
+            absolute,
             width,
             discretes,
             count: 0,
@@ -211,18 +215,18 @@ impl Accumulation {
     }
 
     /// The limit, if the last events accumulate and what is left of the series moves no component
-    /// of the state by more than `tolerance(index, value)`; `relative` is the accuracy asked of
+    /// of the state by more than its tolerance; `relative` is the relative one, and the accuracy asked of
     /// the limit's time.
-    pub fn limit(&self, relative: f64, tolerance: impl Fn(usize, f64) -> f64) -> Option<Limit> {
+    pub fn limit(&self, relative: f64) -> Option<Limit> {
         let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
         if known == 0 {
             return None;
         }
         let is_short = self.is_short();
         // What repeats after p events repeats after a multiple of p, and leaves as much.
-        let single = (is_short || self.may_be_last(&tolerance)) && self.are_alike(0, 1);
+        let single = self.are_alike(0, 1) && (is_short || self.may_be_last(relative));
         // The last event of a pattern of several whose rest is negligible is within the tolerances of the one before.
-        let several = known > 1 && (is_short || self.changes_within((1.0, 1.0), &tolerance));
+        let several = known > 1 && (is_short || self.changes_within((1.0, 1.0), relative));
         if !single && !several {
             return None;
         }
@@ -230,7 +234,7 @@ impl Accumulation {
         let series = patterns
             .into_iter()
             .find_map(|p| self.series(p, relative))?;
-        let ends = self.is_negligible(&series, tolerance);
+        let ends = self.is_negligible(&series, relative);
         ends.then(|| self.end_of(&series))
     }
 
@@ -243,23 +247,21 @@ impl Accumulation {
     }
 
     /// Whether `part` of what the last event differs by from the one before is within `room` times the tolerances.
-    #[inline]
-    fn changes_within(
-        &self,
-        (part, room): (f64, f64),
-        tolerance: impl Fn(usize, f64) -> f64,
-    ) -> bool {
-        let mut pairs = self.state(0).iter().zip(self.state(1)).enumerate();
-        pairs.all(|(i, (now, before))| part * (now - before).abs() <= room * tolerance(i, *now))
+    #[inline(always)]
+    fn changes_within(&self, (part, room): (f64, f64), relative: f64) -> bool {
+        let pairs = self.state(0).iter().zip(self.state(1));
+        pairs.zip(&self.absolute).all(|((now, before), absolute)| {
+            part * (now - before).abs() <= room * (absolute + relative * now.abs())
+        })
     }
 
     /// Whether what is left of a pattern of one event, if it is one, may be negligible
     /// ([`Self::is_negligible`]): looked at first, since it seldom is.
     #[inline]
-    fn may_be_last(&self, tolerance: impl Fn(usize, f64) -> f64) -> bool {
+    fn may_be_last(&self, relative: f64) -> bool {
         let at = [0, 1, 2].map(|back| self.at(back));
         let [last, middle] = [at[0].since(at[1]), at[1].since(at[2])];
-        last < middle && self.changes_within((last, middle - last), tolerance)
+        last < middle && self.changes_within((last, middle - last), relative)
     }
 
     /// The geometric series of a pattern of `p` events, if its ratio has converged.
@@ -298,7 +300,7 @@ impl Accumulation {
     }
 
     /// Whether what is left of a series moves nothing by more than the tolerances.
-    fn is_negligible(&self, series: &Series, tolerance: impl Fn(usize, f64) -> f64) -> bool {
+    fn is_negligible(&self, series: &Series, relative: f64) -> bool {
         // Below one unit in the last place of t the series cannot advance the time any more.
         if series.remaining < series.limit.seconds().abs() * f64::EPSILON {
             return true;
@@ -310,7 +312,7 @@ impl Accumulation {
             // The largest departure within the pattern is seen between its events: bound it by
             // what the events of the last pattern differ by.
             let spread = (0..p).map(|k| (self.state(k)[i] - now[i]).abs());
-            spread.fold(change.abs(), f64::max) <= tolerance(i, now[i])
+            spread.fold(change.abs(), f64::max) <= self.absolute[i] + relative * now[i].abs()
         })
     }
 
@@ -381,12 +383,12 @@ mod tests {
 
     fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {
         let g = 9.81;
-        let mut accumulation = Accumulation::new(2, 0);
+        let mut accumulation = Accumulation::new([tolerance; 2].into(), 0);
         let mut t = Instant::new((2.0f64 / g).sqrt());
         let mut v = e * (2.0 * g).sqrt();
         for k in 0.. {
             push(&mut accumulation, 1, true, t, &[0.0, -v], &[0.0, v]);
-            if let Some(limit) = accumulation.limit(tolerance, |_, _| tolerance) {
+            if let Some(limit) = accumulation.limit(tolerance) {
                 return (k, limit);
             }
             t = t.plus(2.0 * v / g);
@@ -420,13 +422,13 @@ mod tests {
 
     #[test]
     fn alternating_hops_are_recognised_over_two() {
-        let mut accumulation = Accumulation::new(1, 0);
+        let mut accumulation = Accumulation::new([1e-9].into(), 0);
         let mut t = Instant::new(0.0);
         let (mut long, mut short) = (1.0, 0.3);
         let mut found = None;
         for k in 0..400 {
             push(&mut accumulation, k % 2, true, t, &[0.0], &[long]);
-            found = accumulation.limit(1e-12, |_, _| 1e-9);
+            found = accumulation.limit(1e-12);
             if found.is_some() {
                 break;
             }
@@ -446,14 +448,14 @@ mod tests {
     /// The rest no longer advances the time, though each hop moves the state.
     #[test]
     fn hops_too_short_for_the_time_end_whatever_they_move() {
-        let mut accumulation = Accumulation::new(1, 0);
+        let mut accumulation = Accumulation::new([1e-9].into(), 0);
         let (mut t, mut hop) = (Instant::new(0.0), 1.0);
         let found = (0..40).find_map(|k| {
             let now = if k % 2 == 0 { 1.0 } else { -1.0 };
             push(&mut accumulation, k % 2, true, t, &[-now], &[now]);
             t = t.plus(hop);
             hop *= if k % 2 == 0 { 0.3 } else { 1e-3 / 0.3 };
-            accumulation.limit(1e-12, |_, _| 1e-9)
+            accumulation.limit(1e-12)
         });
         let limit = found.expect("the time stands still");
         assert_eq!(limit.pattern, 2);
@@ -462,11 +464,11 @@ mod tests {
 
     #[test]
     fn regular_events_do_not_accumulate() {
-        let mut accumulation = Accumulation::new(1, 0);
+        let mut accumulation = Accumulation::new([1.0].into(), 0);
         for k in 0..100 {
             let (at, v) = (Instant::new(k as f64 * 1e-6), 1.0);
             push(&mut accumulation, 0, true, at, &[-v], &[v]);
-            assert!(accumulation.limit(1e-12, |_, _| 1.0).is_none());
+            assert!(accumulation.limit(1e-12).is_none());
             assert!(!accumulation.stands_still());
         }
     }
@@ -474,7 +476,7 @@ mod tests {
     #[test]
     fn events_between_which_nothing_moves_stand_still() {
         for (moved, stands) in [(2.0 * f64::EPSILON, true), (1e-12, false), (0.0, false)] {
-            let mut accumulation = Accumulation::new(1, 0);
+            let mut accumulation = Accumulation::new([1.0].into(), 0);
             for k in 0..Accumulation::MEMORY + 1 {
                 let (at, x) = (Instant::new(1.0 + k as f64 * 1e-15), 1.0 + k as f64 * moved);
                 push(&mut accumulation, 0, false, at, &[x], &[x]);

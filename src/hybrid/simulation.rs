@@ -143,6 +143,8 @@ impl<'p> Simulation<'p> {
             .every
             .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
         let record = &problem.record;
+        let accuracy = &problem.accuracy;
+        let absolute = [&accuracy.q_absolute[..], &accuracy.v_absolute].concat();
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
         Ok(Simulation {
             problem,
@@ -163,7 +165,7 @@ impl<'p> Simulation<'p> {
             signs: Signs::default(),
             doubts: Doubts::new(problem.variant.modes.len()),
             next: zeros(2 * n + model.discretes.len()),
-            accumulation: Accumulation::new(2 * n, model.discretes.len()),
+            accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
             visited: Visited::default(),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             recorder: Recorder::new(&layout, rows + 1),
@@ -393,17 +395,8 @@ impl<'p> Simulation<'p> {
     /// The mode and the limit of an accumulation that the last events make certain.
     pub fn rest(&self) -> Option<(usize, Limit)> {
         let accuracy = &self.problem.accuracy;
-        let n = self.here.q.len();
-        let tolerance = |i: usize, value: f64| {
-            let absolute = if i < n {
-                accuracy.q_absolute[i]
-            } else {
-                accuracy.v_absolute[i - n]
-            };
-            absolute + accuracy.relative * value.abs()
-        };
         let rest = self.plan.rest(self.mode())?;
-        let limit = self.accumulation.limit(accuracy.relative, tolerance)?;
+        let limit = self.accumulation.limit(accuracy.relative)?;
         (limit.at.seconds() < self.problem.end.time).then_some((rest, limit))
     }
 
