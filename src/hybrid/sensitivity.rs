@@ -1,14 +1,14 @@
 //! What errors of the motion do to a guard, and how near to zero it comes in a step.
 
 use super::equations::{Equations, free_of};
-use super::guards::{Conditions, motion, watched_value};
+use super::guards::{Conditions, motion, slope, watched_value};
 use super::locate::rate_at;
 use super::plan::Watched;
 use super::problem::Accuracy;
 use super::roots::minimum;
-use crate::integrate::{Motion, OneStep, State, System};
+use crate::integrate::{Motion, ORDERS, OneStep, State, System};
 use crate::kernel::Free;
-use crate::model::{Guard, Mode};
+use crate::model::{Guard, GuardShape, Mode};
 use nalgebra::SVector;
 
 /// Parts of a step among which its least value is looked for: a step is a period at most, in which a guard
@@ -89,17 +89,14 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     pub fn least<M: OneStep<F, Equations<'a, F>>>(&mut self, method: &mut M) -> Option<(f64, f64)> {
         let end = *method.state();
         let (start, dense) = (method.start(), dense_of(method));
-        let slope = |state, own: &mut Self| match own.watched.condition {
+        let rate = |state, own: &mut Self| match own.watched.condition {
             None => rate_at(own.equations, own.guard, state),
             Some(_) => f64::NAN,
         };
-        // A step of an implicit method is a fraction of a period mostly, in which a guard that falls at the end, or
-        // rises at the start, is least there; one of the Taylor method may be the whole of it.
-        if !M::EXPLICIT && slope(&end, self) <= 0.0 {
-            return Some((end.t, self.value(end.t, &end.q, &end.v)));
-        }
-        if !M::EXPLICIT && slope(start, self) >= 0.0 {
-            return None;
+        match self.rises_throughout(dense) {
+            Some(true) => return None,
+            Some(false) => return Some((end.t, self.value(end.t, &end.q, &end.v))),
+            None => {}
         }
         let length = end.t - start.t;
         let place = |k: usize| match k {
@@ -113,10 +110,10 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         });
         let least = (0..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
         // At an end its slope tells at once that it is least there.
-        if least == 0 && slope(start, self) >= 0.0 {
+        if least == 0 && rate(start, self) >= 0.0 {
             return None;
         }
-        if least == PARTS && slope(&end, self) <= 0.0 {
+        if least == PARTS && rate(&end, self) <= 0.0 {
             return Some((end.t, values[PARTS]));
         }
         let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
@@ -127,6 +124,32 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
             true => Some((end.t, values[PARTS])),
             false => None,
         }
+    }
+
+    /// Whether it rises in the whole of the last step, or falls: where the first coefficient of its slope outweighs
+    /// all others. `None`: it may turn, or is no multiple of a coordinate or its rate.
+    fn rises_throughout(&self, dense: &impl Motion<F>) -> Option<bool> {
+        let GuardShape::Linear {
+            index,
+            rate,
+            factor,
+            discrete,
+            ..
+        } = self.guard.shape
+        else {
+            return None;
+        };
+        if self.watched.condition.is_some() {
+            return None;
+        }
+        let factor = slope((factor, discrete), self.equations.context);
+        let mut room = [0.0; ORDERS];
+        let own = &mut room[1..dense.coefficients(rate)];
+        dense.polynomial((index, rate), factor, 1, own);
+        let (first, others) = own.split_first()?;
+        let others = others.iter().zip(2_u8..);
+        let others: f64 = others.map(|(c, k)| f64::from(k) * c.abs()).sum();
+        (first.abs() > others).then_some(*first > 0.0)
     }
 
     /// Its value on the dense output at local time `t`.
