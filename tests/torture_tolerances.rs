@@ -160,9 +160,9 @@ fn two_crossings_are_told_from_none() {
     }
 }
 
-/// The forced oscillator of case `case` (tests/data/07_grazing.json), which misses its stops, or hits
-/// them, by `excess` of their distance.
-fn grazing(case: &serde_json::Value, excess: f64, tolerance: f64) -> Problem {
+/// The forced oscillator of case `case` (tests/data/07_grazing.json), from a `phase` of its cosine, which misses
+/// its stops, or hits them, by `excess` of their distance.
+fn grazing(case: &serde_json::Value, phase: f64, excess: f64, tolerance: f64) -> Problem {
     let [omega, zeta, force, stop, lag] =
         ["omega", "zeta", "F_graz", "sigma", "phase_lag"].map(|key| number(&case[key]));
     let parameters = [
@@ -171,7 +171,12 @@ fn grazing(case: &serde_json::Value, excess: f64, tolerance: f64) -> Problem {
         ("kinetic_friction", 0.0),
         ("stop", stop),
     ];
-    let initial = [("x.rate", -omega * (1.0 + excess)), ("slip", -1.0)];
+    let (sin, cos) = phase.sin_cos();
+    let initial = [
+        ("x", stop * (1.0 + excess) * cos),
+        ("x.rate", -omega * stop * (1.0 + excess) * sin),
+        ("slip", -1.0),
+    ];
     let sizes = [stop, omega * stop];
     let mut problem = start(
         "coulomb_oscillator",
@@ -180,7 +185,7 @@ fn grazing(case: &serde_json::Value, excess: f64, tolerance: f64) -> Problem {
         sizes,
         tolerance,
     );
-    let shaking = Sine::new(force * (1.0 + excess), omega, lag + 2.0 * FRAC_PI_2);
+    let shaking = Sine::new(force * (1.0 + excess), omega, lag + phase + FRAC_PI_2);
     problem.set_input("force", shaking.into()).unwrap();
     problem.end.time = TAU / omega;
     problem
@@ -246,11 +251,13 @@ fn grazing_is_told_on_both_sides_or_said_to_be_uncertain() {
     };
     for case in cases {
         let name = format!("ω = {}", case["omega"]);
-        check(
-            &|excess, tolerance| grazing(case, excess, tolerance),
-            "impact",
-            &name,
-        );
+        for phase in [0.4, 1.0, FRAC_PI_2, 2.3, 3.0] {
+            check(
+                &|excess, tolerance| grazing(case, phase, excess, tolerance),
+                "impact",
+                &format!("{name} from {phase}"),
+            );
+        }
     }
     check(&swinging_up, "leave", "buffer");
     check(&pulling, "slip", "friction");

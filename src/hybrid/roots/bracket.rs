@@ -110,8 +110,8 @@ pub(super) fn lowest(f: &mut impl FnMut(f64) -> f64, near: Point, low: f64, high
 }
 
 /// Place and value of a minimum between `low` and `high`, by the golden section (Kiefer 1953). The place
-/// is known to half of a double's digits, which leaves of the value no error that counts: its error
-/// is of the order of the square.
+/// is known to half of the digits of a double, which leaves of the value no error that counts: its error
+/// is of the order of the square. In a window of few doubles it ends where none is left to divide it.
 pub(in crate::hybrid) fn minimum(
     f: &mut impl FnMut(f64) -> f64,
     (mut low, mut high): (f64, f64),
@@ -120,7 +120,7 @@ pub(in crate::hybrid) fn minimum(
     let width = (high - low) / f64::from(1_u32 << (f64::MANTISSA_DIGITS / 2));
     let (mut l, mut r) = (high - part * (high - low), low + part * (high - low));
     let (mut of_l, mut of_r) = (f(l), f(r));
-    while high - low > width {
+    while high - low > width && low < l && l < r && r < high {
         if of_l <= of_r {
             (high, r, of_r) = (r, l, of_l);
             l = high - part * (high - low);
@@ -179,6 +179,23 @@ mod tests {
         }
         let (x, _) = minimum(&mut |x: f64| -x, (0.0, 1.0));
         assert!(1.0 - x < 2e-8);
+    }
+
+    #[test]
+    fn a_minimum_is_found_in_a_window_of_few_doubles() {
+        for count in 0..200_u64 {
+            let low = 6.0_f64;
+            let high = f64::from_bits(low.to_bits() + count);
+            for least in 0..=count {
+                let place = f64::from_bits(low.to_bits() + least);
+                let (x, value) = minimum(&mut |x: f64| (x - place).abs(), (low, high));
+                assert!(low <= x && x <= high && value == (x - place).abs());
+                assert!(
+                    value <= 4.0 * f64::EPSILON * low,
+                    "{least} of {count}: {value:e}"
+                );
+            }
+        }
     }
 
     #[test]
