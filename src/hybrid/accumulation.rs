@@ -93,9 +93,9 @@ pub struct Accumulation {
     /// Where the first record begins, and how long one is.
     first: usize,
     stride: usize,
-    /// Absolute tolerances of coordinates and velocities; number of both, and of discrete states.
+    /// Absolute tolerances of coordinates and velocities.
     absolute: Box<[f64]>,
-    width: usize,
+    /// Number of discrete states.
     discretes: usize,
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
@@ -113,15 +113,13 @@ impl Accumulation {
     /// No events yet. Given are the absolute tolerances of coordinates and velocities, and the number of discrete
     /// states.
     pub fn new(absolute: Box<[f64]>, discretes: usize) -> Self {
-        let width = absolute.len();
-        let stride = (STATE + width + discretes).next_multiple_of(LINE);
+        let stride = (STATE + absolute.len() + discretes).next_multiple_of(LINE);
         let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
         Accumulation {
             first: records.as_ptr().align_offset(LINE * size_of::<f64>()) % LINE,
             records,
             stride,
             absolute,
-            width,
             discretes,
             count: 0,
             still: 0,
@@ -162,7 +160,7 @@ impl Accumulation {
         self.still = 0;
         self.count += 1;
         let start = self.start(0);
-        let record = &mut self.records[start..][..STATE + self.width + self.discretes];
+        let record = &mut self.records[start..][..STATE + self.absolute.len() + self.discretes];
         [record[TIME], record[TIME + 1]] = at.parts();
         record[KEY] = f64::from_bits(key);
         &mut record[STATE..]
@@ -197,11 +195,11 @@ impl Accumulation {
     }
 
     fn state(&self, back: usize) -> &[f64] {
-        &self.records[self.start(back) + STATE..][..self.width]
+        &self.records[self.start(back) + STATE..][..self.absolute.len()]
     }
 
     fn discrete(&self, back: usize) -> &[f64] {
-        &self.records[self.start(back) + STATE + self.width..][..self.discretes]
+        &self.records[self.start(back) + STATE + self.absolute.len()..][..self.discretes]
     }
 
     /// Whether two events are the same but for time and state.

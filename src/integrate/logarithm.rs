@@ -43,20 +43,14 @@ const RECIPROCALS: [u64; MOST + 1] = {
     table
 };
 
-/// 1/n.
-const INVERSES: [f64; MOST + 1] = {
-    let mut table = [0.0; MOST + 1];
-    let mut n = 1;
-    while n <= MOST {
-        table[n] = 1.0 / n as f64;
-        n += 1;
-    }
-    table
-};
-
 /// x^(−1/n) to 2 %: the length h with which x hⁿ is one. Infinite for x = 0. Where x is 2^(kn) times as
 /// large, it is 2^(−k) times as large to the bit: a step does not depend on the unit of time.
 pub(super) fn root(x: f64, n: usize) -> f64 {
+    root_given(x, n, 1.0 / n as f64)
+}
+
+/// The same, given 1/n too: what a step waits for has no division then.
+pub(super) fn root_given(x: f64, n: usize, inverse: f64) -> f64 {
     if x < f64::MIN_POSITIVE {
         return f64::INFINITY;
     }
@@ -66,7 +60,7 @@ pub(super) fn root(x: f64, n: usize) -> f64 {
     let quotient = ((exponent + lift) as u64 * RECIPROCALS[n]) >> 36;
     let rest = exponent + lift - quotient as i64 * n as i64;
     let power = f64::from_bits((1023 + 1024 - quotient) << 52);
-    power * inverse_power((rest as f64 + fraction) * INVERSES[n])
+    power * inverse_power((rest as f64 + fraction) * inverse)
 }
 
 #[cfg(test)]

@@ -190,6 +190,7 @@ mod tests {
                 let place = f64::from_bits(low.to_bits() + least);
                 let (x, value) = minimum(&mut |x: f64| (x - place).abs(), (low, high));
                 assert!(low <= x && x <= high && value == (x - place).abs());
+                // The last two places have no double on one of their sides: six are left at most.
                 assert!(
                     value <= 4.0 * f64::EPSILON * low,
                     "{least} of {count}: {value:e}"

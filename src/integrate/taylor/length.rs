@@ -1,6 +1,6 @@
 //! Order and length of a step.
 
-use super::super::logarithm::{binary_logarithm, natural_logarithm, root};
+use super::super::logarithm::{binary_logarithm, natural_logarithm, root, root_given};
 use super::super::stages;
 use super::series::{ORDERS, SeriesKind};
 
@@ -170,7 +170,8 @@ impl Terms {
         });
         let larger = |i: usize, j: usize| if logarithms[j] > logarithms[i] { j } else { i };
         let shortest = larger(larger(larger(0, 1), larger(2, 3)), 4);
-        self.factors[shortest] * root(sizes[shortest], self.powers[shortest])
+        let (power, inverse) = (self.powers[shortest], self.inverses[shortest]);
+        self.factors[shortest] * root_given(sizes[shortest], power, inverse)
     }
 }
 
