@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::Sine;
-use dalembert::record::Run;
+use dalembert::record::{Event, Run};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 const METHODS: [Method; 3] = [Method::Auto, Method::Radau, Method::Taylor];
@@ -235,6 +235,12 @@ fn grazing_is_told_on_both_sides_or_said_to_be_uncertain() {
                 let found = times(run, event).len();
                 let doubts = &run.uncertain;
                 let at = format!("{name}, {at}, by {part} tolerances: {found}, {doubts:?}");
+                // What crosses zero next to what all but does is not lost. While it is beyond the stop by less than
+                // a last place of its position, it goes no faster than √(2 · 7 m/s² · 1.1e-16 m).
+                let reversals = run.events.iter().filter(|e| e.transition == "reversal");
+                for Event { t, before, .. } in reversals {
+                    assert!(before.v[0].abs() <= 4e-8, "{at}: {:e} at {t}", before.v[0]);
+                }
                 if part.abs() >= 10.0 {
                     assert_eq!(found > 0, part > 0.0, "{at}");
                 }
@@ -251,7 +257,11 @@ fn grazing_is_told_on_both_sides_or_said_to_be_uncertain() {
     };
     for case in cases {
         let name = format!("ω = {}", case["omega"]);
-        for phase in [0.4, 1.0, FRAC_PI_2, 2.3, 3.0] {
+        // The largest excess is a tenth: from all of these it starts between the stops. With one of the last four
+        // a reversal next to a near miss was lost, a run went on in steps of a last place, a doubt was not told, one
+        // was told for nothing.
+        let phases = (0..60).map(|n| 0.4736 + f64::from(n) * 2.2 / 60.0);
+        for phase in phases.chain([1.0602333333333334, 2.1, 0.9389, 2.5174]) {
             check(
                 &|excess, tolerance| grazing(case, phase, excess, tolerance),
                 "impact",

@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::failure::Reason;
 use super::guards::{self, Conditions};
-use super::locate::{Landing, land};
+use super::locate::{Landing, land, land_later};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind, Search, Watch, earliest};
 use super::search::search;
@@ -67,6 +67,7 @@ pub(super) fn cut<'a, const F: usize>(
 ) -> Result<Cut, Reason> {
     let start = method.start().t;
     signs.from.fill(start);
+    let mut hides = false;
     loop {
         let dense = method.dense().expect("a step was made");
         let to = method.end();
@@ -87,6 +88,14 @@ pub(super) fn cut<'a, const F: usize>(
                 (watch, found),
             );
         });
+        if hides {
+            // They came to zero within rounding.
+            for ((found, &watch), &from) in found.iter_mut().zip(&*watches).zip(&*from) {
+                if watch == Watch::Armed && from > start {
+                    found.turn = found.turn.min(0.0);
+                }
+            }
+        }
         let Some(first) = hit
             .time
             .and_then(|_| found.iter().position(|f| f.crossing.is_some()))
@@ -110,20 +119,25 @@ pub(super) fn cut<'a, const F: usize>(
             from[first] = crossing.outside;
             continue;
         }
-        match land(method, equations, conditions, guard, crossing, landed)? {
+        let landing = match land(method, equations, conditions, guard, crossing, landed)? {
+            Landing::Short => {
+                let of = (crossing, to);
+                land_later(method, equations, conditions, guard, of, landed)?
+            }
+            landing => landing,
+        };
+        match landing {
             Landing::On { beyond } => {
                 return Ok(Cut::Event {
                     guard: index,
                     beyond,
                 });
             }
-            Landing::Short if method.end() == to => {
-                // The end point itself, more accurate than the dense output, is not across.
-                found[first] = Search::quiet(Watch::Armed);
-                *landed = *method.state();
-                return Ok(Cut::Nothing);
-            }
             Landing::Short => {}
+            Landing::Hidden => {
+                from[first] = method.end();
+                hides = true;
+            }
         }
     }
 }

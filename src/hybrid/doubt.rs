@@ -117,7 +117,7 @@ impl Doubts {
             }
             let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
             let (t, what, value) = match found.crossing {
-                Some(_) => (end.t, Question::Graze, guard.would_turn(method, found.turn)),
+                Some(_) => (end.t, Question::Graze, guard.would_turn(method, found)),
                 None if !armed => continue,
                 None => match guard.least(method) {
                     Some((t, value)) => (t, Question::NearMiss, value),
@@ -139,7 +139,7 @@ impl Doubts {
             }
             let doubt = guard.doubt(t, what, value, error);
             let at_end = what == Question::NearMiss && !inside;
-            let turns = !at_end || guard.would_turn(method, found.turn).abs() <= error;
+            let turns = !at_end || guard.would_turn(method, found).abs() <= error;
             if at_end {
                 let unless_it_falls = (!turns).then(|| doubt.clone());
                 self.left.push((guard.guard, unless_it_falls));

@@ -20,8 +20,11 @@ pub(super) enum Landing {
         /// Duration from the end of the step, s; may be negative.
         beyond: f64,
     },
-    /// The step was shortened, and now has no crossing at its end: search it again.
+    /// The step was shortened, and has no crossing at its end: search it again.
     Short,
+    /// The step ends where the dense output has the crossing, or later where that is within the rounding of the
+    /// start; the states up to there, more accurate, are not across.
+    Hidden,
 }
 
 /// A Taylor polynomial of second order over this fraction of a step is exact to rounding: what it
@@ -98,6 +101,52 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     }
 }
 
+/// Goes on from a `crossing` that [`land`] did not find in the step, which ended at `window` before.
+///
+/// Where a guard is zero at the start, and falls, but the motion does not move the state by as much as the guard's
+/// own value takes to see it, steps as short as the rounding of the start would go on for as long as that
+/// lasts: there the step is retaken in lengths that double until the guard is crossed, or no longer falls.
+#[cold]
+pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
+    equations: &mut Equations<'a, F>,
+    conditions: &mut Conditions,
+    guard: &Guard,
+    (crossing, window): (Crossing, f64),
+    landed: &mut State<F>,
+) -> Result<Landing, Reason> {
+    let start = method.start().t;
+    if crossing.outside > start.next_up() || matches!(crossing.kind, Kind::Touch | Kind::Jump) {
+        if method.end() > crossing.outside {
+            // Newton's method left a guard that turns near zero; others may cross on the way.
+            method.step_exactly(equations, crossing.outside - start)?;
+        }
+        return Ok(match method.end() < window {
+            true => Landing::Short,
+            false => Landing::Hidden,
+        });
+    }
+    // Up to here nothing was seen.
+    let mut length = TAYLOR * (window - start);
+    loop {
+        let tau = (start + length).clamp(start.next_up(), window);
+        method.step_exactly(equations, tau - start)?;
+        *landed = *method.state();
+        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(conditions, guard) {
+            accelerate(equations, landed);
+        }
+        let value = value_at(equations, conditions, guard, landed);
+        if value < 0.0 || !value.is_finite() {
+            return Ok(Landing::On { beyond: 0.0 });
+        }
+        let rises = !conditions.are_part_of(guard) && rate_at(equations, guard, landed) >= 0.0;
+        if value > 0.0 || rises || tau == window {
+            return Ok(Landing::Hidden);
+        }
+        length *= 2.0;
+    }
+}
+
 /// Moves a state by its Taylor polynomial.
 fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
     State {
@@ -111,8 +160,9 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// Writes the first state on the far side, from the end of the step on by about `correction`.
 ///
 /// The guard's own values decide. Its rounding may keep them at or above zero at the computed root: the
-/// move is lengthened by as much as that takes, doubled each time, until it is strictly crossed; after
-/// `smooth` the Taylor polynomial ends. What is tried first is the last place of the time in which the
+/// move is lengthened by as much as that takes, doubled each time, or by what Newton's method says where that is
+/// more, as with a guard that turns near zero, until it is strictly crossed; after `smooth` the Taylor polynomial
+/// ends. What is tried first is the last place of the time in which the
 /// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
 /// of all of that where the guard is no coordinate.
 fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
@@ -147,10 +197,14 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             }
             return Landing::On { beyond };
         }
-        if place > smooth {
+        let newton = match value > 0.0 && !conditions.are_part_of(guard) {
+            true => -value / rate_at(equations, guard, landed),
+            false => 0.0,
+        };
+        beyond += place.max(newton);
+        if beyond > smooth {
             return Landing::Short;
         }
-        beyond += place;
         place *= 2.0;
     }
 }

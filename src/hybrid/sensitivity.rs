@@ -5,7 +5,7 @@ use super::guards::{Conditions, motion, slope, watched_value};
 use super::locate::rate_at;
 use super::plan::Watched;
 use super::problem::Accuracy;
-use super::roots::minimum;
+use super::roots::{Search, minimum};
 use crate::integrate::{Motion, ORDERS, OneStep, State, System};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
@@ -206,12 +206,13 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     pub fn would_turn(
         &mut self,
         method: &mut impl OneStep<F, Equations<'a, F>>,
-        found: f64,
+        found: &Search,
     ) -> f64 {
         let end = *method.state();
         let start = method.start();
-        if self.watched.condition.is_some() || found == 0.0 {
-            return found;
+        let touches = found.crossing.is_some() && found.turn == 0.0;
+        if self.watched.condition.is_some() || touches {
+            return found.turn;
         }
         let before = end.t - (end.t - start.t) / PARTS as f64;
         let [q, v, a] = motion(self.equations, dense_of(method), before, true);
