@@ -237,13 +237,9 @@ class ModeEquations:
         return ca.substitute(total, self.j, ca.SX.zeros(len(self.free)))
 
     def magnitude(self):
-        """Per equation: number of terms × sum of their absolute values at given accelerations.
-
-        Times machine epsilon it bounds the rounding error of the residual (Higham 2002, §4.2).
-        """
-        rows = []
-        for row in ca.vertsplit(self.r) if self.free else []:
-            rows.append(len(graph.additive_terms(row)) * graph.magnitude(row))
+        """Per equation: what, times the unit roundoff, bounds the rounding error of the residual at given
+        accelerations."""
+        rows = [graph.rounding(row) for row in ca.vertsplit(self.r)] if self.free else []
         return ca.vertcat(*rows) if rows else ca.SX(0, 1)
 
     def energies(self):

@@ -4,6 +4,11 @@ import random
 
 import casadi as ca
 
+# Operations over which the terms of their operands distribute, and of how many operands.
+_DISTRIBUTES = {
+    ca.OP_ADD: 2, ca.OP_SUB: 2, ca.OP_MUL: 2, ca.OP_DIV: 1, ca.OP_NEG: 1, ca.OP_SQ: 1, ca.OP_TWICE: 1,
+}
+
 _NON_SMOOTH = {
     getattr(ca, "OP_" + name): text
     for name, text in (
@@ -56,8 +61,47 @@ def additive_terms(expression):
 
 
 def magnitude(expression):
-    """Sum of the absolute values of the terms of a scalar sum."""
-    return sum((ca.fabs(term) for term in additive_terms(expression)), ca.SX(0))
+    """Sum of the absolute values of the terms of a scalar expression, its products of sums multiplied out."""
+    return _terms(expression)[1]
+
+
+def rounding(expression):
+    """What, times the unit roundoff, bounds the rounding error of a scalar expression: number of terms × sum of their
+    absolute values, its products of sums multiplied out (running error, Higham 2002, §3.3 and §4.2)."""
+    count, size = _terms(expression)
+    return count * size
+
+
+def _terms(expression):
+    """Number of terms, and the sum of their absolute values. Terms of a product: those of its factors."""
+    known, stack = {}, [expression]
+    while stack:
+        node = stack[-1]
+        op = None if node.is_constant() or node.is_symbolic() else node.op()
+        parts = [node.dep(k) for k in range(_DISTRIBUTES.get(op, 0))]
+        unknown = [part for part in parts if part.element_hash() not in known]
+        if unknown:
+            stack += unknown
+            continue
+        counts, sizes = zip(*(known[part.element_hash()][1:] for part in parts)) if parts else ((), ())
+        if op in (ca.OP_ADD, ca.OP_SUB):
+            size = sizes[0] + sizes[1]
+        elif op == ca.OP_MUL:
+            size = sizes[0] * sizes[1]
+        elif op == ca.OP_DIV:
+            size = sizes[0] / ca.fabs(node.dep(1))
+        elif op == ca.OP_SQ:
+            size = sizes[0] * sizes[0]
+        elif op == ca.OP_TWICE:
+            size = 2 * sizes[0]
+        elif op == ca.OP_NEG:
+            size = sizes[0]
+        else:
+            size = ca.fabs(node)
+        # The node is kept, so that no other takes its hash.
+        known[node.element_hash()] = node, sum(counts) or int(not node.is_zero()), size
+        stack.pop()
+    return known[expression.element_hash()][1:]
 
 
 def without_idle(column, symbols, discretes):

@@ -1,0 +1,52 @@
+"""Bounds of rounding errors hold where the terms of factors cancel, too."""
+
+import random
+import sys
+import unittest
+from fractions import Fraction
+
+import casadi as ca
+
+from codegen import graph
+
+x, y, z = (ca.SX.sym(name) for name in "xyz")
+
+EXPRESSIONS = (
+    x - y, z * (x - y), (x - y) * (z - x), -2 * (x - y) ** 2, (x - y) / z, z * (x - y + 1) - z, (z * (x - y)) * x - y * (x - z),
+)
+
+
+def exactly(expression, values):
+    """The value of an expression of + − × ÷ without rounding."""
+    if expression.is_symbolic():
+        return Fraction(values[expression.name()])
+    if expression.is_constant():
+        return Fraction(float(expression))
+    parts = [exactly(expression.dep(k), values) for k in range(expression.n_dep())]
+    operations = {
+        ca.OP_ADD: lambda a, b: a + b, ca.OP_SUB: lambda a, b: a - b, ca.OP_MUL: lambda a, b: a * b,
+        ca.OP_DIV: lambda a, b: a / b, ca.OP_NEG: lambda a: -a, ca.OP_SQ: lambda a: a * a, ca.OP_TWICE: lambda a: 2 * a,
+    }
+    return operations[expression.op()](*parts)
+
+
+class Rounding(unittest.TestCase):
+    def test_terms_of_factors_count(self):
+        size = ca.Function("size", [x, y, z], [graph.magnitude(z * (x - y)), graph.rounding(z * (x - y))])
+        self.assertEqual([float(v) for v in size(3, 3, -2)], [12, 36])
+
+    def test_no_error_is_larger(self):
+        draw = random.Random(1)
+        for expression in EXPRESSIONS:
+            function = ca.Function("value", [x, y, z], [expression, graph.rounding(expression)])
+            for _ in range(300):
+                first = draw.uniform(1, 2)
+                # Cancels to a few last places.
+                at = [first, first * (1 + draw.choice((0, 1e-15, 1e-8, 0.1))), draw.uniform(1, 2)]
+                value, bound = (float(v) for v in function(*at))
+                error = abs(Fraction(value) - exactly(expression, dict(zip("xyz", at))))
+                self.assertLessEqual(error, bound * sys.float_info.epsilon / 2, f"{expression} at {at}")
+
+
+if __name__ == "__main__":
+    unittest.main()
