@@ -80,7 +80,7 @@ _CONTEXT = (f"struct dalembert_context {{ const real {', '.join(f'*{name}' for n
 KEPT_ANGLES = 4
 """Angles whose sine and cosine a context keeps. A function may have more."""
 
-_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "=="}
+_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "==", ca.OP_LT: "<"}
 # Functions of the C library, whose last bits may differ between systems; sine and cosine are not
 # among them (see `sin_cos`), and sqrt, fabs and fmax are exact by IEEE 754.
 _CALLS = {

@@ -10,10 +10,10 @@ use proptest::test_runner::RngSeed;
 use std::f64::consts::TAU;
 
 /// The cases are the same in every run: a suite must not fail by chance.
-fn config(cases: u32) -> ProptestConfig {
+fn config(cases: u32, seed: u64) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,
-        rng_seed: RngSeed::Fixed(1),
+        rng_seed: RngSeed::Fixed(seed),
         ..ProptestConfig::with_cases(cases)
     }
 }
@@ -198,8 +198,11 @@ fn check(problem: &Problem, slips: Option<&str>) {
     }
 }
 
+// Of the seeds 200 to 420, those with which something was wrong before: a block did not know whether it lifted off,
+// since its acceleration was rounding; the slip of a tank stopped at a landing that turns it round.
+
 proptest! {
-    #![proptest_config(config(1000))]
+    #![proptest_config(config(1000, 308))]
 
     #[test]
     fn a_ball_bounces(e in 0.0..1.0_f64, g in 0.1..100.0_f64, h in 0.0..2.0_f64, v in -5.0..5.0_f64) {
@@ -228,7 +231,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(300))]
+    #![proptest_config(config(300, 214))]
 
     #[test]
     fn a_tank_walks(

@@ -193,6 +193,10 @@ for stands, rocks, conserved in (
             before=[], after=[(side, -side)], prescribed=[(theta, rate_after)], conserve=conserved)
     else:
         others = [(theta.rate, rate_after)]
+    if landing == "momenta" and rocks is rocks_slides:
+        # The horizontal momentum that rocking gives up may turn the slip round.
+        _, x_rate_after = others[-1]
+        others.append((slip, slip * (1 - 2 * (slip * x_rate_after < 0))))
     model.transition("landing", rocks, rocks, when=falls(theta), impact=True, reset=[(theta, 0), (side, -side)] + others)
     model.rest(rocks, stands)
 
