@@ -103,6 +103,12 @@ pub(super) fn cut<'a, const F: usize>(
             *landed = *method.state();
             return Ok(Cut::Nothing);
         };
+        if from[first] >= to {
+            // It was left out up to the end before: nothing is left to search.
+            found[first] = Search::quiet(watches[first]);
+            *landed = *method.state();
+            return Ok(Cut::Nothing);
+        }
         let crossing = found[first].crossing.expect("it was found by it");
         let index = watched[first].guard;
         let guard = &mode.guards[index];
@@ -135,6 +141,8 @@ pub(super) fn cut<'a, const F: usize>(
             }
             Landing::Short => {}
             Landing::Hidden => {
+                // Also where it was dormant: so it is not found again at the end of the step.
+                watches[first] = Watch::Armed;
                 from[first] = method.end();
                 hides = true;
             }
