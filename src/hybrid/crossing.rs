@@ -77,14 +77,17 @@ pub(super) fn cut<'a, const F: usize>(
             from,
         } = signs;
         let hit = earliest(start, to, watches, found, |i, _, to, watch, found| {
+            if from[i] >= to {
+                *found = Search::quiet(watch);
+                return;
+            }
             let guard = &mode.guards[watched[i].guard];
-            let window = (from[i].min(to), to);
             search(
                 equations,
                 conditions,
                 dense,
                 (guard, watched[i]),
-                window,
+                (from[i], to),
                 (watch, found),
             );
         });
@@ -103,12 +106,6 @@ pub(super) fn cut<'a, const F: usize>(
             *landed = *method.state();
             return Ok(Cut::Nothing);
         };
-        if from[first] >= to {
-            // It was left out up to the end before: nothing is left to search.
-            found[first] = Search::quiet(watches[first]);
-            *landed = *method.state();
-            return Ok(Cut::Nothing);
-        }
         let crossing = found[first].crossing.expect("it was found by it");
         let index = watched[first].guard;
         let guard = &mode.guards[index];
@@ -141,7 +138,7 @@ pub(super) fn cut<'a, const F: usize>(
             }
             Landing::Short => {}
             Landing::Hidden => {
-                // Also where it was dormant: so it is not found again at the end of the step.
+                // Also where it was dormant.
                 watches[first] = Watch::Armed;
                 from[first] = method.end();
                 hides = true;
