@@ -9,7 +9,7 @@ use super::roots::{Crossing, Kind, Search, Watch, earliest};
 use super::search::search;
 use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
-use crate::model::Mode;
+use crate::model::{Guard, Mode};
 
 /// Remembered signs of what is watched in a mode.
 #[derive(Debug, Default)]
@@ -108,13 +108,13 @@ pub(super) fn cut<'a, const F: usize>(
         };
         let crossing = found[first].crossing.expect("it was found by it");
         let index = watched[first].guard;
-        let guard = &mode.guards[index];
-        if crossing.kind == Kind::LeavesNegative && start == 0.0 && !conditions.are_part_of(guard) {
+        let guard = (&mode.guards[index], watched[first]);
+        if crossing.kind == Kind::LeavesNegative && start == 0.0 && !watched[first].conditional {
             *landed = *method.start();
             return Ok(Cut::Violated { guard: index });
         }
         let is_event = crossing.kind != Kind::Pole
-            && (!conditions.are_part_of(guard)
+            && (!watched[first].conditional
                 || both_violated(equations, conditions, dense, guard, crossing));
         if !is_event {
             // The sign changes, but not through zero, or guard and condition are not both violated.
@@ -152,7 +152,7 @@ fn both_violated<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
-    guard: &crate::model::Guard,
+    guard: (&Guard, Watched),
     crossing: Crossing,
 ) -> bool {
     let [q, v, a] = guards::motion(equations, dense, crossing.outside, true);

@@ -24,6 +24,8 @@ use crate::record::{Doubt, Question, Uncertain};
 pub(super) struct Doubts {
     /// Number of steps so far.
     steps: u64,
+    /// [`Doubts::tolerances`] at the next power of two of steps, which is more.
+    most_tolerances: f64,
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
     errors: Vec<Vec<f64>>,
@@ -72,7 +74,10 @@ impl Doubts {
         conditions: &mut Conditions,
     ) {
         self.steps += 1;
-        let within = self.tolerances() + method.looseness();
+        if self.steps.is_power_of_two() {
+            self.most_tolerances = tolerances(2 * self.steps);
+        }
+        let within = self.most_tolerances + method.looseness();
         let errors = &self.errors[step.index];
         let certain =
             |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * within);
@@ -91,7 +96,7 @@ impl Doubts {
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
-        let tolerances = self.tolerances();
+        let tolerances = tolerances(self.steps);
         let within = tolerances + method.looseness();
         if self.errors[step.index].len() != step.found.len() {
             let start = method.start();
@@ -165,15 +170,15 @@ impl Doubts {
         }
     }
 
-    /// Error of every coordinate and rate, in units of its tolerance.
-    fn tolerances(&self) -> f64 {
-        1.0 + (self.steps as f64).sqrt()
-    }
-
     /// Takes note of a transition: what its guard fell to has happened.
     pub fn happened(&mut self, guard: &'static Guard) {
         self.left.retain(|(other, _)| other.name != guard.name);
     }
+}
+
+/// Error of every coordinate and rate after so many steps, in units of its tolerance.
+fn tolerances(steps: u64) -> f64 {
+    1.0 + (steps as f64).sqrt()
 }
 
 /// Whether a guard turns, or would have turned, within `error` of zero.

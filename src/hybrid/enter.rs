@@ -16,9 +16,8 @@ const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 impl Simulation<'_> {
     /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.
     pub fn scale<const F: usize>(&self) -> SVector<f64, F> {
-        let accuracy = &self.problem.accuracy;
         let free = self.mode().free;
-        SVector::from_fn(|i, _| accuracy.q_absolute[free[i]] / accuracy.relative)
+        SVector::from_fn(|i, _| self.sizes[free[i]])
     }
 
     /// Enters the present mode: sets accelerations and remembered signs, and gives the first guard
@@ -56,7 +55,7 @@ impl Simulation<'_> {
                 plan: &self.plan,
                 next: &mut self.next,
             };
-            let conditional = conditions.are_part_of(guard);
+            let conditional = watched.conditional;
             let at = Free {
                 q: &q,
                 v: &v,
@@ -73,7 +72,8 @@ impl Simulation<'_> {
             let mut watch = Watch::of(own);
             let violated = match watched.condition {
                 None if conditional => {
-                    value(kernel, &mut self.context, &mut conditions, guard, at) < 0.0
+                    let of = (guard, watched);
+                    value(kernel, &mut self.context, &mut conditions, of, at) < 0.0
                 }
                 None => watch == Watch::Violated,
                 // The guard's own entry has decided about its conditions, too.
@@ -120,7 +120,7 @@ impl Simulation<'_> {
         v: SVector<f64, F>,
     ) -> Result<Option<[SVector<f64, F>; 3]>, Reason> {
         let mode = self.mode();
-        if mode.drifts.contains(&true)
+        if self.plan.drifts[self.here.mode]
             || self
                 .check_inertia(&kernel.inertia(&self.context, &q, &v))
                 .is_err()
@@ -166,13 +166,15 @@ impl Simulation<'_> {
         Ok(Some([q, v, a]))
     }
 
-    /// The symmetric part of the mass matrix must be positive definite (Cholesky).
+    /// The symmetric part of the mass matrix must be positive definite: its factors L D Lᵀ have positive pivots D.
     fn check_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Result<(), Reason> {
+        // L D below the diagonal, D on it.
         let mut lower = SMatrix::<f64, F, F>::zeros();
         for i in 0..F {
             for j in 0..=i {
                 let symmetric = 0.5 * (inertia[(i, j)] + inertia[(j, i)]);
-                let rest = symmetric - (0..j).map(|k| lower[(i, k)] * lower[(j, k)]).sum::<f64>();
+                let product = |k| lower[(i, k)] * (lower[(j, k)] / lower[(k, k)]);
+                let rest = symmetric - (0..j).map(product).sum::<f64>();
                 if i == j {
                     // A pivot within the rounding of its own sum is not told from zero.
                     let rounding = (F + 1) as f64 * ROUNDOFF * symmetric.abs();
@@ -185,10 +187,8 @@ impl Simulation<'_> {
                             pivot: rest,
                         });
                     }
-                    lower[(i, i)] = rest.sqrt();
-                } else {
-                    lower[(i, j)] = rest / lower[(j, j)];
                 }
+                lower[(i, j)] = rest;
             }
         }
         Ok(())

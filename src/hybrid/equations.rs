@@ -108,8 +108,8 @@ impl<'a, const F: usize> Equations<'a, F> {
         clock: Clock<'a>,
         tolerance: f64,
         scale: SVector<f64, F>,
+        foresees: bool,
     ) -> Self {
-        let foresees = context.can_foresee(clock.signals);
         Equations {
             kernel,
             context,

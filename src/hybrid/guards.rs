@@ -17,20 +17,6 @@ pub(super) struct Conditions<'a> {
 }
 
 impl Conditions<'_> {
-    /// Whether all transitions that the guard may trigger are conditional, so that guard and
-    /// conditions are watched together.
-    pub fn are_part_of(&self, guard: &Guard) -> bool {
-        self.admissible(guard).all(|t| t.conditional)
-    }
-
-    /// The transitions of a guard whose targets the scene may visit.
-    pub fn admissible<'g>(&self, guard: &'g Guard) -> impl Iterator<Item = &'g Transition> {
-        guard
-            .transitions
-            .iter()
-            .filter(|t| self.plan.allowed[t.target])
-    }
-
     /// The conditions of a transition out of the present mode, evaluated in its target after the
     /// reset, reduced by `reduce`. `next` holds the reset afterwards.
     fn reduced<const F: usize>(
@@ -125,11 +111,11 @@ pub(super) fn value<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &mut Context,
     conditions: &mut Conditions,
-    guard: &Guard,
+    (guard, watched): (&Guard, Watched),
     at: Free<F>,
 ) -> f64 {
     let value = kernel.guard(context, &guard.kernel, at);
-    if value >= 0.0 || !conditions.are_part_of(guard) {
+    if value >= 0.0 || !watched.conditional {
         return value;
     }
     let mut best = f64::NEG_INFINITY;

@@ -8,6 +8,7 @@
 use super::equations::{Equations, free_of};
 use super::failure::Reason;
 use super::guards::{self, Conditions};
+use super::plan::Watched;
 use super::roots::{Crossing, Kind};
 use crate::integrate::{OneStep, State, System};
 use crate::model::{Guard, GuardShape};
@@ -36,7 +37,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
-    guard: &Guard,
+    guard: (&Guard, Watched),
     crossing: Crossing,
     landed: &mut State<F>,
 ) -> Result<Landing, Reason> {
@@ -51,7 +52,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         }
         let mut accelerated;
         let mut end = method.state();
-        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(conditions, guard) {
+        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(guard) {
             accelerated = *end;
             accelerate(equations, &mut accelerated);
             end = &accelerated;
@@ -65,7 +66,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 false => Landing::Short,
             });
         }
-        if conditions.are_part_of(guard) {
+        if guard.1.conditional {
             // Guard and condition together have no slope of their own.
             *landed = *end;
             return Ok(match value < 0.0 {
@@ -76,7 +77,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 }
             });
         }
-        let rate = rate_at(equations, guard, end);
+        let rate = rate_at(equations, guard.0, end);
         let correction = -value / rate;
         if rate.is_nan() || rate >= 0.0 || end.t + correction > window {
             // No fall here: either the shortened step has its crossing earlier, or none at all.
@@ -111,7 +112,7 @@ pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
-    guard: &Guard,
+    guard: (&Guard, Watched),
     (crossing, window): (Crossing, f64),
     landed: &mut State<F>,
 ) -> Result<Landing, Reason> {
@@ -132,14 +133,14 @@ pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let tau = (start + length).clamp(start.next_up(), window);
         method.step_exactly(equations, tau - start)?;
         *landed = *method.state();
-        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(conditions, guard) {
+        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(guard) {
             accelerate(equations, landed);
         }
         let value = value_at(equations, conditions, guard, landed);
         if value < 0.0 || !value.is_finite() {
             return Ok(Landing::On { beyond: 0.0 });
         }
-        let rises = !conditions.are_part_of(guard) && rate_at(equations, guard, landed) >= 0.0;
+        let rises = !guard.1.conditional && rate_at(equations, guard.0, landed) >= 0.0;
         if value > 0.0 || rises || tau == window {
             return Ok(Landing::Hidden);
         }
@@ -168,15 +169,15 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
-    guard: &Guard,
+    guard: (&Guard, Watched),
     (end, correction): (&State<F>, f64),
     step: (f64, f64),
     landed: &mut State<F>,
 ) -> Landing {
-    let of_accelerations = depends_on_accelerations(conditions, guard);
+    let of_accelerations = depends_on_accelerations(guard);
     let smooth = TAYLOR * (step.1 - step.0);
     let elapsed = end.t - step.0;
-    let own_size = match guard.shape {
+    let own_size = match guard.0.shape {
         GuardShape::Linear { index, rate, .. } if rate => (end.v[index] / end.a[index]).abs(),
         GuardShape::Linear { index, .. } => (end.q[index] / end.v[index]).abs(),
         GuardShape::General { .. } => elapsed,
@@ -197,8 +198,8 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             }
             return Landing::On { beyond };
         }
-        let newton = match value > 0.0 && !conditions.are_part_of(guard) {
-            true => -value / rate_at(equations, guard, landed),
+        let newton = match value > 0.0 && !guard.1.conditional {
+            true => -value / rate_at(equations, guard.0, landed),
             false => 0.0,
         };
         beyond += place.max(newton);
@@ -210,8 +211,8 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 }
 
 /// Whether the value of a guard, or of a condition that it is watched with, depends on accelerations.
-fn depends_on_accelerations(conditions: &Conditions, guard: &Guard) -> bool {
-    conditions.are_part_of(guard)
+fn depends_on_accelerations((guard, watched): (&Guard, Watched)) -> bool {
+    watched.conditional
         || matches!(
             guard.shape,
             GuardShape::General {
@@ -235,7 +236,7 @@ fn accelerate<const F: usize>(equations: &mut Equations<F>, state: &mut State<F>
 fn value_at<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
-    guard: &Guard,
+    guard: (&Guard, Watched),
     state: &State<F>,
 ) -> f64 {
     equations.at(state.t);

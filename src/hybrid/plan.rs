@@ -9,6 +9,8 @@ use crate::model::{Guard, Mode};
 pub(super) struct Plan {
     /// Per mode: whether the scene may visit it.
     pub allowed: Vec<bool>,
+    /// Per mode: whether some frozen coordinate drifts.
+    pub drifts: Vec<bool>,
     /// Per mode: what is watched.
     pub watched: Vec<Vec<Watched>>,
 }
@@ -24,6 +26,9 @@ pub(super) struct Watched {
     pub guard: usize,
     /// A condition, `(transition, component)`, whose negative is watched instead of the guard.
     pub condition: Option<(usize, usize)>,
+    /// Whether all transitions that the guard may trigger are conditional, so that guard and conditions are watched
+    /// together.
+    pub conditional: bool,
 }
 
 impl Plan {
@@ -48,7 +53,11 @@ impl Plan {
                     .collect()
             })
             .collect();
-        Ok(Plan { allowed, watched })
+        Ok(Plan {
+            allowed,
+            drifts: modes.iter().map(|m| m.drifts.contains(&true)).collect(),
+            watched,
+        })
     }
 
     /// The rest mode of `mode`, if the scene may visit it.
@@ -63,16 +72,19 @@ fn watched(guard: usize, model: &Guard, allowed: &[bool]) -> Vec<Watched> {
     if transitions().next().is_none() {
         return Vec::new();
     }
+    let conditional = transitions().all(|(_, t)| t.conditional);
     let mut all = vec![Watched {
         guard,
         condition: None,
+        conditional,
     }];
-    if transitions().all(|(_, t)| t.conditional) {
+    if conditional {
         all.extend(transitions().flat_map(|(t, transition)| {
             let components = 0..transition.kernel.conditions();
             components.map(move |c| Watched {
                 guard,
                 condition: Some((t, c)),
+                conditional,
             })
         }));
     }

@@ -25,7 +25,7 @@ pub(super) fn search<const F: usize>(
         _ => {
             // A guard that acts together with conditions is judged by its own values where one of
             // them changes its sign; its series has its roots elsewhere, by the tolerance.
-            if !conditions.are_part_of(guard)
+            if !watched.conditional
                 && search_series(
                     equations,
                     dense,
@@ -44,7 +44,7 @@ pub(super) fn search<const F: usize>(
                 }
             );
             // Conditions may depend on more of the inputs than the equations of motion do.
-            let own = watched.condition.is_none() && !conditions.are_part_of(guard);
+            let own = watched.condition.is_none() && !watched.conditional;
             if own {
                 equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
             }

@@ -28,8 +28,6 @@ struct Stay<const F: usize> {
     scale: SVector<f64, F>,
     /// Whether some frozen coordinate drifts.
     drifts: bool,
-    /// Until when the inputs are smooth, or the run lasts, s.
-    last: f64,
     /// Whether the method follows from what is seen of the stiffness.
     chooses: bool,
     /// Whether something is evaluated at the end of every step with the inputs there; the explicit method
@@ -54,9 +52,11 @@ impl Simulation<'_> {
         };
         match stages(problem.accuracy.relative) {
             _ if explicit && kernel.is_analytic() => {
-                let kind = kernel.series_kind(&self.context);
-                let make = || Taylor::new(&tolerances(problem, mode), kind);
-                let method = self.solvers.take(self.here.mode, make);
+                let make = || {
+                    let kind = kernel.series_kind(&self.context);
+                    Taylor::new(&tolerances(problem, mode), kind)
+                };
+                let method = self.solvers.take(self.here.mode, true, make);
                 self.integrate(kernel, method, stays, progress)
             }
             5 => self.by_radau::<5, F>(kernel, stays, progress),
@@ -75,7 +75,7 @@ impl Simulation<'_> {
     {
         let (problem, mode) = (self.problem, self.mode());
         let make = || Radau::<S, F>::new(&tolerances(problem, mode));
-        let method = self.solvers.take(self.here.mode, make);
+        let method = self.solvers.take(self.here.mode, false, make);
         self.integrate(kernel, method, stays, progress)
     }
 
@@ -90,13 +90,14 @@ impl Simulation<'_> {
         M: for<'a> OneStep<F, Equations<'a, F>> + 'static,
     {
         let mode = self.here.mode;
+        let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
         let stop = self.stay(kernel, &mut *method, stays, progress);
         self.count(&OneStep::<F, Equations<F>>::take_counters(&mut *method));
         let name = OneStep::<F, Equations<F>>::name(&*method);
         if !self.methods.contains(&name) {
             self.methods.push(name);
         }
-        self.solvers.keep(mode, method);
+        self.solvers.keep(mode, is_explicit, method);
         stop
     }
 
@@ -114,13 +115,12 @@ impl Simulation<'_> {
     {
         let (problem, mode) = (self.problem, self.mode());
         let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
-        let drifts = mode.drifts.contains(&true);
-        let mut stay = Stay {
+        let drifts = self.plan.drifts[self.here.mode];
+        let stay = Stay {
             kernel,
             mode,
             scale: self.scale(),
             drifts,
-            last: f64::NEG_INFINITY,
             chooses: problem.method == Method::Auto && kernel.is_analytic(),
             looks_at_ends: is_explicit
                 || drifts
@@ -133,9 +133,9 @@ impl Simulation<'_> {
         method.restart(0.0, &q, &v, &a);
         loop {
             let now = self.here.now.seconds();
-            if now >= stay.last {
+            if now >= self.smooth_until {
                 let breakpoint = problem.signals.next_breakpoint(now);
-                stay.last = breakpoint.min(problem.end.time);
+                self.smooth_until = breakpoint.min(problem.end.time);
             }
             match self.follow(&stay, method, progress)? {
                 Stop::Event(guard) if stays => match self.fire_and_stay(kernel, guard)? {
@@ -161,14 +161,13 @@ impl Simulation<'_> {
             kernel,
             mode,
             drifts,
-            last,
             chooses,
             looks_at_ends,
             ..
         } = stay;
         let problem = self.problem;
         let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
-        let start = self.here.now;
+        let (start, last) = (self.here.now, self.smooth_until);
         let until = Instant::new(last).since(start);
         if drifts {
             self.at_start.copy_from_slice(&self.here.q);
@@ -186,6 +185,7 @@ impl Simulation<'_> {
             clock,
             problem.accuracy.relative,
             stay.scale,
+            self.foresees,
         );
         let watched = &self.plan.watched[self.here.mode];
         let mut conditions = Conditions {

@@ -230,7 +230,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     /// Whether its fall would be an event where the last step is at local time `t`: one that acts
     /// together with conditions needs the other part.
     pub fn matters(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> bool {
-        if !self.conditions.are_part_of(self.guard) {
+        if !self.watched.conditional {
             return true;
         }
         let [q, v, a] = motion(self.equations, dense_of(method), t, true);

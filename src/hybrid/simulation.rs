@@ -118,6 +118,12 @@ pub(super) struct Simulation<'p> {
     pub solvers: Solvers,
     /// What was seen of the stiffness of each mode.
     pub stiffness: Box<[Stiffness]>,
+    /// Until when the inputs are smooth, or the run lasts, s; −∞ where it must be found out.
+    pub smooth_until: f64,
+    /// Whether signals can be computed ahead.
+    pub foresees: bool,
+    /// Typical sizes of all coordinates: absolute ÷ relative tolerance.
+    pub sizes: Box<[f64]>,
     /// Name and order of every method that was used.
     pub methods: Vec<(&'static str, usize)>,
     /// Index of the next sample of the grid.
@@ -136,6 +142,7 @@ impl<'p> Simulation<'p> {
             .discrete_mut()
             .copy_from_slice(&problem.initial.discrete);
         context.quiet = problem.signals.is_zero();
+        let foresees = context.can_foresee(&problem.signals);
         let n = model.coordinates.len();
         let layout = Layout::new(model, problem.variant, problem.record.columns);
         let rows = problem
@@ -173,8 +180,13 @@ impl<'p> Simulation<'p> {
             jumps: Vec::new(),
             states_at_jumps: Vec::new(),
             solver: Solver::default(),
-            solvers: Solvers::default(),
+            solvers: Solvers::new(problem.variant.modes.len()),
             stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
+            smooth_until: f64::NEG_INFINITY,
+            foresees,
+            sizes: (accuracy.q_absolute.iter())
+                .map(|absolute| absolute / accuracy.relative)
+                .collect(),
             methods: Vec::new(),
             next_sample: 0,
             counted: 0,
@@ -206,6 +218,7 @@ impl<'p> Simulation<'p> {
     pub fn rewind(&mut self, mode: usize) {
         let initial = self.initial;
         self.here.now = Instant::default();
+        self.smooth_until = f64::NEG_INFINITY;
         self.here.j = 0;
         self.here.mode = mode;
         self.here.q.copy_from_slice(&initial.q);

@@ -244,9 +244,10 @@ pub(super) fn fall_beside(
     point: Point,
 ) -> Search {
     let (s, here) = point;
-    let beside = if here < 0.0 { below(s) } else { above(s) };
+    // Both, since which of them is looked for is known only after the value at the point.
+    let [before, after] = [below(s), above(s)].map(|s| (s, value(s)));
     narrow((&mut l, &mut r), point);
-    narrow((&mut l, &mut r), (beside, value(beside)));
+    narrow((&mut l, &mut r), if here < 0.0 { before } else { after });
     let (l, r) = close(value, l, r);
     Search::found(l.0, r.0, Kind::Fall, Watch::Violated)
 }
