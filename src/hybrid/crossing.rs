@@ -1,7 +1,7 @@
 //! The first event within a step.
 
 use super::equations::Equations;
-use super::failure::Reason;
+use super::failure::Stoppable;
 use super::guards::{self, Conditions};
 use super::locate::{Landing, land, land_later};
 use super::plan::Watched;
@@ -64,7 +64,7 @@ pub(super) fn cut<'a, const F: usize>(
     conditions: &mut Conditions,
     (mode, watched): (&'static Mode, &[Watched]),
     (signs, landed): (&mut Signs, &mut State<F>),
-) -> Result<Cut, Reason> {
+) -> Stoppable<Cut> {
     let start = method.start().t;
     signs.from.fill(start);
     let mut hides = false;

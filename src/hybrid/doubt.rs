@@ -24,7 +24,7 @@ use crate::record::{Doubt, Question, Uncertain};
 pub(super) struct Doubts {
     /// Number of steps so far.
     steps: u64,
-    /// [`Doubts::tolerances`] at the next power of two of steps, which is more.
+    /// [`tolerances`] at the next power of two of steps, which is more, so that a step takes no root.
     most_tolerances: f64,
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
@@ -64,6 +64,12 @@ impl Doubts {
         self.uncertain = Uncertain::default();
     }
 
+    /// Goes on from the end of a run of so many steps with these doubts.
+    pub fn go_on(&mut self, steps: u64, uncertain: Uncertain) {
+        (self.steps, self.uncertain) = (steps, uncertain);
+        self.most_tolerances = tolerances(2 * steps.max(1));
+    }
+
     /// Looks for doubts in a step that was searched, up to its end or its first event.
     #[inline]
     pub fn look<'a, const F: usize>(
@@ -73,10 +79,7 @@ impl Doubts {
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
-        self.steps += 1;
-        if self.steps.is_power_of_two() {
-            self.most_tolerances = tolerances(2 * self.steps);
-        }
+        self.count_step();
         let within = self.most_tolerances + method.looseness();
         let errors = &self.errors[step.index];
         let certain =
@@ -84,6 +87,14 @@ impl Doubts {
         let known = errors.len() == step.found.len() && self.left.is_empty();
         if !(known && step.found.iter().zip(errors).all(certain)) {
             self.examine(step, method, equations, conditions);
+        }
+    }
+
+    #[inline]
+    fn count_step(&mut self) {
+        self.steps += 1;
+        if self.steps.is_power_of_two() {
+            self.most_tolerances = tolerances(2 * self.steps);
         }
     }
 
@@ -225,6 +236,25 @@ impl<const F: usize> WatchedGuard<'_, '_, '_, F> {
             value,
             error,
             unit,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bound_of_the_errors_holds_in_every_step_of_a_run_that_was_resumed() {
+        for before in [0, 1, 2, 3, 4, 7, 8, 1000] {
+            let mut doubts = Doubts::new(1);
+            doubts.go_on(before, Uncertain::default());
+            for steps in before + 1..before + 3000 {
+                doubts.count_step();
+                assert_eq!(doubts.steps, steps);
+                let (own, bound) = (tolerances(steps), doubts.most_tolerances);
+                assert!(own <= bound && bound <= 2.0 * own, "{steps}: {own} {bound}");
+            }
         }
     }
 }

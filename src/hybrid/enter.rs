@@ -1,6 +1,6 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
-use super::failure::Reason;
+use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, value, watched_value};
 use super::requirements::check_requirements;
 use super::roots::Watch;
@@ -25,7 +25,7 @@ impl Simulation<'_> {
     pub fn enter<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-    ) -> Result<Option<Violation>, Reason> {
+    ) -> Stoppable<Option<Violation>> {
         self.set_context();
         kernel.held_rates(&self.context, &mut self.drift);
         let mode = self.mode();
@@ -33,7 +33,7 @@ impl Simulation<'_> {
         self.check_inertia(&kernel.inertia(&self.context, &q, &v))?;
         let system = kernel.system(&self.context, &q, &v);
         if determinant_sign(&system.mass) < 0 {
-            return Err(Reason::DeterminantChangesSign { mode: mode.name });
+            return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
         }
         let scale = self.scale::<F>();
         let mut a = solve(&system.mass, &-system.load, &scale)
@@ -110,22 +110,22 @@ impl Simulation<'_> {
     }
 
     /// Enters the present mode again after an event in it, where that takes no more than what most events
-    /// ask for: guards that are positive, or zero and rise. Given free coordinates and velocities, gives them
-    /// and the accelerations; `None`: the mode is to be entered as any other. What the mode requires is looked at in
+    /// ask for: guards that are positive, or zero and rise. Given free coordinates and velocities, sets the
+    /// accelerations too; false: the mode is to be entered as any other. What the mode requires is looked at in
     /// the first step.
     pub fn enter_again<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         q: SVector<f64, F>,
         v: SVector<f64, F>,
-    ) -> Result<Option<[SVector<f64, F>; 3]>, Reason> {
+    ) -> Stoppable<bool> {
         let mode = self.mode();
         if self.plan.drifts[self.here.mode]
             || self
                 .check_inertia(&kernel.inertia(&self.context, &q, &v))
                 .is_err()
         {
-            return Ok(None);
+            return Ok(false);
         }
         self.signs.clear();
         for watched in &self.plan.watched[self.here.mode] {
@@ -138,7 +138,7 @@ impl Simulation<'_> {
                 ..
             } = guard.shape
             else {
-                return Ok(None);
+                return Ok(false);
             };
             let at = Free {
                 q: &q,
@@ -151,7 +151,7 @@ impl Simulation<'_> {
             if guard.transitions.iter().any(|t| t.conditional)
                 || !(value > 0.0 || value == 0.0 && rises)
             {
-                return Ok(None);
+                return Ok(false);
             }
             self.signs.watches.push(Watch::of(value));
         }
@@ -159,15 +159,15 @@ impl Simulation<'_> {
         let system = kernel.system(&self.context, &q, &v);
         let a = solve(&system.mass, &-system.load, &self.scale::<F>());
         let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
-            return Ok(None);
+            return Ok(false);
         };
         self.here.set_free(mode.free, [&q, &v, &a]);
         self.flush_samples();
-        Ok(Some([q, v, a]))
+        Ok(true)
     }
 
     /// The symmetric part of the mass matrix must be positive definite: its factors L D Lᵀ have positive pivots D.
-    fn check_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Result<(), Reason> {
+    fn check_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Stoppable<()> {
         // L D below the diagonal, D on it.
         let mut lower = SMatrix::<f64, F, F>::zeros();
         for i in 0..F {
@@ -181,11 +181,11 @@ impl Simulation<'_> {
                     if rest.is_nan() || rest <= rounding {
                         let mode = self.mode();
                         let coordinate = self.problem.model.coordinates[mode.free[i]].name;
-                        return Err(Reason::Indefinite {
+                        return Err(Box::new(Reason::Indefinite {
                             mode: mode.name,
                             coordinate,
                             pivot: rest,
-                        });
+                        }));
                     }
                 }
                 lower[(i, j)] = rest;
@@ -291,7 +291,7 @@ mod tests {
         let mode = simulation.mode();
         let again = with_kernel!(&mode.kernels, k => {
             let [q, v, _] = simulation.here.free(mode.free);
-            simulation.enter_again(k, q, v).unwrap().is_some()
+            simulation.enter_again(k, q, v).unwrap()
         });
         again.then(|| simulation.signs.watches[0])
     }

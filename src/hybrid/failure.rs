@@ -2,6 +2,16 @@
 
 use crate::integrate::{Singular, StepError};
 
+/// What the engine's inner functions give: a reason, which is seldom and large, behind a pointer, so that what they give
+/// otherwise stays in registers.
+pub(super) type Stoppable<T> = Result<T, Box<Reason>>;
+
+impl From<StepError> for Box<Reason> {
+    fn from(error: StepError) -> Self {
+        Box::new(error.into())
+    }
+}
+
 /// Reason of an early stop; the place (hybrid time, mode, state) and the trajectory so far are in
 /// the [`crate::record::Run`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

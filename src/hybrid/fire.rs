@@ -1,7 +1,7 @@
 //! Transitions: which one is taken, what it does to state and energy, and what is remembered.
 
 use super::accumulation::Signature;
-use super::failure::Reason;
+use super::failure::{Reason, Stoppable};
 use super::guards::Conditions;
 use super::plan::is_impact;
 use super::simulation::Simulation;
@@ -16,7 +16,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Simulation<'_> {
     /// Takes the first transition of a guard whose condition holds.
-    pub fn fire(&mut self, guard: usize) -> Result<(), Reason> {
+    pub fn fire(&mut self, guard: usize) -> Stoppable<()> {
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => self.fire_by(k, guard))
     }
@@ -25,13 +25,13 @@ impl Simulation<'_> {
         &mut self,
         kernel: &'static ModeKernel<F>,
         guard: usize,
-    ) -> Result<(), Reason> {
+    ) -> Stoppable<()> {
         let chosen = self.choose(kernel, guard);
         let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
             // Every condition fails at the very state where the guard is crossed.
             let cycle = format!("{} (no condition holds)", fired.name);
-            return Err(Reason::Cycle { cycle });
+            return Err(Box::new(Reason::Cycle { cycle }));
         };
         let transition = &fired.transitions[t];
         self.doubts.happened(fired);
@@ -47,13 +47,12 @@ impl Simulation<'_> {
         self.remember(guard, t, is_impact(fired))
     }
 
-    /// Takes a transition of a guard. If it has led to the same mode again, which goes on: free coordinates,
-    /// velocities and accelerations after it.
+    /// Takes a transition of a guard. Gives whether it has led to the same mode again, which goes on.
     pub fn fire_and_stay<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         guard: usize,
-    ) -> Result<Option<[SVector<f64, F>; 3]>, Reason> {
+    ) -> Stoppable<bool> {
         let mode = self.here.mode;
         self.visited.clear();
         self.fire_by(kernel, guard)?;
@@ -65,7 +64,7 @@ impl Simulation<'_> {
                 let (q, v) = (gather(0), gather(n));
                 self.enter_again(kernel, q, v)
             }
-            false => Ok(None),
+            false => Ok(false),
         }
     }
 
@@ -95,12 +94,7 @@ impl Simulation<'_> {
     }
 
     /// Makes `next` the present state, in mode `target`, and records the event.
-    pub fn commit(
-        &mut self,
-        name: &'static str,
-        impact: bool,
-        target: usize,
-    ) -> Result<(), Reason> {
+    pub fn commit(&mut self, name: &'static str, impact: bool, target: usize) -> Stoppable<()> {
         let n = self.here.q.len();
         let from = self.here.mode;
         let states = self.problem.record.event_states;
@@ -141,7 +135,7 @@ impl Simulation<'_> {
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let modes = self.problem.variant.modes;
         match self.visited.arrive((name, from, target), state, modes) {
-            Some(cycle) => Err(Reason::Cycle { cycle }),
+            Some(cycle) => Err(Box::new(Reason::Cycle { cycle })),
             None => Ok(()),
         }
     }
@@ -166,7 +160,7 @@ impl Simulation<'_> {
     fn set_accelerations<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-    ) -> Result<(), Reason> {
+    ) -> Stoppable<()> {
         let mode = self.mode();
         let [q, v, _] = self.here.free::<F>(mode.free);
         let system = kernel.system(&self.context, &q, &v);
@@ -193,7 +187,7 @@ impl Simulation<'_> {
     }
 
     /// Remembers the event, and goes to the limit of an accumulation if there is one.
-    fn remember(&mut self, guard: usize, transition: usize, impact: bool) -> Result<(), Reason> {
+    fn remember(&mut self, guard: usize, transition: usize, impact: bool) -> Stoppable<()> {
         let signature = Signature {
             guard,
             transition,

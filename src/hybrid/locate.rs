@@ -6,7 +6,7 @@
 //! the motion's own Taylor polynomial.
 
 use super::equations::{Equations, free_of};
-use super::failure::Reason;
+use super::failure::Stoppable;
 use super::guards::{self, Conditions};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind};
@@ -40,7 +40,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     guard: (&Guard, Watched),
     crossing: Crossing,
     landed: &mut State<F>,
-) -> Result<Landing, Reason> {
+) -> Stoppable<Landing> {
     let start = method.start().t;
     let window = method.end();
     // A guard that all but fell at the end of the step before does so within the rounding of the start.
@@ -115,7 +115,7 @@ pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     guard: (&Guard, Watched),
     (crossing, window): (Crossing, f64),
     landed: &mut State<F>,
-) -> Result<Landing, Reason> {
+) -> Stoppable<Landing> {
     let start = method.start().t;
     if crossing.outside > start.next_up() || matches!(crossing.kind, Kind::Touch | Kind::Jump) {
         if method.end() > crossing.outside {

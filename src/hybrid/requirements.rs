@@ -2,7 +2,7 @@
 
 use super::crossing::{Cut, Signs, cut};
 use super::equations::{Equations, free_of};
-use super::failure::Reason;
+use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, motion};
 use super::plan::Watched;
 use super::roots::Watch;
@@ -20,7 +20,7 @@ pub(super) fn check_requirements<const F: usize>(
     context: &Context,
     mode: &Mode,
     at: Free<F>,
-) -> Result<(), Reason> {
+) -> Stoppable<()> {
     if mode.requirements.is_empty() {
         return Ok(());
     }
@@ -39,15 +39,15 @@ fn is_met(value: f64) -> bool {
 }
 
 #[cold]
-fn unmet(mode: &Mode, index: usize, value: f64) -> Reason {
+fn unmet(mode: &Mode, index: usize, value: f64) -> Box<Reason> {
     let requirement = &mode.requirements[index];
-    Reason::Requirement {
+    Box::new(Reason::Requirement {
         mode: mode.name,
         failure: requirement.failure,
         text: requirement.text,
         value,
         unit: requirement.unit,
-    }
+    })
 }
 
 /// Whether bounds show that all that the mode requires holds in the last step up to time `to`: far from zero they
@@ -81,7 +81,7 @@ pub(super) fn cut_where_unmet<'a, const F: usize>(
     (mode, watched): (&'static Mode, &[Watched]),
     (signs, end): (&mut Signs, &mut State<F>),
     mut found: Cut,
-) -> Result<(Cut, Option<Reason>), Reason> {
+) -> Stoppable<(Cut, Option<Box<Reason>>)> {
     let start = method.start().t;
     let mut before = f64::INFINITY;
     loop {

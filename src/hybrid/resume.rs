@@ -79,8 +79,8 @@ impl Simulation<'_> {
             .discrete_mut()
             .copy_from_slice(&end.state.discrete);
         self.ledger = energy.as_ref().map(RunningLedger::continuing);
+        self.doubts.go_on(solver.steps, uncertain);
         self.solver = solver;
-        self.doubts.uncertain = uncertain;
         if let Some((name, _)) = self.problem.end.after {
             self.counted = events.iter().filter(|e| e.transition == name).count() as u64;
         }

@@ -142,6 +142,17 @@ fn search_linear<const F: usize>(
     search_polynomial(coefficients, dense, window, (watch, found));
 }
 
+/// Powers of time.
+const POWERS: [usize; ORDERS] = {
+    let mut powers = [0; ORDERS];
+    let mut k = 0;
+    while k < ORDERS {
+        powers[k] = k;
+        k += 1;
+    }
+    powers
+};
+
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
 ///
 /// False if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
@@ -160,15 +171,6 @@ fn search_series<const F: usize>(
     if !equations.expand_guards(tau, orders, series) {
         return false;
     }
-    let (kernel, context) = (equations.kernel, &*equations.context);
-    // Of a low degree where nothing moves.
-    let power = |k: usize| kernel.guard_coefficient(context, watched.guard, k);
-    let degree = (1..orders).rev().find(|&k| power(k) != 0.0);
-    let count = degree.map_or(1, |degree| degree + 1);
-    let mut powers = [0.0; ORDERS];
-    for (k, own) in powers[..count].iter_mut().enumerate() {
-        *own = power(k);
-    }
     // The guard's own value decides on which side of zero it starts.
     equations.at(tau);
     let at = Free {
@@ -176,21 +178,28 @@ fn search_series<const F: usize>(
         v: &series.v[0],
         a: &series.a[0],
     };
-    let constant = kernel.guard(equations.context, &guard.kernel, at);
-    powers[0] = constant;
+    let (kernel, context) = (equations.kernel, &*equations.context);
+    let constant = kernel.guard(context, &guard.kernel, at);
+    let power = |k: usize| match k {
+        0 => constant,
+        _ => kernel.guard_coefficient(context, watched.guard, k),
+    };
+    // Of a low degree where nothing moves.
+    let degree = (1..orders).rev().find(|&k| power(k) != 0.0);
+    let count = degree.map_or(1, |degree| degree + 1);
+    let tolerance = equations.tolerance;
     let mut falls_off = true;
     let coefficients = Coefficients {
         count,
         constant,
-        rises: powers[1] * dense.length() > 0.0,
+        rises: count > 1 && power(1) * dense.length() > 0.0,
         write: |first, out: &mut [f64]| {
             let scale = (1.0, dense.length(), first);
-            stretch(&powers[..count], |own| *own, scale, out);
+            stretch(&POWERS[..count], |k| power(*k), scale, out);
             if count + 2 > orders {
                 let size = |of: &[f64]| sum_of(of, f64::abs);
                 let all = (orders * orders) as f64 * size(&out[..count - first]);
-                falls_off =
-                    size(&out[orders - 2 - first..count - first]) <= equations.tolerance * all;
+                falls_off = size(&out[orders - 2 - first..count - first]) <= tolerance * all;
             }
         },
     };

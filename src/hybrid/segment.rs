@@ -3,7 +3,7 @@
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, free_of};
-use super::failure::Reason;
+use super::failure::{Reason, Stoppable};
 use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
@@ -43,7 +43,7 @@ impl Simulation<'_> {
         kernel: &'static ModeKernel<F>,
         stays: bool,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason> {
+    ) -> Stoppable<Stop> {
         let (problem, mode) = (self.problem, self.mode());
         let explicit = match problem.method {
             Method::Taylor => true,
@@ -69,7 +69,7 @@ impl Simulation<'_> {
         kernel: &'static ModeKernel<F>,
         stays: bool,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason>
+    ) -> Stoppable<Stop>
     where
         RadauIia<S>: Coefficients<S>,
     {
@@ -85,7 +85,7 @@ impl Simulation<'_> {
         mut method: Box<M>,
         stays: bool,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason>
+    ) -> Stoppable<Stop>
     where
         M: for<'a> OneStep<F, Equations<'a, F>> + 'static,
     {
@@ -109,7 +109,7 @@ impl Simulation<'_> {
         method: &mut M,
         stays: bool,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason>
+    ) -> Stoppable<Stop>
     where
         M: for<'a> OneStep<F, Equations<'a, F>>,
     {
@@ -129,19 +129,20 @@ impl Simulation<'_> {
                 || problem.record.every.is_none()
                 || self.ledger.is_some(),
         };
-        let [q, v, a] = self.here.free::<F>(mode.free);
-        method.restart(0.0, &q, &v, &a);
         loop {
+            let [q, v, a] = self.here.free::<F>(mode.free);
+            method.restart(0.0, &q, &v, &a);
             let now = self.here.now.seconds();
             if now >= self.smooth_until {
                 let breakpoint = problem.signals.next_breakpoint(now);
                 self.smooth_until = breakpoint.min(problem.end.time);
             }
             match self.follow(&stay, method, progress)? {
-                Stop::Event(guard) if stays => match self.fire_and_stay(kernel, guard)? {
-                    Some([q, v, a]) => method.restart(0.0, &q, &v, &a),
-                    None => return Ok(Stop::Fired),
-                },
+                Stop::Event(guard) if stays => {
+                    if !self.fire_and_stay(kernel, guard)? {
+                        return Ok(Stop::Fired);
+                    }
+                }
                 stop => return Ok(stop),
             }
         }
@@ -153,7 +154,7 @@ impl Simulation<'_> {
         stay: &Stay<F>,
         method: &mut M,
         progress: &mut dyn Progress,
-    ) -> Result<Stop, Reason>
+    ) -> Stoppable<Stop>
     where
         M: for<'a> OneStep<F, Equations<'a, F>>,
     {
@@ -326,7 +327,7 @@ impl Simulation<'_> {
                 let mass = kernel.system(equations.context, &state.q, &state.v).mass;
                 let sign = determinant_sign(&mass);
                 if sign != determinant {
-                    return Err(Reason::DeterminantChangesSign { mode: mode.name });
+                    return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
                 }
                 determinant = sign;
             }
@@ -350,7 +351,7 @@ impl Simulation<'_> {
                 .advance(self.here.now.seconds(), self.here.j)
                 .is_break()
             {
-                return Err(Reason::Interrupted);
+                return Err(Box::new(Reason::Interrupted));
             }
 
             let h = end - method.start().t;

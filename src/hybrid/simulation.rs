@@ -4,7 +4,7 @@ use super::accumulation::{Accumulation, Limit};
 use super::crossing::Signs;
 use super::doubt::Doubts;
 use super::ensemble::Member;
-use super::failure::Reason;
+use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
@@ -339,8 +339,11 @@ impl<'p> Simulation<'p> {
 
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
-        while self.settle()? && self.advance_to_event(true, progress)? {}
-        Ok(())
+        let mut run = || -> Stoppable<()> {
+            while self.settle()? && self.advance_to_event(true, progress)? {}
+            Ok(())
+        };
+        run().map_err(|reason| *reason)
     }
 
     /// From an admissible mode through the next event, or, where it `stays`, the next that does not lead to
@@ -349,14 +352,14 @@ impl<'p> Simulation<'p> {
         &mut self,
         stays: bool,
         progress: &mut dyn Progress,
-    ) -> Result<bool, Reason> {
+    ) -> Stoppable<bool> {
         let mode = self.mode();
         let stop = with_kernel!(&mode.kernels, k => self.advance(k, stays, progress))?;
         self.pass(stop)
     }
 
     /// Does what the end of a segment asks for; false at the end of the run.
-    pub fn pass(&mut self, stop: Stop) -> Result<bool, Reason> {
+    pub fn pass(&mut self, stop: Stop) -> Stoppable<bool> {
         match stop {
             Stop::End => {
                 self.set_context();
@@ -375,7 +378,7 @@ impl<'p> Simulation<'p> {
 
     /// Finds the admissible mode at the present instant: every violated guard is one transition. False
     /// if the run is over.
-    pub fn settle(&mut self) -> Result<bool, Reason> {
+    pub fn settle(&mut self) -> Stoppable<bool> {
         loop {
             let mode = self.mode();
             match with_kernel!(&mode.kernels, k => self.enter(k))? {
@@ -390,7 +393,7 @@ impl<'p> Simulation<'p> {
 
     /// A violated guard: the limit of its accumulation if it is an impact from rest, else its
     /// transition.
-    fn resolve(&mut self, violation: Violation) -> Result<(), Reason> {
+    fn resolve(&mut self, violation: Violation) -> Stoppable<()> {
         let mode = self.mode();
         let rests = violation.rests && super::plan::is_impact(&mode.guards[violation.guard]);
         match self.plan.rest(mode) {
@@ -414,25 +417,25 @@ impl<'p> Simulation<'p> {
     }
 
     /// Goes to the limit of an accumulation, if the last events have one.
-    pub fn look_for_accumulation(&mut self) -> Result<(), Reason> {
+    pub fn look_for_accumulation(&mut self) -> Stoppable<()> {
         if let Some((rest, limit)) = self.rest() {
             return self.come_to_rest(rest, Some(limit));
         }
-        if self.accumulation.stands_still() {
+        if self.accumulation.stands_still(self.here.now) {
             let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
             let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
             transitions.sort_unstable();
             transitions.dedup();
-            return Err(Reason::Chattering {
+            return Err(Box::new(Reason::Chattering {
                 count: Accumulation::MEMORY,
                 transitions: transitions.join(", "),
-            });
+            }));
         }
         Ok(())
     }
 
     /// Enters the mode at the limit of an accumulation; `None`: the limit is here.
-    fn come_to_rest(&mut self, rest: usize, limit: Option<Limit>) -> Result<(), Reason> {
+    fn come_to_rest(&mut self, rest: usize, limit: Option<Limit>) -> Stoppable<()> {
         let n = self.here.q.len();
         if let Some(limit) = limit {
             self.here.now = limit.at;

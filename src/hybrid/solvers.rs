@@ -2,11 +2,14 @@
 
 use std::any::Any;
 
+/// A method, while nobody uses it.
+type Kept = Option<Box<dyn Any>>;
+
 /// The methods that were used so far, by mode. Making one costs as much as many steps, and a method
 /// remembers what it has learnt.
 pub(super) struct Solvers {
     /// Of each mode the explicit and the implicit one.
-    kept: Box<[[Option<Box<dyn Any>>; 2]]>,
+    kept: Box<[[Kept; 2]]>,
 }
 
 impl Solvers {

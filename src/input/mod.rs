@@ -20,6 +20,7 @@ pub use lanes::LaneSignals;
 pub use sine::Sine;
 pub use table::{Interpolation, Outside, Table, TableError};
 
+use crate::kernel::copy_few;
 use crate::model::{Input, InputKind};
 
 /// All inputs of a model, as functions of the absolute time of a run.
@@ -193,22 +194,20 @@ impl Channel {
 
     fn set_values(&self, jet: &Jet, u: &mut [f64]) {
         match self.kind {
-            InputKind::Acceleration => u[self.signal..self.signal + 3].copy_from_slice(&[
-                jet.value,
-                jet.integral,
-                jet.double_integral,
-            ]),
+            InputKind::Acceleration => {
+                let values = [jet.value, jet.integral, jet.double_integral];
+                copy_few(&values, &mut u[self.signal..self.signal + 3]);
+            }
             InputKind::Value => u[self.signal] = jet.value,
         }
     }
 
     fn set_rates(&self, jet: &Jet, u_dot: &mut [f64]) {
         match self.kind {
-            InputKind::Acceleration => u_dot[self.signal..self.signal + 3].copy_from_slice(&[
-                jet.rate,
-                jet.value,
-                jet.integral,
-            ]),
+            InputKind::Acceleration => {
+                let rates = [jet.rate, jet.value, jet.integral];
+                copy_few(&rates, &mut u_dot[self.signal..self.signal + 3]);
+            }
             InputKind::Value => u_dot[self.signal] = jet.rate,
         }
     }

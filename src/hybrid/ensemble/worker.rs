@@ -1,6 +1,6 @@
 //! The members of an ensemble that a thread runs: which of them is in which lane.
 
-use super::super::failure::Reason;
+use super::super::failure::Stoppable;
 use super::super::simulation::{Simulation, Stop};
 use super::group::{Group, Outcome};
 use super::{Ensemble, Finished, Member};
@@ -157,7 +157,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             self.next += 1;
             self.slots[slot].member = member;
             let begun = self.slots[slot].simulation.become_member(next);
-            self.go_on(slot, begun.map(|()| true), false, take);
+            self.go_on(slot, begun.map(|()| true).map_err(Box::new), false, take);
         }
         if self.slots[slot].state == State::Waiting {
             self.find_lane(slot);
@@ -236,7 +236,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         &mut self,
         mode: usize,
         lane: usize,
-        passed: Result<bool, Reason>,
+        passed: Stoppable<bool>,
         alone: bool,
         take: &mut impl FnMut(usize, Finished),
     ) {
@@ -256,7 +256,7 @@ impl<'a, const W: usize> Worker<'a, W> {
     fn go_on(
         &mut self,
         slot: usize,
-        passed: Result<bool, Reason>,
+        passed: Stoppable<bool>,
         mut alone: bool,
         take: &mut impl FnMut(usize, Finished),
     ) {
@@ -268,12 +268,12 @@ impl<'a, const W: usize> Worker<'a, W> {
         let mut passed = passed;
         let failure = loop {
             match passed {
-                Err(reason) => break Some(reason),
+                Err(reason) => break Some(*reason),
                 Ok(false) => break None,
                 Ok(true) => {}
             }
             match simulation.settle() {
-                Err(reason) => break Some(reason),
+                Err(reason) => break Some(*reason),
                 Ok(false) => break None,
                 Ok(true) => {}
             }

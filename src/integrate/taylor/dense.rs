@@ -93,7 +93,9 @@ impl<const F: usize> TaylorDense<F> {
             false => &self.series.q,
             true => &self.series.v,
         };
-        let rows = &rows[..self.count(rate)];
+        // With the zero behind the last of an odd number: what is written in pairs is read in pairs.
+        let count = self.count(rate) - from;
+        let rows = &rows[..(from + count + count % 2).min(rows.len())];
         stretch(rows, |row| row[index], (factor, self.h, from), out);
     }
 }

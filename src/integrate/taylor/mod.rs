@@ -52,6 +52,23 @@ impl Implicit {
     }
 }
 
+/// What was done last. In one number: what is read right after it was written must be read as it was written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Last {
+    Restart,
+    /// A step that starts where the last restart did.
+    FirstStep,
+    Step,
+    /// A step that was not the first, and failed.
+    Failure,
+}
+
+impl Last {
+    fn is_step(self) -> bool {
+        matches!(self, Last::FirstStep | Last::Step)
+    }
+}
+
 /// The Taylor method for an [`Analytic`] system of `F` coordinates. It is used as
 /// [`super::Radau`] is.
 #[derive(Debug, Clone)]
@@ -71,10 +88,7 @@ pub struct Taylor<const F: usize> {
     /// Length of the last step where its end is known by its time alone; it is computed when it is asked
     /// for, since an event may shorten the step before.
     open: Option<f64>,
-    /// Whether `dense` is the last step.
-    stepped: bool,
-    /// Whether the step starts where the last restart did.
-    restarted: bool,
+    last: Last,
     /// Reciprocal tolerances of coordinates and velocities at the start of the step.
     weights: [SVector<f64, F>; 2],
     /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
@@ -118,8 +132,7 @@ impl<const F: usize> Taylor<F> {
                 series: Series::zero(),
             },
             open: None,
-            stepped: false,
-            restarted: true,
+            last: Last::Restart,
             weights: [zero; 2],
             inverse: None,
             counters: Counters::default(),
@@ -134,6 +147,7 @@ impl<const F: usize> Taylor<F> {
         v: &SVector<f64, F>,
         a: &SVector<f64, F>,
     ) {
+        self.weights = self.weights_at(q, v);
         self.end = State {
             t,
             q: *q,
@@ -142,8 +156,7 @@ impl<const F: usize> Taylor<F> {
         };
         self.lost = Lost::nothing();
         self.open = None;
-        self.stepped = false;
-        self.restarted = true;
+        self.last = Last::Restart;
         self.inverse = None;
     }
 
@@ -173,7 +186,7 @@ impl<const F: usize> Taylor<F> {
 
     /// The motion within the last step; `None` after a restart or a failure.
     pub fn dense(&self) -> Option<&TaylorDense<F>> {
-        self.stepped.then_some(&self.dense)
+        self.last.is_step().then_some(&self.dense)
     }
 
     /// Work done since it was last taken. An order of a series counts as an evaluation of the residual.
@@ -203,9 +216,10 @@ impl<const F: usize> Taylor<F> {
         );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
         self.state();
-        self.restarted &= !self.stepped;
         // Before the expansion, so that no division is left to wait for behind it.
-        self.weights = self.weights_at(&self.end);
+        if self.last != Last::Restart {
+            self.weights = self.weights_at(&self.end.q, &self.end.v);
+        }
         self.expand(system)?;
         let from = self.end.t;
         let remaining = (t_end - from) - self.lost.t;
@@ -248,7 +262,7 @@ impl<const F: usize> Taylor<F> {
         h: f64,
     ) -> Result<StepReport, StepError> {
         assert!(h > 0.0, "h = {h} is not positive");
-        if !self.stepped {
+        if !self.last.is_step() {
             self.expand(system)?;
             self.start_here();
             self.dense.h = h;
@@ -260,7 +274,10 @@ impl<const F: usize> Taylor<F> {
 
     /// Expands the motion about the end of the last step.
     fn expand<Y: Analytic<F>>(&mut self, system: &mut Y) -> Result<(), StepError> {
-        self.stepped = false;
+        let restarted = self.last == Last::Restart;
+        if !restarted {
+            self.last = Last::Failure;
+        }
         let origin = &self.end;
         let t = origin.t;
         if let Some(what) = origin.not_finite() {
@@ -277,7 +294,7 @@ impl<const F: usize> Taylor<F> {
         let (origin, series) = (&self.end, &mut self.dense.series);
         // A restart gives the accelerations: zero where they are not told from it, so that the motion
         // leaves with the sign of the jerk.
-        series.a[0] = match self.restarted {
+        series.a[0] = match restarted {
             true => origin.a,
             false => -(inverse * load),
         };
@@ -343,15 +360,15 @@ impl<const F: usize> Taylor<F> {
         Ok(())
     }
 
-    /// Reciprocal tolerances of coordinates and velocities at a state.
-    fn weights_at(&self, state: &State<F>) -> [SVector<f64, F>; 2] {
+    /// Reciprocal tolerances of given coordinates and velocities.
+    fn weights_at(&self, q: &SVector<f64, F>, v: &SVector<f64, F>) -> [SVector<f64, F>; 2] {
         let relative = self.tolerances.relative();
         let weights = |absolute: &SVector<f64, F>, x: &SVector<f64, F>| {
             SVector::from_fn(|i, _| 1.0 / (absolute[i] + relative * x[i].abs()))
         };
         [
-            weights(self.tolerances.q_absolute(), &state.q),
-            weights(self.tolerances.v_absolute(), &state.v),
+            weights(self.tolerances.q_absolute(), q),
+            weights(self.tolerances.v_absolute(), v),
         ]
     }
 
@@ -407,7 +424,10 @@ impl<const F: usize> Taylor<F> {
         };
         self.dense.t_end = self.end.t;
         self.open = Some(h);
-        self.stepped = true;
+        self.last = match self.last {
+            Last::Restart | Last::FirstStep => Last::FirstStep,
+            Last::Step | Last::Failure => Last::Step,
+        };
     }
 
     /// Computes the state at the end of the step of length `h`. The acceleration is that of the polynomial:
@@ -424,7 +444,7 @@ impl<const F: usize> Taylor<F> {
 
     /// Nodes of Gauss's quadrature over the last step; none after a restart.
     pub fn nodes(&self) -> impl Iterator<Item = Node<F>> {
-        let rule = match self.stepped {
+        let rule = match self.last.is_step() {
             true => quadrature::gauss(quadrature::nodes(self.order)),
             false => &[],
         };
