@@ -473,7 +473,8 @@ class Series:
         stores = interiors.stores() if interiors else []
         needed = set(_VARIABLE.findall("\n".join([*stores, *interiors.late.values()])))
         statements = graph.statements(needed)
-        self.lead, self.operations = graph.slots, len(statements)
+        self.lead = interiors.lead(graph.slots) if interiors else graph.slots
+        self.operations = len(statements)
         self.order += [*(interiors.sums(self.lead) if interiors else []), *statements, *stores]
 
     def add_to(self, source, name):

@@ -12,6 +12,10 @@ so short that it would wait for that, the last factors are kept in registers as 
 BLOCK = 4
 """Most numbers side by side in a register: DALEMBERT_BLOCK in vectors.h."""
 
+LINE = 8
+"""Numbers that fill a line of the cache. The workspace begins with a line; a block that lies in two of them is
+read and written in half the pace."""
+
 
 class Interiors:
     """The convolutions of an expression graph. Factors are text of the function of an order."""
@@ -52,6 +56,11 @@ class Interiors:
     def row(self):
         """Numbers of a row of both tables, filled up to whole blocks."""
         return 2 * -(-self.halves * len(self) // BLOCK) * BLOCK
+
+    @staticmethod
+    def lead(slots):
+        """Where the tables begin in the workspace, after so many other numbers."""
+        return -(-slots // LINE) * LINE
 
     def sums(self, lead):
         """Statements that leave the interiors of order k in `y`. The tables begin at `lead` in the workspace."""

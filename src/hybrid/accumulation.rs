@@ -278,17 +278,18 @@ impl Accumulation {
         if ratio >= LARGEST_RATIO || ratio_before >= LARGEST_RATIO {
             return None;
         }
-        let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
-        // Only impacts come to rest; stick and slip alone have modes of their own.
-        if !repeats || !(0..p).any(|i| self.is_impact(i)) {
-            return None;
-        }
         let remaining = last * (ratio / (1.0 - ratio));
         let limit = at[0].plus(remaining);
         let predicted_before = at[1].plus(middle * ratio_before / (1.0 - ratio_before));
         let uncertainty = limit.since(predicted_before).abs();
         let one_place = limit.seconds().abs() * f64::EPSILON;
-        (uncertainty <= (relative * limit.seconds().abs()).max(one_place)).then_some(Series {
+        if uncertainty > (relative * limit.seconds().abs()).max(one_place) {
+            return None;
+        }
+        let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
+        // Only impacts come to rest; stick and slip alone have modes of their own.
+        let comes_to_rest = repeats && (0..p).any(|i| self.is_impact(i));
+        comes_to_rest.then_some(Series {
             pattern: p,
             ratio,
             ratio_before,

@@ -1,6 +1,7 @@
 //! What generated functions need besides the free coordinates.
 
 use super::few::copy_few;
+use super::lanes::LaneRows;
 use super::{Array, RawContext};
 use crate::input::{LaneSignals, Side, Signals};
 use crate::integrate::ORDERS;
@@ -53,7 +54,7 @@ pub struct Context {
     pub(super) guard_series: Box<[f64]>,
     /// What the series functions carry from one order to the next: room for the longest series of all
     /// modes.
-    pub(super) workspace: Box<[f64]>,
+    pub(super) workspace: LaneRows<1>,
 }
 
 /// What every call is given.
@@ -141,7 +142,7 @@ impl Context {
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             signal_radii: vec![0.0; dimensions.signals].into(),
             guard_series: vec![0.0; ORDERS * guards].into(),
-            workspace: vec![0.0; workspace].into(),
+            workspace: LaneRows::zeros(workspace),
         }
     }
 

@@ -794,7 +794,7 @@ impl<const F: usize> ModeKernel<F> {
         };
         assert!(orders <= ORDERS);
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
-        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let out = x.guard_series.as_mut_ptr();
         let raw = x.raw(self.dimensions);
         // SAFETY: F entries a row of q, v and a, which are only read, and all rows are there; one
@@ -818,7 +818,7 @@ impl<const F: usize> ModeKernel<F> {
             load: SVector::zeros(),
         };
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
-        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let raw = x.raw(self.dimensions);
         // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
         // struct; the workspace has room for every mode of the model.
@@ -843,7 +843,7 @@ impl<const F: usize> ModeKernel<F> {
         let series = self.motion_series(x).expect("the mode is analytic");
         assert!(n <= ORDERS - 2);
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
-        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let inverse = inverse.as_ptr().cast_mut();
         let raw = x.raw(self.dimensions);
         // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the

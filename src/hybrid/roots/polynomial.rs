@@ -15,9 +15,13 @@ pub struct Polynomial<const N: usize> {
     pub coefficients: [f64; N],
 }
 
+/// What begins with a line of the cache: vectors of it are read at once.
+#[repr(align(64))]
+struct Lined<T>(T);
+
 impl<const N: usize> Polynomial<N> {
     /// (j over k) / (N − 1 over k) in column k, row j: from powers to Bernstein coefficients.
-    const TO_BERNSTEIN: [[f64; N]; N] = {
+    const TO_BERNSTEIN: &'static Lined<[[f64; N]; N]> = &Lined({
         let mut table = [[0.0; N]; N];
         let mut k = 0;
         // Exact: a product of a binomial coefficient and N − k is below 2⁵³ for N ≤ 50.
@@ -33,7 +37,7 @@ impl<const N: usize> Polynomial<N> {
             last = last * (N - k) as f64 / k as f64;
         }
         table
-    };
+    });
 
     const ZERO: Self = Self {
         coefficients: [0.0; N],
@@ -223,7 +227,7 @@ impl<const N: usize> Polynomial<N> {
     /// Writes the Bernstein coefficients on \[0, 1\]: the polynomial lies between the least and the greatest.
     #[inline]
     pub(super) fn bernstein(&self, out: &mut [f64; N]) {
-        triangular_sums(&self.coefficients, &Self::TO_BERNSTEIN, out);
+        triangular_sums(&self.coefficients, &Self::TO_BERNSTEIN.0, out);
     }
 
     /// The polynomial on [0, `end`], in powers of s/`end`.
