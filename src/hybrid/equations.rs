@@ -69,11 +69,24 @@ impl Clock<'_> {
 
 /// A stretch of time within which all inputs are analytic.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+pub(super) struct Piece {
     /// Absolute time at which it ends, s.
     knot: f64,
     /// The same in local time.
     limit: f64,
+}
+
+impl Piece {
+    /// One that has ended before all times: where it must be looked for.
+    pub const UNKNOWN: Piece = Piece {
+        knot: f64::NEG_INFINITY,
+        limit: f64::NEG_INFINITY,
+    };
+    /// One that never ends.
+    pub const ENDLESS: Piece = Piece {
+        knot: f64::INFINITY,
+        limit: f64::INFINITY,
+    };
 }
 
 /// The reduced system of a mode.
@@ -109,6 +122,7 @@ impl<'a, const F: usize> Equations<'a, F> {
         tolerance: f64,
         scale: SVector<f64, F>,
         foresees: bool,
+        piece: Piece,
     ) -> Self {
         Equations {
             kernel,
@@ -122,11 +136,7 @@ impl<'a, const F: usize> Equations<'a, F> {
             ahead: [f64::NAN; Context::MOST_AHEAD],
             at_ahead: 0,
             guards_expanded_at: f64::NAN,
-            // None yet: it has ended before all times.
-            piece: Piece {
-                knot: f64::NEG_INFINITY,
-                limit: f64::NEG_INFINITY,
-            },
+            piece,
         }
     }
 

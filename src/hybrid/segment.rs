@@ -2,7 +2,7 @@
 
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
-use super::equations::{Clock, Equations, free_of};
+use super::equations::{Clock, Equations, Piece, free_of};
 use super::failure::{Reason, Stoppable};
 use super::guards::{self, Conditions};
 use super::instant::Instant;
@@ -136,6 +136,10 @@ impl Simulation<'_> {
             if now >= self.smooth_until {
                 let breakpoint = problem.signals.next_breakpoint(now);
                 self.smooth_until = breakpoint.min(problem.end.time);
+                self.piece = match problem.signals.next_knot(now) == f64::INFINITY {
+                    true => Piece::ENDLESS,
+                    false => Piece::UNKNOWN,
+                };
             }
             match self.follow(&stay, method, progress)? {
                 Stop::Event(guard) if stays => {
@@ -187,6 +191,7 @@ impl Simulation<'_> {
             problem.accuracy.relative,
             stay.scale,
             self.foresees,
+            self.piece,
         );
         let watched = &self.plan.watched[self.here.mode];
         let mut conditions = Conditions {

@@ -4,6 +4,7 @@ use super::accumulation::{Accumulation, Limit};
 use super::crossing::Signs;
 use super::doubt::Doubts;
 use super::ensemble::Member;
+use super::equations::Piece;
 use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
 use super::ledger::RunningLedger;
@@ -120,6 +121,8 @@ pub(super) struct Simulation<'p> {
     pub stiffness: Box<[Stiffness]>,
     /// Until when the inputs are smooth, or the run lasts, s; −∞ where it must be found out.
     pub smooth_until: f64,
+    /// The piece of the inputs, where one without end is known.
+    pub piece: Piece,
     /// Whether signals can be computed ahead.
     pub foresees: bool,
     /// Typical sizes of all coordinates: absolute ÷ relative tolerance.
@@ -183,6 +186,7 @@ impl<'p> Simulation<'p> {
             solvers: Solvers::new(problem.variant.modes.len()),
             stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
             smooth_until: f64::NEG_INFINITY,
+            piece: Piece::UNKNOWN,
             foresees,
             sizes: (accuracy.q_absolute.iter())
                 .map(|absolute| absolute / accuracy.relative)
