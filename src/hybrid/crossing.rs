@@ -40,6 +40,7 @@ impl Signs {
     }
 
     /// Makes room for the search of as many as there are signs.
+    #[inline(always)]
     pub fn start(&mut self) {
         let count = self.watches.len();
         if self.found.len() != count {

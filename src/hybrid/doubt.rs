@@ -182,6 +182,7 @@ impl Doubts {
     }
 
     /// Takes note of a transition: what its guard fell to has happened.
+    #[inline(always)]
     pub fn happened(&mut self, guard: &'static Guard) {
         self.left.retain(|(other, _)| other.name != guard.name);
     }

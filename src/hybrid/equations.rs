@@ -150,7 +150,7 @@ impl<'a, const F: usize> Equations<'a, F> {
     }
 
     /// Sets the context to local time `tau` as far as the equations of motion need it.
-    #[inline]
+    #[inline(always)]
     pub fn at_stage(&mut self, tau: f64) {
         if tau == self.set_for {
             return;

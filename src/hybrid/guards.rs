@@ -106,7 +106,7 @@ pub(super) fn watched_value<const F: usize>(
 
 /// Value of a guard of the present mode; a conditional one is respected as well where none of its
 /// conditions holds.
-#[inline]
+#[inline(always)]
 pub(super) fn value<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &mut Context,
@@ -130,6 +130,7 @@ pub(super) fn value<const F: usize>(
 }
 
 /// Motion at local time `tau` of a step, with accelerations from the equations where asked for.
+#[inline(always)]
 pub(super) fn motion<const F: usize>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,

@@ -15,6 +15,7 @@ use crate::model::Mode;
 const MOST_REQUIREMENTS: usize = 8;
 
 /// What the mode requires to be positive must be so.
+#[inline(always)]
 pub(super) fn check_requirements<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &Context,

@@ -94,6 +94,7 @@ pub(super) fn search_function(
 }
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
+#[inline(always)]
 fn search_linear<const F: usize>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,

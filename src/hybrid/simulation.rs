@@ -566,12 +566,14 @@ impl<'p> Simulation<'p> {
 
 impl Here {
     /// Free coordinates, velocities and accelerations.
+    #[inline(always)]
     pub fn free<const F: usize>(&self, free: &[usize]) -> [SVector<f64, F>; 3] {
         let gather = |full: &[f64]| SVector::from_fn(|i, _| full[free[i]]);
         [gather(&self.q), gather(&self.v), gather(&self.a)]
     }
 
     /// Sets the free coordinates.
+    #[inline(always)]
     pub fn set_free<const F: usize>(&mut self, free: &[usize], [q, v, a]: [&SVector<f64, F>; 3]) {
         for (i, &full) in free.iter().enumerate() {
             (self.q[full], self.v[full], self.a[full]) = (q[i], v[i], a[i]);

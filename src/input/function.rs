@@ -158,6 +158,7 @@ impl Function {
 
     /// The first time after `t` at which the function is not analytic, in s: a breakpoint or any
     /// knot of a spline; infinite if there is none.
+    #[inline(always)]
     pub fn next_knot(&self, t: f64) -> f64 {
         self.terms
             .iter()

@@ -92,6 +92,7 @@ impl Signals {
     }
 
     /// Fills `u` and `u_dot` with the signals and their rates at `t` (s), as they are on that side.
+    #[inline(always)]
     pub fn jets(&self, t: f64, side: Side, u: &mut [f64], u_dot: &mut [f64]) {
         for c in &self.channels {
             let jet = c.function.at(t, side);
@@ -136,6 +137,7 @@ impl Signals {
     }
 
     /// The first time after `t` at which some input is not analytic, in s; infinite if there is none.
+    #[inline(always)]
     pub fn next_knot(&self, t: f64) -> f64 {
         self.channels
             .iter()
@@ -150,6 +152,7 @@ impl Signals {
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] rows.
+    #[inline(always)]
     pub fn series(&self, t: f64, [u, u_dot]: [&[f64]; 2], wanted: &[bool], rows: &mut [f64]) {
         let width = u.len();
         for c in &self.channels {

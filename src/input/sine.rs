@@ -63,6 +63,7 @@ impl Sine {
     /// A/ω (cos φ − cos(y + φ)) and A/ω² (y cos φ − sin(y + φ) + sin φ). They are written as
     /// A/ω · 2 sin(y/2 + φ) sin(y/2) and A/ω² (cos φ (y − sin y) + 2 sin φ sin²(y/2)), so that
     /// nothing cancels near the start.
+    #[inline(always)]
     pub fn at(&self, t: f64, side: Side) -> Jet {
         let y = self.angle(t);
         self.jet(t, side, y, sin_cos(0.5 * y))

@@ -170,6 +170,7 @@ pub fn solve<const F: usize>(
 }
 
 /// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
+#[inline(always)]
 pub(crate) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
     let mut m = *matrix;
     let mut sign = 1;

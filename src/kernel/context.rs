@@ -256,7 +256,7 @@ impl Context {
 
     /// Sets by how much the signals change at most while time goes on by `tau` (s) from where they were expanded
     /// last, as far as their series say that are known to so many orders.
-    #[inline]
+    #[inline(always)]
     pub(super) fn set_signal_radii(&mut self, orders: usize, tau: f64) {
         let width = self.signal_radii.len();
         for &i in self.dimensions.required.iter().filter(|_| !self.quiet) {

@@ -190,6 +190,7 @@ fn cut<const N: usize>(bernstein: &[f64; N], part: f64) -> ([f64; N], [f64; N]) 
 
 /// The least Bernstein coefficient but the first, which is the value at the start of the piece: where it rises from
 /// near zero it does not turn there. Four side by side, since each comparison waits for the one before.
+#[inline(always)]
 fn least_after_start<const N: usize>(bernstein: &[f64; N]) -> f64 {
     let lower = |a: f64, b: f64| if b < a { b } else { a };
     let (fours, rest) = bernstein[1..].as_chunks::<4>();

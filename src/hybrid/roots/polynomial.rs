@@ -59,7 +59,7 @@ impl<const N: usize> Polynomial<N> {
         self.sum(s)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn sum(&self, s: f64) -> f64 {
         if N < 6 {
             let mut value = 0.0;
@@ -104,6 +104,7 @@ impl<const N: usize> Polynomial<N> {
     }
 
     /// The highest power of s that is a factor.
+    #[inline(always)]
     fn leading_zeros(&self) -> usize {
         let order = self.coefficients.iter().position(|&c| c != 0.0);
         order.unwrap_or(0)

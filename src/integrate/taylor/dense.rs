@@ -62,7 +62,7 @@ impl<const F: usize> TaylorDense<F> {
     }
 
     /// Accelerations at τ.
-    #[inline]
+    #[inline(always)]
     pub(super) fn acceleration(&self, tau: f64) -> SVector<f64, F> {
         sum(&self.series.a[..self.order], tau)
     }
@@ -102,7 +102,7 @@ impl<const F: usize> TaylorDense<F> {
 
 /// Σ c_k τᵏ, in powers of τ⁴ for every fourth coefficient: a processor works on the four sums side by
 /// side (Estrin 1960).
-#[inline]
+#[inline(always)]
 fn sum<const F: usize>(coefficients: &[SVector<f64, F>], tau: f64) -> SVector<f64, F> {
     let (fours, rest) = coefficients.as_chunks::<4>();
     let mut sums = [SVector::<f64, F>::zeros(); 4];

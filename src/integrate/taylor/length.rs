@@ -156,7 +156,7 @@ impl Terms {
 
     /// The shortest of the lengths that terms of these sizes, in units of the tolerance, allow: logarithms
     /// tell which it is, so that one root is taken.
-    #[inline]
+    #[inline(always)]
     pub fn length(&self, sizes: [f64; 5]) -> f64 {
         if sizes.iter().all(|&size| size == 0.0) {
             return f64::INFINITY;

@@ -176,7 +176,7 @@ impl<const F: usize> Taylor<F> {
     }
 
     /// The state the last step led to (or the restart set).
-    #[inline]
+    #[inline(always)]
     pub fn state(&mut self) -> &State<F> {
         if let Some(h) = self.open.take() {
             self.complete(h);
