@@ -24,6 +24,7 @@ pub(super) struct Clock<'a> {
 
 impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
+    #[inline(always)]
     fn set(&self, tau: f64, context: &mut Context) {
         let (t, side) = self.instant(tau);
         context.set_signals(self.signals, t, side);
@@ -48,6 +49,7 @@ impl Clock<'_> {
     ///
     /// A knot belongs to the piece after it, even if its local time is rounded to an instant before.
     /// `last` is the piece found before, for an earlier time.
+    #[inline(always)]
     fn piece(&self, tau: f64, last: Piece) -> (f64, Piece) {
         let mut t = self.start.plus(tau).seconds();
         if t < last.knot && tau < last.limit {

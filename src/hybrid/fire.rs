@@ -69,6 +69,7 @@ impl Simulation<'_> {
     }
 
     /// Index of the transition that is taken; its reset is left in `next`.
+    #[inline(always)]
     fn choose<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
@@ -187,6 +188,7 @@ impl Simulation<'_> {
     }
 
     /// Remembers the event, and goes to the limit of an accumulation if there is one.
+    #[inline(always)]
     fn remember(&mut self, guard: usize, transition: usize, impact: bool) -> Stoppable<()> {
         let signature = Signature {
             guard,

@@ -86,7 +86,7 @@ fn conditions_in<const F: usize>(
 }
 
 /// Value of what is watched, in the present mode.
-#[inline]
+#[inline(always)]
 pub(super) fn watched_value<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &mut Context,

@@ -166,6 +166,7 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// ends. What is tried first is the last place of the time in which the
 /// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
 /// of all of that where the guard is no coordinate.
+#[inline(always)]
 fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
@@ -245,6 +246,7 @@ fn value_at<const F: usize>(
 }
 
 /// Derivative of a guard along the flow.
+#[inline(always)]
 pub(super) fn rate_at<const F: usize>(
     equations: &mut Equations<F>,
     guard: &Guard,

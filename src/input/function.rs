@@ -74,6 +74,7 @@ impl Function {
     }
 
     /// Value, rate and antiderivatives at time `t` (s).
+    #[inline(always)]
     pub fn at(&self, t: f64, side: Side) -> Jet {
         if let [Term::Sine(sine)] = &self.terms[..] {
             return sine.at(t, side);
@@ -103,7 +104,7 @@ impl Function {
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] of them.
-    #[inline]
+    #[inline(always)]
     pub fn series(&self, t: f64, side: Side, known: [f64; 2], stride: usize, out: &mut [f64]) {
         if let [Term::Sine(sine)] = &self.terms[..] {
             return sine.fill_series(known, stride, out);

@@ -68,7 +68,7 @@ impl<const F: usize> TaylorDense<F> {
     }
 
     /// By how much coordinates and velocities change in τ.
-    #[inline]
+    #[inline(always)]
     pub(super) fn change(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>) {
         let Series { q, v, .. } = &self.series;
         (

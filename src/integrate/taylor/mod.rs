@@ -373,6 +373,7 @@ impl<const F: usize> Taylor<F> {
     }
 
     /// The length at which the last terms equal the tolerance, as far as those before agree.
+    #[inline(always)]
     fn accurate_length(&self) -> f64 {
         let Series { q, v, .. } = &self.dense.series;
         let [of_q, of_v] = &self.weights;
@@ -432,6 +433,7 @@ impl<const F: usize> Taylor<F> {
 
     /// Computes the state at the end of the step of length `h`. The acceleration is that of the polynomial:
     /// as good as the tolerance.
+    #[inline(always)]
     fn complete(&mut self, h: f64) {
         let (start, lost) = (&self.start, &self.lost_at_start);
         let (dq, dv) = self.dense.change(h);
