@@ -10,12 +10,12 @@ use super::problem::{Method, Problem};
 use super::requirements::{cut_where_unmet, hold_throughout};
 use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
+use super::solvers::{Slots, SlotsOf, Solvers};
 use super::work::work;
 use crate::integrate::{
-    Coefficients, Counters, Node, OneStep, Radau, RadauIia, State, Taylor, Tolerances,
-    determinant_sign, stages,
+    Counters, Node, OneStep, Radau, State, Taylor, Tolerances, determinant_sign, stages,
 };
-use crate::kernel::{Free, ModeKernel};
+use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use crate::record::Progress;
 use nalgebra::SVector;
@@ -43,7 +43,10 @@ impl Simulation<'_> {
         kernel: &'static ModeKernel<F>,
         stays: bool,
         progress: &mut dyn Progress,
-    ) -> Stoppable<Stop> {
+    ) -> Stoppable<Stop>
+    where
+        Solvers: SlotsOf<F>,
+    {
         let (problem, mode) = (self.problem, self.mode());
         let explicit = match problem.method {
             Method::Taylor => true,
@@ -52,53 +55,69 @@ impl Simulation<'_> {
         };
         match stages(problem.accuracy.relative) {
             _ if explicit && kernel.is_analytic() => {
-                let make = || {
-                    let kind = kernel.series_kind(&self.context);
-                    Taylor::new(&tolerances(problem, mode), kind)
-                };
-                let method = self.solvers.take(self.here.mode, true, make);
-                self.integrate(kernel, method, stays, progress)
+                let make =
+                    |x: &Context| Taylor::new(&tolerances(problem, mode), kernel.series_kind(x));
+                self.integrate(kernel, |slots| &mut slots.taylor, make, stays, progress)
             }
-            5 => self.by_radau::<5, F>(kernel, stays, progress),
-            _ => self.by_radau::<7, F>(kernel, stays, progress),
+            5 => {
+                let make = |_: &Context| Radau::new(&tolerances(problem, mode));
+                self.integrate(
+                    kernel,
+                    |slots| &mut slots.radau_of_five,
+                    make,
+                    stays,
+                    progress,
+                )
+            }
+            _ => {
+                let make = |_: &Context| Radau::new(&tolerances(problem, mode));
+                self.integrate(
+                    kernel,
+                    |slots| &mut slots.radau_of_seven,
+                    make,
+                    stays,
+                    progress,
+                )
+            }
         }
     }
 
-    fn by_radau<const S: usize, const F: usize>(
-        &mut self,
-        kernel: &'static ModeKernel<F>,
-        stays: bool,
-        progress: &mut dyn Progress,
-    ) -> Stoppable<Stop>
-    where
-        RadauIia<S>: Coefficients<S>,
-    {
-        let (problem, mode) = (self.problem, self.mode());
-        let make = || Radau::<S, F>::new(&tolerances(problem, mode));
-        let method = self.solvers.take(self.here.mode, false, make);
-        self.integrate(kernel, method, stays, progress)
-    }
-
+    /// Takes the method of the present mode out of its slot, or makes it; follows the motion, and puts it back.
+    #[inline(always)]
     fn integrate<const F: usize, M>(
         &mut self,
         kernel: &'static ModeKernel<F>,
-        mut method: Box<M>,
+        slots: impl Fn(&mut Slots<F>) -> &mut [Option<Box<M>>],
+        make: impl Fn(&Context) -> M,
         stays: bool,
         progress: &mut dyn Progress,
     ) -> Stoppable<Stop>
     where
-        M: for<'a> OneStep<F, Equations<'a, F>> + 'static,
+        M: for<'a> OneStep<F, Equations<'a, F>>,
+        Solvers: SlotsOf<F>,
     {
         let mode = self.here.mode;
-        let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
+        let mut method = match slots(self.solvers.slots())[mode].take() {
+            Some(method) => method,
+            None => self.begin_with(make(&self.context)),
+        };
         let stop = self.stay(kernel, &mut *method, stays, progress);
-        self.count(&OneStep::<F, Equations<F>>::take_counters(&mut *method));
-        let name = OneStep::<F, Equations<F>>::name(&*method);
+        self.count(&method.take_counters());
+        slots(self.solvers.slots())[mode] = Some(method);
+        stop
+    }
+
+    /// Notes the name of a new method.
+    #[cold]
+    fn begin_with<const F: usize, M>(&mut self, method: M) -> Box<M>
+    where
+        M: for<'a> OneStep<F, Equations<'a, F>>,
+    {
+        let name = method.name();
         if !self.methods.contains(&name) {
             self.methods.push(name);
         }
-        self.solvers.keep(mode, is_explicit, method);
-        stop
+        Box::new(method)
     }
 
     /// Follows the motion from event to event, as long as they lead to the same mode again and it `stays`
