@@ -234,6 +234,7 @@ fn accelerate<const F: usize>(equations: &mut Equations<F>, state: &mut State<F>
     }
 }
 
+#[inline(always)]
 fn value_at<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
