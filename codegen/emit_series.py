@@ -480,12 +480,29 @@ class Series:
     def add_to(self, source, name):
         """Adds both functions to a `Source`; returns the names under which they can be called."""
         start = source.add_text(f"{name}_start", _SIGNATURE, _text(self.graph.beginning()))
-        few = self.graph.interiors.few and len(self.graph.interiors)
+        interiors = self.graph.interiors
+        few, in_pairs = interiors.few and len(interiors), interiors.in_pairs and len(interiors)
         signature = f"const size_t k, {_SIGNATURE}" + (", real *restrict last" if few else "")
+        signature += ", const dalembert_block *given" if in_pairs else ""
         order = source.add_text(f"{name}_order", signature, _text(self.order), "DALEMBERT_INLINE")
         call = f"{order}(%s, q, v, a, u, x, w, out{', last' if few else ''});"
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
-        if self.graph.interiors.halves == 2:
+        if in_pairs:
+            pair = source.add_text(f"{name}_pair", "const size_t k, const real *w, dalembert_block *out",
+                                   "\n".join(interiors.pair(self.lead)), "DALEMBERT_INLINE")
+            one = f"{order}(%s, q, v, a, u, x, w, out, last, %s);"
+            orders = [
+                "  size_t k = 1;",
+                f"  for (; k < 3 && k < n; ++k) {one % ('k', 'NULL')}",
+                "  for (; k + 1 < n; k += 2) {",
+                f"    dalembert_block pair[2 * {interiors.blocks}];",
+                f"    {pair}(k, w, pair);",
+                f"    {one % ('k', 'pair')}",
+                f"    {one % ('k + 1', f'pair + {interiors.blocks}')}",
+                "  }",
+                f"  if (k < n) {one % ('k', 'NULL')}",
+            ]
+        if interiors.halves == 2:
             unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
             # A vector of eight lanes fills the processor without.
             orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]

@@ -53,6 +53,18 @@ class Interiors:
         return 2 if 2 * len(self) <= BLOCK else 1
 
     @property
+    def in_pairs(self):
+        """Whether the sums of two successive orders are taken side by side: most of their factors are the same, and
+        reading them is what the sums wait for. Late factors are not known so soon, and of many interiors the sums
+        would not fit into the registers."""
+        return self.few and self.halves == 1 and not self.late
+
+    @property
+    def blocks(self):
+        """Text of the number of blocks of a row of a table."""
+        return f"(DALEMBERT_WIDTH({self.halves * len(self)}) / DALEMBERT_BLOCK)"
+
+    @property
     def row(self):
         """Numbers of a row of both tables, filled up to whole blocks."""
         return 2 * -(-self.halves * len(self) // BLOCK) * BLOCK
@@ -73,8 +85,16 @@ class Interiors:
         first = 2 if self.few else 1
         half = "0.5 * " if self.halves == 2 else ""
         others = self.halves == 1
+        if self.in_pairs:
+            lines += [
+                "  dalembert_block sums[blocks];",
+                "  for (size_t n = 0; given && n < blocks; ++n) sums[n] = given[n];",
+                "  if (!given) {",
+                "  dalembert_block others[blocks];",
+            ]
+        else:
+            lines.append(f"  dalembert_block sums[blocks]{', others[blocks]' if others else ''};")
         lines += [
-            f"  dalembert_block sums[blocks]{', others[blocks]' if others else ''};",
             "  for (size_t n = 0; n < blocks; ++n) {",
             f"    sums[n] = {'others[n] = ' if others else ''}DALEMBERT_ZERO;",
             f"    if (k % 2 == 0{' && k > 2' if self.few else ''}) sums[n] = {half}(DALEMBERT_LEFT(k / 2)[n] * DALEMBERT_RIGHT(k / 2)[n]);",
@@ -88,6 +108,7 @@ class Interiors:
             "    }",
             "  }",
             *(["  for (size_t n = 0; n < blocks; ++n) sums[n] += others[n];"] if others else []),
+            *(["  }"] if self.in_pairs else []),
         ]
         if not self.few:
             return [*lines, "  const real *const y = (const real *)sums;"]
@@ -104,6 +125,30 @@ class Interiors:
             "  }",
         ]
         return lines
+
+    def pair(self, lead):
+        """Statements that leave the sums of the orders k, which is odd and three at least, and k + 1 in `out`, but for
+        the factors of the last order before each: to the bit those of `sums`."""
+        return [
+            f"  enum {{ width = DALEMBERT_WIDTH({len(self)}), blocks = width / DALEMBERT_BLOCK }};",
+            f"  const real *const row = w + {lead};",
+            "  dalembert_block left[blocks], right[blocks], sums[blocks], others[blocks], next[blocks], next_others[blocks];",
+            "  for (size_t n = 0; n < blocks; ++n) {",
+            "    left[n] = DALEMBERT_LEFT((k + 1) / 2)[n], right[n] = DALEMBERT_RIGHT((k + 1) / 2)[n];",
+            "    sums[n] = others[n] = next_others[n] = DALEMBERT_ZERO;",
+            "    next[n] = left[n] * right[n];",
+            "  }",
+            "  for (size_t j = (k - 1) / 2; j >= 2; --j) {",
+            "    for (size_t n = 0; n < blocks; ++n) {",
+            "      sums[n] += DALEMBERT_LEFT(j)[n] * right[n];",
+            "      others[n] += left[n] * DALEMBERT_RIGHT(j)[n];",
+            "      left[n] = DALEMBERT_LEFT(k + 1 - j)[n], right[n] = DALEMBERT_RIGHT(k + 1 - j)[n];",
+            "      next[n] += DALEMBERT_LEFT(j)[n] * right[n];",
+            "      next_others[n] += left[n] * DALEMBERT_RIGHT(j)[n];",
+            "    }",
+            "  }",
+            "  for (size_t n = 0; n < blocks; ++n) out[n] = sums[n] + others[n], out[blocks + n] = next[n] + next_others[n];",
+        ]
 
     def stores(self):
         """Statements that store the factors of order k."""
