@@ -3,7 +3,8 @@
 The interiors of an order are known before the order is begun: one loop over j computes all of them,
 side by side in vector lanes. Their factors are two tables in the workspace, a row an order. The
 sums go from the middle outwards, so that the coefficients that were computed last enter last: what
-an order has to wait for is one product and one sum.
+an order has to wait for is one product and one sum. Of three or four interiors two orders are summed side by
+side, up to that last product: they have most factors in common.
 
 A processor reads as a block only after a while what was stored number by number. Where an order is
 so short that it would wait for that, the last factors are kept in registers as well.
