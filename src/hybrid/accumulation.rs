@@ -283,7 +283,8 @@ impl Accumulation {
         let predicted_before = at[1].plus(middle * ratio_before / (1.0 - ratio_before));
         let uncertainty = limit.since(predicted_before).abs();
         let one_place = limit.seconds().abs() * f64::EPSILON;
-        if uncertainty > (relative * limit.seconds().abs()).max(one_place) {
+        let has_converged = uncertainty <= (relative * limit.seconds().abs()).max(one_place);
+        if !has_converged {
             return None;
         }
         let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
