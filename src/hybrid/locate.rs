@@ -185,7 +185,8 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     };
     let passed = own_size.min(elapsed).max(TAYLOR * elapsed);
     let mut place = (f64::EPSILON * passed.max(correction.abs())).max(f64::MIN_POSITIVE);
-    let mut beyond = correction;
+    // At the very root the guard is zero as often as not.
+    let mut beyond = correction + place;
     loop {
         *landed = moved(end, beyond);
         if of_accelerations {
@@ -241,7 +242,11 @@ fn value_at<const F: usize>(
     guard: (&Guard, Watched),
     state: &State<F>,
 ) -> f64 {
-    equations.at(state.t);
+    // A coordinate or a rate does not ask for the time.
+    let is_motion = matches!(guard.0.shape, GuardShape::Linear { offset: false, .. });
+    if !is_motion || guard.1.conditional {
+        equations.at(state.t);
+    }
     let at = free_of(state);
     guards::value(equations.kernel, equations.context, conditions, guard, at)
 }

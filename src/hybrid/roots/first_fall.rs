@@ -157,7 +157,7 @@ impl<const N: usize> Armed<'_, N> {
         let (left, right) = ((from, at_start), (to, at_end));
         let is_bracket = left.1 > 0.0;
         if is_bracket {
-            *found = root(self.polynomial, left, right, s);
+            *found = root(self.polynomial, left, right, (s, self.rounding));
         }
         is_bracket
     }
@@ -253,39 +253,69 @@ pub(super) fn fall_beside(
     Search::found(l.0, r.0, Kind::Fall, Watch::Violated)
 }
 
-/// The only root between two places at which the polynomial has different signs, sought from `s` on.
+/// The fall about a place `s` that is off by rounding only, in a bracket that is as wide as leaves no doubt about the
+/// signs at its ends: a value that is off by the rounding has its root `margin` away at most. None where
+/// that is no small part of s, or leaves the window.
+///
+/// Values next to a root are equal over many doubles, or have random signs: which of them are neighbours of different
+/// signs takes up to ten values, and tells nothing about where the root is.
+#[inline(always)]
+fn certain_fall<const N: usize>(
+    polynomial: &Polynomial<N>,
+    (from, to): (f64, f64),
+    s: f64,
+    margin: f64,
+) -> Option<Search> {
+    let (before, after) = (below(s).min(s - margin), above(s).max(s + margin));
+    let [at_before, at_after] = [before, after].map(|s| polynomial.value(s));
+    let is_near = margin <= LAST_STEP * s && from <= before && after <= to;
+    (is_near && at_before > 0.0 && at_after < 0.0)
+        .then(|| Search::found(before, after, Kind::Fall, Watch::Violated))
+}
+
+/// The only root between two places at which the polynomial has different signs, sought from a place on; given a bound
+/// of the rounding error of a value.
 #[inline(always)]
 fn root<const N: usize>(
     polynomial: &Polynomial<N>,
     left: Point,
     right: Point,
-    mut s: f64,
+    (s, rounding): (f64, f64),
 ) -> Search {
     let (mut l, mut r) = (left, right);
     let derivatives = polynomial.derivatives();
-    let mut value = polynomial.value(s);
-    let mut parabola = (value, 0.0, 0.0);
+    let mut point = (s, polynomial.value(s));
+    let mut parabola = (point.1, 0.0, 0.0);
+    let mut certain = None;
     for _ in 0..MOST_ITERATIONS {
-        narrow((&mut l, &mut r), (s, value));
+        let (s, value) = point;
+        narrow((&mut l, &mut r), point);
         let [slope, curvature] = [0, 1].map(|order| derivatives[order].sum(s));
-        let discriminant = slope * slope - 2.0 * curvature * value;
         parabola = (value, slope, curvature);
+        let discriminant = slope * slope - 2.0 * curvature * value;
         // The root of the parabola at s that a falling piece leads to, or Newton's.
         let step = match discriminant > 0.0 && slope < 0.0 {
             true => 2.0 * value / (discriminant.sqrt() - slope),
             false => -value / slope,
         };
         let next = s + step;
-        if !(l.0 < next && next < r.0) {
+        let is_last = step.abs() <= LAST_STEP * s;
+        if is_last {
+            let window = (left.0, right.0);
+            certain = certain_fall(polynomial, window, next, rounding / slope.abs());
+        }
+        if certain.is_some() || !(l.0 < next && next < r.0) {
             break;
         }
-        let moved = (next - s).abs();
-        (s, value) = (next, polynomial.value(next));
-        if moved <= LAST_STEP * s {
+        point = (next, polynomial.value(next));
+        if is_last {
             break;
         }
     }
-    let event = fall_beside(&mut |s| polynomial.value(s), (l, r), (s, value));
+    let event = match certain {
+        Some(event) => event,
+        None => fall_beside(&mut |s| polynomial.value(s), (l, r), point),
+    };
     match parabola {
         // The bottom of the parabola where the iteration has ended.
         (value, slope, curvature) if curvature > 0.0 => {

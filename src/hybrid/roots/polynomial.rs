@@ -1,6 +1,6 @@
 //! A guard that is a polynomial, such as a coordinate on the dense output of a step.
 
-use super::bracket::departure;
+use super::bracket::{close, departure};
 use super::extrema::{Count, Expansion, Places, extrema};
 use super::first_fall::first_fall;
 use super::walk::{Pieces, walk};
@@ -126,6 +126,7 @@ impl<const N: usize> Polynomial<N> {
         let mut search = Search::quiet(watch);
         if watch == Watch::Armed {
             self.search_armed(from, to, noise, &mut search);
+            self.close_in(&mut search);
             return search;
         }
         // c₀ + Σ max(cₖ, 0) bounds the polynomial on [0, 1] from above; c₀ itself is on the right side of 0,
@@ -145,8 +146,10 @@ impl<const N: usize> Polynomial<N> {
         }
     }
 
-    /// The same for a guard that is armed. What is found is written where the caller reads it, since a copy
-    /// right after it would wait for what is on its way to memory.
+    /// The same for a guard that is armed, but that the bracket of a fall is as wide as leaves no doubt about the signs
+    /// at its ends, which is some rounding errors of a value: closer the guard's own values tell, at the state itself.
+    /// What is found is written where the caller reads it, since a copy right after it would wait for what is on its
+    /// way to memory.
     #[inline(always)]
     pub(in crate::hybrid) fn search_armed(
         &self,
@@ -168,6 +171,17 @@ impl<const N: usize> Polynomial<N> {
             *found = Search::quiet(Watch::Armed);
         } else if !first_fall(self, from, to, found) {
             *found = self.search_pieces(from, to, Watch::Armed, noise);
+        }
+    }
+
+    /// Closes in on neighbouring doubles.
+    fn close_in(&self, found: &mut Search) {
+        if let Some(crossing) = &mut found.crossing
+            && crossing.kind == Kind::Fall
+        {
+            let [left, right] = [crossing.inside, crossing.outside].map(|s| (s, self.value(s)));
+            let (left, right) = close(&mut |s| self.value(s), left, right);
+            (crossing.inside, crossing.outside) = (left.0, right.0);
         }
     }
 
@@ -203,6 +217,7 @@ impl<const N: usize> Polynomial<N> {
         if coefficients[0] > 0.0 {
             let mut found = Search::quiet(Watch::Armed);
             quotient.search_of_multiple(to, &mut found);
+            quotient.close_in(&mut found);
             return found;
         }
         // Cauchy: the quotient has no root nearer to 0 than this.
