@@ -7,7 +7,7 @@ import json
 
 import casadi as ca
 
-from . import units
+from . import graph, units
 from .emit_c import KEPT_ANGLES
 
 MOST_FREE = 6
@@ -233,6 +233,8 @@ def _mode(variant, i, equations):
     mass = functions[("system",)].output[: free**2]
     jacobian = functions[("jacobian",)].output
     yield f"{pad}        mass_is_constant: {_bool(_is_constant(model, equations, mass))},"
+    inertia = ca.vertcat(ca.vec(mass), ca.vec(functions[("inertia",)].output))
+    yield f"{pad}        inertia_is_fixed: {_bool(_is_fixed(model, equations, inertia))},"
     yield f"{pad}        is_linear: {_bool(_is_constant(model, equations, jacobian))},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
     yield f"{pad}        lanes: {_lanes(variant, i, functions)},"
@@ -289,6 +291,14 @@ def _shape(model, equations, expression):
 def _is_constant(model, equations, entries):
     """Whether entries of a matrix stay the same while the mode lasts."""
     return not present(ca.symvar(entries), equations.a, *_moving(model, equations))
+
+
+def _is_fixed(model, equations, entries):
+    """Whether entries of a matrix follow from the parameters alone: also where the sign of a discrete state of +1 or -1
+    cancels out of them."""
+    of_sign = [d for d in model.discretes if sorted(d.values) == [-1, 1] and graph.is_even(entries, d.symbol)]
+    others = ca.vertcat(*(d.symbol for d in model.discretes if d not in of_sign))
+    return _is_constant(model, equations, entries) and not present(ca.symvar(entries), equations.held, others)
 
 
 def linear_shape(model, equations, expression):

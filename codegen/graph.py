@@ -43,6 +43,34 @@ def non_smooth_operation(expression, parameters=()):
     return None
 
 
+def is_even(expression, symbol):
+    """Whether a column stays the same, to the bit, where `symbol` changes its sign: by the operations that carry a
+    sign through, each node of the graph is even, odd, or neither."""
+    symbols = ca.symvar(expression)
+    function = ca.Function("parity", symbols, [expression])
+    parity, answer = {}, True  # +1: even, -1: odd, 0: neither
+    for k in range(function.n_instructions()):
+        op, source = function.instruction_id(k), function.instruction_input(k)
+        given = [parity[i] for i in source] if op not in (ca.OP_CONST, ca.OP_INPUT) else []
+        if op == ca.OP_OUTPUT:
+            answer = answer and given == [1]
+            continue
+        if op == ca.OP_INPUT:
+            own = -1 if symbols[source[0]].element_hash() == symbol.element_hash() else 1
+        elif op in (ca.OP_MUL, ca.OP_DIV):
+            own = given[0] * given[1]
+        elif op in (ca.OP_SQ, ca.OP_FABS):
+            own = abs(given[0])
+        elif op in (ca.OP_NEG, ca.OP_TWICE, ca.OP_INV, ca.OP_ASSIGN):
+            own = given[0]
+        elif op in (ca.OP_ADD, ca.OP_SUB) and given[0] == given[1]:
+            own = given[0]
+        else:
+            own = int(all(p == 1 for p in given))
+        parity[function.instruction_output(k)[0]] = own
+    return answer
+
+
 def additive_terms(expression):
     """The terms of a scalar sum, signs included, down to the first non-additive operations."""
     terms, stack = [], [(expression, 1)]

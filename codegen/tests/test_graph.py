@@ -30,6 +30,25 @@ def exactly(expression, values):
     return operations[expression.op()](*parts)
 
 
+class Parity(unittest.TestCase):
+    def test_signs_cancel_where_they_do(self):
+        even = (x * x, (x * y) * (x * z) + y, ca.fabs(x / y), (x * z) ** 2 * y, y - z, (x + x * y) / x, (-x) * (x * ca.sin(y)))
+        odd_or_neither = (x, x + y, (x + y) ** 2, ca.cos(x * y), (x * y) / z, ca.vertcat(y, x), x**2 * x)
+        for expression in even:
+            self.assertTrue(graph.is_even(expression, x), expression)
+        for expression in odd_or_neither:
+            self.assertFalse(graph.is_even(expression, x), expression)
+
+    def test_what_is_even_has_the_same_bits(self):
+        draw = random.Random(2)
+        expression = ca.vertcat((x * y) * (x * z) + y / z, (x * ca.sin(y)) ** 2, (x * y - x / z) / (x + x * z))
+        self.assertTrue(graph.is_even(expression, x))
+        values = ca.Function("values", [x, y, z], [expression])
+        for _ in range(1000):
+            a, b, c = (draw.uniform(-2, 2) for _ in range(3))
+            self.assertEqual(*(values(s * a, b, c).full().tolist() for s in (+1, -1)))
+
+
 class Rounding(unittest.TestCase):
     def test_terms_of_factors_count(self):
         size = ca.Function("size", [x, y, z], [graph.magnitude(z * (x - y)), graph.rounding(z * (x - y))])

@@ -27,13 +27,18 @@ impl Simulation<'_> {
         kernel: &'static ModeKernel<F>,
     ) -> Stoppable<Option<Violation>> {
         self.set_context();
-        kernel.held_rates(&self.context, &mut self.drift);
         let mode = self.mode();
+        if self.plan.drifts[self.here.mode] {
+            kernel.held_rates(&self.context, &mut self.drift);
+        }
         let [q, v, _] = self.here.free::<F>(mode.free);
-        self.check_inertia(&kernel.inertia(&self.context, &q, &v))?;
         let system = kernel.system(&self.context, &q, &v);
-        if determinant_sign(&system.mass) < 0 {
-            return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
+        if !(kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]) {
+            self.check_inertia(&kernel.inertia(&self.context, &q, &v))?;
+            if determinant_sign(&system.mass) < 0 {
+                return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
+            }
+            self.has_inertia[self.here.mode] = true;
         }
         let scale = self.scale::<F>();
         let mut a = solve(&system.mass, &-system.load, &scale)
@@ -111,20 +116,21 @@ impl Simulation<'_> {
 
     /// Enters the present mode again after an event in it, where that takes no more than what most events
     /// ask for: guards that are positive, or zero and rise. Given free coordinates and velocities, sets the
-    /// accelerations too; false: the mode is to be entered as any other. What the mode requires is looked at in
-    /// the first step.
+    /// accelerations too where they are needed; false: the mode is to be entered as any other. What the mode requires
+    /// is looked at in the first step.
     pub fn enter_again<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         q: SVector<f64, F>,
         v: SVector<f64, F>,
+        needs_accelerations: bool,
     ) -> Stoppable<bool> {
         let mode = self.mode();
-        if self.plan.drifts[self.here.mode]
+        let is_inertial = kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]
             || self
                 .check_inertia(&kernel.inertia(&self.context, &q, &v))
-                .is_err()
-        {
+                .is_ok();
+        if self.plan.drifts[self.here.mode] || !is_inertial {
             return Ok(false);
         }
         self.signs.clear();
@@ -156,13 +162,15 @@ impl Simulation<'_> {
             self.signs.watches.push(Watch::of(value));
         }
         self.signs.start();
-        let system = kernel.system(&self.context, &q, &v);
-        let a = solve(&system.mass, &-system.load, &self.scale::<F>());
-        let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
-            return Ok(false);
-        };
-        self.here.set_free(mode.free, [&q, &v, &a]);
-        self.flush_samples();
+        if needs_accelerations || self.has_sample_left() {
+            let system = kernel.system(&self.context, &q, &v);
+            let a = solve(&system.mass, &-system.load, &self.scale::<F>());
+            let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
+                return Ok(false);
+            };
+            self.here.set_free(mode.free, [&q, &v, &a]);
+            self.flush_samples();
+        }
         Ok(true)
     }
 
@@ -291,7 +299,7 @@ mod tests {
         let mode = simulation.mode();
         let again = with_kernel!(&mode.kernels, k => {
             let [q, v, _] = simulation.here.free(mode.free);
-            simulation.enter_again(k, q, v).unwrap()
+            simulation.enter_again(k, q, v, true).unwrap()
         });
         again.then(|| simulation.signs.watches[0])
     }

@@ -329,10 +329,6 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
         self.kernel.series_run(self.context, n, inverse, series)
     }
 
-    fn mass_is_constant(&self) -> bool {
-        self.kernel.mass_is_constant()
-    }
-
     fn horizon(&self, t: f64) -> f64 {
         match self.context.quiet {
             true => f64::INFINITY,

@@ -47,11 +47,13 @@ impl Simulation<'_> {
         self.remember(guard, t, is_impact(fired))
     }
 
-    /// Takes a transition of a guard. Gives whether it has led to the same mode again, which goes on.
+    /// Takes a transition of a guard. Gives whether it has led to the same mode again, which goes on: with
+    /// accelerations where they are needed.
     pub fn fire_and_stay<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         guard: usize,
+        needs_accelerations: bool,
     ) -> Stoppable<bool> {
         let mode = self.here.mode;
         self.visited.clear();
@@ -62,7 +64,7 @@ impl Simulation<'_> {
                 let (n, free) = (self.here.q.len(), self.mode().free);
                 let gather = |from: usize| SVector::from_fn(|i, _| self.next[from + free[i]]);
                 let (q, v) = (gather(0), gather(n));
-                self.enter_again(kernel, q, v)
+                self.enter_again(kernel, q, v, needs_accelerations)
             }
             false => Ok(false),
         }

@@ -60,6 +60,14 @@ pub(super) fn sample_time(every: Option<f64>, index: u64) -> f64 {
 }
 
 impl Simulation<'_> {
+    /// Whether a sample up to the present instant is not recorded yet.
+    pub fn has_sample_left(&self) -> bool {
+        let record = &self.problem.record;
+        let here = self.here.now.seconds().min(self.problem.end.time);
+        record.every.is_none() && self.recorder.last_time().is_none()
+            || sample_time(record.every, self.next_sample) <= here
+    }
+
     /// Records the samples up to the present instant that no segment has covered: the first one,
     /// and those that an accumulation left out.
     pub fn flush_samples(&mut self) {

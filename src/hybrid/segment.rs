@@ -148,9 +148,12 @@ impl Simulation<'_> {
                 || problem.record.every.is_none()
                 || self.ledger.is_some(),
         };
+        let needs_accelerations =
+            <M as OneStep<F, Equations<F>>>::NEEDS_ACCELERATIONS || !kernel.inertia_is_fixed();
+        let mut has_accelerations = true;
         loop {
             let [q, v, a] = self.here.free::<F>(mode.free);
-            method.restart(0.0, &q, &v, &a);
+            method.restart(0.0, &q, &v, has_accelerations.then_some(&a));
             let now = self.here.now.seconds();
             if now >= self.smooth_until {
                 let breakpoint = problem.signals.next_breakpoint(now);
@@ -162,9 +165,10 @@ impl Simulation<'_> {
             }
             match self.follow(&stay, method, progress)? {
                 Stop::Event(guard) if stays => {
-                    if !self.fire_and_stay(kernel, guard)? {
+                    if !self.fire_and_stay(kernel, guard, needs_accelerations)? {
                         return Ok(Stop::Fired);
                     }
+                    has_accelerations = needs_accelerations;
                 }
                 stop => return Ok(stop),
             }

@@ -125,6 +125,8 @@ pub(super) struct Simulation<'p> {
     pub piece: Piece,
     /// Whether signals can be computed ahead.
     pub foresees: bool,
+    /// Per mode: whether its inertia was found to be positive definite in this run.
+    pub has_inertia: Box<[bool]>,
     /// Typical sizes of all coordinates: absolute ÷ relative tolerance.
     pub sizes: Box<[f64]>,
     /// Name and order of every method that was used.
@@ -188,6 +190,7 @@ impl<'p> Simulation<'p> {
             smooth_until: f64::NEG_INFINITY,
             piece: Piece::UNKNOWN,
             foresees,
+            has_inertia: vec![false; problem.variant.modes.len()].into(),
             sizes: (accuracy.q_absolute.iter())
                 .map(|absolute| absolute / accuracy.relative)
                 .collect(),
@@ -235,6 +238,7 @@ impl<'p> Simulation<'p> {
             self.apply_drift();
         }
         self.stiffness.fill(Stiffness::default());
+        self.has_inertia.fill(false);
         self.accumulation.clear();
         self.visited.clear();
         self.doubts.clear();

@@ -17,8 +17,18 @@ pub trait OneStep<const F: usize, Y> {
     /// Name, and order of accuracy.
     fn name(&self) -> (&'static str, usize);
 
-    /// Goes on from a state that the last step did not lead to.
-    fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>);
+    /// Goes on from a state that the last step did not lead to. Accelerations that are not given are those of the
+    /// equations, which the first step finds unless it [needs](Self::NEEDS_ACCELERATIONS) them.
+    ///
+    /// # Panics
+    /// If accelerations are needed and not given.
+    fn restart(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: Option<&SVector<f64, F>>,
+    );
 
     /// Makes one step, not beyond `t_end`.
     ///
@@ -50,6 +60,9 @@ pub trait OneStep<const F: usize, Y> {
     /// Whether the accelerations of [`Self::state`] satisfy the equations to rounding, and not to the
     /// tolerance alone.
     const EXACT_ACCELERATIONS: bool;
+
+    /// Whether a restart needs the accelerations.
+    const NEEDS_ACCELERATIONS: bool;
 
     /// Whether stiffness holds the method back.
     const EXPLICIT: bool;
@@ -113,13 +126,22 @@ where
 
     const EXACT_ACCELERATIONS: bool = true;
 
+    const NEEDS_ACCELERATIONS: bool = true;
+
     const EXPLICIT: bool = false;
 
     fn name(&self) -> (&'static str, usize) {
         ("Radau IIA", 2 * S - 1)
     }
 
-    fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>) {
+    fn restart(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: Option<&SVector<f64, F>>,
+    ) {
+        let a = a.expect("accelerations are needed");
         self.restart(t, q, v, a);
     }
 
@@ -166,6 +188,8 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     const EXACT_ACCELERATIONS: bool = false;
 
+    const NEEDS_ACCELERATIONS: bool = false;
+
     const EXPLICIT: bool = true;
 
     fn lag(&self, system: &Y, least: f64) -> f64 {
@@ -176,7 +200,13 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
         ("Taylor", self.order())
     }
 
-    fn restart(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>, a: &SVector<f64, F>) {
+    fn restart(
+        &mut self,
+        t: f64,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+        a: Option<&SVector<f64, F>>,
+    ) {
         self.restart(t, q, v, a);
     }
 

@@ -56,6 +56,7 @@ pub struct ModeKernel<const F: usize> {
     pub(super) guard_series: Option<SeriesKernel>,
     pub(super) guards: usize,
     pub(super) mass_is_constant: bool,
+    pub(super) inertia_is_fixed: bool,
     pub(super) is_linear: bool,
     pub(super) held_rates: Raw,
     pub(super) lanes: &'static [LaneKernel],
@@ -93,6 +94,11 @@ impl<const F: usize> ModeKernel<F> {
     /// Whether the mass matrix stays the same while the mode lasts.
     pub fn mass_is_constant(&self) -> bool {
         self.mass_is_constant
+    }
+
+    /// Whether mass matrix and inertia follow from the parameters alone.
+    pub fn inertia_is_fixed(&self) -> bool {
+        self.inertia_is_fixed
     }
 
     /// Whether the equations are linear: all of [`Self::jacobian`] stays the same while the mode lasts.

@@ -254,8 +254,9 @@ pub(super) fn fall_beside(
 }
 
 /// The fall about a place `s` that is off by rounding only, in a bracket that is as wide as leaves no doubt about the
-/// signs at its ends: a value that is off by the rounding has its root `margin` away at most. None where
-/// that is no small part of s, or leaves the window.
+/// signs at its ends, given slope and curvature: a value that is off by the rounding has its root so far away. None
+/// where that leaves the window, or is so far that Newton's method does not lead from the ends to the root, to the last
+/// place of s, in one step.
 ///
 /// Values next to a root are equal over many doubles, or have random signs: which of them are neighbours of different
 /// signs takes up to ten values, and tells nothing about where the root is.
@@ -264,12 +265,20 @@ fn certain_fall<const N: usize>(
     polynomial: &Polynomial<N>,
     (from, to): (f64, f64),
     s: f64,
-    margin: f64,
+    rounding: f64,
+    [slope, curvature]: [f64; 2],
 ) -> Option<Search> {
+    // Of all terms but the first no more than the part s is left there.
+    let first = Polynomial::<N>::ROUNDING * polynomial.coefficients[0].abs();
+    let margin = (first + s * (rounding - first)) / slope.abs();
     let (before, after) = (below(s).min(s - margin), above(s).max(s + margin));
     let [at_before, at_after] = [before, after].map(|s| polynomial.value(s));
-    let is_near = margin <= LAST_STEP * s && from <= before && after <= to;
-    (is_near && at_before > 0.0 && at_after < 0.0)
+    // Newton's method leaves the square of the distance times half of curvature ÷ slope, which are those of the
+    // polynomial, or of s times it: that adds 2/s.
+    let bend = curvature.abs() * s + 2.0 * slope.abs();
+    let is_straight = 0.5 * bend * margin * margin <= f64::EPSILON * s * s * slope.abs();
+    let is_within = from <= before && after <= to;
+    (is_straight && is_within && at_before > 0.0 && at_after < 0.0)
         .then(|| Search::found(before, after, Kind::Fall, Watch::Violated))
 }
 
@@ -302,7 +311,7 @@ fn root<const N: usize>(
         let is_last = step.abs() <= LAST_STEP * s;
         if is_last {
             let window = (left.0, right.0);
-            certain = certain_fall(polynomial, window, next, rounding / slope.abs());
+            certain = certain_fall(polynomial, window, next, rounding, [slope, curvature]);
         }
         if certain.is_some() || !(l.0 < next && next < r.0) {
             break;
@@ -322,5 +331,69 @@ fn root<const N: usize>(
             event.turning(value - slope * slope / (2.0 * curvature))
         }
         _ => event,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hybrid::roots::Crossing;
+
+    /// (root − s) times a polynomial that is positive on [0, 1], of degree 11 in all.
+    fn with_root(root: f64, others: &[f64; 5]) -> Polynomial<12> {
+        let mut coefficients = [0.0; 12];
+        (coefficients[0], coefficients[1]) = (root, -1.0);
+        for (k, &other) in others.iter().enumerate() {
+            // (s − other)² + (1 + k)/40
+            let own = [other * other + (1 + k) as f64 / 40.0, -2.0 * other, 1.0];
+            let before = coefficients;
+            for (i, out) in coefficients.iter_mut().enumerate() {
+                *out = (0..3.min(i + 1)).map(|j| own[j] * before[i - j]).sum();
+            }
+        }
+        Polynomial { coefficients }
+    }
+
+    fn crossing(polynomial: &Polynomial<12>) -> Crossing {
+        let mut found = Search::quiet(Watch::Armed);
+        polynomial.search_armed(0.0, 1.0, 0.0, &mut found);
+        found.crossing.expect("it has a root")
+    }
+
+    #[test]
+    fn a_bracket_of_the_engine_is_certain_and_as_narrow_as_rounding() {
+        // Places of the golden ratio's multiples: spread evenly.
+        let place = |i: usize| (i as f64 * 0.618_033_988_749_894_9).fract();
+        let mut equal = 0;
+        for i in 0..4000 {
+            let root = 0.02 + 0.96 * place(i);
+            let others = std::array::from_fn(|k| place(7 * i + 1009 * k + 3));
+            let polynomial = with_root(root, &others);
+            let Crossing {
+                inside, outside, ..
+            } = crossing(&polynomial);
+            let value = |s| polynomial.value(s);
+            assert!(value(inside) >= 0.0 && value(outside) < 0.0, "{i}");
+            let own = &polynomial.coefficients;
+            let size = own[0].abs() + root * sum_of(&own[1..], f64::abs);
+            let rounding = Polynomial::<12>::ROUNDING * size;
+            let slope = polynomial.derivatives()[0].value(root).abs();
+            let width = outside - inside;
+            assert!(
+                width <= 2.001 * rounding / slope + 4.0 * f64::EPSILON,
+                "{i}: {width:e}"
+            );
+            // The root is in it, but for what the coefficients are off by.
+            let off = f64::max(inside - root, root - outside);
+            assert!(off <= rounding / slope, "{i}: {off:e}");
+            // The public search closes in on neighbours within it.
+            let closed = polynomial.search(0.0, 1.0, Watch::Armed, 0.0).crossing;
+            let closed = closed.expect("it has a root");
+            assert!(inside <= closed.inside && closed.outside <= outside, "{i}");
+            assert_eq!(above(closed.inside), closed.outside);
+            assert!(value(closed.inside) >= 0.0 && value(closed.outside) < 0.0);
+            equal += usize::from(closed.inside == inside);
+        }
+        assert!(equal < 400, "{equal} brackets were closed");
     }
 }

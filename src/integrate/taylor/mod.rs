@@ -91,8 +91,10 @@ pub struct Taylor<const F: usize> {
     last: Last,
     /// Reciprocal tolerances of coordinates and velocities at the start of the step.
     weights: [SVector<f64, F>; 2],
-    /// Inverse of the mass matrix at the start of the step; `None` where it must be computed.
-    inverse: Option<SMatrix<f64, F, F>>,
+    /// The mass matrix at the start of the last step, and its inverse; `None` where it has none.
+    inverse: Option<(SMatrix<f64, F, F>, SMatrix<f64, F, F>)>,
+    /// Whether the accelerations after a restart were given.
+    accelerations_given: bool,
     implicit: Implicit,
     /// Length of the last step as far as accuracy limits it.
     length: f64,
@@ -135,29 +137,31 @@ impl<const F: usize> Taylor<F> {
             last: Last::Restart,
             weights: [zero; 2],
             inverse: None,
+            accelerations_given: false,
             counters: Counters::default(),
         }
     }
 
-    /// Goes on from a state that the last step did not lead to, as [`super::Radau::restart`].
+    /// Goes on from a state that the last step did not lead to, as [`super::Radau::restart`]. Accelerations that are
+    /// not given are those of the equations; [`Taylor::state`] has zeros instead before the first step.
     pub fn restart(
         &mut self,
         t: f64,
         q: &SVector<f64, F>,
         v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
+        a: Option<&SVector<f64, F>>,
     ) {
         self.weights = self.weights_at(q, v);
         self.end = State {
             t,
             q: *q,
             v: *v,
-            a: *a,
+            a: a.copied().unwrap_or_else(SVector::zeros),
         };
+        self.accelerations_given = a.is_some();
         self.lost = Lost::nothing();
         self.open = None;
         self.last = Last::Restart;
-        self.inverse = None;
     }
 
     /// Order of the method: that of the last coefficient of the velocities.
@@ -287,17 +291,18 @@ impl<const F: usize> Taylor<F> {
         let series = &mut self.dense.series;
         (series.q[0], series.v[0]) = (origin.q, origin.v);
         let (mass, load) = system.start(t, self.order, series);
-        if self.inverse.is_none() || !system.mass_is_constant() {
+        if self.inverse.is_none_or(|(of, _)| of != mass) {
             self.invert(&mass)?;
         }
-        let inverse = self.inverse.as_ref().expect("it was inverted");
-        let (origin, series) = (&self.end, &mut self.dense.series);
-        // A restart gives the accelerations: zero where they are not told from it, so that the motion
+        let (_, inverse) = self.inverse.as_ref().expect("it was inverted");
+        let (origin, series) = (&mut self.end, &mut self.dense.series);
+        // A restart may give the accelerations: zero where they are not told from it, so that the motion
         // leaves with the sign of the jerk.
-        series.a[0] = match restarted {
+        series.a[0] = match restarted && self.accelerations_given {
             true => origin.a,
             false => -(inverse * load),
         };
+        origin.a = series.a[0];
         (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
         system.run(self.order, inverse, series);
         self.counters.residual_evaluations += self.order as u64;
@@ -340,6 +345,7 @@ impl<const F: usize> Taylor<F> {
 
     /// Inverts the mass matrix.
     fn invert(&mut self, mass: &SMatrix<f64, F, F>) -> Result<(), StepError> {
+        self.inverse = None;
         let t = self.dense.t0;
         let scale = self.tolerances.v_absolute();
         let lu = Lu::factorize(|i, j| mass[(i, j)], scale).map_err(|singular| {
@@ -356,7 +362,7 @@ impl<const F: usize> Taylor<F> {
             inverse.set_column(j, &SVector::from(column));
         }
         self.counters.factorizations += 1;
-        self.inverse = Some(inverse);
+        self.inverse = Some((*mass, inverse));
         Ok(())
     }
 

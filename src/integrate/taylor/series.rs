@@ -58,9 +58,6 @@ pub trait Analytic<const F: usize>: System<F> {
     /// lower order.
     fn run(&mut self, n: usize, inverse: &SMatrix<f64, F, F>, series: &mut Series<F>);
 
-    /// Whether M is the same at all times.
-    fn mass_is_constant(&self) -> bool;
-
     /// Time until which the equations are the analytic functions of time that they are just after
     /// `t`; infinite if there is no limit.
     fn horizon(&self, _t: f64) -> f64 {
