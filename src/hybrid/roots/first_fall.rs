@@ -301,10 +301,10 @@ fn root<const N: usize>(
         narrow((&mut l, &mut r), point);
         let [slope, curvature] = [0, 1].map(|order| derivatives[order].sum(s));
         parabola = (value, slope, curvature);
-        let discriminant = slope * slope - 2.0 * curvature * value;
-        // The root of the parabola at s that a falling piece leads to, or Newton's.
-        let step = match discriminant > 0.0 && slope < 0.0 {
-            true => 2.0 * value / (discriminant.sqrt() - slope),
+        // Halley's step, of third order, or Newton's.
+        let denominator = slope * slope - 0.5 * curvature * value;
+        let step = match denominator > 0.0 {
+            true => -value * slope / denominator,
             false => -value / slope,
         };
         let next = s + step;
