@@ -145,10 +145,7 @@ impl<const N: usize> Armed<'_, N> {
             *found = Search::above(least_after_start(&within));
             return true;
         }
-        // Where the polygon of the coefficients falls through zero.
-        let (before, after) = (bernstein[falls - 1], bernstein[falls]);
-        let place = ((falls - 1) as f64 + before / (before - after)) / (N - 1) as f64;
-        let near = start + place * (end - start);
+        let near = start + first_guess(bernstein, falls) * (end - start);
         let s = if from < near && near < to { near } else { from };
         let at_start = match from == 0.0 {
             true => self.polynomial.coefficients[0],
@@ -160,6 +157,41 @@ impl<const N: usize> Armed<'_, N> {
             *found = root(self.polynomial, left, right, (s, self.rounding));
         }
         is_bracket
+    }
+}
+
+/// Where in a piece the root may be, given the index of the first negative Bernstein coefficient: beside an end of it
+/// by a step from there, since the last three coefficients tell value, slope and curvature; else where
+/// the polygon of the coefficients falls through zero.
+#[inline(always)]
+fn first_guess<const N: usize>(bernstein: &[f64; N], falls: usize) -> f64 {
+    let degree = (N - 1) as f64;
+    let from_end = |[at, next, third]: [f64; 3]| {
+        let (slope, curvature) = (next - at, (next - at) - (third - next));
+        step(at, degree * slope, -degree * (degree - 1.0) * curvature)
+    };
+    let guess = match falls {
+        _ if N < 3 => f64::NAN,
+        1 => from_end([bernstein[0], bernstein[1], bernstein[2]]),
+        _ if falls == N - 1 => {
+            1.0 - from_end([bernstein[N - 1], bernstein[N - 2], bernstein[N - 3]])
+        }
+        _ => f64::NAN,
+    };
+    if 0.0 < guess && guess < 1.0 {
+        return guess;
+    }
+    let (before, after) = (bernstein[falls - 1], bernstein[falls]);
+    ((falls - 1) as f64 + before / (before - after)) / degree
+}
+
+/// The step to a root from where a function has this value, slope and curvature: Halley's, of third order, or Newton's.
+#[inline(always)]
+fn step(value: f64, slope: f64, curvature: f64) -> f64 {
+    let denominator = slope * slope - 0.5 * curvature * value;
+    match denominator > 0.0 {
+        true => -value * slope / denominator,
+        false => -value / slope,
     }
 }
 
@@ -301,12 +333,7 @@ fn root<const N: usize>(
         narrow((&mut l, &mut r), point);
         let [slope, curvature] = [0, 1].map(|order| derivatives[order].sum(s));
         parabola = (value, slope, curvature);
-        // Halley's step, of third order, or Newton's.
-        let denominator = slope * slope - 0.5 * curvature * value;
-        let step = match denominator > 0.0 {
-            true => -value * slope / denominator,
-            false => -value / slope,
-        };
+        let step = step(value, slope, curvature);
         let next = s + step;
         let is_last = step.abs() <= LAST_STEP * s;
         if is_last {
