@@ -160,7 +160,8 @@ impl Simulation<'_> {
         }
     }
 
-    fn set_accelerations<const F: usize>(
+    /// Sets the accelerations to those of the equations.
+    pub fn set_accelerations<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
     ) -> Stoppable<()> {

@@ -529,6 +529,12 @@ impl<'p> Simulation<'p> {
         if last.is_none_or(|t| t < self.here.now.seconds()) {
             self.sample_here();
         }
+        if reason.is_some() {
+            // A mode that goes on after an event has none before its first step; where the equations have none,
+            // those before stay.
+            let mode = self.mode();
+            let _ = with_kernel!(&mode.kernels, k => self.set_accelerations(k));
+        }
         let problem = self.problem;
         let end = self.place();
         let energy = self.ledger.as_ref().map(|l| l.close(self.stored_energy()));

@@ -1,7 +1,7 @@
 //! The first simple fall of a polynomial: the common case, fast.
 //!
 //! The Bernstein coefficients have no sign change where there is no root, and one where there is one
-//! root (Descartes' rule): then a Newton iteration of third order leads to it. Where they have more, the
+//! root (Descartes' rule): then Halley's iteration leads to it. Where they have more, the
 //! polynomial is cut in two by de Casteljau's rule, and the first part is looked at first (Lane, J. M. and
 //! Riesenfeld, R. F. (1981), BIT 21, 112–117). Whatever does not fit, such as a touch, is left to the
 //! general search. A parabola has its root in closed form.
@@ -15,7 +15,7 @@ use super::{Kind, Search, Watch, quadratic};
 /// then is a touch or nearly one.
 const MOST_CUTS: usize = 8;
 
-/// Steps to a root on a falling piece; the third order needs three from half a window away.
+/// Steps to a root on a falling piece: the third order mostly needs two, and three from half a window away.
 const MOST_ITERATIONS: usize = 8;
 
 /// A relative step after which the iteration has ended, since it leaves the cube of its last step: the
