@@ -32,13 +32,10 @@ impl Simulation<'_> {
             kernel.held_rates(&self.context, &mut self.drift);
         }
         let [q, v, _] = self.here.free::<F>(mode.free);
+        self.check_inertia(kernel, [&q, &v])?;
         let system = kernel.system(&self.context, &q, &v);
-        if !(kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]) {
-            self.check_inertia(&kernel.inertia(&self.context, &q, &v))?;
-            if determinant_sign(&system.mass) < 0 {
-                return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
-            }
-            self.has_inertia[self.here.mode] = true;
+        if determinant_sign(&system.mass) < 0 {
+            return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
         }
         let scale = self.scale::<F>();
         let mut a = solve(&system.mass, &-system.load, &scale)
@@ -126,11 +123,7 @@ impl Simulation<'_> {
         needs_accelerations: bool,
     ) -> Stoppable<bool> {
         let mode = self.mode();
-        let is_inertial = kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]
-            || self
-                .check_inertia(&kernel.inertia(&self.context, &q, &v))
-                .is_ok();
-        if self.plan.drifts[self.here.mode] || !is_inertial {
+        if self.plan.drifts[self.here.mode] || self.check_inertia(kernel, [&q, &v]).is_err() {
             return Ok(false);
         }
         self.signs.clear();
@@ -174,8 +167,23 @@ impl Simulation<'_> {
         Ok(true)
     }
 
-    /// The symmetric part of the mass matrix must be positive definite: its factors L D Lᵀ have positive pivots D.
-    fn check_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Stoppable<()> {
+    /// The inertia of the present mode must be positive definite; one that follows from the parameters alone is looked
+    /// at once.
+    #[inline(always)]
+    fn check_inertia<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        [q, v]: [&SVector<f64, F>; 2],
+    ) -> Stoppable<()> {
+        if !(kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]) {
+            self.factorize_inertia(&kernel.inertia(&self.context, q, v))?;
+            self.has_inertia[self.here.mode] = true;
+        }
+        Ok(())
+    }
+
+    /// The symmetric part of an inertia must be positive definite: its factors L D Lᵀ have positive pivots D.
+    fn factorize_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Stoppable<()> {
         // L D below the diagonal, D on it.
         let mut lower = SMatrix::<f64, F, F>::zeros();
         for i in 0..F {

@@ -62,26 +62,26 @@ pub(super) fn sample_time(every: Option<f64>, index: u64) -> f64 {
 impl Simulation<'_> {
     /// Whether a sample up to the present instant is not recorded yet.
     pub fn has_sample_left(&self) -> bool {
-        let record = &self.problem.record;
-        let here = self.here.now.seconds().min(self.problem.end.time);
-        record.every.is_none() && self.recorder.last_time().is_none()
-            || sample_time(record.every, self.next_sample) <= here
+        match self.problem.record.every {
+            None => self.recorder.last_time().is_none(),
+            every => {
+                let here = self.here.now.seconds().min(self.problem.end.time);
+                sample_time(every, self.next_sample) <= here
+            }
+        }
     }
 
     /// Records the samples up to the present instant that no segment has covered: the first one,
     /// and those that an accumulation left out.
     pub fn flush_samples(&mut self) {
-        if self.problem.record.every.is_none() && self.recorder.last_time().is_none() {
-            self.sample_here();
-        }
-        let here = self.here.now.seconds().min(self.problem.end.time);
-        loop {
-            let t = sample_time(self.problem.record.every, self.next_sample);
-            if t > here {
-                break;
+        while self.has_sample_left() {
+            match self.problem.record.every {
+                None => self.sample_here(),
+                every => {
+                    self.sample_at(sample_time(every, self.next_sample));
+                    self.next_sample += 1;
+                }
             }
-            self.sample_at(t);
-            self.next_sample += 1;
         }
     }
 

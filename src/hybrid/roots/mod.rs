@@ -117,7 +117,8 @@ pub enum Kind {
     Pole,
 }
 
-/// An event of one guard: neighbouring doubles `inside` < `outside`; its time is `outside`.
+/// An event of one guard: neighbouring doubles `inside` < `outside`; its time is `outside`. The engine's own search of a
+/// polynomial's fall leaves them some rounding errors apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Last double before the event, in the unit of the searched variable.
