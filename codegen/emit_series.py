@@ -445,6 +445,8 @@ class Series:
 
     def __init__(self, output, moving, constant, held, drift):
         self.graph = Graph()
+        self.gains = []
+        """Texts of factors that the beginning of a step gives."""
         place = {}
         for array, symbols in moving:
             width = symbols.numel()
@@ -484,13 +486,15 @@ class Series:
         few, in_pairs = interiors.few and len(interiors), interiors.in_pairs and len(interiors)
         signature = f"const size_t k, {_SIGNATURE}" + (", real *restrict last" if few else "")
         signature += ", const dalembert_block *given" if in_pairs else ""
+        signature += ", const real *gains" if self.gains else ""
         order = source.add_text(f"{name}_order", signature, _text(self.order), "DALEMBERT_INLINE")
-        call = f"{order}(%s, q, v, a, u, x, w, out{', last' if few else ''});"
+        gains = ", gains" if self.gains else ""
+        call = f"{order}(%s, q, v, a, u, x, w, out{', last' if few else ''}{gains});"
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
         if in_pairs:
             pair = source.add_text(f"{name}_pair", "const size_t k, const real *w, dalembert_block *out",
                                    "\n".join(interiors.pair(self.lead)), "DALEMBERT_INLINE")
-            one = f"{order}(%s, q, v, a, u, x, w, out, last, %s);"
+            one = f"{order}(%s, q, v, a, u, x, w, out, last, %s{gains});"
             orders = [
                 "  size_t k = 1;",
                 f"  for (; k < 3 && k < n; ++k) {one % ('k', 'NULL')}",
@@ -508,7 +512,9 @@ class Series:
             orders = ["#ifdef LANES", *orders, "#else", *unrolled, "#endif"]
         if few:
             orders.insert(0, f"  real last[{2 * few}] = {{0}};")
-        run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", "\n".join(orders), "DALEMBERT_CLONES")
+        if self.gains:
+            orders.insert(0, f"  const real gains[] = {{{', '.join(self.gains)}}};")
+        run = source.add_text(f"{name}_run", f"size_t n, {_SIGNATURE}", _text(orders), "DALEMBERT_CLONES")
         return start, run
 
 
@@ -535,15 +541,52 @@ class Equations(Series):
     def __init__(self, free, output, **arguments):
         super().__init__(output, **arguments)
         graph = self.graph
+        masses = self.nodes[:free * free]
         self.ends = all(node.constant for node in self.nodes[:free * (free + 1)])
+        residuals = []
         for i in range(free):
             load = self.nodes[free * free + i]
             forms = [] if load.constant else [graph.form(load)]
-            for j, mass in enumerate(self.nodes[i: free * free: free]):
+            for j, mass in enumerate(masses[i::free]):
                 if not mass.constant:
                     # The acceleration is not known at the start, where factors are multiplied.
                     forms += [self._late(mass, j, free), {f"{graph.value(mass)} * a[{j}]": _ONE}]
-            residual = graph._merged(graph.sum(*forms))
+            residuals.append(graph._merged(graph.sum(*forms)))
+        if all(mass.constant for mass in masses) and self._is_cheap_to_solve(residuals):
+            self._append_by_gains(residuals)
+        else:
+            self._append(residuals)
+        self.finish()
+
+    @staticmethod
+    def _is_cheap_to_solve(residuals):
+        """Whether multiplying the inverse into the factors of all terms makes no more products an order."""
+        free, terms = len(residuals), sum(map(len, residuals))
+        return free * len({term for form in residuals for term in form}) <= terms + free * free + free
+
+    def _append_by_gains(self, residuals):
+        """Appends an order where M is constant: rates are a linear form of the terms, with factors that the inverse
+        gives at the beginning of a step. So an order waits for one product and a sum."""
+        graph, free = self.graph, len(residuals)
+        terms = sorted({term for form in residuals for term in form}, key=graph._age)
+        for i in range(free):
+            gains = []
+            for term in terms:
+                parts = [(f"out[{free * j + i}]", form[term]) for j, form in enumerate(residuals) if term in form]
+                products = " + ".join(inverse if factor is _ONE else f"{inverse} * {graph.first(factor)}"
+                                      for inverse, factor in parts)
+                gains.append(f"(gains[{len(self.gains)}] * dalembert_inverses[k + 1]) * {term}")
+                self.gains.append(f"-({products})")
+            rate = " + ".join(gains) or "REAL(0.0)"
+            graph.state(f"const real v{i} = {rate};", dict.fromkeys(terms, _ONE))
+            graph.state(f"a[{free} * k + {i}] = v{i} * (order + 1.0);")
+            graph.state(f"v[{free} * (k + 1) + {i}] = v{i};")
+            graph.state(f"q[{free} * (k + 2) + {i}] = v{i} * dalembert_inverses[k + 2];")
+
+    def _append(self, residuals):
+        """Appends an order."""
+        graph, free = self.graph, len(residuals)
+        for i, residual in enumerate(residuals):
             graph.state(f"const real r{i} = REAL(%s);", residual)
         for i in range(free):
             row = "".join(f" - out[{free * j + i}] * r{j}" for j in range(free))[1:].replace("- ", "-", 1)
@@ -551,7 +594,6 @@ class Equations(Series):
             graph.state(f"a[{free} * k + {i}] = a{i};")
             graph.state(f"v[{free} * (k + 1) + {i}] = a{i} * dalembert_inverses[k + 1];")
             graph.state(f"q[{free} * (k + 2) + {i}] = a{i} * (dalembert_inverses[k + 1] * dalembert_inverses[k + 2]);")
-        self.finish()
 
     def _late(self, mass, j, free):
         """Interior of M a. The acceleration of order k is not known at order k."""
