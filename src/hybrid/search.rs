@@ -169,7 +169,11 @@ fn search_series<const F: usize>(
         return false;
     };
     let tau = dense.start();
-    if !equations.expand_guards(tau, orders, series) {
+    let expanded = match equations.kernel.guards_end(equations.context) {
+        true => orders.min(dense.coefficients(false)),
+        false => orders,
+    };
+    if !equations.expand_guards(tau, expanded, series) {
         return false;
     }
     // The guard's own value decides on which side of zero it starts.
@@ -186,7 +190,7 @@ fn search_series<const F: usize>(
         _ => kernel.guard_coefficient(context, watched.guard, k),
     };
     // Of a low degree where nothing moves.
-    let degree = (1..orders).rev().find(|&k| power(k) != 0.0);
+    let degree = (1..expanded).rev().find(|&k| power(k) != 0.0);
     let count = degree.map_or(1, |degree| degree + 1);
     let tolerance = equations.tolerance;
     let mut falls_off = true;

@@ -776,9 +776,11 @@ impl<const F: usize> ModeKernel<F> {
             mass: SMatrix::zeros(),
             load: SVector::zeros(),
         };
-        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
-        // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
-        unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
+        if F > 0 {
+            let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
+            // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
+            unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
+        }
         out
     }
 
@@ -812,11 +814,14 @@ impl<const F: usize> ModeKernel<F> {
     /// If the mode is not analytic.
     #[inline]
     pub fn series_start(&self, x: &mut Context, at: &Series<F>) -> LinearSystem<F> {
-        let series = self.motion_series(x).expect("the mode is analytic");
         let mut out = LinearSystem {
             mass: SMatrix::zeros(),
             load: SVector::zeros(),
         };
+        if F == 0 {
+            return out;
+        }
+        let series = self.motion_series(x).expect("the mode is analytic");
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let raw = x.raw(self.dimensions);
@@ -840,6 +845,9 @@ impl<const F: usize> ModeKernel<F> {
         inverse: &SMatrix<f64, F, F>,
         at: &mut Series<F>,
     ) {
+        if F == 0 {
+            return;
+        }
         let series = self.motion_series(x).expect("the mode is analytic");
         assert!(n <= ORDERS - 2);
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
@@ -884,8 +892,10 @@ impl<const F: usize> ModeKernel<F> {
     /// The function must have F outputs.
     unsafe fn one_a_coordinate(&self, function: Raw, x: &Context, at: Free<F>) -> SVector<f64, F> {
         let mut out = SVector::<f64, F>::zeros();
-        // SAFETY: as the caller promises.
-        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        if F > 0 {
+            // SAFETY: as the caller promises.
+            unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        }
         out
     }
 

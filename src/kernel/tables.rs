@@ -119,12 +119,18 @@ impl<const F: usize> ModeKernel<F> {
     pub fn series_kind(&self, x: &Context) -> SeriesKind {
         let series = self.motion_series(x).expect("the mode is analytic");
         // Guards are expanded as far as the motion, and may depend on inputs where the motion does not.
-        let guards_end = self.guard_series.as_ref().is_none_or(|guards| guards.ends);
         match series.convolutions {
-            0 if series.ends && guards_end && x.quiet => SeriesKind::Ends,
+            0 if series.ends && self.guards_end(x) => SeriesKind::Ends,
             0 => SeriesKind::Entire,
             convolutions => SeriesKind::Convolved(convolutions),
         }
+    }
+
+    /// Whether the series of the guards end with those of the coordinates.
+    #[inline]
+    pub fn guards_end(&self, x: &Context) -> bool {
+        let end = self.guard_series.as_ref().is_none_or(|guards| guards.ends);
+        end && x.quiet
     }
 
     #[inline]

@@ -38,21 +38,22 @@ pub fn earliest(
         found.len(),
         "as many remembered signs as guards"
     );
-    let mut happens = false;
+    let (mut time, mut events, mut changes, mut resolved) = (None, 0, false, true);
     for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
         search(index, from, to, watch, found);
-        happens |= found.crossing.is_some();
+        resolved &= found.resolved;
+        match found.crossing {
+            Some(crossing) => (time, events) = (Some(crossing.outside), events + 1),
+            None => changes |= found.watch != watch,
+        }
     }
-    if let [only] = found {
-        let time = only.crossing.map(|crossing| crossing.outside);
-        return Earliest {
-            time,
-            resolved: only.resolved,
-        };
+    // Most often: at most one event, and no sign that may have changed before or behind it.
+    if events == 0 || events == 1 && !changes {
+        return Earliest { time, resolved };
     }
     let mut end = to;
     // Each pass ends earlier than the one before, until the set lies at the end of its window.
-    while happens && let Some(time) = time_of_first_set(found) {
+    while let Some(time) = time_of_first_set(found) {
         if time == end {
             break;
         }

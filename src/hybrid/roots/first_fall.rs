@@ -293,7 +293,7 @@ pub(super) fn fall_beside(
 /// Values next to a root are equal over many doubles, or have random signs: which of them are neighbours of different
 /// signs takes up to ten values, and tells nothing about where the root is.
 #[inline(always)]
-fn certain_fall<const N: usize>(
+pub(super) fn certain_fall<const N: usize>(
     polynomial: &Polynomial<N>,
     (from, to): (f64, f64),
     s: f64,

@@ -1,7 +1,7 @@
 //! The first fall of a guard that is a parabola, such as the height in a free flight, or a straight line.
 
 use super::Search;
-use super::first_fall::fall_beside;
+use super::first_fall::{certain_fall, fall_beside};
 use super::polynomial::{Polynomial, sum_of};
 
 /// Coefficients of a parabola.
@@ -27,18 +27,21 @@ pub(super) fn first_fall<const N: usize>(
     // Where it would turn: a minimum for c₂ > 0.
     let turn = c0 - 0.25 * c1 * (c1 / c2);
     if end < 0.0 && start > 0.0 {
-        // Of two roots the one at which it falls, without a difference of nearly equal numbers.
-        let root_of_discriminant = (c1 * c1 - 4.0 * c0 * c2).max(0.0).sqrt();
-        let s = match c1 > 0.0 {
-            true => (c1 + root_of_discriminant) / (-2.0 * c2),
-            false => 2.0 * c0 / (root_of_discriminant - c1),
+        let s = match c2 == 0.0 {
+            true => -c0 / c1,
+            false => falling_root([c0, c1, c2]),
         };
-        let ends = ((from, start), (to, end));
-        // A place outside is one by rounding.
-        let s = if from < s && s < to { s } else { to };
-        let mut value = |s: f64| polynomial.value(s);
-        let point = (s, value(s));
-        let event = fall_beside(&mut value, ends, point);
+        let derivatives = [c1 + 2.0 * c2 * s, 2.0 * c2];
+        let event = match certain_fall(polynomial, (from, to), s, margin, derivatives) {
+            Some(event) => event,
+            None => {
+                // A place outside is one by rounding.
+                let s = if from < s && s < to { s } else { to };
+                let mut value = |s: f64| polynomial.value(s);
+                let point = (s, value(s));
+                fall_beside(&mut value, ((from, start), (to, end)), point)
+            }
+        };
         *found = match c2 > 0.0 {
             true => event.turning(turn),
             false => event,
@@ -57,4 +60,14 @@ pub(super) fn first_fall<const N: usize>(
         *found = Search::above(least - margin);
     }
     is_clear
+}
+
+/// Of the two roots of c₀ + c₁ s + c₂ s² the one at which it falls, without a difference of nearly equal numbers.
+#[inline(always)]
+fn falling_root([c0, c1, c2]: [f64; 3]) -> f64 {
+    let root_of_discriminant = (c1 * c1 - 4.0 * c0 * c2).max(0.0).sqrt();
+    match c1 > 0.0 {
+        true => (c1 + root_of_discriminant) / (-2.0 * c2),
+        false => 2.0 * c0 / (root_of_discriminant - c1),
+    }
 }
