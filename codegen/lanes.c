@@ -306,39 +306,29 @@ void LANES(dalembert_lane_signal_radius)(size_t count, size_t stride, const real
   *out = change;
 }
 
-/* 2^(-x) to a percent for 0 <= x <= 1: src/integrate/logarithm.rs. */
-DALEMBERT_INLINE real inverse_power(real x) {
-  const real fraction = 1.0 - x;
-  return 0.5 * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
+/* Of a number >= 0, the binary logarithm in units of 2^-16, with a bias, and of numbers x of that, the whole part of x/n
+ * given 1/n and 1/2 - 1/(2n), which leaves no quotient halfway between two whole numbers; and 2^x to a percent:
+ * src/integrate/logarithm.rs.
+ */
+DALEMBERT_INLINE real places(real x) {
+  return (real)((word)((counts)x >> 36) | (word)REAL(0x1p52)) - 0x1p52;
 }
-
-/* A number > 0 as its exponent and the rest of its binary logarithm, in [0, 1): as there. */
-struct logarithm { real exponent, fraction; };
-DALEMBERT_INLINE struct logarithm binary_logarithm(real x) {
-  const word pattern = (word)x;
-  const real mantissa = (real)((pattern & 0xfffffffffffff) | 0x3ff0000000000000) - 1.0;
-  struct logarithm out;
-  out.exponent = __builtin_convertvector(pattern >> 52, real) - 1023.0;
-  out.fraction = mantissa * (1.0 + 0.347 * (1.0 - mantissa));
-  return out;
+DALEMBERT_INLINE real part(real x, double inverse, double half) {
+  return x * inverse - half + 0x1p52 - 0x1p52;
 }
-
-/* 2^(-x/n) for a number x that is so given, and 1/n. */
-DALEMBERT_INLINE real inverse_root(struct logarithm x, real n, real inverse) {
-  /* exponent = n whole + rest with 0 <= rest < n: half a place off, the product is not rounded to the next. */
-  const word whole = __builtin_convertvector((x.exponent + (1024.0 * n + 0.5)) * inverse, word);
-  const real rest = x.exponent - n * (__builtin_convertvector(whole, real) - 1024.0);
-  const real power = (real)((1023 + 1024 - whole) << 52);
-  return power * inverse_power((rest + x.fraction) * inverse);
+DALEMBERT_INLINE real power_of_two(real x) {
+  const word biased = (word)(x + (0x1p52 + 0x3ff0000)) & 0xfffffffffffff;
+  const real power = (real)(biased >> 16 << 52);
+  const real fraction = (real)((biased & 0xffff) << 36 | (word)REAL(1.0)) - 1.0;
+  return power * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)));
 }
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
  * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
- * coordinates, then of the velocities. terms: orders of the terms that limit it, which are p - 1, p, p + 1,
- * p - 3 and p - 2, their inverses, the factors of the lengths that they tell, and factors and
- * offsets that make logarithms of bits, which tell the shortest: src/integrate/logarithm.rs,
- * src/integrate/taylor/length.rs. Gives the lanes in which it reaches `last`. Unclear are those whose series is not
- * finite or whose time would not advance.
+ * coordinates, then of the velocities. terms: 1/n and 1/2 - 1/(2n) of the terms that limit it, of powers
+ * n = p - 1, p, p + 1, p - 3 and p - 2, and what is added to their logarithms ÷ n: src/integrate/taylor/length.rs.
+ * Gives the lanes in which it reaches `last`. Unclear are those whose series is not finite or whose time would not
+ * advance.
  */
 DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
                              const double *tolerances, const double *terms, const real *point, const real *last,
@@ -360,18 +350,14 @@ DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *
     sizes[4] = greater(size_of(v[(p - 2) * free + i]) * of_v, sizes[4]);
     finite &= below(size_of(a[(p - 1) * free + i]), REAL(INFINITY));
   }
-  real size = REAL(1.0), shortest = REAL(-INFINITY), n = REAL(1.0), inverse = REAL(1.0), factor = REAL(INFINITY);
+  real shortest = REAL(-INFINITY);
 #pragma GCC unroll 5
   for (int k = 0; k < 5; ++k) {
-    const real logarithm = __builtin_convertvector((word)sizes[k], real) * terms[15 + k] - terms[20 + k];
-    const truth shorter = below(shortest, logarithm) & at_most(REAL(0x1p-1022), sizes[k]);
-    shortest = pick(shorter, logarithm, shortest);
-    size = pick(shorter, sizes[k], size);
-    n = pick(shorter, REAL(terms[k]), n);
-    inverse = pick(shorter, REAL(terms[5 + k]), inverse);
-    factor = pick(shorter, REAL(terms[10 + k]), factor);
+    const real logarithm = part(places(sizes[k]), terms[k], terms[5 + k]) + terms[10 + k];
+    shortest = greater(pick(at_most(REAL(0x1p-1022), sizes[k]), logarithm, REAL(-INFINITY)), shortest);
   }
-  const real longest = smaller(factor * inverse_root(binary_logarithm(size), n, inverse), *horizon);
+  const real own = pick(below(REAL(-INFINITY), shortest), power_of_two(-shortest), REAL(INFINITY));
+  const real longest = smaller(own, *horizon);
   const real half = pick(below(remaining, 2.0 * longest), 0.5 * remaining, longest);
   *h = pick(at_most(remaining, longest), remaining, half);
   *unclear |= bits((truth)~finite | same(now + *h, now));

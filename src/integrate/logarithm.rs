@@ -46,11 +46,6 @@ const RECIPROCALS: [u64; MOST + 1] = {
 /// x^(−1/n) to 2 %: the length h with which x hⁿ is one. Infinite for x = 0. Where x is 2^(kn) times as
 /// large, it is 2^(−k) times as large to the bit: a step does not depend on the unit of time.
 pub(super) fn root(x: f64, n: usize) -> f64 {
-    root_given(x, n, 1.0 / n as f64)
-}
-
-/// The same, given 1/n too: what a step waits for has no division then.
-pub(super) fn root_given(x: f64, n: usize, inverse: f64) -> f64 {
     if x < f64::MIN_POSITIVE {
         return f64::INFINITY;
     }
@@ -60,7 +55,45 @@ pub(super) fn root_given(x: f64, n: usize, inverse: f64) -> f64 {
     let quotient = ((exponent + lift) as u64 * RECIPROCALS[n]) >> 36;
     let rest = exponent + lift - quotient as i64 * n as i64;
     let power = f64::from_bits((1023 + 1024 - quotient) << 52);
-    power * inverse_power((rest as f64 + fraction) * inverse)
+    power * inverse_power((rest as f64 + fraction) / n as f64)
+}
+
+/// Unit of logarithms that are whole numbers: 2⁻¹⁶.
+pub(super) const PLACES: u32 = 16;
+
+/// What is left out of a double's bits for [`places`].
+const OMITTED: u32 = f64::MANTISSA_DIGITS - 1 - PLACES;
+
+/// Exponents of doubles are stored with this bias, of as many [`PLACES`].
+pub(super) const BIAS: i64 = 1023 << PLACES;
+
+/// log₂ x for x ≥ 0 in [`PLACES`] and with their [`BIAS`], less up to 0.086: the first bits of the double. Of a number
+/// that is 2ᵏ times as large it is larger by k to the bit.
+#[inline(always)]
+pub(super) fn places(x: f64) -> u64 {
+    x.to_bits() >> OMITTED
+}
+
+/// ⌈2³⁶/n⌉, for [`part`].
+pub(super) fn reciprocal(n: usize) -> u64 {
+    RECIPROCALS[n]
+}
+
+/// The whole part of a number of [`places`] ÷ n, given the [`reciprocal`] of n: it is below 2²⁸ so that its product with
+/// that is off by less than 2²⁸, which is 2⁻⁸ of the quotient's unit and thus less than 1/n.
+#[inline(always)]
+pub(super) fn part(places: u64, reciprocal: u64) -> i64 {
+    ((places * reciprocal) >> 36) as i64
+}
+
+/// 2ˣ to 1 %, for x in [`PLACES`] that is no less than −1022 and less than 1024.
+#[inline(always)]
+pub(super) fn power_of_two(x: i64) -> f64 {
+    let biased = (x + BIAS) as u64;
+    let power = f64::from_bits(biased >> PLACES << (f64::MANTISSA_DIGITS - 1));
+    let fraction = biased & ((1 << PLACES) - 1);
+    let fraction = f64::from_bits(1f64.to_bits() | fraction << OMITTED) - 1.0;
+    power * (1.0 + fraction * (1.0 - 0.343 * (1.0 - fraction)))
 }
 
 #[cfg(test)]
@@ -79,6 +112,24 @@ mod tests {
             }
         }
         assert_eq!(root(0.0, 7), f64::INFINITY);
+    }
+
+    #[test]
+    fn logarithms_in_places_divide_exactly() {
+        for n in 3..=MOST as u64 {
+            for places in (0..2048 << PLACES).step_by(997) {
+                let expected = (places / n) as i64;
+                assert_eq!(part(places, reciprocal(n as usize)), expected);
+            }
+        }
+        for i in -600..600 {
+            let x = 2f64.powf(f64::from(i) / 7.3);
+            let exact = x.log2();
+            let off = exact - (places(x) as i64 - BIAS) as f64 / f64::from(1 << PLACES);
+            assert!((0.0..0.087).contains(&off), "{x}: {off}");
+            let power = power_of_two((exact * f64::from(1 << PLACES)) as i64);
+            assert!((power / x - 1.0).abs() < 0.01, "{x}: {power}");
+        }
     }
 
     #[test]

@@ -259,7 +259,7 @@ pub struct LaneLimits {
     pub order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
     pub tolerances: Box<[f64]>,
-    /// The terms that limit it: orders p − 1, p, p + 1, p − 3 and p − 2; the inverses of the orders; the
-    /// factors of the lengths that they tell; factors and offsets that make logarithms of these of their bits.
-    pub terms: [[f64; 5]; 5],
+    /// The terms that limit it, of powers n = p − 1, p, p + 1, p − 3 and p − 2: 1/n; ½ − 1/(2n); and what is added to
+    /// their logarithms ÷ n, so that they are those of reciprocal lengths.
+    pub terms: [[f64; 5]; 3],
 }

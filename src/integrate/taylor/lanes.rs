@@ -40,11 +40,9 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
                 order,
                 tolerances: std::iter::once(relative).chain(absolute).collect(),
                 terms: [
-                    terms.powers.map(|n| n as f64),
-                    terms.inverses,
-                    terms.factors,
-                    terms.logarithms.map(|[scale, _]| scale),
-                    terms.logarithms.map(|[_, offset]| offset),
+                    terms.powers.map(|n| 1.0 / n as f64),
+                    terms.powers.map(|n| 0.5 - 0.5 / n as f64),
+                    terms.offsets.map(|offset| offset as f64),
                 ],
             },
         }
