@@ -5,7 +5,9 @@ use super::failure::Stoppable;
 use super::guards::{self, Conditions};
 use super::locate::{Landing, land, land_later};
 use super::plan::Watched;
-use super::roots::{Crossing, Kind, Search, Watch, earliest};
+use super::roots::{
+    Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
+};
 use super::search::search;
 use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
@@ -33,6 +35,10 @@ pub(super) enum Cut {
     Violated { guard: usize },
 }
 
+/// Events are in order if they are so far apart, as a part of the time since the start of the step: a thousand times what
+/// a place near an event is off by.
+const APART: f64 = 1.0e-6;
+
 impl Signs {
     /// No signs yet.
     pub fn clear(&mut self) {
@@ -59,8 +65,8 @@ impl Signs {
 
 /// Cuts the last step at its first event, and writes the state there. The shortened step is searched again, since it
 /// is a better solution than the dense output of the longer one.
-pub(super) fn cut<'a, const F: usize>(
-    method: &mut impl OneStep<F, Equations<'a, F>>,
+pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     (mode, watched): (&'static Mode, &[Watched]),
@@ -72,26 +78,34 @@ pub(super) fn cut<'a, const F: usize>(
     loop {
         let dense = method.dense().expect("a step was made");
         let to = method.end();
+        let time = match M::EXPLICIT {
+            true => {
+                let Signs {
+                    watches,
+                    found,
+                    from,
+                } = &mut *signs;
+                let only = at_most_one((start, to), watches, found, |i, _, to, watch, found| {
+                    let of = (&mode.guards[watched[i].guard], watched[i]);
+                    let window = (from[i], to);
+                    let what = (watch, Isolation::Place, &mut *found);
+                    match from[i] < to {
+                        true => search(equations, conditions, dense, of, window, what),
+                        false => *found = Search::quiet(watch),
+                    }
+                });
+                match only {
+                    Some(only) => only.time,
+                    None => put_in_order(equations, conditions, dense, (mode, watched), to, signs),
+                }
+            }
+            false => search_all(equations, conditions, dense, (mode, watched), to, signs),
+        };
         let Signs {
             watches,
             found,
             from,
-        } = signs;
-        let hit = earliest(start, to, watches, found, |i, _, to, watch, found| {
-            if from[i] >= to {
-                *found = Search::quiet(watch);
-                return;
-            }
-            let guard = &mode.guards[watched[i].guard];
-            search(
-                equations,
-                conditions,
-                dense,
-                (guard, watched[i]),
-                (from[i], to),
-                (watch, found),
-            );
-        });
+        } = &mut *signs;
         if hides {
             // They came to zero within rounding.
             for ((found, &watch), &from) in found.iter_mut().zip(&*watches).zip(&*from) {
@@ -100,10 +114,7 @@ pub(super) fn cut<'a, const F: usize>(
                 }
             }
         }
-        let Some(first) = hit
-            .time
-            .and_then(|_| found.iter().position(|f| f.crossing.is_some()))
-        else {
+        let Some(first) = time.and_then(|_| found.iter().position(|f| f.crossing.is_some())) else {
             *landed = *method.state();
             return Ok(Cut::Nothing);
         };
@@ -146,6 +157,82 @@ pub(super) fn cut<'a, const F: usize>(
             }
         }
     }
+}
+
+/// Searches a guard, unless the window from which it is searched is empty.
+#[inline(never)]
+fn search_from<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &impl Motion<F>,
+    guard: (&Guard, Watched),
+    (from, to): (f64, f64),
+    (watch, isolation, found): (Watch, Isolation, &mut Search),
+) {
+    if from >= to {
+        *found = Search::quiet(watch);
+        return;
+    }
+    let what = (watch, isolation, found);
+    search(equations, conditions, dense, guard, (from, to), what);
+}
+
+/// Time of the first events of a step up to `to`, where places near the events of several guards were found: where
+/// these may not be in order, all are isolated.
+#[cold]
+fn put_in_order<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &impl Motion<F>,
+    (mode, watched): (&'static Mode, &[Watched]),
+    to: f64,
+    signs: &mut Signs,
+) -> Option<f64> {
+    let start = dense.start();
+    let Signs {
+        watches,
+        found,
+        from,
+    } = &mut *signs;
+    let set_apart = |found: &mut Search| {
+        if let Some(crossing) = &mut found.crossing {
+            let apart = APART * (crossing.outside - start);
+            crossing.inside = crossing.inside.min(crossing.outside - apart);
+        }
+    };
+    found.iter_mut().for_each(set_apart);
+    let set = first_of_several((start, to), watches, found, |i, _, to, watch, found| {
+        let of = (&mode.guards[watched[i].guard], watched[i]);
+        let what = (watch, Isolation::Place, &mut *found);
+        search_from(equations, conditions, dense, of, (from[i], to), what);
+        set_apart(found);
+    });
+    match found.iter().filter(|f| f.crossing.is_some()).count() {
+        1 => set.time,
+        _ => search_all(equations, conditions, dense, (mode, watched), to, signs),
+    }
+}
+
+/// Time of the first events of a step up to `to`, all of them isolated.
+fn search_all<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &impl Motion<F>,
+    (mode, watched): (&'static Mode, &[Watched]),
+    to: f64,
+    signs: &mut Signs,
+) -> Option<f64> {
+    let Signs {
+        watches,
+        found,
+        from,
+    } = signs;
+    let search = |i: usize, _: f64, to: f64, watch: Watch, found: &mut Search| {
+        let of = (&mode.guards[watched[i].guard], watched[i]);
+        let what = (watch, Isolation::Bracket, found);
+        search_from(equations, conditions, dense, of, (from[i], to), what)
+    };
+    earliest(dense.start(), to, watches, found, search).time
 }
 
 /// Whether a conditional guard and one of its conditions are violated at a crossing.

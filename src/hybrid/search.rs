@@ -3,24 +3,30 @@
 use super::equations::Equations;
 use super::guards::{Conditions, motion, motion_at_stage, slope, watched_value};
 use super::plan::Watched;
-use super::roots::{self, Polynomial, Search, Watch, sum_of};
+use super::roots::{self, Isolation, Polynomial, Search, Watch, sum_of};
 use crate::integrate::{Motion, ORDERS, System, stretch};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape};
 use nalgebra::SVector;
 
 /// Searches a guard on the window `from` < τ ≤ `to` of a step; writes what is found.
+#[inline(always)]
 pub(super) fn search<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
     (guard, watched): (&Guard, Watched),
     window: (f64, f64),
-    (watch, found): (Watch, &mut Search),
+    (watch, isolation, found): (Watch, Isolation, &mut Search),
 ) {
+    // Guard and condition are looked at together on the far side of the fall.
+    let isolation = match watched.conditional {
+        true => Isolation::Bracket,
+        false => isolation,
+    };
     match guard.shape {
         GuardShape::Linear { .. } if watched.condition.is_none() => {
-            search_linear(equations, dense, guard, window, (watch, found));
+            search_linear(equations, dense, guard, (window, isolation), (watch, found));
         }
         _ => {
             // A guard that acts together with conditions is judged by its own values where one of
@@ -30,7 +36,7 @@ pub(super) fn search<const F: usize>(
                     equations,
                     dense,
                     (guard, watched),
-                    window,
+                    (window, isolation),
                     (watch, &mut *found),
                 )
             {
@@ -99,7 +105,7 @@ fn search_linear<const F: usize>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
     guard: &Guard,
-    window: (f64, f64),
+    (window, isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {
     let GuardShape::Linear {
@@ -140,7 +146,7 @@ fn search_linear<const F: usize>(
             }
         },
     };
-    search_polynomial(coefficients, dense, window, (watch, found));
+    search_polynomial(coefficients, dense, (window, isolation), (watch, found));
 }
 
 /// Powers of time.
@@ -158,11 +164,12 @@ const POWERS: [usize; ORDERS] = {
 ///
 /// False if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
 /// that the last terms are not small: two derivatives of the motion multiply its last term by order².
+#[inline(always)]
 fn search_series<const F: usize>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
     (guard, watched): (&Guard, Watched),
-    window: (f64, f64),
+    (window, isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) -> bool {
     let Some((series, orders)) = dense.series() else {
@@ -208,7 +215,7 @@ fn search_series<const F: usize>(
             }
         },
     };
-    search_polynomial(coefficients, dense, window, (watch, found));
+    search_polynomial(coefficients, dense, (window, isolation), (watch, found));
     falls_off
 }
 
@@ -229,11 +236,12 @@ pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
 fn search_polynomial<const F: usize>(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     dense: &impl Motion<F>,
-    (from, to): (f64, f64),
+    ((from, to), isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {
     let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
-    search_window(coefficients, (local(from), local(to)), (watch, &mut *found));
+    let window = (local(from), local(to));
+    search_window(coefficients, (window, isolation), (watch, &mut *found));
     if let Some(crossing) = &mut found.crossing {
         crossing.inside = dense.start() + crossing.inside * dense.length();
         crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
@@ -243,7 +251,7 @@ fn search_polynomial<const F: usize>(
 /// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
 pub(super) fn search_window(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
-    window: (f64, f64),
+    window: ((f64, f64), Isolation),
     of: (Watch, &mut Search),
 ) {
     // Work grows with the square of the room.
@@ -266,7 +274,7 @@ pub(super) fn search_window(
 #[inline(never)]
 fn search_part<const N: usize>(
     mut of: Coefficients<impl FnMut(usize, &mut [f64])>,
-    (from, to): (f64, f64),
+    ((from, to), isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {
     let mut polynomial = Polynomial {
@@ -275,11 +283,11 @@ fn search_part<const N: usize>(
     let starts = watch == Watch::Dormant && from == 0.0 && to > 0.0 && of.constant == 0.0;
     if starts && of.rises {
         (of.write)(1, &mut polynomial.coefficients);
-        return polynomial.search_of_multiple(to, found);
+        return polynomial.search_of_multiple(to, isolation, found);
     }
     (of.write)(0, &mut polynomial.coefficients);
     match watch {
-        Watch::Armed => polynomial.search_armed(from, to, 0.0, found),
+        Watch::Armed => polynomial.search_armed((from, to), 0.0, isolation, found),
         _ => *found = polynomial.search(from, to, watch, 0.0),
     }
 }

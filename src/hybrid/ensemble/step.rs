@@ -2,7 +2,7 @@
 //! number.
 
 use super::super::instant::Instant;
-use super::super::roots::{Kind, Search, Watch};
+use super::super::roots::{Isolation, Kind, Search, Watch};
 use super::super::search::{Coefficients, search_window};
 use super::group::{Group, Way};
 use crate::input::Signals;
@@ -202,7 +202,8 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
         false => Watch::Armed,
     };
     let mut search = Search::quiet(watch);
-    search_window(own, (0.0, 1.0), (watch, &mut search));
+    let window = ((0.0, 1.0), Isolation::Bracket);
+    search_window(own, window, (watch, &mut search));
     match search.crossing {
         None if search.watch == Watch::Armed => Some(f64::INFINITY),
         Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),

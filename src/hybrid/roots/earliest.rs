@@ -38,19 +38,41 @@ pub fn earliest(
         found.len(),
         "as many remembered signs as guards"
     );
+    match at_most_one((from, to), watches, found, &mut search) {
+        Some(only) => only,
+        None => first_of_several((from, to), watches, found, search),
+    }
+}
+
+/// The event of several guards, each searched once, where there is at most one; `None` where there are several, or where
+/// the sign of another guard may have changed before or behind it: what was found of each is written.
+#[inline(always)]
+pub(in crate::hybrid) fn at_most_one(
+    (from, to): (f64, f64),
+    watches: &[Watch],
+    found: &mut [Search],
+    mut search: impl FnMut(usize, f64, f64, Watch, &mut Search),
+) -> Option<Earliest> {
     let (mut time, mut events, mut changes, mut resolved) = (None, 0, false, true);
     for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
         search(index, from, to, watch, found);
         resolved &= found.resolved;
         match found.crossing {
             Some(crossing) => (time, events) = (Some(crossing.outside), events + 1),
+            // Without an event an unchanged sign has not changed on the way either.
             None => changes |= found.watch != watch,
         }
     }
-    // Most often: at most one event, and no sign that may have changed before or behind it.
-    if events == 0 || events == 1 && !changes {
-        return Earliest { time, resolved };
-    }
+    (events == 0 || events == 1 && !changes).then_some(Earliest { time, resolved })
+}
+
+/// The earliest events, given what was found of each guard.
+pub(in crate::hybrid) fn first_of_several(
+    (from, to): (f64, f64),
+    watches: &[Watch],
+    found: &mut [Search],
+    mut search: impl FnMut(usize, f64, f64, Watch, &mut Search),
+) -> Earliest {
     let mut end = to;
     // Each pass ends earlier than the one before, until the set lies at the end of its window.
     while let Some(time) = time_of_first_set(found) {
@@ -62,7 +84,6 @@ pub fn earliest(
             let event_beyond = found
                 .crossing
                 .is_some_and(|crossing| crossing.outside > end);
-            // Without an event an unchanged sign has not changed on the way either.
             let sign_unknown = found.crossing.is_none() && found.watch != watch;
             if event_beyond || sign_unknown {
                 search(index, from, end, watch, found);

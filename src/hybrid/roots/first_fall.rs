@@ -9,7 +9,7 @@
 use super::bracket::{Point, close};
 use super::doubles::{above, below};
 use super::polynomial::{Polynomial, sum_of};
-use super::{Kind, Search, Watch, quadratic};
+use super::{Isolation, Kind, Search, Watch, quadratic};
 
 /// Cuts into halves of halves before the general search is cheaper: what has not become one root or none by
 /// then is a touch or nearly one.
@@ -22,16 +22,20 @@ const MOST_ITERATIONS: usize = 8;
 /// cube root of the unit roundoff.
 const LAST_STEP: f64 = 4.8e-6;
 
+/// How far a place may be from a root, in its own unit: a landing goes on from there by the motion's Taylor polynomial of
+/// second order, which is exact to rounding over four thousand times as much of a step.
+const NEAR: f64 = 1.0e-9;
+
 /// Writes the first event of an armed guard in `from` < s ≤ `to`, or that there is none; false where this
 /// search cannot tell.
 pub(super) fn first_fall<const N: usize>(
     polynomial: &Polynomial<N>,
-    from: f64,
-    to: f64,
+    (from, to): (f64, f64),
+    isolation: Isolation,
     found: &mut Search,
 ) -> bool {
     if N == quadratic::ROOM {
-        return quadratic::first_fall(polynomial, from, to, found);
+        return quadratic::first_fall(polynomial, (from, to), isolation, found);
     }
     let size = sum_of(&polynomial.coefficients, f64::abs);
     let guard = Armed {
@@ -39,6 +43,7 @@ pub(super) fn first_fall<const N: usize>(
         from,
         to,
         rounding: Polynomial::<N>::ROUNDING * size,
+        isolation,
     };
     let mut bernstein = [0.0; N];
     polynomial.bernstein(&mut bernstein);
@@ -53,6 +58,7 @@ struct Armed<'p, const N: usize> {
     /// Bound of the rounding errors of Bernstein coefficients on [0, 1], and of those that a cut adds: a cut
     /// takes N − 1 means of two, each in between.
     rounding: f64,
+    isolation: Isolation,
 }
 
 impl<const N: usize> Armed<'_, N> {
@@ -154,7 +160,7 @@ impl<const N: usize> Armed<'_, N> {
         let (left, right) = ((from, at_start), (to, at_end));
         let is_bracket = left.1 > 0.0;
         if is_bracket {
-            *found = root(self.polynomial, left, right, (s, self.rounding));
+            *found = root(self, left, right, s);
         }
         is_bracket
     }
@@ -182,7 +188,23 @@ fn first_guess<const N: usize>(bernstein: &[f64; N], falls: usize) -> f64 {
         return guess;
     }
     let (before, after) = (bernstein[falls - 1], bernstein[falls]);
-    ((falls - 1) as f64 + before / (before - after)) / degree
+    let part = before / (before - after);
+    let s = ((falls - 1) as f64 + part) / degree;
+    // The polygon is off by its own curvature, which makes it the polynomial's control polygon and a chord of that.
+    let beyond = if part < 0.5 && falls > 1 {
+        bernstein[falls - 2] + after - 2.0 * before
+    } else if falls + 1 < N {
+        before + bernstein[falls + 1] - 2.0 * after
+    } else {
+        0.0
+    };
+    let off = 0.5 * beyond * (degree * s * (1.0 - s) - part * (1.0 - part));
+    let corrected = s + off / (degree * (before - after));
+    if 0.0 < corrected && corrected < 1.0 {
+        corrected
+    } else {
+        s
+    }
 }
 
 /// The step to a root from where a function has this value, slope and curvature: Halley's, of third order, or Newton's.
@@ -314,20 +336,30 @@ pub(super) fn certain_fall<const N: usize>(
         .then(|| Search::found(before, after, Kind::Fall, Watch::Violated))
 }
 
-/// The only root between two places at which the polynomial has different signs, sought from a place on; given a bound
-/// of the rounding error of a value.
+/// Whether a step of [`step`] to a place s leaves a distance from the root that is not told from none ([`Isolation::Place`]):
+/// its cube times the square of half of curvature ÷ slope, which are those of the polynomial, or of s times it: that
+/// adds 1/s.
 #[inline(always)]
-fn root<const N: usize>(
-    polynomial: &Polynomial<N>,
-    left: Point,
-    right: Point,
-    (s, rounding): (f64, f64),
-) -> Search {
+fn is_near(step: f64, s: f64, [slope, curvature]: [f64; 2]) -> bool {
+    let bend = curvature.abs() * s + 2.0 * slope.abs();
+    let step = step.abs();
+    bend * bend * (step * step * step) <= 4.0 * NEAR * (s * slope) * (s * slope) * s
+}
+
+/// The only root of a guard between two places at which it has different signs, sought from a place on.
+#[inline(always)]
+fn root<const N: usize>(guard: &Armed<N>, left: Point, right: Point, s: f64) -> Search {
+    let &Armed {
+        polynomial,
+        rounding,
+        isolation,
+        ..
+    } = guard;
     let (mut l, mut r) = (left, right);
     let derivatives = polynomial.derivatives();
     let mut point = (s, polynomial.value(s));
     let mut parabola = (point.1, 0.0, 0.0);
-    let mut certain = None;
+    let mut isolated = None;
     for _ in 0..MOST_ITERATIONS {
         let (s, value) = point;
         narrow((&mut l, &mut r), point);
@@ -335,12 +367,18 @@ fn root<const N: usize>(
         parabola = (value, slope, curvature);
         let step = step(value, slope, curvature);
         let next = s + step;
+        let is_within = l.0 < next && next < r.0;
         let is_last = step.abs() <= LAST_STEP * s;
-        if is_last {
+        let bend = [slope, curvature];
+        if isolation == Isolation::Place {
+            if is_within && is_near(step, next, bend) {
+                isolated = Some(Search::found(next, next, Kind::Fall, Watch::Violated));
+            }
+        } else if is_last {
             let window = (left.0, right.0);
-            certain = certain_fall(polynomial, window, next, rounding, [slope, curvature]);
+            isolated = certain_fall(polynomial, window, next, rounding, bend);
         }
-        if certain.is_some() || !(l.0 < next && next < r.0) {
+        if isolated.is_some() || !is_within {
             break;
         }
         point = (next, polynomial.value(next));
@@ -348,7 +386,7 @@ fn root<const N: usize>(
             break;
         }
     }
-    let event = match certain {
+    let event = match isolated {
         Some(event) => event,
         None => fall_beside(&mut |s| polynomial.value(s), (l, r), point),
     };
@@ -383,7 +421,7 @@ mod tests {
 
     fn crossing(polynomial: &Polynomial<12>) -> Crossing {
         let mut found = Search::quiet(Watch::Armed);
-        polynomial.search_armed(0.0, 1.0, 0.0, &mut found);
+        polynomial.search_armed((0.0, 1.0), 0.0, Isolation::Bracket, &mut found);
         found.crossing.expect("it has a root")
     }
 

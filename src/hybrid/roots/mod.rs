@@ -72,6 +72,7 @@ mod walk;
 pub(super) use bracket::minimum;
 pub use chebyshev::FIRST_PLACES;
 pub use earliest::{Earliest, earliest};
+pub(super) use earliest::{at_most_one, first_of_several};
 pub use function::search;
 pub use polynomial::Polynomial;
 pub(super) use polynomial::sum_of;
@@ -118,7 +119,7 @@ pub enum Kind {
 }
 
 /// An event of one guard: neighbouring doubles `inside` < `outside`; its time is `outside`. The engine's own search of a
-/// polynomial's fall leaves them some rounding errors apart.
+/// polynomial's fall leaves them farther apart ([`Isolation`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Last double before the event, in the unit of the searched variable.
@@ -127,6 +128,16 @@ pub struct Crossing {
     pub outside: f64,
     /// What happens between them.
     pub kind: Kind,
+}
+
+/// How closely a search is to isolate the fall of a polynomial that is certainly its only root in a piece of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Isolation {
+    /// By a bracket at whose ends the signs are certain, some rounding errors wide.
+    Bracket,
+    /// By a place, `inside` and `outside` in one, before or behind it by some 10⁻⁹ of itself: for a caller who goes on
+    /// from there by Newton's method.
+    Place,
 }
 
 /// Answer of a search on one window.

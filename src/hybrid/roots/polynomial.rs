@@ -4,7 +4,7 @@ use super::bracket::{close, departure};
 use super::extrema::{Count, Expansion, Places, extrema};
 use super::first_fall::first_fall;
 use super::walk::{Pieces, walk};
-use super::{Kind, Search, Watch};
+use super::{Isolation, Kind, Search, Watch};
 use crate::integrate::stretch;
 use crate::kernel::triangular_sums;
 
@@ -125,7 +125,7 @@ impl<const N: usize> Polynomial<N> {
     pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
         let mut search = Search::quiet(watch);
         if watch == Watch::Armed {
-            self.search_armed(from, to, noise, &mut search);
+            self.search_armed((from, to), noise, Isolation::Bracket, &mut search);
             self.close_in(&mut search);
             return search;
         }
@@ -146,16 +146,15 @@ impl<const N: usize> Polynomial<N> {
         }
     }
 
-    /// The same for a guard that is armed, but that the bracket of a fall is as wide as leaves no doubt about the signs
-    /// at its ends, which is some rounding errors of a value: closer the guard's own values tell, at the state itself.
-    /// What is found is written where the caller reads it, since a copy right after it would wait for what is on its
-    /// way to memory.
+    /// The same for a guard that is armed, but that a fall is isolated as is asked for: closer the guard's own values
+    /// tell, at the state itself. What is found is written where the caller reads it, since a copy right after it would
+    /// wait for what is on its way to memory.
     #[inline(always)]
     pub(in crate::hybrid) fn search_armed(
         &self,
-        from: f64,
-        to: f64,
+        (from, to): (f64, f64),
         noise: f64,
+        isolation: Isolation,
         found: &mut Search,
     ) {
         // As c₀ + Σ min(cₖ, 0) does from below.
@@ -169,7 +168,7 @@ impl<const N: usize> Polynomial<N> {
             *found = Search::above(self.coefficients[0] + rise - falls);
         } else if from >= to {
             *found = Search::quiet(Watch::Armed);
-        } else if !first_fall(self, from, to, found) {
+        } else if !first_fall(self, (from, to), isolation, found) {
             *found = self.search_pieces(from, to, Watch::Armed, noise);
         }
     }
@@ -187,8 +186,13 @@ impl<const N: usize> Polynomial<N> {
 
     /// The search, on 0 < s ≤ `to`, of a power of s times this polynomial, which is positive at s = 0: of a
     /// guard that leaves zero upwards.
-    pub(in crate::hybrid) fn search_of_multiple(&self, to: f64, found: &mut Search) {
-        self.search_armed(0.0, to, 0.0, found);
+    pub(in crate::hybrid) fn search_of_multiple(
+        &self,
+        to: f64,
+        isolation: Isolation,
+        found: &mut Search,
+    ) {
+        self.search_armed((0.0, to), 0.0, isolation, found);
         found.of_quotient();
     }
 
@@ -216,7 +220,7 @@ impl<const N: usize> Polynomial<N> {
         }
         if coefficients[0] > 0.0 {
             let mut found = Search::quiet(Watch::Armed);
-            quotient.search_of_multiple(to, &mut found);
+            quotient.search_of_multiple(to, Isolation::Bracket, &mut found);
             quotient.close_in(&mut found);
             return found;
         }

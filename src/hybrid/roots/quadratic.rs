@@ -1,8 +1,8 @@
 //! The first fall of a guard that is a parabola, such as the height in a free flight, or a straight line.
 
-use super::Search;
 use super::first_fall::{certain_fall, fall_beside};
 use super::polynomial::{Polynomial, sum_of};
+use super::{Isolation, Kind, Search, Watch};
 
 /// Coefficients of a parabola.
 pub(super) const ROOM: usize = 3;
@@ -12,8 +12,8 @@ pub(super) const ROOM: usize = 3;
 #[inline(always)]
 pub(super) fn first_fall<const N: usize>(
     polynomial: &Polynomial<N>,
-    from: f64,
-    to: f64,
+    (from, to): (f64, f64),
+    isolation: Isolation,
     found: &mut Search,
 ) -> bool {
     let own = &polynomial.coefficients;
@@ -31,17 +31,18 @@ pub(super) fn first_fall<const N: usize>(
             true => -c0 / c1,
             false => falling_root([c0, c1, c2]),
         };
+        // A place outside is one by rounding.
+        let s = if from < s && s < to { s } else { to };
         let derivatives = [c1 + 2.0 * c2 * s, 2.0 * c2];
-        let event = match certain_fall(polynomial, (from, to), s, margin, derivatives) {
-            Some(event) => event,
-            None => {
-                // A place outside is one by rounding.
-                let s = if from < s && s < to { s } else { to };
-                let mut value = |s: f64| polynomial.value(s);
-                let point = (s, value(s));
-                fall_beside(&mut value, ((from, start), (to, end)), point)
-            }
+        let event = match isolation {
+            Isolation::Place => Some(Search::found(s, s, Kind::Fall, Watch::Violated)),
+            Isolation::Bracket => certain_fall(polynomial, (from, to), s, margin, derivatives),
         };
+        let event = event.unwrap_or_else(|| {
+            let mut value = |s: f64| polynomial.value(s);
+            let point = (s, value(s));
+            fall_beside(&mut value, ((from, start), (to, end)), point)
+        });
         *found = match c2 > 0.0 {
             true => event.turning(turn),
             false => event,
