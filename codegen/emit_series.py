@@ -568,7 +568,7 @@ class Equations(Series):
         """Appends an order where M is constant: rates are a linear form of the terms, with factors that the inverse
         gives at the beginning of a step. So an order waits for one product and a sum."""
         graph, free = self.graph, len(residuals)
-        terms = sorted({term for form in residuals for term in form}, key=graph._age)
+        terms = sorted(dict.fromkeys(term for form in residuals for term in form), key=graph._age)
         for i in range(free):
             gains = []
             for term in terms:

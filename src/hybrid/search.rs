@@ -119,7 +119,7 @@ fn search_linear<const F: usize>(
         unreachable!("the caller has asked for its shape")
     };
     let factor = slope((factor, discrete), equations.context);
-    let constant = dense.coefficient_of((index, rate), factor, 0);
+    let [constant, slope] = dense.value_and_slope((index, rate), factor);
     let constant = match offset {
         false => constant,
         // Its own value was zero; the first coefficient of the dense output may be off by a rounding.
@@ -138,7 +138,7 @@ fn search_linear<const F: usize>(
     let coefficients = Coefficients {
         count: dense.coefficients(rate),
         constant,
-        rises: dense.coefficient_of((index, rate), factor, 1) > 0.0,
+        rises: slope > 0.0,
         write: |first, out: &mut [f64]| {
             dense.polynomial((index, rate), factor, first, out);
             if offset && first == 0 {

@@ -15,7 +15,7 @@ use super::work::work;
 use crate::integrate::{
     Counters, Node, OneStep, Radau, State, Taylor, Tolerances, determinant_sign, stages,
 };
-use crate::kernel::{Context, Free, ModeKernel};
+use crate::kernel::{Context, Free, ModeKernel, copy_few};
 use crate::model::Mode;
 use crate::record::Progress;
 use nalgebra::SVector;
@@ -198,7 +198,7 @@ impl Simulation<'_> {
         let (start, last) = (self.here.now, self.smooth_until);
         let until = Instant::new(last).since(start);
         if drifts {
-            self.at_start.copy_from_slice(&self.here.q);
+            copy_few(&self.here.q, &mut self.at_start);
         }
         let clock = Clock {
             start,

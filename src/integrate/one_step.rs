@@ -109,12 +109,12 @@ pub trait Motion<const F: usize> {
     /// was.
     fn polynomial(&self, of: (usize, bool), factor: f64, first: usize, out: &mut [f64]);
 
-    /// One of them.
+    /// The first two of them: value and slope at the start.
     #[inline]
-    fn coefficient_of(&self, of: (usize, bool), factor: f64, power: usize) -> f64 {
-        let mut one = [0.0];
-        self.polynomial(of, factor, power, &mut one);
-        one[0]
+    fn value_and_slope(&self, of: (usize, bool), factor: f64) -> [f64; 2] {
+        let mut two = [0.0; 2];
+        self.polynomial(of, factor, 0, &mut two);
+        two
     }
 }
 
@@ -303,5 +303,10 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
     #[inline]
     fn polynomial(&self, of: (usize, bool), factor: f64, first: usize, out: &mut [f64]) {
         self.scaled(of, factor, first, out);
+    }
+
+    #[inline]
+    fn value_and_slope(&self, of: (usize, bool), factor: f64) -> [f64; 2] {
+        self.first_two(of, factor)
     }
 }

@@ -83,6 +83,16 @@ impl<const F: usize> TaylorDense<F> {
         if rate { self.order + 1 } else { self.order + 2 }
     }
 
+    /// The first two coefficients of [`Self::scaled`].
+    #[inline]
+    pub fn first_two(&self, (index, rate): (usize, bool), factor: f64) -> [f64; 2] {
+        let rows = match rate {
+            false => &self.series.q,
+            true => &self.series.v,
+        };
+        [rows[0][index] * factor, rows[1][index] * (factor * self.h)]
+    }
+
     /// Writes the coefficients in powers of s = τ/length of `factor` times coordinate `index`, or its
     /// rate, from a power on, as many as there is room for.
     #[inline]
