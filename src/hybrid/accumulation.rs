@@ -131,20 +131,29 @@ impl Accumulation {
         (self.count, self.still) = (0, 0);
     }
 
-    /// Remembers an event, with the coordinates and velocities before it and after it.
+    /// Compares coordinates and velocities just before the next event with those after the last one: whether something
+    /// moved, but nothing by more than rounding, is remembered with the next one.
+    #[inline]
+    pub fn compare(&mut self, [q, v]: [&[f64]; 2]) {
+        let (last_q, last_v) = match self.count {
+            0 => (&[][..], &[][..]),
+            _ => self.state(0).split_at(q.len()),
+        };
+        // A state that is held still is no evidence.
+        let moved = hardly_moved(q, last_q).and_then(|q| Some(q | hardly_moved(v, last_v)?));
+        self.still = if moved == Some(true) { self.still + 1 } else { 0 };
+    }
+
+    /// Remembers an event, with the coordinates and velocities after it; those before it were compared.
     pub fn push(
         &mut self,
         signature: Signature,
         impact: bool,
         at: Instant,
-        before: &[f64],
         state: [&[f64]; 2],
         discrete: &[f64],
     ) {
-        let own = |x: &f64| *x;
-        let is_still = self.count > 0
-            && hardly_moved(before.iter().map(own).zip(self.state(0).iter().map(own)));
-        let still = if is_still { self.still + 1 } else { 0 };
+        let still = self.still;
         let n = state[0].len();
         let record = self.push_apart(signature.key(impact), at);
         copy_few(state[0], &mut record[..n]);
@@ -352,15 +361,19 @@ impl Accumulation {
     }
 }
 
-/// Whether of pairs (after, before) some differ, but none by more than the rounding of a guard
-/// ([`Accumulation::HARDLY`]). A state that is held still is no evidence.
-fn hardly_moved(mut pairs: impl Iterator<Item = (f64, f64)>) -> bool {
+/// Whether any of some numbers differs from what it was before; `None` where one does by more than the rounding of a guard
+/// ([`Accumulation::HARDLY`]).
+#[inline(always)]
+fn hardly_moved(now: &[f64], before: &[f64]) -> Option<bool> {
     let mut moved = false;
-    let hardly = pairs.all(|(after, before)| {
-        moved |= after != before;
-        (after - before).abs() <= Accumulation::HARDLY * before.abs()
-    });
-    hardly && moved
+    for (now, before) in now.iter().zip(before) {
+        moved |= now != before;
+        let hardly = (now - before).abs() <= Accumulation::HARDLY * before.abs();
+        if !hardly {
+            return None;
+        }
+    }
+    Some(moved)
 }
 
 #[cfg(test)]
@@ -379,7 +392,8 @@ mod tests {
             guard,
             ..Signature::default()
         };
-        accumulation.push(signature, impact, at, before, [after, &[]], &[]);
+        accumulation.compare([before, &[]]);
+        accumulation.push(signature, impact, at, [after, &[]], &[]);
     }
 
     fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {

@@ -184,7 +184,9 @@ impl Doubts {
     /// Takes note of a transition: what its guard fell to has happened.
     #[inline(always)]
     pub fn happened(&mut self, guard: &'static Guard) {
-        self.left.retain(|(other, _)| other.name != guard.name);
+        if !self.left.is_empty() {
+            self.left.retain(|(other, _)| other.name != guard.name);
+        }
     }
 }
 

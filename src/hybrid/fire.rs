@@ -43,6 +43,7 @@ impl Simulation<'_> {
         {
             self.counted += 1;
         }
+        self.accumulation.compare([&self.here.q, &self.here.v]);
         self.commit(transition.name, transition.impact, transition.target)?;
         self.remember(guard, t, is_impact(fired))
     }
@@ -60,6 +61,7 @@ impl Simulation<'_> {
         self.fire_by(kernel, guard)?;
         match self.here.mode == mode && !self.is_over() {
             true => {
+                self.set_context();
                 // From what the reset has written: the copy of it waits for its way to memory.
                 let (n, free) = (self.here.q.len(), self.mode().free);
                 let gather = |from: usize| SVector::from_fn(|i, _| self.next[from + free[i]]);
@@ -106,15 +108,14 @@ impl Simulation<'_> {
             .then(|| (self.stored_energy(), self.ground_momenta()));
         let left = [&*self.here.q, &self.here.v, self.context.discrete()];
         self.visited.leave(left);
-        copy_few(&self.here.q, &mut self.before[..n]);
-        copy_few(&self.here.v, &mut self.before[n..]);
-
         copy_few(&self.next[..n], &mut self.here.q);
         copy_few(&self.next[n..2 * n], &mut self.here.v);
         copy_few(&self.next[2 * n..], self.context.discrete_mut());
         self.here.mode = target;
         self.here.j += 1;
-        self.set_context();
+        if states || self.ledger.is_some() {
+            self.set_context();
+        }
         if states {
             let mode = self.mode();
             with_kernel!(&mode.kernels, k => self.set_accelerations(k))?;
@@ -202,7 +203,6 @@ impl Simulation<'_> {
             signature,
             impact,
             self.here.now,
-            &self.before,
             [&self.here.q, &self.here.v],
             self.context.discrete(),
         );

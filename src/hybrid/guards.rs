@@ -31,20 +31,26 @@ impl Conditions<'_> {
         if !transition.conditional {
             return reduce(&[]);
         }
-        let n = context.held().len();
         let target = &self.variant.modes[transition.target];
-        context.held_mut().swap_with_slice(&mut self.next[..n]);
-        context
-            .discrete_mut()
-            .swap_with_slice(&mut self.next[2 * n..]);
+        self.swap_with(context);
+        let n = context.held().len();
         let condition = with_kernel!(&target.kernels, k => {
             conditions_in(k, context, transition, target.free, &self.next[n..2 * n], reduce)
         });
-        context.held_mut().swap_with_slice(&mut self.next[..n]);
-        context
-            .discrete_mut()
-            .swap_with_slice(&mut self.next[2 * n..]);
+        self.swap_with(context);
         condition
+    }
+
+    /// Exchanges coordinates and discrete states with those of a context: few, so that a loop is faster than blocks.
+    #[inline(always)]
+    fn swap_with(&mut self, context: &mut Context) {
+        let n = context.held().len();
+        for (own, held) in self.next[..n].iter_mut().zip(context.held_mut()) {
+            std::mem::swap(own, held);
+        }
+        for (own, discrete) in self.next[2 * n..].iter_mut().zip(context.discrete_mut()) {
+            std::mem::swap(own, discrete);
+        }
     }
 
     /// The smallest condition of a transition; +∞ if it has none.

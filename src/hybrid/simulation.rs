@@ -95,8 +95,6 @@ pub(super) struct Simulation<'p> {
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
-    /// All coordinates, then all velocities, just before the last event.
-    pub before: Box<[f64]>,
     /// All coordinates at the start of the segment, where some drift.
     pub at_start: Box<[f64]>,
     /// Rates of the frozen coordinates in the present mode.
@@ -171,7 +169,6 @@ impl<'p> Simulation<'p> {
                 v: problem.initial.v.clone().into(),
                 a: zeros(n),
             },
-            before: zeros(2 * n),
             at_start: zeros(n),
             drift: zeros(n),
             signs: Signs::default(),
