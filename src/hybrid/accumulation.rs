@@ -141,7 +141,11 @@ impl Accumulation {
         };
         // A state that is held still is no evidence.
         let moved = hardly_moved(q, last_q).and_then(|q| Some(q | hardly_moved(v, last_v)?));
-        self.still = if moved == Some(true) { self.still + 1 } else { 0 };
+        self.still = if moved == Some(true) {
+            self.still + 1
+        } else {
+            0
+        };
     }
 
     /// Remembers an event, with the coordinates and velocities after it; those before it were compared.

@@ -44,7 +44,10 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     let start = method.start().t;
     let window = method.end();
     // A guard that all but fell at the end of the step before does so within the rounding of the start.
-    let mut tau = crossing.outside.max(start.next_up());
+    let mut tau = match crossing.outside > start {
+        true => crossing.outside,
+        false => start.next_up(),
+    };
     let mut correction_before = f64::INFINITY;
     loop {
         if tau != method.end() {

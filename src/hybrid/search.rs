@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::guards::{Conditions, motion, motion_at_stage, slope, watched_value};
 use super::plan::Watched;
-use super::roots::{self, Isolation, Polynomial, Search, Watch, sum_of};
+use super::roots::{self, Isolation, Polynomial, Search, Watch, straight_fall, sum_of};
 use crate::integrate::{Motion, ORDERS, System, stretch};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape};
@@ -183,15 +183,20 @@ fn search_series<const F: usize>(
     if !equations.expand_guards(tau, expanded, series) {
         return false;
     }
-    // The guard's own value decides on which side of zero it starts.
-    equations.at(tau);
-    let at = Free {
-        q: &series.q[0],
-        v: &series.v[0],
-        a: &series.a[0],
-    };
     let (kernel, context) = (equations.kernel, &*equations.context);
-    let constant = kernel.guard(context, &guard.kernel, at);
+    let mut constant = kernel.guard_coefficient(context, watched.guard, 0);
+    let is_known = watch == Watch::Armed && window.0 == tau && constant > 0.0;
+    if !is_known {
+        // The guard's own value decides on which side of zero it starts: it may be rounded otherwise.
+        equations.at(tau);
+        let at = Free {
+            q: &series.q[0],
+            v: &series.v[0],
+            a: &series.a[0],
+        };
+        constant = kernel.guard(equations.context, &guard.kernel, at);
+    }
+    let context = &*equations.context;
     let power = |k: usize| match k {
         0 => constant,
         _ => kernel.guard_coefficient(context, watched.guard, k),
@@ -199,6 +204,19 @@ fn search_series<const F: usize>(
     // Of a low degree where nothing moves.
     let degree = (1..expanded).rev().find(|&k| power(k) != 0.0);
     let count = degree.map_or(1, |degree| degree + 1);
+    // Where nothing moves but what drifts.
+    let is_plain = watch == Watch::Armed && isolation == Isolation::Place && window.0 == tau;
+    if count <= 2
+        && is_plain
+        && let Some(straight) = straight_fall(constant, power(1), window.1 - tau)
+    {
+        *found = straight;
+        if let Some(crossing) = &mut found.crossing {
+            let place = (tau + crossing.outside).min(window.1);
+            (crossing.inside, crossing.outside) = (place, place);
+        }
+        return true;
+    }
     let tolerance = equations.tolerance;
     let mut falls_off = true;
     let coefficients = Coefficients {

@@ -76,6 +76,7 @@ pub(super) use earliest::{at_most_one, first_of_several};
 pub use function::search;
 pub use polynomial::Polynomial;
 pub(super) use polynomial::sum_of;
+pub(super) use quadratic::straight_fall;
 
 /// Remembered sign of a guard at the start of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -63,6 +63,23 @@ pub(super) fn first_fall<const N: usize>(
     is_clear
 }
 
+/// The first event of an armed guard that is `value` + `slope` · τ in 0 < τ ≤ `length`, by a place in τ
+/// ([`Isolation::Place`]), or that there is none; `None` where rounding decides.
+#[inline(always)]
+pub(in crate::hybrid) fn straight_fall(value: f64, slope: f64, length: f64) -> Option<Search> {
+    let change = slope * length;
+    let end = value + change;
+    let margin = Polynomial::<2>::ROUNDING * (value.abs() + change.abs());
+    if value > 0.0 && end > margin {
+        Some(Search::above(end - margin))
+    } else if value > 0.0 && end < -margin {
+        let place = -value / slope;
+        Some(Search::found(place, place, Kind::Fall, Watch::Violated))
+    } else {
+        None
+    }
+}
+
 /// Of the two roots of c₀ + c₁ s + c₂ s² the one at which it falls, without a difference of nearly equal numbers.
 #[inline(always)]
 fn falling_root([c0, c1, c2]: [f64; 3]) -> f64 {
