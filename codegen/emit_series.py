@@ -17,7 +17,8 @@ Nodes that are constant in time are recognised: a constant times a series is one
 Between what is not linear, an order is a linear map with coefficients that the start of the step
 gives. So a coefficient of order k is held as a linear form of the terms that an order begins with:
 sums and products by constants multiply its coefficients out, once a step, and an order waits for
-one product and a sum instead of a chain of them.
+one product and a sum instead of a chain of them. Where the mass matrix is constant, so does its
+inverse.
 """
 
 import re

@@ -374,3 +374,33 @@ fn simultaneous_contacts_are_recorded_at_one_instant() {
         }
     });
 }
+
+/// Two contacts of free motions within one step: what falls first happens first, however near the other is.
+#[test]
+fn contacts_that_all_but_coincide_are_in_order() {
+    with_each_method(|| {
+        for k in 3..=14 {
+            for later in [10f64.powi(-k), -10f64.powi(-k)] {
+                let mut problem = problem("three_balls", &[("e", 1.0)]);
+                for (name, value) in [
+                    ("left", -1.0),
+                    ("right", 1.0 + later),
+                    ("left.rate", 1.0),
+                    ("right.rate", -1.0),
+                ] {
+                    problem.set_initial(name, value).unwrap();
+                }
+                problem.end.time = 2.0;
+                problem.set_tolerance(TIGHTEST);
+                let run = run(&problem);
+                let first = &run.events[0];
+                let expected = match later > 0.0 {
+                    true => ("left_contact", 1.0),
+                    false => ("right_contact", 1.0 + later),
+                };
+                assert_eq!(first.transition, expected.0, "{later:e}");
+                assert!(relative(first.t, expected.1) < 1e-15, "{later:e}");
+            }
+        }
+    });
+}

@@ -1,6 +1,6 @@
 //! The state at a crossing, at the full order of the method and on its far side.
 //!
-//! A crossing is isolated on the dense output. The step is then taken again from its start with
+//! A crossing is isolated on the dense output, or a place near it found. The step is then taken again from its start with
 //! exactly the length to the crossing, so that the state there is an end point of the method; what
 //! the guard is off by at this end point is removed by Newton's method on the length, and last by
 //! the motion's own Taylor polynomial.

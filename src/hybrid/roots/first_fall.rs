@@ -167,43 +167,57 @@ impl<const N: usize> Armed<'_, N> {
 }
 
 /// Where in a piece the root may be, given the index of the first negative Bernstein coefficient: beside an end of it
-/// by a step from there, since the last three coefficients tell value, slope and curvature; else where
-/// the polygon of the coefficients falls through zero.
+/// by a step from there, else where the polygon of the coefficients falls through zero.
 #[inline(always)]
 fn first_guess<const N: usize>(bernstein: &[f64; N], falls: usize) -> f64 {
-    let degree = (N - 1) as f64;
-    let from_end = |[at, next, third]: [f64; 3]| {
-        let (first, second) = (next - at, (third - next) - (next - at));
-        step(at, degree * first, degree * (degree - 1.0) * second)
-    };
     let guess = match falls {
-        _ if N < 3 => f64::NAN,
-        1 => from_end([bernstein[0], bernstein[1], bernstein[2]]),
-        _ if falls == N - 1 => {
-            1.0 - from_end([bernstein[N - 1], bernstein[N - 2], bernstein[N - 3]])
+        _ if N < 4 => f64::NAN,
+        1 | 2 => step_from_end([0, 1, 2, 3].map(|k| bernstein[k]), N - 1),
+        _ if falls + 2 >= N => {
+            1.0 - step_from_end([1, 2, 3, 4].map(|back| bernstein[N - back]), N - 1)
         }
         _ => f64::NAN,
     };
-    if 0.0 < guess && guess < 1.0 {
-        return guess;
+    match 0.0 < guess && guess < 1.0 {
+        true => guess,
+        false => root_of_polygon(bernstein, falls),
     }
+}
+
+/// The step into a piece from an end of it to a root, given the Bernstein coefficients from there on, which tell value
+/// and three derivatives: Householder's of fourth order (Householder 1970, section 4.4).
+#[inline(always)]
+fn step_from_end([b0, b1, b2, b3]: [f64; 4], degree: usize) -> f64 {
+    let n = degree as f64;
+    let first = [b1 - b0, b2 - b1, b3 - b2];
+    let second = [first[1] - first[0], first[2] - first[1]];
+    let slope = n * first[0];
+    let curvature = n * (n - 1.0) * second[0];
+    let third = n * (n - 1.0) * (n - 2.0) * (second[1] - second[0]);
+    let (slope2, product) = (slope * slope, b0 * curvature);
+    -b0 * (slope2 - 0.5 * product) / (slope * (slope2 - product) + b0 * b0 * third / 6.0)
+}
+
+/// The root of the polygon of the Bernstein coefficients, whose sign changes before the one of index `falls`, moved by
+/// how far its curvature takes it from the polynomial: B f − f = s (1 − s) f″/2n for the Bernstein polynomial B f of a
+/// function f (Voronovskaya 1932), and f is no polygon either, but has the coefficients as values.
+#[inline(always)]
+fn root_of_polygon<const N: usize>(bernstein: &[f64; N], falls: usize) -> f64 {
+    let n = (N - 1) as f64;
     let (before, after) = (bernstein[falls - 1], bernstein[falls]);
     let part = before / (before - after);
-    let s = ((falls - 1) as f64 + part) / degree;
-    // The polygon is off by its own curvature, which makes it the polynomial's control polygon and a chord of that.
-    let beyond = if part < 0.5 && falls > 1 {
-        bernstein[falls - 2] + after - 2.0 * before
-    } else if falls + 1 < N {
-        before + bernstein[falls + 1] - 2.0 * after
-    } else {
-        0.0
+    let s = ((falls - 1) as f64 + part) / n;
+    // f″/n², about the nearer of the two.
+    let second = match part < 0.5 {
+        true if falls > 1 => bernstein[falls - 2] + after - 2.0 * before,
+        false if falls + 1 < N => before + bernstein[falls + 1] - 2.0 * after,
+        _ => 0.0,
     };
-    let off = 0.5 * beyond * (degree * s * (1.0 - s) - part * (1.0 - part));
-    let corrected = s + off / (degree * (before - after));
-    if 0.0 < corrected && corrected < 1.0 {
-        corrected
-    } else {
-        s
+    let off = 0.5 * second * (n * s * (1.0 - s) - part * (1.0 - part));
+    let moved = s + off / (n * (before - after));
+    match 0.0 < moved && moved < 1.0 {
+        true => moved,
+        false => s,
     }
 }
 
@@ -419,10 +433,29 @@ mod tests {
         Polynomial { coefficients }
     }
 
-    fn crossing(polynomial: &Polynomial<12>) -> Crossing {
+    fn crossing(polynomial: &Polynomial<12>, isolation: Isolation) -> Crossing {
         let mut found = Search::quiet(Watch::Armed);
-        polynomial.search_armed((0.0, 1.0), 0.0, Isolation::Bracket, &mut found);
+        polynomial.search_armed((0.0, 1.0), 0.0, isolation, &mut found);
         found.crossing.expect("it has a root")
+    }
+
+    #[test]
+    fn a_place_is_so_near_the_root_that_a_landing_finds_it() {
+        let place = |i: usize| (i as f64 * 0.618_033_988_749_894_9).fract();
+        for i in 0..4000 {
+            let root = 0.02 + 0.96 * place(i);
+            let others = std::array::from_fn(|k| place(7 * i + 1009 * k + 3));
+            let polynomial = with_root(root, &others);
+            let [near, bracket] =
+                [Isolation::Place, Isolation::Bracket].map(|how| crossing(&polynomial, how));
+            let width = bracket.outside - bracket.inside;
+            assert_eq!(near.inside, near.outside);
+            let off = f64::max(
+                bracket.inside - near.outside,
+                near.outside - bracket.outside,
+            );
+            assert!(off <= 10.0 * NEAR * root + width, "{i}: {off:e}");
+        }
     }
 
     #[test]
@@ -436,7 +469,7 @@ mod tests {
             let polynomial = with_root(root, &others);
             let Crossing {
                 inside, outside, ..
-            } = crossing(&polynomial);
+            } = crossing(&polynomial, Isolation::Bracket);
             let value = |s| polynomial.value(s);
             assert!(value(inside) >= 0.0 && value(outside) < 0.0, "{i}");
             let own = &polynomial.coefficients;

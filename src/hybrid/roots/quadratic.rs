@@ -89,3 +89,42 @@ fn falling_root([c0, c1, c2]: [f64; 3]) -> f64 {
         false => 2.0 * c0 / (root_of_discriminant - c1),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_straight_guard_falls_where_its_polynomial_does() {
+        let mut decided = 0;
+        for i in 0..20_000 {
+            let part = |k: f64| (f64::from(i) * k).fract();
+            let value = 10f64.powf(6.0 * part(0.618_033_988_749_894_9) - 3.0);
+            // From twice as fast as it must fall to reach zero to as fast upwards; near that, to the last places.
+            let slope = match i % 4 {
+                0 => -value * (1.0 + f64::EPSILON * f64::from(i % 100 - 50)),
+                _ => value * (4.0 * part(0.754_877_666_246_692_7) - 2.0),
+            };
+            let length = 3.0;
+            let mut expected = Search::quiet(Watch::Armed);
+            let polynomial = Polynomial {
+                coefficients: [value, slope / length * length, 0.0],
+            };
+            polynomial.search_armed((0.0, 1.0), 0.0, Isolation::Place, &mut expected);
+            let Some(found) = straight_fall(value, slope / length, length) else {
+                assert_eq!(i % 4, 0, "{value} {slope}");
+                continue;
+            };
+            decided += 1;
+            assert_eq!(found.crossing.is_some(), expected.crossing.is_some());
+            assert_eq!(found.watch, expected.watch);
+            if let (Some(own), Some(other)) = (found.crossing, expected.crossing) {
+                assert!((own.outside / length / other.outside - 1.0).abs() < 1e-14);
+            } else {
+                // Where it rises it does not turn at its start.
+                assert!(0.0 <= found.turn && found.turn <= value + slope);
+            }
+        }
+        assert!(decided > 15_000);
+    }
+}

@@ -161,3 +161,29 @@ pub(crate) fn stretch<T>(
         *out = coefficient(last) * powers[0];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::vector;
+
+    #[test]
+    fn the_first_two_coefficients_are_those_of_all() {
+        let mut series = Series::<2>::zero();
+        series.q[..3].copy_from_slice(&[vector![1.1, 2.3], vector![0.7, -0.3], vector![0.2, 0.1]]);
+        series.v[..2].copy_from_slice(&[vector![0.7, -0.3], vector![0.4, 0.2]]);
+        let dense = TaylorDense {
+            t0: 0.0,
+            h: 0.37,
+            t_end: 0.37,
+            order: 1,
+            known: 6,
+            series,
+        };
+        for of in [(0, false), (1, false), (0, true), (1, true)] {
+            let mut all = [0.0; 4];
+            dense.scaled(of, -1.7, 0, &mut all);
+            assert_eq!(dense.first_two(of, -1.7), all[..2]);
+        }
+    }
+}
