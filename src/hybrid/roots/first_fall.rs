@@ -350,9 +350,8 @@ pub(super) fn certain_fall<const N: usize>(
         .then(|| Search::found(before, after, Kind::Fall, Watch::Violated))
 }
 
-/// Whether a step of [`step`] to a place s leaves a distance from the root that is not told from none ([`Isolation::Place`]):
-/// its cube times the square of half of curvature ÷ slope, which are those of the polynomial, or of s times it: that
-/// adds 1/s.
+/// Whether a step of [`step`] to a place s leaves no more than [`NEAR`] to the root: it leaves about its cube times the
+/// square of half of curvature ÷ slope, which are those of the polynomial, or of s times it: that adds 1/s.
 #[inline(always)]
 fn is_near(step: f64, s: f64, [slope, curvature]: [f64; 2]) -> bool {
     let bend = curvature.abs() * s + 2.0 * slope.abs();
