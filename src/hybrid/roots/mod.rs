@@ -120,7 +120,7 @@ pub enum Kind {
 }
 
 /// An event of one guard: neighbouring doubles `inside` < `outside`; its time is `outside`. The engine's own search of a
-/// polynomial's fall leaves them farther apart ([`Isolation`]).
+/// polynomial's fall leaves them some rounding errors apart, or only finds a place near it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Last double before the event, in the unit of the searched variable.
