@@ -7,7 +7,7 @@
 //! the run.
 
 use super::instant::Instant;
-use crate::kernel::copy_few;
+use std::sync::atomic::{Ordering, compiler_fence};
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
 pub const LONGEST_PATTERN: usize = 8;
@@ -148,21 +148,17 @@ impl Accumulation {
         };
     }
 
-    /// Remembers an event, with the coordinates and velocities after it; those before it were compared.
-    pub fn push(
-        &mut self,
-        signature: Signature,
-        impact: bool,
-        at: Instant,
-        state: [&[f64]; 2],
-        discrete: &[f64],
-    ) {
+    /// Remembers an event by what makes it the same as others ([`Signature::key`]), with coordinates, velocities and
+    /// discrete states after it; those before it were compared.
+    #[inline]
+    pub fn push(&mut self, key: u64, at: Instant, after: &[f64]) {
         let still = self.still;
-        let n = state[0].len();
-        let record = self.push_apart(signature.key(impact), at);
-        copy_few(state[0], &mut record[..n]);
-        copy_few(state[1], &mut record[n..][..state[1].len()]);
-        copy_few(discrete, &mut record[n + state[1].len()..]);
+        let record = self.push_apart(key, at);
+        // Numbers that were written one by one are read one by one.
+        for (to, from) in record.iter_mut().zip(after) {
+            *to = *from;
+            compiler_fence(Ordering::SeqCst);
+        }
         self.still = still;
     }
 
@@ -397,7 +393,7 @@ mod tests {
             ..Signature::default()
         };
         accumulation.compare([before, &[]]);
-        accumulation.push(signature, impact, at, [after, &[]], &[]);
+        accumulation.push(signature.key(impact), at, after);
     }
 
     fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {

@@ -137,7 +137,7 @@ impl Simulation<'_> {
             self.states_at_jumps.push([before, self.snapshot()]);
         }
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
-        let modes = self.problem.variant.modes;
+        let modes = self.modes;
         match self.visited.arrive((name, from, target), state, modes) {
             Some(cycle) => Err(Box::new(Reason::Cycle { cycle })),
             None => Ok(()),
@@ -199,13 +199,9 @@ impl Simulation<'_> {
             transition,
             mode: self.here.mode,
         };
-        self.accumulation.push(
-            signature,
-            impact,
-            self.here.now,
-            [&self.here.q, &self.here.v],
-            self.context.discrete(),
-        );
+        // What the reset has written is the state now.
+        let key = signature.key(impact);
+        self.accumulation.push(key, self.here.now, &self.next);
         self.look_for_accumulation()
     }
 }

@@ -3,6 +3,7 @@
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
 use crate::integrate::{Motion, solve};
+use crate::kernel::swap_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
 use crate::model::{Guard, Transition, Variant};
@@ -41,16 +42,12 @@ impl Conditions<'_> {
         condition
     }
 
-    /// Exchanges coordinates and discrete states with those of a context: few, so that a loop is faster than blocks.
+    /// Exchanges coordinates and discrete states with those of a context.
     #[inline(always)]
     fn swap_with(&mut self, context: &mut Context) {
         let n = context.held().len();
-        for (own, held) in self.next[..n].iter_mut().zip(context.held_mut()) {
-            std::mem::swap(own, held);
-        }
-        for (own, discrete) in self.next[2 * n..].iter_mut().zip(context.discrete_mut()) {
-            std::mem::swap(own, discrete);
-        }
+        swap_few(&mut self.next[..n], context.held_mut());
+        swap_few(&mut self.next[2 * n..], context.discrete_mut());
     }
 
     /// The smallest condition of a transition; +∞ if it has none.

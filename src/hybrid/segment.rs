@@ -12,9 +12,7 @@ use super::samples::{Row, row_of, sample_time};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
 use super::work::work;
-use crate::integrate::{
-    Counters, Node, OneStep, Radau, State, Taylor, Tolerances, determinant_sign, stages,
-};
+use crate::integrate::{Node, OneStep, Radau, State, Taylor, Tolerances, determinant_sign, stages};
 use crate::kernel::{Context, Free, ModeKernel, copy_few};
 use crate::model::Mode;
 use crate::record::Progress;
@@ -102,7 +100,6 @@ impl Simulation<'_> {
             None => self.begin_with(make(&self.context)),
         };
         let stop = self.stay(kernel, &mut *method, stays, progress);
-        self.count(&method.take_counters());
         slots(self.solvers.slots())[mode] = Some(method);
         stop
     }
@@ -408,15 +405,6 @@ impl Simulation<'_> {
                 return Ok(Stop::Method);
             }
         }
-    }
-
-    fn count(&mut self, counters: &Counters) {
-        let solver = &mut self.solver;
-        solver.steps += counters.steps;
-        solver.rejected += counters.rejected + counters.newton_failures;
-        solver.residual_evaluations += counters.residual_evaluations;
-        solver.jacobian_evaluations += counters.jacobian_evaluations;
-        solver.factorizations += counters.factorizations;
     }
 }
 

@@ -92,6 +92,8 @@ pub(super) struct Simulation<'p> {
     pub problem: &'p Problem,
     /// Its initial state, or that of the member of an ensemble.
     pub initial: &'p Initial,
+    /// The modes of the problem's variant.
+    pub modes: &'static [Mode],
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
@@ -159,6 +161,7 @@ impl<'p> Simulation<'p> {
         Ok(Simulation {
             problem,
             initial: &problem.initial,
+            modes: problem.variant.modes,
             plan,
             context,
             here: Here {
@@ -182,7 +185,7 @@ impl<'p> Simulation<'p> {
             jumps: Vec::new(),
             states_at_jumps: Vec::new(),
             solver: Solver::default(),
-            solvers: Solvers::new(problem.variant.modes.len()),
+            solvers: Solvers::new(problem.variant.modes),
             stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
             smooth_until: f64::NEG_INFINITY,
             piece: Piece::UNKNOWN,
@@ -251,12 +254,12 @@ impl<'p> Simulation<'p> {
     }
 
     pub fn mode(&self) -> &'static Mode {
-        &self.problem.variant.modes[self.here.mode]
+        &self.modes[self.here.mode]
     }
 
     /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
     fn choose_initial_mode(&mut self) -> Result<(), Reason> {
-        let modes = self.problem.variant.modes;
+        let modes = self.modes;
         if let Some(chosen) = self.initial.mode {
             self.here.mode = chosen;
             self.apply_drift();
@@ -348,7 +351,21 @@ impl<'p> Simulation<'p> {
             while self.settle()? && self.advance_to_event(true, progress)? {}
             Ok(())
         };
-        run().map_err(|reason| *reason)
+        let outcome = run().map_err(|reason| *reason);
+        self.count_work();
+        outcome
+    }
+
+    /// Adds the work that the methods have done since it was last counted.
+    pub fn count_work(&mut self) {
+        let solver = &mut self.solver;
+        for counters in self.solvers.take_counters() {
+            solver.steps += counters.steps;
+            solver.rejected += counters.rejected + counters.newton_failures;
+            solver.residual_evaluations += counters.residual_evaluations;
+            solver.jacobian_evaluations += counters.jacobian_evaluations;
+            solver.factorizations += counters.factorizations;
+        }
     }
 
     /// From an admissible mode through the next event, or, where it `stays`, the next that does not lead to
@@ -447,7 +464,7 @@ impl<'p> Simulation<'p> {
             self.here.q.copy_from_slice(&limit.state[..n]);
             self.here.v.copy_from_slice(&limit.state[n..]);
         }
-        let mode = &self.problem.variant.modes[rest];
+        let mode = &self.modes[rest];
         self.next[..n].copy_from_slice(&self.here.q);
         self.next[n..2 * n].copy_from_slice(&self.here.v);
         self.next[2 * n..].copy_from_slice(self.context.discrete());
@@ -462,6 +479,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Sets signals and held coordinates to the present instant.
+    #[inline(always)]
     pub fn set_context(&mut self) {
         let t = self.here.now.seconds();
         let signals = &self.problem.signals;

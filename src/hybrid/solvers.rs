@@ -1,6 +1,7 @@
 //! One-step methods, made once for each mode and kept.
 
-use crate::integrate::{Radau, Taylor};
+use crate::integrate::{Counters, Radau, Taylor};
+use crate::model::Mode;
 
 /// The methods of modes with `F` free coordinates that were used so far, by mode; `None` while one is in use.
 /// Making one costs as much as many steps, and a method remembers what it has learnt.
@@ -11,12 +12,28 @@ pub(super) struct Slots<const F: usize> {
 }
 
 impl<const F: usize> Slots<F> {
-    fn new(modes: usize) -> Self {
+    fn new(modes: &[Mode]) -> Self {
+        // Places by mode; none where no mode is of this kind.
+        let modes = match modes.iter().any(|mode| mode.free.len() == F) {
+            true => modes.len(),
+            false => 0,
+        };
         Slots {
             taylor: (0..modes).map(|_| None).collect(),
             radau_of_five: (0..modes).map(|_| None).collect(),
             radau_of_seven: (0..modes).map(|_| None).collect(),
         }
+    }
+
+    /// Work done since it was last taken, of each method.
+    fn take_counters(&mut self) -> impl Iterator<Item = Counters> {
+        let taylor = self.taylor.iter_mut().flatten();
+        let of_five = self.radau_of_five.iter_mut().flatten();
+        let of_seven = self.radau_of_seven.iter_mut().flatten();
+        let taylor = taylor.map(|method| method.take_counters());
+        let of_five = of_five.map(|method| method.take_counters());
+        let of_seven = of_seven.map(|method| method.take_counters());
+        taylor.chain(of_five).chain(of_seven)
     }
 }
 
@@ -34,9 +51,14 @@ macro_rules! solvers {
         }
 
         impl Solvers {
-            /// None yet, of so many modes.
-            pub fn new(modes: usize) -> Self {
+            /// None yet.
+            pub fn new(modes: &[Mode]) -> Self {
                 Solvers { $($name: Slots::new(modes),)* }
+            }
+
+            /// Work done since it was last taken, of each method.
+            pub fn take_counters(&mut self) -> impl Iterator<Item = Counters> {
+                std::iter::empty()$(.chain(self.$name.take_counters()))*
             }
         }
 

@@ -1,4 +1,4 @@
-//! Copies of a few numbers.
+//! A few numbers: copied, or exchanged.
 
 use std::sync::atomic::{Ordering, compiler_fence};
 
@@ -28,5 +28,23 @@ pub(crate) fn copy_few(from: &[f64], to: &mut [f64]) {
             *to_c = *c;
         }
         (from, to) => to.copy_from_slice(from),
+    }
+}
+
+/// Exchanges as many numbers as [`copy_few`] copies.
+///
+/// # Panics
+/// If the lengths differ.
+#[inline(always)]
+pub(crate) fn swap_few(one: &mut [f64], other: &mut [f64]) {
+    match (one, other) {
+        ([], []) => {}
+        ([a], [b]) => std::mem::swap(a, b),
+        ([a, c], [b, d]) => {
+            std::mem::swap(a, b);
+            compiler_fence(Ordering::SeqCst);
+            std::mem::swap(c, d);
+        }
+        (one, other) => one.swap_with_slice(other),
     }
 }

@@ -11,7 +11,7 @@ mod tables;
 
 use context::{Arrays, KeptAngle};
 pub use context::{Context, Dimensions};
-pub(crate) use few::copy_few;
+pub(crate) use few::{copy_few, swap_few};
 pub use lanes::{
     LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLevel, LaneLimits, LanePast, LanePoint,
     LaneRows, LaneSeries, LaneSystem, processor_level,

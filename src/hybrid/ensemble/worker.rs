@@ -287,6 +287,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             alone = false;
             passed = simulation.advance_to_event(false, &mut Silent);
         };
+        simulation.count_work();
         take(
             *member,
             Finished {
