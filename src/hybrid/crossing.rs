@@ -18,8 +18,8 @@ use crate::model::{Guard, Mode};
 pub(super) struct Signs {
     /// Signs at the start of the step.
     pub watches: Vec<Watch>,
-    /// What was found of each in the step.
-    pub found: Vec<Search>,
+    /// What was found of each in the step. Modes watch different numbers: there is room for the most so far.
+    found: Vec<Search>,
     /// Local time from which each is searched, where that is after the start of the step.
     from: Vec<f64>,
 }
@@ -49,10 +49,26 @@ impl Signs {
     #[inline(always)]
     pub fn start(&mut self) {
         let count = self.watches.len();
-        if self.found.len() != count {
+        if self.found.len() < count {
             self.found.resize(count, Search::quiet(Watch::Dormant));
             self.from.resize(count, 0.0);
         }
+    }
+
+    /// What was found of each in the step.
+    pub fn found(&self) -> &[Search] {
+        &self.found[..self.watches.len()]
+    }
+
+    /// Of each: the sign, what was found, and from where it is searched.
+    #[inline(always)]
+    fn parts(&mut self) -> (&mut [Watch], &mut [Search], &mut [f64]) {
+        let count = self.watches.len();
+        (
+            &mut self.watches,
+            &mut self.found[..count],
+            &mut self.from[..count],
+        )
     }
 
     /// The signs at the end of the step are those at the start of the next.
@@ -73,18 +89,14 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     (signs, landed): (&mut Signs, &mut State<F>),
 ) -> Stoppable<Cut> {
     let start = method.start().t;
-    signs.from.fill(start);
+    signs.parts().2.fill(start);
     let mut hides = false;
     loop {
         let dense = method.dense().expect("a step was made");
         let to = method.end();
         let time = match M::EXPLICIT {
             true => {
-                let Signs {
-                    watches,
-                    found,
-                    from,
-                } = &mut *signs;
+                let (watches, found, from) = signs.parts();
                 let only = at_most_one((start, to), watches, found, |i, _, to, watch, found| {
                     let of = (&mode.guards[watched[i].guard], watched[i]);
                     let window = (from[i], to);
@@ -101,11 +113,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             }
             false => search_all(equations, conditions, dense, (mode, watched), to, signs),
         };
-        let Signs {
-            watches,
-            found,
-            from,
-        } = &mut *signs;
+        let (watches, found, from) = signs.parts();
         if hides {
             // They came to zero within rounding.
             for ((found, &watch), &from) in found.iter_mut().zip(&*watches).zip(&*from) {
@@ -189,11 +197,7 @@ fn put_in_order<const F: usize>(
     signs: &mut Signs,
 ) -> Option<f64> {
     let start = dense.start();
-    let Signs {
-        watches,
-        found,
-        from,
-    } = &mut *signs;
+    let (watches, found, from) = signs.parts();
     let set_apart = |found: &mut Search| {
         if let Some(crossing) = &mut found.crossing {
             let apart = APART * (crossing.outside - start);
@@ -222,11 +226,7 @@ fn search_all<const F: usize>(
     to: f64,
     signs: &mut Signs,
 ) -> Option<f64> {
-    let Signs {
-        watches,
-        found,
-        from,
-    } = signs;
+    let (watches, found, from) = signs.parts();
     let search = |i: usize, _: f64, to: f64, watch: Watch, found: &mut Search| {
         let of = (&mode.guards[watched[i].guard], watched[i]);
         let what = (watch, Isolation::Bracket, found);

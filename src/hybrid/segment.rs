@@ -268,7 +268,7 @@ impl Simulation<'_> {
                 mode,
                 watched,
                 watches: &self.signs.watches,
-                found: &self.signs.found,
+                found: self.signs.found(),
                 accuracy: &problem.accuracy,
             };
             self.doubts
