@@ -30,6 +30,7 @@ HEADER = """\
 #endif
 typedef double real;
 #define REAL(x) (x)
+#define DALEMBERT_KEEP(block)
 #if DALEMBERT_BLOCK == 4
 /* At once: a processor waits where it reads as one what it has just stored in parts, and a compiler
  * makes parts of what is not volatile. */

@@ -16,6 +16,12 @@ typedef real dalembert_block;
 #define DALEMBERT_INLINE static inline __attribute__((always_inline))
 #define DALEMBERT_CLONES
 #define DALEMBERT_BLOCK 1
+/* Has a block that is read from memory, and used twice, read once. */
+#if DALEMBERT_LANES == 8
+#define DALEMBERT_KEEP(block) __asm__("" : "+v"(block))
+#else
+#define DALEMBERT_KEEP(block)
+#endif
 #define DALEMBERT_PUT(at, ...) DALEMBERT_PUT_EACH(at, __VA_ARGS__)
 #define DALEMBERT_JOIN(name, level) DALEMBERT_JOINED(name, level)
 #define DALEMBERT_JOINED(name, level) name##level
