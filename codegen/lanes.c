@@ -261,18 +261,21 @@ DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau
 }
 
 /* Middle of a range that a polynomial of `count` rows does not leave in the time tau, and half its width:
- * codegen/ranges.c.
+ * codegen/ranges.c. Rows that fill up the last four are zero.
  */
 DALEMBERT_INLINE real range(size_t count, size_t stride, const real *row, real tau, real *radius) {
   enum { FIRST = 8 };
-  real least = REAL(0.0), most = REAL(0.0), others = REAL(0.0);
-  for (size_t k = count; k-- > FIRST;) others = others * tau + size_of(row[k * stride]);
   const real tau2 = tau * tau, tau4 = tau2 * tau2;
+  real least = REAL(0.0), most = REAL(0.0), others[4] = {{0}};
+  for (size_t k = (count + 3) / 4 * 4; k > FIRST; k -= 4)
+#pragma GCC unroll 4
+    for (size_t i = 0; i < 4; ++i) others[i] = others[i] * tau4 + size_of(row[(k - 4 + i) * stride]);
   for (size_t k = FIRST; k-- > 0;) {
     least = row[k * stride] + smaller(least * tau, REAL(0.0));
     most = row[k * stride] + greater(most * tau, REAL(0.0));
   }
-  *radius = 0.5 * (most - least) + others * (tau4 * tau4);
+  const real rest = (others[0] + others[1] * tau) + (others[2] + others[3] * tau) * tau2;
+  *radius = 0.5 * (most - least) + rest * (tau4 * tau4);
   return 0.5 * (least + most);
 }
 
