@@ -53,6 +53,7 @@ class _Node:
 
 
 _VARIABLE = re.compile(r"\bt\d+\b")
+_MOTION = re.compile(r"([qv])\[(\d+) \* k \+ (\d+)\]")
 _DEFINITION = re.compile(r"\s*const (?:real|struct \w+) (t\d+) = ")
 
 _ONE = _Node("1.0")
@@ -274,7 +275,12 @@ class Graph:
 
     def _scaled(self, x):
         """k x_k: the derivative's coefficient of order k − 1."""
-        return f"order * {self.value(x)}"
+        text = self.value(x)
+        moving = _MOTION.fullmatch(text)
+        if moving is None:
+            return f"order * {text}"
+        array, width, i = moving.groups()
+        return f"{'va'['qv'.index(array)]}[{width} * (k - 1) + {i}]"
 
     @staticmethod
     def _over_k(inner):
@@ -498,14 +504,14 @@ class Series:
             one = f"{order}(%s, q, v, a, u, x, w, out, last, %s{gains});"
             orders = [
                 "  size_t k = 1;",
-                f"  for (; k < 3 && k < n; ++k) {one % ('k', 'NULL')}",
+                # None is left over after the last two.
+                f"  for (; k < 4 - n % 2 && k < n; ++k) {one % ('k', 'NULL')}",
                 "  for (; k + 1 < n; k += 2) {",
                 f"    dalembert_block pair[2 * {interiors.blocks}];",
                 f"    {pair}(k, w, pair);",
                 f"    {one % ('k', 'pair')}",
                 f"    {one % ('k + 1', f'pair + {interiors.blocks}')}",
                 "  }",
-                f"  if (k < n) {one % ('k', 'NULL')}",
             ]
         if interiors.halves == 2:
             unrolled = [f"  if (n <= {k}) return;\n  {call % k}" for k in range(1, MOST_ORDERS)]
@@ -576,11 +582,19 @@ class Equations(Series):
                 parts = [(f"out[{free * j + i}]", form[term]) for j, form in enumerate(residuals) if term in form]
                 products = " + ".join(inverse if factor is _ONE else f"{inverse} * {graph.first(factor)}"
                                       for inverse, factor in parts)
-                gains.append(f"(gains[{len(self.gains)}] * dalembert_inverses[k + 1]) * {term}")
+                gains.append(f"gains[{len(self.gains)}]")
                 self.gains.append(f"-({products})")
-            rate = " + ".join(gains) or "REAL(0.0)"
-            graph.state(f"const real v{i} = {rate};", dict.fromkeys(terms, _ONE))
-            graph.state(f"a[{free} * k + {i}] = v{i} * (order + 1.0);")
+            inverse = "dalembert_inverses[k + 1]"
+            products = [f"({gain} * {inverse}) * {term}" for gain, term in zip(gains, terms)]
+            plain = " + ".join(f"{gain} * {term}" for gain, term in zip(gains, terms))
+            # In lanes it is the number of operations that counts, not how many of them wait for each other.
+            graph.state(f"""
+#ifdef LANES
+  const real a{i} = {plain or 'REAL(0.0)'}, v{i} = a{i} * {inverse};
+#else
+  const real v{i} = {' + '.join(products) or 'REAL(0.0)'}, a{i} = v{i} * (order + 1.0);
+#endif""".lstrip(), dict.fromkeys(terms, _ONE))
+            graph.state(f"a[{free} * k + {i}] = a{i};")
             graph.state(f"v[{free} * (k + 1) + {i}] = v{i};")
             graph.state(f"q[{free} * (k + 2) + {i}] = v{i} * dalembert_inverses[k + 2];")
 

@@ -128,16 +128,23 @@ class Interiors:
         return lines
 
     def pair(self, lead):
-        """Statements that leave the sums of the orders k, which is odd and three at least, and k + 1 in `out`, but for
-        the factors of the last order before each: to the bit those of `sums`."""
+        """Statements that leave the sums of the orders k, which is three at least, and k + 1 in `out`, but for the
+        factors of the last order before each: to the bit those of `sums`."""
         return [
             f"  enum {{ width = DALEMBERT_WIDTH({len(self)}), blocks = width / DALEMBERT_BLOCK }};",
             f"  const real *const row = w + {lead};",
             "  dalembert_block left[blocks], right[blocks], sums[blocks], others[blocks], next[blocks], next_others[blocks];",
             "  for (size_t n = 0; n < blocks; ++n) {",
-            "    left[n] = DALEMBERT_LEFT((k + 1) / 2)[n], right[n] = DALEMBERT_RIGHT((k + 1) / 2)[n];",
-            "    sums[n] = others[n] = next_others[n] = DALEMBERT_ZERO;",
-            "    next[n] = left[n] * right[n];",
+            "    const size_t middle = k / 2;",
+            "    left[n] = DALEMBERT_LEFT(middle + 1)[n], right[n] = DALEMBERT_RIGHT(middle + 1)[n];",
+            "    sums[n] = others[n] = next[n] = next_others[n] = DALEMBERT_ZERO;",
+            "    if (k % 2 == 1) {",
+            "      next[n] = left[n] * right[n];",
+            "    } else {",
+            "      sums[n] = DALEMBERT_LEFT(middle)[n] * DALEMBERT_RIGHT(middle)[n];",
+            "      next[n] += DALEMBERT_LEFT(middle)[n] * right[n];",
+            "      next_others[n] += left[n] * DALEMBERT_RIGHT(middle)[n];",
+            "    }",
             "  }",
             "  for (size_t j = (k - 1) / 2; j >= 2; --j) {",
             "    for (size_t n = 0; n < blocks; ++n) {",
