@@ -79,16 +79,14 @@ const ROOM: usize = Accumulation::MEMORY.next_power_of_two();
 /// Numbers that fill a line of the cache.
 const LINE: usize = 8;
 
-/// Where in the record of an event its time begins, of two numbers; the bits of what makes it the same as
-/// others ([`Signature::key`]); coordinates and velocities after it. Discrete states after it follow.
-const TIME: usize = 0;
-const KEY: usize = 2;
-const STATE: usize = 3;
-
 /// The last events of a run.
 #[derive(Debug)]
 pub struct Accumulation {
-    /// A record an event, each in lines of the cache of its own: it is written and looked at as a whole.
+    /// When they happened, and the bits of what makes each the same as others ([`Signature::key`]): of many events these
+    /// are looked at, and nothing else.
+    times: [Instant; ROOM],
+    keys: [u64; ROOM],
+    /// Coordinates, velocities and discrete states after each, as few lines of the cache as hold them.
     records: Box<[f64]>,
     /// Where the first record begins, and how long one is.
     first: usize,
@@ -113,9 +111,15 @@ impl Accumulation {
     /// No events yet. Given are the absolute tolerances of coordinates and velocities, and the number of discrete
     /// states.
     pub fn new(absolute: Box<[f64]>, discretes: usize) -> Self {
-        let stride = (STATE + absolute.len() + discretes).next_multiple_of(LINE);
+        let numbers = absolute.len() + discretes;
+        let stride = match numbers <= LINE {
+            true => numbers.next_power_of_two(),
+            false => numbers.next_multiple_of(LINE),
+        };
         let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
         Accumulation {
+            times: [Instant::default(); ROOM],
+            keys: [0; ROOM],
             first: records.as_ptr().align_offset(LINE * size_of::<f64>()) % LINE,
             records,
             stride,
@@ -167,12 +171,11 @@ impl Accumulation {
     #[inline]
     pub fn push_apart(&mut self, key: u64, at: Instant) -> &mut [f64] {
         self.still = 0;
+        let place = self.count % ROOM;
         self.count += 1;
-        let start = self.start(0);
-        let record = &mut self.records[start..][..STATE + self.absolute.len() + self.discretes];
-        [record[TIME], record[TIME + 1]] = at.parts();
-        record[KEY] = f64::from_bits(key);
-        &mut record[STATE..]
+        (self.times[place], self.keys[place]) = (at, key);
+        let start = self.first + place * self.stride;
+        &mut self.records[start..][..self.absolute.len() + self.discretes]
     }
 
     /// When the last event happened, if there was one, with coordinates and velocities, and discrete states
@@ -181,40 +184,40 @@ impl Accumulation {
         (self.count > 0).then(|| (self.at(0), self.state(0), self.discrete(0)))
     }
 
-    /// Where the record of the event so many before the last begins.
-    fn start(&self, back: usize) -> usize {
-        self.first + (self.count - 1 - back) % ROOM * self.stride
-    }
-
-    /// When an event happened, and what makes it the same as others.
+    /// Place of the event so many before the last.
     #[inline]
-    fn head(&self, back: usize) -> (Instant, u64) {
-        let record = self.records[self.start(back)..].first_chunk::<STATE>();
-        let record = record.expect("a record is longer");
-        let at = Instant::of_parts([record[TIME], record[TIME + 1]]);
-        (at, record[KEY].to_bits())
+    fn place(&self, back: usize) -> usize {
+        (self.count - 1 - back) % ROOM
     }
 
+    #[inline]
     fn at(&self, back: usize) -> Instant {
-        self.head(back).0
+        self.times[self.place(back)]
     }
 
     fn is_impact(&self, back: usize) -> bool {
-        self.head(back).1 >> 48 != 0
+        self.keys[self.place(back)] >> 48 != 0
+    }
+
+    /// Coordinates, velocities and discrete states after an event.
+    #[inline]
+    fn record(&self, back: usize) -> &[f64] {
+        let start = self.first + self.place(back) * self.stride;
+        &self.records[start..][..self.absolute.len() + self.discretes]
     }
 
     fn state(&self, back: usize) -> &[f64] {
-        &self.records[self.start(back) + STATE..][..self.absolute.len()]
+        &self.record(back)[..self.absolute.len()]
     }
 
     fn discrete(&self, back: usize) -> &[f64] {
-        &self.records[self.start(back) + STATE + self.absolute.len()..][..self.discretes]
+        &self.record(back)[self.absolute.len()..]
     }
 
     /// Whether two events are the same but for time and state.
     #[inline]
     fn are_alike(&self, one: usize, other: usize) -> bool {
-        if self.head(one).1 != self.head(other).1 {
+        if self.keys[self.place(one)] != self.keys[self.place(other)] {
             return false;
         }
         let mut pairs = self.discrete(one).iter().zip(self.discrete(other));
@@ -277,10 +280,14 @@ impl Accumulation {
         if !self.are_alike(0, p) {
             return None;
         }
-        let at = [0, 1, 2, 3].map(|k| self.at(k * p));
-        let [last, middle, first] = [0, 1, 2].map(|k| at[k].since(at[k + 1]));
+        let at = [0, 1, 2].map(|k| self.at(k * p));
+        let [last, middle] = [0, 1].map(|k| at[k].since(at[k + 1]));
         // The last may be shorter than the resolution of an instant.
-        if !(0.0 <= last && last < middle && middle < first) {
+        if !(0.0 <= last && last < middle) {
+            return None;
+        }
+        let first = at[2].since(self.at(3 * p));
+        if middle >= first {
             return None;
         }
         let (ratio, ratio_before) = (last / middle, middle / first);

@@ -310,7 +310,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
 
     /// The present instant of a lane.
     pub fn now(&self, lane: usize) -> Instant {
-        Instant::of_parts(self.here.t.map(|part| part.0[lane]))
+        let [high, low] = &self.here.t;
+        Instant::of_parts([high.0[lane], low.0[lane]])
     }
 
     /// What became of a lane that does not simply go on after the last step.
