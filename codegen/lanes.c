@@ -260,33 +260,38 @@ DALEMBERT_INLINE real sum(size_t count, size_t stride, const real *row, real tau
   return out;
 }
 
-/* Middle of a range that a polynomial of `count` rows does not leave in the time tau, and half its width:
- * codegen/ranges.c. Rows that fill up the last four are zero.
+/* Rows that enter ranges by more than their sizes: codegen/ranges.c. */
+enum { FIRST = 8 };
+
+/* Middle of a range that a polynomial of `count` rows does not leave in a time, given its powers, and half its width.
+ * Rows that fill up the last four are zero.
  */
-DALEMBERT_INLINE real range(size_t count, size_t stride, const real *row, real tau, real *radius) {
-  enum { FIRST = 8 };
-  const real tau2 = tau * tau, tau4 = tau2 * tau2;
+DALEMBERT_INLINE real range(size_t count, size_t stride, const real *row, const real *powers, real *radius) {
   real least = REAL(0.0), most = REAL(0.0), others[4] = {{0}};
   for (size_t k = (count + 3) / 4 * 4; k > FIRST; k -= 4)
 #pragma GCC unroll 4
-    for (size_t i = 0; i < 4; ++i) others[i] = others[i] * tau4 + size_of(row[(k - 4 + i) * stride]);
+    for (size_t i = 0; i < 4; ++i) others[i] = others[i] * powers[4] + size_of(row[(k - 4 + i) * stride]);
+#pragma GCC unroll 8
   for (size_t k = FIRST; k-- > 0;) {
-    least = row[k * stride] + smaller(least * tau, REAL(0.0));
-    most = row[k * stride] + greater(most * tau, REAL(0.0));
+    const real own = k > 0 ? row[k * stride] * powers[k] : row[0];
+    least = own + smaller(least, REAL(0.0));
+    most = own + greater(most, REAL(0.0));
   }
-  const real rest = (others[0] + others[1] * tau) + (others[2] + others[3] * tau) * tau2;
-  *radius = 0.5 * (most - least) + rest * (tau4 * tau4);
+  const real rest = (others[0] + others[1] * powers[1]) + (others[2] + others[3] * powers[1]) * powers[2];
+  *radius = 0.5 * (most - least) + rest * (powers[4] * powers[4]);
   return 0.5 * (least + most);
 }
 
 DALEMBERT_INLINE void ranges(const size_t free, size_t count, const real *q, const real *v, const real *a, real tau,
                              real *middles, real *radii) {
+  const real tau2 = tau * tau, tau4 = tau2 * tau2;
+  const real powers[FIRST] = {REAL(1.0), tau, tau2, tau2 * tau, tau4, tau4 * tau, tau4 * tau2, tau4 * (tau2 * tau)};
   for (size_t i = 0; i < free; ++i) {
-    const real middle = range(count, free, q + i, tau, radii + i);
+    const real middle = range(count, free, q + i, powers, radii + i);
     radii[i] += size_of(middle - q[i]);
     middles[i] = q[i];
-    middles[free + i] = range(count, free, v + i, tau, radii + free + i);
-    middles[2 * free + i] = range(count, free, a + i, tau, radii + 2 * free + i);
+    middles[free + i] = range(count, free, v + i, powers, radii + free + i);
+    middles[2 * free + i] = range(count, free, a + i, powers, radii + 2 * free + i);
   }
 }
 
