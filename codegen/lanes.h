@@ -109,5 +109,20 @@ DALEMBERT_INLINE struct dalembert_sin_cos dalembert_lanes_sin_cos(real x) {
   return out;
 }
 #define dalembert_sin_cos(x) dalembert_lanes_sin_cos(x)
-#define DALEMBERT_SIN_COS(n, angle) dalembert_lanes_sin_cos(angle)
-struct dalembert_angle;
+
+/* Angles whose sines and cosines were computed last, as a function for one trajectory keeps them: those that a step
+ * starts with are asked for again when it has ended. src/kernel/lanes.rs.
+ */
+struct dalembert_angle { real angle; struct dalembert_sin_cos pair; };
+DALEMBERT_INLINE struct dalembert_sin_cos dalembert_kept_sin_cos(struct dalembert_angle *kept, real angle) {
+  typedef unsigned long long word __attribute__((vector_size(8 * DALEMBERT_LANES), aligned(16)));
+  const word differing = (word)kept->angle ^ (word)angle;
+  uint64_t any = 0;
+  for (int i = 0; i < DALEMBERT_LANES; ++i) any |= differing[i];
+  if (any) {
+    kept->pair = dalembert_lanes_sin_cos(angle);
+    kept->angle = angle;
+  }
+  return kept->pair;
+}
+#define DALEMBERT_SIN_COS(n, angle) dalembert_kept_sin_cos(x->angles + (n), angle)

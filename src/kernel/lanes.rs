@@ -3,6 +3,7 @@
 use super::context::{Context, Dimensions};
 use super::{LaneFunctions, ModeKernel};
 use crate::integrate::{LaneMask, Lanes, ORDERS};
+use std::cell::Cell;
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
 /// build/compile.rs.
@@ -97,6 +98,16 @@ pub struct LaneContext<const W: usize> {
     pub(super) held: LaneRows<W>,
     pub(super) constants: LaneRows<W>,
     pub(super) workspace: LaneRows<W>,
+    /// Angles that sine and cosine were computed of last, which a function of C may replace.
+    pub(super) angles: Box<[Cell<Block<W>>]>,
+}
+
+/// As many angles (rad), each with its sine and its cosine: those of zero.
+fn zero_angles<const W: usize>(count: usize) -> Box<[Cell<Block<W>>]> {
+    let mut rows = LaneRows::zeros(3 * count);
+    let cosines = rows.iter_mut().skip(2).step_by(3);
+    cosines.for_each(|cosine| *cosine = Lanes::of(1.0));
+    rows.blocks.iter().map(|block| Cell::new(*block)).collect()
 }
 
 impl<const W: usize> LaneContext<W> {
@@ -113,6 +124,7 @@ impl<const W: usize> LaneContext<W> {
             held: zeros(like.arrays.held.len()),
             constants: zeros(like.arrays.constants.len()),
             workspace: zeros(kernel.workspace()),
+            angles: zero_angles(like.dimensions.angles),
         };
         for lane in 0..W {
             context.load(lane, like);
@@ -262,4 +274,27 @@ pub struct LaneLimits {
     /// The terms that limit it, of powers n = p − 1, p, p + 1, p − 3 and p − 2: 1/n; ½ − 1/(2n); and what is added to
     /// their logarithms ÷ n, so that they are those of reciprocal lengths.
     pub terms: [[f64; 5]; 3],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As `struct dalembert_angle` in codegen/lanes.h: an angle, its sine, its cosine, without gaps.
+    #[test]
+    fn kept_angles_are_zero_at_first() {
+        fn check<const W: usize>() {
+            for count in [0, 1, 4] {
+                let blocks = zero_angles::<W>(count);
+                let rows: Vec<_> = blocks.iter().flat_map(|block| block.get().0).collect();
+                assert!(rows.len() >= 3 * count);
+                for angle in rows[..3 * count].chunks(3) {
+                    assert_eq!(angle, [0.0, 0.0, 1.0].map(Lanes::<W>::of));
+                }
+            }
+        }
+        check::<2>();
+        check::<4>();
+        check::<8>();
+    }
 }

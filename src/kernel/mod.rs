@@ -1142,8 +1142,7 @@ impl<const W: usize> LaneContext<W> {
             h: self.held.as_ptr().cast(),
             c: self.constants.as_ptr().cast(),
             j: std::ptr::null(),
-            // Lanes keep no angles.
-            angles: std::ptr::null_mut(),
+            angles: self.angles.as_ptr().cast_mut().cast(),
         }
     }
 }
