@@ -7,6 +7,7 @@
 //! the run.
 
 use super::instant::Instant;
+use crate::kernel::copy_few;
 use std::sync::atomic::{Ordering, compiler_fence};
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
@@ -84,7 +85,7 @@ const LINE: usize = 8;
 pub struct Accumulation {
     /// When they happened, and the bits of what makes each the same as others ([`Signature::key`]): of many events these
     /// are looked at, and nothing else.
-    times: [Instant; ROOM],
+    times: [[f64; 2]; ROOM],
     keys: [u64; ROOM],
     /// Coordinates, velocities and discrete states after each, as few lines of the cache as hold them.
     records: Box<[f64]>,
@@ -118,7 +119,7 @@ impl Accumulation {
         };
         let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
         Accumulation {
-            times: [Instant::default(); ROOM],
+            times: [[0.0; 2]; ROOM],
             keys: [0; ROOM],
             first: records.as_ptr().align_offset(LINE * size_of::<f64>()) % LINE,
             records,
@@ -173,7 +174,8 @@ impl Accumulation {
         self.still = 0;
         let place = self.count % ROOM;
         self.count += 1;
-        (self.times[place], self.keys[place]) = (at, key);
+        copy_few(&at.parts(), &mut self.times[place]);
+        self.keys[place] = key;
         let start = self.first + place * self.stride;
         &mut self.records[start..][..self.absolute.len() + self.discretes]
     }
@@ -192,7 +194,7 @@ impl Accumulation {
 
     #[inline]
     fn at(&self, back: usize) -> Instant {
-        self.times[self.place(back)]
+        Instant::of_parts(self.times[self.place(back)])
     }
 
     fn is_impact(&self, back: usize) -> bool {
