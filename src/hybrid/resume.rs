@@ -4,7 +4,7 @@ use super::failure::Reason;
 use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::problem::Problem;
-use super::samples::sample_time;
+use super::samples::{Samples, sample_time};
 use super::simulation::Simulation;
 use crate::record::{Event, Progress, Recorder, Run};
 use std::time::Instant as WallClock;
@@ -96,7 +96,7 @@ impl Simulation<'_> {
         {
             trajectory.truncate(last);
         }
-        self.next_sample = trajectory.len() as u64;
+        self.samples = Samples::from(every, trajectory.len() as u64);
         let to_come = every.map_or(0, |every| {
             Recorder::grid_rows(self.problem.end.time - end.t, every)
         });

@@ -59,29 +59,60 @@ pub(super) fn sample_time(every: Option<f64>, index: u64) -> f64 {
     }
 }
 
+/// When samples are due.
+#[derive(Debug)]
+pub(super) struct Samples {
+    every: Option<f64>,
+    /// Index of the next one.
+    index: u64,
+    /// Its time, s: infinite without a grid, but for the first one.
+    next: f64,
+}
+
+impl Samples {
+    /// From one on, by its index.
+    pub fn from(every: Option<f64>, index: u64) -> Self {
+        let next = match index {
+            0 => 0.0,
+            _ => sample_time(every, index),
+        };
+        Samples { every, index, next }
+    }
+
+    /// Time of the next one, s.
+    #[inline(always)]
+    pub fn next(&self) -> f64 {
+        self.next
+    }
+
+    /// The next one was recorded.
+    pub fn pass(&mut self) {
+        *self = Samples::from(self.every, self.index + 1);
+    }
+
+    /// Back to the first.
+    pub fn rewind(&mut self) {
+        *self = Samples::from(self.every, 0);
+    }
+}
+
 impl Simulation<'_> {
     /// Whether a sample up to the present instant is not recorded yet.
+    #[inline(always)]
     pub fn has_sample_left(&self) -> bool {
-        match self.problem.record.every {
-            None => self.recorder.last_time().is_none(),
-            every => {
-                let here = self.here.now.seconds().min(self.problem.end.time);
-                sample_time(every, self.next_sample) <= here
-            }
-        }
+        self.samples.next() <= self.here.now.seconds().min(self.problem.end.time)
     }
 
     /// Records the samples up to the present instant that no segment has covered: the first one,
     /// and those that an accumulation left out.
+    #[inline(always)]
     pub fn flush_samples(&mut self) {
         while self.has_sample_left() {
             match self.problem.record.every {
                 None => self.sample_here(),
-                every => {
-                    self.sample_at(sample_time(every, self.next_sample));
-                    self.next_sample += 1;
-                }
+                Some(_) => self.sample_at(self.samples.next()),
             }
+            self.samples.pass();
         }
     }
 

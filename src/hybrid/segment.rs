@@ -8,7 +8,7 @@ use super::guards::{self, Conditions};
 use super::instant::Instant;
 use super::problem::{Method, Problem};
 use super::requirements::{cut_where_unmet, hold_throughout};
-use super::samples::{Row, row_of, sample_time};
+use super::samples::{Row, Samples, row_of};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
 use super::work::work;
@@ -227,7 +227,9 @@ impl Simulation<'_> {
             }
         };
         let stiffness = &mut self.stiffness[self.here.mode];
-        stiffness.begin();
+        if chooses {
+            stiffness.begin();
+        }
         let mut ledger_from = 0.0;
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin();
@@ -278,45 +280,46 @@ impl Simulation<'_> {
             let dense = method.dense().expect("a step was made");
 
             // Samples before the ledger moves on to the end of the step.
-            let energies = problem.record.columns.energies;
-            let mut ledger = if energies { self.ledger.clone() } else { None };
-            let mut recorded = ledger_from;
-            let mut row_at = |t: f64, tau: f64| {
-                if let Some(ledger) = &mut ledger {
-                    let part = (recorded, tau);
-                    ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
-                    recorded = tau;
-                }
-                let needed = energies || problem.record.columns.reactions;
-                let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
-                let here = &mut self.here;
-                here.set_free(mode.free, [&q, &v, &a]);
-                if drifts {
-                    copy_drifting(&mut here.q, mode.drifts, equations.context.held());
-                }
-                let row = Row {
-                    layout: &self.layout,
-                    q: &here.q,
-                    v: &here.v,
-                    ledger: row_of(ledger.as_ref()),
-                };
-                let at = Free {
-                    q: &q,
-                    v: &v,
-                    a: &a,
-                };
-                self.recorder.push_row(t, here.mode, |values| {
-                    row.fill(kernel, equations.context, at, values)
-                });
+            let due = |samples: &Samples| {
+                let tau = Instant::new(samples.next()).since(start);
+                (tau <= end + beyond).then_some(tau)
             };
-            while problem.record.every.is_some() {
-                let t = sample_time(problem.record.every, self.next_sample);
-                let tau = Instant::new(t).since(start);
-                if !tau.is_finite() || tau > end + beyond {
-                    break;
+            if due(&self.samples).is_some() {
+                let energies = problem.record.columns.energies;
+                let mut ledger = if energies { self.ledger.clone() } else { None };
+                let mut recorded = ledger_from;
+                let mut row_at = |t: f64, tau: f64| {
+                    if let Some(ledger) = &mut ledger {
+                        let part = (recorded, tau);
+                        ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
+                        recorded = tau;
+                    }
+                    let needed = energies || problem.record.columns.reactions;
+                    let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
+                    let here = &mut self.here;
+                    here.set_free(mode.free, [&q, &v, &a]);
+                    if drifts {
+                        copy_drifting(&mut here.q, mode.drifts, equations.context.held());
+                    }
+                    let row = Row {
+                        layout: &self.layout,
+                        q: &here.q,
+                        v: &here.v,
+                        ledger: row_of(ledger.as_ref()),
+                    };
+                    let at = Free {
+                        q: &q,
+                        v: &v,
+                        a: &a,
+                    };
+                    self.recorder.push_row(t, here.mode, |values| {
+                        row.fill(kernel, equations.context, at, values)
+                    });
+                };
+                while let Some(tau) = due(&self.samples) {
+                    row_at(self.samples.next(), tau);
+                    self.samples.pass();
                 }
-                row_at(t, tau);
-                self.next_sample += 1;
             }
 
             if looks_at_ends {

@@ -10,6 +10,7 @@ use super::instant::Instant;
 use super::ledger::RunningLedger;
 use super::plan::Plan;
 use super::problem::{Initial, Problem};
+use super::samples::Samples;
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
 use super::visited::Visited;
@@ -131,8 +132,7 @@ pub(super) struct Simulation<'p> {
     pub sizes: Box<[f64]>,
     /// Name and order of every method that was used.
     pub methods: Vec<(&'static str, usize)>,
-    /// Index of the next sample of the grid.
-    pub next_sample: u64,
+    pub samples: Samples,
     /// How often the transition that ends the run has happened.
     pub counted: u64,
 }
@@ -195,7 +195,7 @@ impl<'p> Simulation<'p> {
                 .map(|absolute| absolute / accuracy.relative)
                 .collect(),
             methods: Vec::new(),
-            next_sample: 0,
+            samples: Samples::from(record.every, 0),
             counted: 0,
         })
     }
@@ -246,7 +246,8 @@ impl<'p> Simulation<'p> {
         self.jumps.clear();
         self.states_at_jumps.clear();
         self.solver = Solver::default();
-        (self.next_sample, self.counted) = (0, 0);
+        self.samples.rewind();
+        self.counted = 0;
         self.set_context();
         if self.ledger.is_some() {
             self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
