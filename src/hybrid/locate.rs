@@ -168,7 +168,7 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// more, as with a guard that turns near zero, until it is strictly crossed; after `smooth` the Taylor polynomial
 /// ends. What is tried first is the last place of the time in which the
 /// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
-/// two of all of that where the guard is no coordinate.
+/// of all of that where the guard is no coordinate.
 #[inline(always)]
 fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     equations: &mut Equations<'a, F>,
@@ -185,8 +185,7 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     let passed = match guard.0.shape {
         GuardShape::Linear { index, rate, .. } if rate => moves(end.v[index] / end.a[index]),
         GuardShape::Linear { index, .. } => moves(end.q[index] / end.v[index]),
-        // Besides the root its own terms are rounded.
-        GuardShape::General { .. } => 2.0 * elapsed,
+        GuardShape::General { .. } => elapsed,
     };
     let passed = passed.max(TAYLOR * elapsed);
     let mut place = (f64::EPSILON * passed.max(correction.abs())).max(f64::MIN_POSITIVE);
