@@ -65,6 +65,25 @@ fn a_fast_decay_that_is_over_calls_for_the_implicit_method() {
     }
 }
 
+/// A row at the start and one a step, whichever of its modes it is made in.
+#[test]
+fn all_steps_are_counted() {
+    for method in [Method::Auto, Method::Taylor, Method::Radau] {
+        let parameters = [("belt", 0.1), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
+        let mut problem = problem("belt_oscillator", &parameters);
+        problem.end.time = 60.0;
+        problem.method = method;
+        problem.record.every = None;
+        let run = run(&problem);
+        assert_eq!(run.events.len(), 10);
+        assert_eq!(
+            run.solver.steps,
+            run.trajectory.len() as u64 - 1,
+            "{method:?}"
+        );
+    }
+}
+
 #[test]
 fn a_rocking_block_is_not_stiff() {
     let mut problem = problem("rocking_block", &[("alpha", 0.25), ("R", 1.5)]);
