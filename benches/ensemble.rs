@@ -48,6 +48,9 @@ fn main() {
             "error"
         );
     }
+    // On the thread of the single runs: another has to be woken, on another core.
+    let pool = (rayon::ThreadPoolBuilder::new().num_threads(1)).use_current_thread();
+    let pool = pool.build().expect("the thread is in no other pool");
     for name in ["blocks", "pendulums"]
         .into_iter()
         .filter(|name| is_wanted(name))
@@ -58,15 +61,13 @@ fn main() {
                 "blocks" => blocks(tolerance),
                 _ => pendulums(tolerance),
             };
-            compare(name, tolerance, &problems, rows);
+            compare(&pool, name, tolerance, &problems, rows);
         }
     }
 }
 
 /// Runs an ensemble in lanes and its members one by one, and prints what it took.
-fn compare(name: &str, tolerance: f64, problems: &[Problem], rows: bool) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
-    let pool = pool.build().expect("a thread can be started");
+fn compare(pool: &rayon::ThreadPool, name: &str, tolerance: f64, problems: &[Problem], rows: bool) {
     let each = |seconds: f64| seconds / MEMBERS as f64;
     let prepared = |problem| Simulator::new(problem).expect("it can be started");
     let run = |simulator: &mut Simulator| {
