@@ -68,6 +68,14 @@ _FACTORS = """\
 /* Blocks of left and of right factors of order j. */
 #define DALEMBERT_LEFT(j) ((const dalembert_block *)(row + 2 * width * (j)))
 #define DALEMBERT_RIGHT(j) ((const dalembert_block *)(row + 2 * width * (j) + width))
+/* The same, where lanes find them elsewhere, too: interiors.py. */
+#ifdef LANES
+#define DALEMBERT_LEFT_FACTOR(j, n) arrays[n][steps[n] * (ptrdiff_t)(j) + firsts[n]]
+#define DALEMBERT_RIGHT_FACTOR(j, n) DALEMBERT_LEFT_FACTOR(j, blocks + (n))
+#else
+#define DALEMBERT_LEFT_FACTOR(j, n) DALEMBERT_LEFT(j)[n]
+#define DALEMBERT_RIGHT_FACTOR(j, n) DALEMBERT_RIGHT(j)[n]
+#endif
 #define DALEMBERT_ZERO ((dalembert_block){0})
 #define DALEMBERT_PUT_EACH(at, ...) do { \\
     const real each[] = {__VA_ARGS__}; \\

@@ -499,8 +499,9 @@ class Series:
         call = f"{order}(%s, q, v, a, u, x, w, out{', last' if few else ''}{gains});"
         orders = [f"  for (size_t k = 1; k < n; ++k) {call % 'k'}"]
         if in_pairs:
-            pair = source.add_text(f"{name}_pair", "const size_t k, const real *w, dalembert_block *out",
-                                   "\n".join(interiors.pair(self.lead)), "DALEMBERT_INLINE")
+            pair = source.add_text(f"{name}_pair", "const size_t k, const real *q, const real *v, const real *a, const real *u, const real *w,\n"
+                                   "    dalembert_block *out",
+                                   "  (void)q, (void)v, (void)a, (void)u;\n" + "\n".join(interiors.pair(self.lead)), "DALEMBERT_INLINE")
             one = f"{order}(%s, q, v, a, u, x, w, out, last, %s{gains});"
             orders = [
                 "  size_t k = 1;",
@@ -508,7 +509,7 @@ class Series:
                 f"  for (; k < 4 - n % 2 && k < n; ++k) {one % ('k', 'NULL')}",
                 "  for (; k + 1 < n; k += 2) {",
                 f"    dalembert_block pair[2 * {interiors.blocks}];",
-                f"    {pair}(k, w, pair);",
+                f"    {pair}(k, q, v, a, u, w, pair);",
                 f"    {one % ('k', 'pair')}",
                 f"    {one % ('k + 1', f'pair + {interiors.blocks}')}",
                 "  }",

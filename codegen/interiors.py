@@ -6,12 +6,20 @@ sums go from the middle outwards, so that the coefficients that were computed la
 an order has to wait for is one product and one sum. Of three or four interiors two orders are summed side by
 side, up to that last product: they have most factors in common.
 
+Lanes, whose factors are no parts of a block, read those that are coefficients of the motion or of an input where
+these are.
+
 A processor reads as a block only after a while what was stored number by number. Where an order is
 so short that it would wait for that, the last factors are kept in registers as well.
 """
 
+import re
+
 BLOCK = 4
 """Most numbers side by side in a register: DALEMBERT_BLOCK in vectors.h."""
+
+_COEFFICIENT = re.compile(r"([qvau])\[(\d+) \* (?:k|\((k - 1)\)) \+ (\d+)\]")
+"""A coefficient of a series: array, numbers of a row, whether it is of the order before, index."""
 
 LINE = 8
 """Numbers that fill a line of the cache. The workspace begins with a line; a block that lies in two of them is
@@ -83,34 +91,14 @@ class Interiors:
             f"  real *const row = w + {lead}, *const now = row + 2 * width * k;",
         ]
         lines += self._late_stores()
-        first = 2 if self.few else 1
-        half = "0.5 * " if self.halves == 2 else ""
-        others = self.halves == 1
         if self.in_pairs:
+            # Before the first pair there is nothing between the first factors and the last.
             lines += [
                 "  dalembert_block sums[blocks];",
-                "  for (size_t n = 0; given && n < blocks; ++n) sums[n] = given[n];",
-                "  if (!given) {",
-                "  dalembert_block others[blocks];",
+                "  for (size_t n = 0; n < blocks; ++n) sums[n] = given ? given[n] : DALEMBERT_ZERO;",
             ]
         else:
-            lines.append(f"  dalembert_block sums[blocks]{', others[blocks]' if others else ''};")
-        lines += [
-            "  for (size_t n = 0; n < blocks; ++n) {",
-            f"    sums[n] = {'others[n] = ' if others else ''}DALEMBERT_ZERO;",
-            f"    if (k % 2 == 0{' && k > 2' if self.few else ''}) sums[n] = {half}(DALEMBERT_LEFT(k / 2)[n] * DALEMBERT_RIGHT(k / 2)[n]);",
-            "  }",
-            # Of an order that is unrolled.
-            *(["#ifndef LANES", "#pragma GCC unroll 16", "#endif"] if self.halves == 2 else []),
-            f"  for (size_t j = (k - 1) / 2; j >= {first}; --j) {{",
-            "    for (size_t n = 0; n < blocks; ++n) {",
-            "      sums[n] += DALEMBERT_LEFT(j)[n] * DALEMBERT_RIGHT(k - j)[n];",
-            *(["      others[n] += DALEMBERT_LEFT(k - j)[n] * DALEMBERT_RIGHT(j)[n];"] if others else []),
-            "    }",
-            "  }",
-            *(["  for (size_t n = 0; n < blocks; ++n) sums[n] += others[n];"] if others else []),
-            *(["  }"] if self.in_pairs else []),
-        ]
+            lines += self._loop()
         if not self.few:
             return [*lines, "  const real *const y = (const real *)sums;"]
         sum = "((const real *)sums)[%s]"
@@ -127,33 +115,73 @@ class Interiors:
         ]
         return lines
 
+    def _loop(self):
+        """Statements that sum over j."""
+        first = 2 if self.few else 1
+        half = "0.5 * " if self.halves == 2 else ""
+        others = self.halves == 1
+        return [
+            f"  dalembert_block sums[blocks]{', others[blocks]' if others else ''};",
+            "  for (size_t n = 0; n < blocks; ++n) {",
+            f"    sums[n] = {'others[n] = ' if others else ''}DALEMBERT_ZERO;",
+            f"    if (k % 2 == 0{' && k > 2' if self.few else ''}) sums[n] = {half}(DALEMBERT_LEFT(k / 2)[n] * DALEMBERT_RIGHT(k / 2)[n]);",
+            "  }",
+            # Of an order that is unrolled.
+            *(["#ifndef LANES", "#pragma GCC unroll 16", "#endif"] if self.halves == 2 else []),
+            f"  for (size_t j = (k - 1) / 2; j >= {first}; --j) {{",
+            "    for (size_t n = 0; n < blocks; ++n) {",
+            "      sums[n] += DALEMBERT_LEFT(j)[n] * DALEMBERT_RIGHT(k - j)[n];",
+            *(["      others[n] += DALEMBERT_LEFT(k - j)[n] * DALEMBERT_RIGHT(j)[n];"] if others else []),
+            "    }",
+            "  }",
+            *(["  for (size_t n = 0; n < blocks; ++n) sums[n] += others[n];"] if others else []),
+        ]
+
+    def _places(self):
+        """Statements that say where lanes find each factor of order j: in the series it is of, or in the tables."""
+        arrays, steps, firsts = [], [], []
+        for side, texts in enumerate(zip(*self.indices)):
+            for n, text in enumerate(texts):
+                known = _COEFFICIENT.fullmatch(text)
+                array, step, before, first = known.groups() if known else ("row", "2 * width", None, f"{side} * width + {n}")
+                arrays.append(array)
+                steps.append(step)
+                firsts.append(f"{first} - {step}" if before else first)
+        return [
+            "#ifdef LANES",
+            f"  const real *const arrays[] = {{{', '.join(arrays)}}};",
+            f"  static const ptrdiff_t steps[] = {{{', '.join(steps)}}}, firsts[] = {{{', '.join(firsts)}}};",
+            "#endif",
+        ]
+
     def pair(self, lead):
         """Statements that leave the sums of the orders k, which is three at least, and k + 1 in `out`, but for the
-        factors of the last order before each: to the bit those of `sums`."""
+        factors of the last order before each: to the bit those that `_loop` gives."""
         return [
             f"  enum {{ width = DALEMBERT_WIDTH({len(self)}), blocks = width / DALEMBERT_BLOCK }};",
             f"  const real *const row = w + {lead};",
+            *self._places(),
             "  dalembert_block left[blocks], right[blocks], sums[blocks], others[blocks], next[blocks], next_others[blocks];",
             "  for (size_t n = 0; n < blocks; ++n) {",
             "    const size_t middle = k / 2;",
-            "    left[n] = DALEMBERT_LEFT(middle + 1)[n], right[n] = DALEMBERT_RIGHT(middle + 1)[n];",
+            "    left[n] = DALEMBERT_LEFT_FACTOR(middle + 1, n), right[n] = DALEMBERT_RIGHT_FACTOR(middle + 1, n);",
             "    sums[n] = others[n] = next[n] = next_others[n] = DALEMBERT_ZERO;",
             "    if (k % 2 == 1) {",
             "      next[n] = left[n] * right[n];",
             "    } else {",
-            "      sums[n] = DALEMBERT_LEFT(middle)[n] * DALEMBERT_RIGHT(middle)[n];",
-            "      next[n] += DALEMBERT_LEFT(middle)[n] * right[n];",
-            "      next_others[n] += left[n] * DALEMBERT_RIGHT(middle)[n];",
+            "      sums[n] = DALEMBERT_LEFT_FACTOR(middle, n) * DALEMBERT_RIGHT_FACTOR(middle, n);",
+            "      next[n] += DALEMBERT_LEFT_FACTOR(middle, n) * right[n];",
+            "      next_others[n] += left[n] * DALEMBERT_RIGHT_FACTOR(middle, n);",
             "    }",
             "  }",
             "  for (size_t j = (k - 1) / 2; j >= 2; --j) {",
             "    for (size_t n = 0; n < blocks; ++n) {",
-            "      dalembert_block own_left = DALEMBERT_LEFT(j)[n], own_right = DALEMBERT_RIGHT(j)[n];",
+            "      dalembert_block own_left = DALEMBERT_LEFT_FACTOR(j, n), own_right = DALEMBERT_RIGHT_FACTOR(j, n);",
             "      DALEMBERT_KEEP(own_left);",
             "      DALEMBERT_KEEP(own_right);",
             "      sums[n] += own_left * right[n];",
             "      others[n] += left[n] * own_right;",
-            "      left[n] = DALEMBERT_LEFT(k + 1 - j)[n], right[n] = DALEMBERT_RIGHT(k + 1 - j)[n];",
+            "      left[n] = DALEMBERT_LEFT_FACTOR(k + 1 - j, n), right[n] = DALEMBERT_RIGHT_FACTOR(k + 1 - j, n);",
             "      next[n] += own_left * right[n];",
             "      next_others[n] += left[n] * own_right;",
             "    }",
@@ -173,10 +201,15 @@ class Interiors:
             tables = [[f"last[{count * side + n}]" for n in range(count)] for side in (0, 1)]
         if self.halves == 2:
             tables = [tables[0] + tables[1], tables[1] + tables[0]]
-        for side, table in zip(("", "width + "), tables):
-            for n in range(0, len(table), BLOCK):
-                lines.append(f"  DALEMBERT_PUT(now + {side}{n}, {', '.join(table[n:n + BLOCK])});")
-        return lines
+        puts = [f"  DALEMBERT_PUT(now + {side}{n}, {', '.join(table[n:n + BLOCK])});"
+                for side, table in zip(("", "width + "), tables) for n in range(0, len(table), BLOCK)]
+        if not self.in_pairs:
+            return lines + puts
+        # Those that are coefficients of a series lanes find there. The first ones are asked for in the tables.
+        own = [f"  now[{side} * width + {n}] = last[{count * side + n}];"
+               for side, texts in enumerate(zip(*self.indices)) for n, text in enumerate(texts)
+               if not _COEFFICIENT.fullmatch(text)]
+        return [*lines, "#ifdef LANES", "  if (k == 1) {", *puts, "  }", *own, "#else", *puts, "#endif"]
 
     def _late_stores(self):
         """Statements that store the late factors of order k - 1."""
