@@ -70,7 +70,7 @@ _FACTORS = """\
 #define DALEMBERT_RIGHT(j) ((const dalembert_block *)(row + 2 * width * (j) + width))
 /* The same, where lanes find them elsewhere, too: interiors.py. */
 #ifdef LANES
-#define DALEMBERT_LEFT_FACTOR(j, n) arrays[n][steps[n] * (ptrdiff_t)(j) + firsts[n]]
+#define DALEMBERT_LEFT_FACTOR(j, n) arrays[n][steps[n] * (j) + firsts[n]]
 #define DALEMBERT_RIGHT_FACTOR(j, n) DALEMBERT_LEFT_FACTOR(j, blocks + (n))
 #else
 #define DALEMBERT_LEFT_FACTOR(j, n) DALEMBERT_LEFT(j)[n]

@@ -150,7 +150,7 @@ class Interiors:
         return [
             "#ifdef LANES",
             f"  const real *const arrays[] = {{{', '.join(arrays)}}};",
-            f"  static const ptrdiff_t steps[] = {{{', '.join(steps)}}}, firsts[] = {{{', '.join(firsts)}}};",
+            f"  static const size_t steps[] = {{{', '.join(steps)}}}, firsts[] = {{{', '.join(firsts)}}};",
             "#endif",
         ]
 
