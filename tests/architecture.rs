@@ -1,4 +1,4 @@
-//! ARCHITECTURE.md describes the tree as it is.
+//! ARCHITECTURE.md describes the tree as it is, and the notes beside it name what is there.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -6,9 +6,9 @@ use std::path::Path;
 
 const PAGE: &str = include_str!("../ARCHITECTURE.md");
 
-/// Inline code of the page.
-fn code() -> impl Iterator<Item = &'static str> {
-    let prose = PAGE.split("```").step_by(2);
+/// Inline code of a page.
+fn code(page: &str) -> impl Iterator<Item = &str> {
+    let prose = page.split("```").step_by(2);
     prose.flat_map(|text| text.split('`').skip(1).step_by(2))
 }
 
@@ -22,8 +22,9 @@ fn is_path(code: &str) -> bool {
             .all(|c| c.is_ascii_alphanumeric() || "._-/".contains(c))
 }
 
-fn paths() -> BTreeSet<&'static str> {
-    code()
+/// The paths that a page names.
+fn paths(page: &str) -> BTreeSet<&str> {
+    code(page)
         .filter(|c| is_path(c))
         .map(|c| c.trim_end_matches('/'))
         .collect()
@@ -46,7 +47,7 @@ fn contents(folder: &str) -> Vec<String> {
 
 #[test]
 fn every_path_it_names_exists() {
-    let named = paths();
+    let named = paths(PAGE);
     assert!(named.len() > 30, "the paths are recognised: {named:?}");
     let missing: Vec<_> = named.iter().filter(|p| !root().join(p).exists()).collect();
     assert!(
@@ -56,8 +57,23 @@ fn every_path_it_names_exists() {
 }
 
 #[test]
+fn every_path_of_the_notes_exists() {
+    for name in contents("docs/notes") {
+        let file = root().join("docs/notes").join(&name);
+        let page = fs::read_to_string(&file).expect("a note is a text");
+        let missing: Vec<_> = (paths(&page).into_iter())
+            .filter(|p| !root().join(p).exists())
+            .collect();
+        assert!(
+            missing.is_empty(),
+            "docs/notes/{name} names what does not exist: {missing:?}"
+        );
+    }
+}
+
+#[test]
 fn every_folder_and_every_module_is_named() {
-    let named = paths();
+    let named = paths(PAGE);
     let folders = contents("")
         .into_iter()
         .filter(|name| root().join(name).is_dir());

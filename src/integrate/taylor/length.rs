@@ -41,7 +41,7 @@ fn series(order: usize, convolutions: usize, coordinates: usize) -> f64 {
 
 /// The highest order whose series costs no more than the rest of a step. Events cut steps: where a flight
 /// takes one step instead of two, all of the second is saved, so that a lower order gains little, and nothing at
-/// most tolerances (`ARCHITECTURE.md`, "An order costs less than a step").
+/// most tolerances (`docs/notes/series.md`, "An order costs less than a step").
 fn cheap(convolutions: usize, coordinates: usize) -> usize {
     let full = (LEAST..=ORDERS - 2).rev().filter(|p| (p + 2) % FULL == 0);
     let mut affordable = full.filter(|&p| series(p, convolutions, coordinates) <= STEP);
