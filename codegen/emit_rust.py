@@ -198,7 +198,7 @@ def _mode(variant, i, equations):
         yield f"{pad}        Guard {{"
         yield f"{pad}            name: {_text(_guard_name(transitions))}, text: {_text(units.short(expression, 200))},"
         yield f"{pad}            unit: {_text(_unit(model, expression))}, shape: {_shape(model, equations, expression)},"
-        yield (f"{pad}            kernel: GuardKernel {{ free: {free}, value: {functions['guard', g].symbol}, "
+        yield (f"{pad}            kernel: GuardKernel {{ dimensions: &DIMENSIONS, free: {free}, value: {functions['guard', g].symbol}, "
                f"rate: {functions['guard_rate', g].symbol}, "
                f"magnitude: {functions['guard_magnitude', g].symbol} }},")
         yield f"{pad}            transitions: &["
@@ -208,7 +208,7 @@ def _mode(variant, i, equations):
             target_free = len(variant.modes[target].free)
             yield (f"{pad}                Transition {{ name: {_text(transition.name)}, target: {target}, "
                    f"conditional: {_bool(condition)}, changes: &[{', '.join(map(_text, transition.changes))}], "
-                   f"impact: {_bool(transition.impact)}, kernel: TransitionKernel {{ source_free: {free}, "
+                   f"impact: {_bool(transition.impact)}, kernel: TransitionKernel {{ dimensions: &DIMENSIONS, source_free: {free}, "
                    f"reset: {functions['reset', g, t].symbol}, "
                    f"condition: {_option(condition, lambda c: f'({c.symbol}, {target_free}, {c.output.numel()})')} }} }},")
         yield f"{pad}            ],"

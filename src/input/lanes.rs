@@ -25,7 +25,7 @@ impl<const W: usize> LaneJet<W> {
 }
 
 /// The signals of several trajectories, each at its own time.
-pub struct LaneSignals<const W: usize> {
+pub(crate) struct LaneSignals<const W: usize> {
     level: LaneLevel<W>,
     /// Times that the signals are set for, s; NaN: none.
     t: Lanes<W>,

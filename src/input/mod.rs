@@ -16,7 +16,7 @@ mod spline;
 mod table;
 
 pub use function::{Function, Jet, Side};
-pub use lanes::LaneSignals;
+pub(crate) use lanes::LaneSignals;
 pub use sine::Sine;
 pub use table::{Interpolation, Outside, Table, TableError};
 

@@ -7,12 +7,12 @@ use std::ops::{BitAnd, BitOr, Not};
 /// A number a lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(16))]
-pub struct Lanes<const W: usize>(pub [f64; W]);
+pub(crate) struct Lanes<const W: usize>(pub [f64; W]);
 
 /// Yes or no for each lane: a bit a lane, the first the lowest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
-pub struct LaneMask(pub u32);
+pub(crate) struct LaneMask(pub u32);
 
 impl LaneMask {
     /// No for all lanes.

@@ -39,7 +39,7 @@ mod taylor;
 mod tolerances;
 
 pub use dense::Dense;
-pub use lanes::{LaneMask, Lanes};
+pub(crate) use lanes::{LaneMask, Lanes};
 pub(crate) use linear::determinant_sign;
 pub use linear::{Singular, solve};
 pub use one_step::{Motion, OneStep};
@@ -49,6 +49,6 @@ pub use stages::stages;
 pub use state::{Node, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};
-pub(crate) use taylor::stretch;
-pub use taylor::{Analytic, LaneTaylor, ORDERS, Series, SeriesKind, Taylor, TaylorDense};
+pub use taylor::{Analytic, ORDERS, Series, SeriesKind, Taylor, TaylorDense};
+pub(crate) use taylor::{LaneTaylor, stretch};
 pub use tolerances::{ToleranceError, Tolerances};

@@ -11,7 +11,7 @@ use std::cell::Cell;
 
 /// Numbers of entries of the context arrays of a model; its address identifies the model.
 #[derive(Debug)]
-pub struct Dimensions {
+pub(crate) struct Dimensions {
     /// Coordinates.
     pub coordinates: usize,
     /// Ground motions.
@@ -52,9 +52,9 @@ pub struct Context {
     ahead: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub(super) guard_series: Box<[f64]>,
-    /// What the series functions carry from one order to the next: room for the longest series of all
-    /// modes.
-    pub(super) workspace: LaneRows<1>,
+    /// What the series functions carry from one order to the next, two numbers an entry: room for the
+    /// longest series of all modes.
+    pub(super) workspace: LaneRows<2>,
 }
 
 /// What every call is given.
@@ -142,7 +142,7 @@ impl Context {
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             signal_radii: vec![0.0; dimensions.signals].into(),
             guard_series: vec![0.0; ORDERS * guards].into(),
-            workspace: LaneRows::zeros(workspace),
+            workspace: LaneRows::zeros(workspace.div_ceil(2)),
         }
     }
 
@@ -228,7 +228,7 @@ impl Context {
     }
 
     /// Sets signals and their rates to those of a lane, as they are right after its time.
-    pub fn set_signals_of_lane<const W: usize>(
+    pub(crate) fn set_signals_of_lane<const W: usize>(
         &mut self,
         of: &LaneSignals<W>,
         lane: usize,

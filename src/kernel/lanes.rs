@@ -37,7 +37,7 @@ pub fn processor_level() -> usize {
 
 /// What is called for trajectories side by side at a level of the processor, which has `W` lanes.
 #[derive(Clone, Copy)]
-pub struct LaneLevel<const W: usize> {
+pub(crate) struct LaneLevel<const W: usize> {
     /// Index into [`LANES_OF_LEVELS`].
     pub(super) index: usize,
     pub(super) functions: &'static LaneFunctions,
@@ -55,7 +55,7 @@ impl<const W: usize> Block<W> {
 
 /// An array of lanes that begins with a line of the cache: a vector of a whole line is read at once.
 #[derive(Debug, Clone)]
-pub struct LaneRows<const W: usize> {
+pub(crate) struct LaneRows<const W: usize> {
     pub(super) blocks: Box<[Block<W>]>,
     /// Number of lanes, of which the blocks have no fewer.
     pub(super) count: usize,
@@ -64,6 +64,10 @@ pub struct LaneRows<const W: usize> {
 impl<const W: usize> LaneRows<W> {
     /// So many zeros.
     pub fn zeros(count: usize) -> Self {
+        // Lanes are aligned to two numbers: one alone would leave a gap.
+        const {
+            assert!(size_of::<Block<W>>() == size_of::<[[f64; W]; Block::<0>::LANES]>());
+        }
         let block = Block([Lanes::of(0.0); Block::<0>::LANES]);
         LaneRows {
             blocks: vec![block; count.div_ceil(Block::<0>::LANES)].into(),
@@ -86,7 +90,7 @@ impl<const W: usize> Default for LaneRows<W> {
 /// What generated functions need besides the free coordinates, for `W` trajectories side by side: as
 /// [`Context`], each entry a number a lane.
 #[derive(Debug, Clone)]
-pub struct LaneContext<const W: usize> {
+pub(crate) struct LaneContext<const W: usize> {
     pub(super) dimensions: &'static Dimensions,
     /// Signals of the inputs.
     pub signals: LaneRows<W>,
@@ -180,7 +184,7 @@ impl<const W: usize> LaneContext<W> {
 /// Mass matrix M, by columns, and load b of r = M a + b, in lanes.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
-pub struct LaneSystem<const F: usize, const W: usize> {
+pub(crate) struct LaneSystem<const F: usize, const W: usize> {
     /// M = ∂r/∂a.
     pub mass: [[Lanes<W>; F]; F],
     /// r at a = 0.
@@ -190,7 +194,7 @@ pub struct LaneSystem<const F: usize, const W: usize> {
 /// Where trajectories are.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct LanePoint<const F: usize, const W: usize> {
+pub(crate) struct LanePoint<const F: usize, const W: usize> {
     /// Coordinates.
     pub q: [Lanes<W>; F],
     /// Velocities.
@@ -220,7 +224,7 @@ impl<const F: usize, const W: usize> LanePoint<F, W> {
 /// A guard that is factor · (a coordinate or rate) + offset.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct LaneGuard<const W: usize> {
+pub(crate) struct LaneGuard<const W: usize> {
     /// ±1, or what the model says.
     pub factor: Lanes<W>,
     /// In its own unit.
@@ -231,7 +235,7 @@ pub struct LaneGuard<const W: usize> {
 
 /// What an event is told from the end of an accumulation by: see [`crate::hybrid`]'s accumulations.
 #[derive(Debug, Clone)]
-pub struct LanePast<const F: usize, const W: usize> {
+pub(crate) struct LanePast<const F: usize, const W: usize> {
     /// Number of all coordinates.
     pub coordinates: usize,
     /// Indices of the free ones.
@@ -250,12 +254,12 @@ pub struct LanePast<const F: usize, const W: usize> {
 }
 
 /// Rows of a series in lanes: those beyond its order are zero, and fill up fours.
-pub const LANE_ROWS: usize = ORDERS + 1;
+pub(crate) const LANE_ROWS: usize = ORDERS + 1;
 
 /// [`crate::integrate::Series`] in lanes.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
-pub struct LaneSeries<const F: usize, const W: usize> {
+pub(crate) struct LaneSeries<const F: usize, const W: usize> {
     /// Of the coordinates.
     pub q: [[Lanes<W>; F]; LANE_ROWS],
     /// Of the velocities.
@@ -266,7 +270,7 @@ pub struct LaneSeries<const F: usize, const W: usize> {
 
 /// What limits the lengths of the steps of a series.
 #[derive(Debug, Clone)]
-pub struct LaneLimits {
+pub(crate) struct LaneLimits {
     /// Order p of the series.
     pub order: usize,
     /// The relative tolerance, and the absolute ones of coordinates and velocities.
@@ -279,6 +283,19 @@ pub struct LaneLimits {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    #[should_panic(expected = "the processor has no level 2, but up to 1")]
+    fn code_for_a_better_processor_is_not_handed_out() {
+        let _ = LaneLevel::<8>::on_processor(1, 2);
+    }
+
+    #[test]
+    #[should_panic(expected = "width of the level")]
+    fn a_level_has_its_own_width() {
+        let _ = LaneLevel::<8>::on_processor(0, 0);
+    }
 
     /// As `struct dalembert_angle` in codegen/lanes.h: an angle, its sine, its cosine, without gaps.
     #[test]

@@ -2,20 +2,29 @@
 //!
 //! Every generated function has the signature `Raw`. Safety rests on two facts, both checked
 //! here: each output has the length that the generated tables state (the typed wrappers below fix
-//! it), and each [`Context`] was made for the model whose functions it is passed to.
+//! it), and each [`Context`] was made for the model whose functions it is passed to. Guards and
+//! transitions, which are passed to a kernel, name their model themselves: that is the one checked.
+//!
+//! What is for lanes is for the crate alone, since it relies on the level of the processor:
+//!
+//! ```compile_fail
+//! use dalembert::kernel::LaneLevel;
+//! ```
 
 mod context;
 mod few;
 mod lanes;
 mod tables;
 
+pub use context::Context;
+pub(crate) use context::Dimensions;
 use context::{Arrays, KeptAngle};
-pub use context::{Context, Dimensions};
 pub(crate) use few::{copy_few, swap_few};
-pub use lanes::{
-    LANE_ROWS, LANES_OF_LEVELS, LaneContext, LaneGuard, LaneLevel, LaneLimits, LanePast, LanePoint,
-    LaneRows, LaneSeries, LaneSystem, processor_level,
+pub(crate) use lanes::{
+    LANE_ROWS, LaneContext, LaneGuard, LaneLevel, LaneLimits, LanePast, LanePoint, LaneRows,
+    LaneSeries, LaneSystem,
 };
+pub use lanes::{LANES_OF_LEVELS, processor_level};
 pub use tables::{
     ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_CONDITIONS, MOST_FREE, ModeKernel,
     ModeKernels, TransitionKernel, with_kernel,
@@ -223,8 +232,17 @@ impl<const W: usize> LaneLevel<W> {
     /// The level of an index into [`LANES_OF_LEVELS`].
     ///
     /// # Panics
-    /// If it does not have `W` lanes, which all calls rely on.
-    pub fn new(index: usize) -> Self {
+    /// If this processor does not have it, or if it does not have `W` lanes: all calls rely on both.
+    pub(crate) fn new(index: usize) -> Self {
+        Self::on_processor(processor_level(), index)
+    }
+
+    /// The same on a processor whose best level is given.
+    pub(super) fn on_processor(best: usize, index: usize) -> Self {
+        assert!(
+            index <= best,
+            "the processor has no level {index}, but up to {best}"
+        );
         assert_eq!(LANES_OF_LEVELS[index], W, "width of the level");
         LaneLevel {
             index,
@@ -235,7 +253,10 @@ impl<const W: usize> LaneLevel<W> {
 
 /// Sines and cosines of lanes (rad), by the bits of [`sin_cos`].
 #[inline]
-pub fn lane_sin_cos<const W: usize>(level: LaneLevel<W>, x: Lanes<W>) -> (Lanes<W>, Lanes<W>) {
+pub(crate) fn lane_sin_cos<const W: usize>(
+    level: LaneLevel<W>,
+    x: Lanes<W>,
+) -> (Lanes<W>, Lanes<W>) {
     let (mut sin, mut cos) = (x, x);
     let (to_sin, to_cos) = ((&raw mut sin).cast(), (&raw mut cos).cast());
     // SAFETY: one number a lane each.
@@ -244,7 +265,7 @@ pub fn lane_sin_cos<const W: usize>(level: LaneLevel<W>, x: Lanes<W>) -> (Lanes<
 }
 
 /// Sines and cosines of eight angles (rad), side by side in lanes of this processor.
-pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
+pub(crate) fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
     fn in_lanes<const W: usize>(level: usize, x: &[f64; 8]) -> [[f64; 8]; 2] {
         let level = LaneLevel::new(level);
         let [mut sines, mut cosines] = [[0.0; 8]; 2];
@@ -266,7 +287,7 @@ pub fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
 /// Rate, value, integral and double integral of a sine at times of lanes (s), on their right; the numbers
 /// of a sine are those of [`crate::input::Sine`].
 #[inline]
-pub fn lane_sine<const W: usize>(
+pub(crate) fn lane_sine<const W: usize>(
     level: LaneLevel<W>,
     sine: &[f64; 8],
     t: &Lanes<W>,
@@ -280,7 +301,7 @@ pub fn lane_sine<const W: usize>(
 /// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet. Each is the
 /// last but one times the factor and its inverse.
 #[inline]
-pub fn lane_sine_series<const W: usize>(
+pub(crate) fn lane_sine_series<const W: usize>(
     level: LaneLevel<W>,
     (factor, inverses): (f64, &[f64]),
     jet: &[Lanes<W>; 4],
@@ -298,7 +319,7 @@ pub fn lane_sine_series<const W: usize>(
 /// Rows of the Taylor coefficients of an antiderivative into every `stride`-th of `rows` from the second
 /// on, given its value; the entries before are those of its derivative. `inverses`: 1/k.
 #[inline]
-pub fn lane_antiderivative<const W: usize>(
+pub(crate) fn lane_antiderivative<const W: usize>(
     level: LaneLevel<W>,
     inverses: &[f64],
     value: &Lanes<W>,
@@ -317,7 +338,7 @@ pub fn lane_antiderivative<const W: usize>(
 
 /// Sets coordinates and velocities at the start of a step, the first rows of their series.
 #[inline]
-pub fn lane_start<const F: usize, const W: usize>(
+pub(crate) fn lane_start<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     point: &LanePoint<F, W>,
     series: &mut LaneSeries<F, W>,
@@ -331,7 +352,7 @@ pub fn lane_start<const F: usize, const W: usize>(
 /// rows of the series that follow from them. Gives the inverses, and the lanes that have no positive
 /// pivots.
 #[inline]
-pub fn lane_begin<const F: usize, const W: usize>(
+pub(crate) fn lane_begin<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     point: &LanePoint<F, W>,
     at_start: LaneMask,
@@ -359,7 +380,7 @@ pub fn lane_begin<const F: usize, const W: usize>(
 
 /// The lanes in which not all of some numbers are positive.
 #[inline]
-pub fn lane_unmet<const W: usize>(level: LaneLevel<W>, numbers: &[Lanes<W>]) -> LaneMask {
+pub(crate) fn lane_unmet<const W: usize>(level: LaneLevel<W>, numbers: &[Lanes<W>]) -> LaneMask {
     let unmet = level.functions.unmet;
     // SAFETY: as many numbers a lane.
     LaneMask(unsafe { unmet(numbers.len(), numbers.as_ptr().cast()) })
@@ -369,7 +390,7 @@ pub fn lane_unmet<const W: usize>(level: LaneLevel<W>, numbers: &[Lanes<W>]) -> 
 /// to the times `last` and not more than `horizon`. Gives the lanes in which it reaches `last`; marks
 /// those that are `unclear`, as their series is not finite or their time does not advance.
 #[inline]
-pub fn lane_length<const F: usize, const W: usize>(
+pub(crate) fn lane_length<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     limits: &LaneLimits,
     series: &LaneSeries<F, W>,
@@ -404,7 +425,7 @@ pub fn lane_length<const F: usize, const W: usize>(
 /// before `place`, a part of h, that becomes it. `coefficients` get those in powers of τ/h. Gives the
 /// lanes with such a fall, and those where it takes a closer look.
 #[inline]
-pub fn lane_first_fall<const F: usize, const W: usize>(
+pub(crate) fn lane_first_fall<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     (rows, i): (&[[Lanes<W>; F]], usize),
     h: &Lanes<W>,
@@ -437,7 +458,7 @@ pub fn lane_first_fall<const F: usize, const W: usize>(
 /// negative there: by `more`, twice as much each time, but not beyond `most`. `lost` is what rounding has lost of the first
 /// row.
 #[inline]
-pub fn lane_cross<const F: usize, const W: usize>(
+pub(crate) fn lane_cross<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     (rows, i): (&[[Lanes<W>; F]; LANE_ROWS], usize),
     count: usize,
@@ -460,7 +481,7 @@ pub fn lane_cross<const F: usize, const W: usize>(
 /// Durations of steps of length `h` (s) up to the parts `places` of them, all of them where these are more than
 /// one; the rounding of that; and the part `farthest` of `h`.
 #[inline]
-pub fn lane_durations<const W: usize>(
+pub(crate) fn lane_durations<const W: usize>(
     level: LaneLevel<W>,
     h: &Lanes<W>,
     places: &Lanes<W>,
@@ -475,7 +496,7 @@ pub fn lane_durations<const W: usize>(
 
 /// The lanes in which the value of a guard is negative after `tau`, which is not more than `h` (s).
 #[inline]
-pub fn lane_crossed<const W: usize>(
+pub(crate) fn lane_crossed<const W: usize>(
     level: LaneLevel<W>,
     [value, tau, h]: [&Lanes<W>; 3],
 ) -> LaneMask {
@@ -486,7 +507,7 @@ pub fn lane_crossed<const W: usize>(
 
 /// The points to which series of order `p` lead from a point in the durations `tau` (s).
 #[inline]
-pub fn lane_end<const F: usize, const W: usize>(
+pub(crate) fn lane_end<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     p: usize,
     series: &LaneSeries<F, W>,
@@ -506,7 +527,7 @@ pub fn lane_end<const F: usize, const W: usize>(
 impl<const F: usize, const W: usize> LanePoint<F, W> {
     /// Takes over those of some lanes.
     #[inline]
-    pub fn take(&mut self, level: LaneLevel<W>, lanes: LaneMask, from: &Self) {
+    pub(crate) fn take(&mut self, level: LaneLevel<W>, lanes: LaneMask, from: &Self) {
         let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
         // SAFETY: a point has as many numbers a lane, one after the other.
         unsafe { (level.functions.take)(5 * F + 2, lanes.0, from, to) };
@@ -516,7 +537,7 @@ impl<const F: usize, const W: usize> LanePoint<F, W> {
 impl<const W: usize> LaneGuard<W> {
     /// Takes over those of some lanes.
     #[inline]
-    pub fn take(&mut self, level: LaneLevel<W>, lanes: LaneMask, from: &Self) {
+    pub(crate) fn take(&mut self, level: LaneLevel<W>, lanes: LaneMask, from: &Self) {
         let zero = &mut self.starts_at_zero;
         *zero = *zero & !lanes | from.starts_at_zero & lanes;
         let (from, to) = ((&raw const *from).cast(), (&raw mut *self).cast());
@@ -530,7 +551,7 @@ impl<const W: usize> LaneGuard<W> {
 /// # Panics
 /// If they are not as many.
 #[inline]
-pub fn lane_take<const W: usize>(
+pub(crate) fn lane_take<const W: usize>(
     level: LaneLevel<W>,
     lanes: LaneMask,
     from: &[Lanes<W>],
@@ -547,7 +568,7 @@ pub fn lane_take<const W: usize>(
 /// neither a standstill nor an accumulation as short as its rounding; and those in which it may end another
 /// accumulation.
 #[inline]
-pub fn lane_is_apart<const F: usize, const W: usize>(
+pub(crate) fn lane_is_apart<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     past: &LanePast<F, W>,
     point: &LanePoint<F, W>,
@@ -580,7 +601,7 @@ pub fn lane_is_apart<const F: usize, const W: usize>(
 
 /// Goes on in some lanes from the state that a reset gives, and remembers it.
 #[inline]
-pub fn lane_leap<const F: usize, const W: usize>(
+pub(crate) fn lane_leap<const F: usize, const W: usize>(
     level: LaneLevel<W>,
     lanes: LaneMask,
     reset: &[Lanes<W>],
@@ -612,7 +633,7 @@ impl<const F: usize, const W: usize> LanePast<F, W> {
     #[inline]
     fn check(&self, reset: &[Lanes<W>]) -> usize {
         let coordinates = self.coordinates;
-        let discretes = reset.len() - 2 * coordinates;
+        let discretes = (reset.len().checked_sub(2 * coordinates)).expect("a reset of the model");
         assert!(self.free.len() == F && self.free.iter().all(|&i| i < coordinates));
         assert_eq!(self.after.len(), 2 * F + 1 + discretes);
         assert_eq!(self.tolerances.len(), 1 + 2 * F);
@@ -624,7 +645,7 @@ impl<const F: usize, const W: usize> LanePast<F, W> {
 /// that it has, at the start of a step. Gives the lanes in which it is positive, or zero and rises with the
 /// `rate` of the coordinate.
 #[inline]
-pub fn lane_departs<const W: usize>(
+pub(crate) fn lane_departs<const W: usize>(
     level: LaneLevel<W>,
     (x, rate): (&Lanes<W>, Option<&Lanes<W>>),
     factor: f64,
@@ -642,8 +663,8 @@ impl<const W: usize> Deref for LaneRows<W> {
     type Target = [Lanes<W>];
     #[inline]
     fn deref(&self) -> &[Lanes<W>] {
-        // SAFETY: a block is nothing but numbers a lane, without gaps: its size is a multiple of 64. Since they
-        // were made there are blocks for so many.
+        // SAFETY: a block is nothing but numbers a lane, without gaps, which `zeros` checks when it is compiled.
+        // Since they were made there are blocks for so many.
         unsafe { std::slice::from_raw_parts(self.blocks.as_ptr().cast(), self.count) }
     }
 }
@@ -1042,12 +1063,16 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// Value of a guard of this mode.
+    ///
+    /// # Panics
+    /// If it is one of another model, or of another number of free coordinates; so do the other
+    /// functions that are passed a guard or a transition.
     #[inline]
     pub fn guard(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
         assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
         let mut out = 0.0;
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.value, self.dimensions, at.pointers(), &mut out) }
+        unsafe { x.call(guard.value, guard.dimensions, at.pointers(), &mut out) }
         out
     }
 
@@ -1064,7 +1089,7 @@ impl<const F: usize> ModeKernel<F> {
         let [q, v, a] = at.pointers();
         let raw = RawContext {
             j: j.as_ptr(),
-            ..*x.raw(self.dimensions)
+            ..*x.raw(guard.dimensions)
         };
         // SAFETY: one output; the guard's number of free coordinates was checked.
         unsafe { (guard.rate)(q, v, a, &raw, &mut out) }
@@ -1076,7 +1101,7 @@ impl<const F: usize> ModeKernel<F> {
         assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
         let mut out = 0.0;
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.magnitude, self.dimensions, at.pointers(), &mut out) }
+        unsafe { x.call(guard.magnitude, guard.dimensions, at.pointers(), &mut out) }
         out
     }
 
@@ -1089,15 +1114,13 @@ impl<const F: usize> ModeKernel<F> {
             transition.source_free, F,
             "a reset is evaluated in its source mode"
         );
-        assert_eq!(
-            out.len(),
-            2 * self.dimensions.coordinates + self.dimensions.discretes
-        );
+        let dimensions = transition.dimensions;
+        assert_eq!(out.len(), 2 * dimensions.coordinates + dimensions.discretes);
         // SAFETY: the lengths were checked.
         unsafe {
             x.call(
                 transition.reset,
-                self.dimensions,
+                dimensions,
                 at.pointers(),
                 out.as_mut_ptr(),
             )
@@ -1119,7 +1142,14 @@ impl<const F: usize> ModeKernel<F> {
         assert_eq!(free, F, "a condition is evaluated in the target mode");
         assert!(count <= MOST_CONDITIONS);
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
-        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                function,
+                transition.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
         &out[..count]
     }
 }
@@ -1152,7 +1182,7 @@ impl<const F: usize> ModeKernel<F> {
     ///
     /// # Panics
     /// If the mode does not go in lanes; so do the other functions for lanes.
-    pub fn lane_series_start<const W: usize>(
+    pub(crate) fn lane_series_start<const W: usize>(
         &self,
         (level, quiet): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
@@ -1174,7 +1204,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// As [`Self::series_run`].
-    pub fn lane_series_run<const W: usize>(
+    pub(crate) fn lane_series_run<const W: usize>(
         &self,
         (level, quiet): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
@@ -1199,7 +1229,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// As [`Self::requirement_bounds`], one lane entry a requirement; `quiet`: no input acts.
-    pub fn lane_requirement_bounds<const W: usize>(
+    pub(crate) fn lane_requirement_bounds<const W: usize>(
         &self,
         (level, quiet): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
@@ -1208,7 +1238,7 @@ impl<const F: usize> ModeKernel<F> {
         out: &mut [Lanes<W>],
     ) {
         assert_eq!(out.len(), self.requirements.1);
-        assert!(orders + 2 <= ORDERS);
+        assert!(orders > 0 && orders + 2 <= ORDERS);
         let functions = level.functions;
         let zero = [[Lanes::<W>::of(0.0); F]; 3];
         let (mut middles, mut radii) = (zero, zero);
@@ -1247,7 +1277,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// As [`Self::guard`], by the index of the guard in the mode.
-    pub fn lane_guard<const W: usize>(
+    pub(crate) fn lane_guard<const W: usize>(
         &self,
         level: LaneLevel<W>,
         x: &LaneContext<W>,
@@ -1268,7 +1298,7 @@ impl<const F: usize> ModeKernel<F> {
     /// # Panics
     /// If [`Self::stays_in_lanes`] denies it, or `out` has not two entries a coordinate and one a discrete
     /// state.
-    pub fn lane_reset<const W: usize>(
+    pub(crate) fn lane_reset<const W: usize>(
         &self,
         level: LaneLevel<W>,
         x: &LaneContext<W>,

@@ -185,6 +185,8 @@ pub const MOST_CONDITIONS: usize = 8;
 /// A generated guard.
 #[derive(Debug)]
 pub struct GuardKernel {
+    /// Of its model.
+    pub(super) dimensions: &'static Dimensions,
     pub(super) free: usize,
     pub(super) value: Raw,
     pub(super) rate: Raw,
@@ -195,6 +197,8 @@ pub struct GuardKernel {
 /// free coordinates and the number of conditions.
 #[derive(Debug)]
 pub struct TransitionKernel {
+    /// Of its model.
+    pub(super) dimensions: &'static Dimensions,
     pub(super) source_free: usize,
     pub(super) reset: Raw,
     pub(super) condition: Option<(Raw, usize, usize)>,

@@ -10,7 +10,7 @@ use crate::kernel::{
 };
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
-pub struct LaneTaylor<const F: usize, const W: usize> {
+pub(crate) struct LaneTaylor<const F: usize, const W: usize> {
     /// Coefficients about the start of the step.
     pub series: LaneSeries<F, W>,
     level: LaneLevel<W>,

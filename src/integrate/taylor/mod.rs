@@ -18,7 +18,7 @@ use length::Terms;
 
 pub use dense::TaylorDense;
 pub(crate) use dense::stretch;
-pub use lanes::LaneTaylor;
+pub(crate) use lanes::LaneTaylor;
 pub use series::{Analytic, ORDERS, Series, SeriesKind};
 
 use super::linear::Lu;
