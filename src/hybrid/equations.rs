@@ -59,14 +59,29 @@ impl Clock<'_> {
         }
         loop {
             let knot = self.signals.next_knot(t);
-            let limit = match knot == f64::INFINITY {
-                true => knot,
-                false => Instant::new(knot).since(self.start),
-            };
+            let limit = self.local(knot);
             if limit > tau {
                 return (t, Piece { knot, limit });
             }
             t = knot;
+        }
+    }
+
+    /// Local time of the first joint of the inputs that is after local time `tau` as it is rounded there.
+    fn next_joint(&self, tau: f64) -> f64 {
+        let mut joint = self.signals.next_joint(self.start.plus(tau).seconds());
+        while self.local(joint) <= tau {
+            joint = self.signals.next_joint(joint);
+        }
+        self.local(joint)
+    }
+
+    /// Local time of an absolute time, which may be infinite.
+    #[inline(always)]
+    fn local(&self, t: f64) -> f64 {
+        match t == f64::INFINITY {
+            true => t,
+            false => Instant::new(t).since(self.start),
         }
     }
 }
@@ -258,6 +273,13 @@ impl<const F: usize> System<F> for Equations<'_, F> {
         match self.context.quiet {
             true => f64::INFINITY,
             false => clock.signals.resolution(clock.start.plus(t).seconds()),
+        }
+    }
+
+    fn smooth_until(&self, t: f64) -> f64 {
+        match self.context.quiet {
+            true => f64::INFINITY,
+            false => self.clock.next_joint(t),
         }
     }
 

@@ -176,10 +176,18 @@ impl Function {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// The first time after `t` at which a third derivative jumps that no breakpoint tells of: a knot of
+    /// a spline; in s, infinite if there is none.
+    pub fn next_joint(&self, t: f64) -> f64 {
+        self.terms
+            .iter()
+            .map(|term| term.next_joint(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// The longest window after `t` over which the function is close to a polynomial of low
-    /// degree, in s: a quarter period of a sine, and for a spline the time to the end of the next
-    /// piece, so that it has at most one knot inside. Infinite for polynomials between
-    /// breakpoints.
+    /// degree, in s: a quarter period of a sine. Infinite for polynomials between breakpoints and
+    /// joints.
     pub fn resolution(&self, t: f64) -> f64 {
         self.terms
             .iter()
@@ -250,11 +258,17 @@ impl Term {
         }
     }
 
+    fn next_joint(&self, t: f64) -> f64 {
+        match self {
+            Term::Constant(_) | Term::Sine(_) => f64::INFINITY,
+            Term::Table(table) => table.next_joint(t),
+        }
+    }
+
     fn resolution(&self, t: f64) -> f64 {
         match self {
-            Term::Constant(_) => f64::INFINITY,
+            Term::Constant(_) | Term::Table(_) => f64::INFINITY,
             Term::Sine(sine) => sine.resolution(t),
-            Term::Table(table) => table.resolution(t),
         }
     }
 }

@@ -126,8 +126,17 @@ impl Signals {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// The first time after `t` at which the third derivative of some input jumps, and no breakpoint
+    /// tells of it, in s; infinite if there is none. Methods of a fixed order lose it across such a time.
+    pub fn next_joint(&self, t: f64) -> f64 {
+        self.channels
+            .iter()
+            .map(|c| c.function.next_joint(t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// The longest window after `t` over which every input is close to a polynomial of low degree,
-    /// in s; infinite where breakpoints alone limit it. It keeps a step from stepping over a
+    /// in s; infinite where breakpoints and joints alone limit it. It keeps a step from stepping over a
     /// pulse that its stages do not see; see [`Function::resolution`].
     pub fn resolution(&self, t: f64) -> f64 {
         self.channels

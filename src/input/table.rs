@@ -10,7 +10,7 @@ pub enum Interpolation {
     Linear,
     /// Twice continuously differentiable cubic spline with the not-a-knot condition at both ends,
     /// so that a table of a cubic polynomial gives that polynomial. Its inner knots are not
-    /// breakpoints: they limit [`Table::resolution`] instead.
+    /// breakpoints, but [joints](Table::next_joint).
     Cubic,
     /// Each value holds until the time of the next row; every jump is a breakpoint.
     Previous,
@@ -184,14 +184,13 @@ impl Table {
         self.breakpoints.get(next).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// For a spline, the time to the end of the piece after the one that holds `t`; otherwise
-    /// infinite, as the pieces between two breakpoints are one polynomial of degree 0 or 1.
-    pub fn resolution(&self, t: f64) -> f64 {
-        let piece = self.piece_index(t, Side::Right);
-        if self.interpolation != Interpolation::Cubic || piece == self.knots.len() {
-            return f64::INFINITY;
+    /// The first time after `t` at which two pieces of a spline join, so that its third derivative may
+    /// jump, in s. Infinite for the other tables, whose pieces between two breakpoints are one polynomial.
+    pub fn next_joint(&self, t: f64) -> f64 {
+        match self.interpolation {
+            Interpolation::Cubic => self.next_knot(t),
+            Interpolation::Linear | Interpolation::Previous => f64::INFINITY,
         }
-        self.knots[(piece + 1).min(self.knots.len() - 1)] - t
     }
 
     /// How many knots are before `t`, one at `t` counted for the limit from the right.

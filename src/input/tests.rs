@@ -256,12 +256,14 @@ fn spline_converges_with_order_four_up_to_its_ends() {
 }
 
 #[test]
-fn spline_resolution_reaches_over_one_knot_at_most() {
+fn pieces_of_a_spline_join_at_its_rows() {
     let f = Function::from(table(&ROWS, Interpolation::Cubic, Outside::Zero).unwrap());
-    assert_eq!(f.resolution(0.25), 0.5); // to 0.75
-    assert_eq!(f.resolution(0.5), 1.0); // to 1.5
-    assert_eq!(f.resolution(1.75), 0.25);
-    assert_eq!(f.resolution(2.0), f64::INFINITY);
+    assert_eq!(f.next_joint(0.25), 0.5);
+    assert_eq!(f.next_joint(0.5), 0.75);
+    assert_eq!(f.next_joint(1.75), 2.0);
+    assert_eq!(f.next_joint(2.0), f64::INFINITY);
+    let lines = Function::from(table(&ROWS, Interpolation::Linear, Outside::Zero).unwrap());
+    assert_eq!(lines.next_joint(0.25), f64::INFINITY);
 }
 
 #[test]

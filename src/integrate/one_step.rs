@@ -146,7 +146,9 @@ where
     }
 
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
-        let h_max = system.resolution(self.end());
+        let now = self.end();
+        let t_end = t_end.min(system.smooth_until(now));
+        let h_max = system.resolution(now);
         self.step(system, t_end, h_max)
     }
 

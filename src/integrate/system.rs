@@ -66,6 +66,12 @@ pub trait System<const F: usize> {
         f64::INFINITY
     }
 
+    /// The first time after `t` at which some derivative of the equations jumps, s; infinite where there
+    /// is none. A step across it would have neither the order nor the error estimate of the method.
+    fn smooth_until(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
     /// True if M, C and K are constant: Newton's method then converges in one iteration and the
     /// Jacobian is never evaluated again. A true that is wrong gives wrong results.
     fn is_linear(&self) -> bool {

@@ -411,7 +411,9 @@ impl<const F: usize> Taylor<F> {
         if is_less || self.length == f64::INFINITY {
             return 0.0;
         }
-        let implicit = root(size, power).min(system.resolution(self.start.t));
+        let t = self.start.t;
+        let longest = system.resolution(t).min(system.smooth_until(t) - t);
+        let implicit = root(size, power).min(longest);
         let lag = implicit / self.length;
         if lag < least { 0.0 } else { lag }
     }

@@ -138,8 +138,9 @@ fn inputs_add_up() {
         breakpoints.push(t);
     }
     assert_eq!(breakpoints, [0.25, 0.5, 0.5 + 3.0 / 7.0, 1.0]);
-    // Two pieces of the spline until 0.5, then a quarter period.
-    assert_eq!(scene.signals.resolution(0.0), 1.0);
+    // Two pieces of the spline join at 0.5; then a quarter period counts.
+    assert_eq!(scene.signals.next_joint(0.0), 0.5);
+    assert_eq!(scene.signals.resolution(0.0), f64::INFINITY);
     assert!((scene.signals.resolution(0.6) - 0.25 / 7.0).abs() < 1e-16);
 }
 
