@@ -220,6 +220,8 @@ def _mode(variant, i, equations):
                f"failure: {_text(failure)}, unit: {_text(_unit(model, requirement))} }},")
     yield f"{pad}    ],"
     yield f"{pad}    rest: {_option(rest, str)},"
+    without = functions[("series",)].without or None
+    yield f"{pad}    without_series: {_option(without, _text)},"
     yield f"{pad}    kernels: ModeKernels::F{free}(ModeKernel {{"
     yield f"{pad}        dimensions: &DIMENSIONS,"
     for what in _MODE_FUNCTIONS:

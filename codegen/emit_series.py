@@ -205,7 +205,7 @@ class Graph:
             return self.zeroth(operation(op, [a.zeroth for a in arguments]))
         rule = _RULES.get(op)
         if rule is None:
-            raise NotAnalytic(f"CasADi operation {op} has no Taylor recurrence")
+            raise NotAnalytic(f"`{_name(op)}` has no Taylor recurrence")
         return rule(self, *arguments)
 
     def linear(self, op, *factors):
@@ -339,7 +339,7 @@ class Graph:
     def power(self, x, exponent):
         """x ż = p ẋ z: x_0 k z_k = p k x_k z_0 + Σ_{j=1}^{k-1} (p j − (k − j)) x_j z_{k-j}."""
         if not exponent.constant:
-            raise NotAnalytic("a power whose exponent varies in time has no Taylor recurrence here")
+            raise NotAnalytic("a power whose exponent varies in time has no Taylor recurrence")
         whole = _whole(exponent.zeroth)
         if whole is not None:
             return self._whole_power(x, whole)
@@ -398,6 +398,11 @@ _RULES = {
     ca.OP_POW: Graph.power,
     ca.OP_CONSTPOW: Graph.power,
 }
+
+
+def _name(op):
+    """Name of an operation of CasADi: `atan2`."""
+    return next(name[3:].lower() for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == op)
 
 
 def _walk(graph, place, output):

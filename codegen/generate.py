@@ -22,6 +22,8 @@ class Function:
     equations: object
     slot: tuple = ()
     symbol: str = ""
+    without: str = ""
+    """Why there is no Taylor series of it."""
     operations: int = 0
     workspace: tuple = ()
     stays: bool = False
@@ -128,8 +130,8 @@ def _emit_series(source, prefix, variant, slot, function, constants):
         else:
             arguments["moving"].append(("a", equations.a))
             series = emit_series.Outputs(**arguments)
-    except emit_series.NotAnalytic:
-        function.symbol = None
+    except emit_series.NotAnalytic as why:
+        function.symbol, function.without = None, str(why)
         return
     function.symbol = series.add_to(source, f"{prefix}_{function.name}")
     function.workspace = (series.lead, series.row, len(series.graph.interiors), series.ends)

@@ -127,10 +127,8 @@ fn kinetic_energies_that_are_no_norm_are_refused() {
         );
         assert!(failure.reason.contains("`y`"), "{}", failure.reason);
     }
-    // A double pendulum with a massless tip, a tank whose shell has a negative inertia.
-    let (_, failure) = stopped(&problem("double_pendulum", &[("m_2", 0.0)]));
-    assert!(failure.reason.contains("`theta_2`"), "{}", failure.reason);
-    let mut tank = problem("walking_tank", &[("I_S", 0.0), ("I_E", 0.0)]);
+    // A tank whose shell has less inertia than its mass has there.
+    let mut tank = problem("walking_tank", &[("I_S", 1e-6), ("I_E", 1e-6)]);
     tank.set_initial("theta", 0.01).unwrap();
     let (_, failure) = stopped(&tank);
     assert!(
@@ -170,9 +168,6 @@ fn nearly_singular_mass_matrices_are_solved_as_well_as_they_can_be() {
 #[test]
 fn states_that_fit_no_mode_and_scenes_that_freeze_too_much_are_refused() {
     let refused = |problem: &Problem| simulate(problem, &mut Silent).expect_err("it is refused");
-    let mut below = problem("bouncing_ball", &[]);
-    below.set_initial("h", -0.1).unwrap();
-    assert!(matches!(refused(&below), Reason::Initial { .. }));
     let mut lifted = problem("rocking_block", &[]);
     lifted.set_initial("y", 0.1).unwrap();
     assert!(matches!(refused(&lifted), Reason::Initial { .. }));

@@ -118,12 +118,16 @@ pub fn run(arguments: &RunArguments) -> Result {
 /// Why a scene cannot even be started, pointing at the part of it that is to blame.
 pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
     let (path, help) = match reason {
-        Reason::NoModeLeft { .. } => ("freeze", "freeze fewer coordinates"),
+        Reason::NoModeLeft { .. } => ("freeze".into(), "freeze fewer coordinates"),
+        Reason::NoSeries { .. } => ("method".into(), "choose `auto` or `radau`"),
+        Reason::Beyond { of, .. } => (format!("initial.{of}"), "start on the admissible side"),
         _ => (
-            "initial",
+            "initial".into(),
             "change the initial state, or name another mode in `initial.mode`",
         ),
     };
     let source = &scene.source;
-    source.error_at(path, reason.to_string(), Some(help)).into()
+    source
+        .error_at(&path, reason.to_string(), Some(help))
+        .into()
 }

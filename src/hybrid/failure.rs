@@ -1,5 +1,6 @@
 //! Why a simulation stops before its end.
 
+use super::validate::Invalid;
 use crate::integrate::{Singular, StepError};
 
 /// What the engine's inner functions give: a reason, which is seldom and large, behind a pointer, so that what they give
@@ -88,6 +89,16 @@ pub enum Reason {
         /// The frozen coordinates.
         frozen: String,
     },
+    /// The Taylor method was asked for where it cannot be had.
+    #[error(
+        "method `taylor`: the equations of mode `{mode}` have no Taylor series ({why}); `radau` takes all equations, and `auto` takes Taylor where it can"
+    )]
+    NoSeries {
+        /// Mode.
+        mode: &'static str,
+        /// What stands in the way.
+        why: &'static str,
+    },
     /// The initial state fits no mode.
     #[error("the initial state does not fit mode `{mode}`: {why}")]
     Initial {
@@ -96,6 +107,29 @@ pub enum Reason {
         /// Which coordinate or rate, and what it should be.
         why: String,
     },
+    /// The initial state is where no motion leads: settling would move it.
+    #[error(
+        "the initial state is beyond {what}: in mode `{mode}` {text} is {value:e} {unit} and must not be negative; `{transition}` would move the state at once"
+    )]
+    Beyond {
+        /// Mode.
+        mode: &'static str,
+        /// The transition that would be taken.
+        transition: &'static str,
+        /// What it is beyond: a stop, if the transition is an impact.
+        what: &'static str,
+        /// The guard as text.
+        text: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The coordinate or rate (`theta.rate`) that the guard is about; empty if it is about more.
+        of: String,
+    },
+    /// Something of the problem is not admissible.
+    #[error(transparent)]
+    Invalid(#[from] Invalid),
     /// A run that is to be continued is not one of this problem.
     #[error("this is another run: {why}")]
     OtherRun {

@@ -74,7 +74,7 @@ impl Simulation<'_> {
 
     /// Index of the transition that is taken; its reset is left in `next`.
     #[inline(always)]
-    fn choose<const F: usize>(
+    pub fn choose<const F: usize>(
         &mut self,
         kernel: &'static ModeKernel<F>,
         guard: usize,

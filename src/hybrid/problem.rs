@@ -1,5 +1,6 @@
 //! What is to be simulated, validated.
 
+use super::validate::{Invalid, Unknown, check_initial, within};
 use crate::input::{Function, Signals};
 use crate::model::{Model, Variant};
 use crate::record::Recorded;
@@ -54,8 +55,8 @@ pub enum Method {
     /// Radau IIA: implicit, for stiff and non-stiff equations, with 5 or 7 stages: see
     /// [`crate::integrate::stages`].
     Radau,
-    /// Taylor series of the motion: the fastest for equations that are not stiff. Modes whose
-    /// equations cannot be expanded are left to Radau.
+    /// Taylor series of the motion: the fastest for equations that are not stiff. A problem that may visit a mode
+    /// whose equations cannot be expanded is refused ([`super::Reason::NoSeries`]).
     Taylor,
 }
 
@@ -90,18 +91,6 @@ pub struct Record {
     pub ledger: bool,
     /// Whether the states before and after an event are kept, and not its time alone.
     pub event_states: bool,
-}
-
-/// A name that the model does not have.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("model `{model}` has no {what} `{name}`")]
-pub struct Unknown {
-    /// The model.
-    pub model: &'static str,
-    /// What was looked for.
-    pub what: &'static str,
-    /// The name.
-    pub name: String,
 }
 
 impl Problem {
@@ -166,12 +155,15 @@ impl Problem {
     /// Sets a parameter.
     ///
     /// # Errors
-    /// [`Unknown`] if the model has no such parameter.
-    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Unknown> {
-        let index = self
-            .model
-            .parameter(name)
-            .ok_or_else(|| self.unknown("parameter", name))?;
+    /// [`Invalid`] if the model has no such parameter, or it must not have this value. That one parameter
+    /// limits another is looked at when a run starts ([`Problem::check`]).
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Invalid> {
+        let index = self.model.parameter(name);
+        let index = index.ok_or_else(|| self.unknown("parameter", name))?;
+        let parameter = &self.model.parameters[index];
+        within(parameter.bounds(), parameter.unit, value, || {
+            format!("parameter `{name}`")
+        })?;
         self.parameters[index] = value;
         Ok(())
     }
@@ -179,9 +171,10 @@ impl Problem {
     /// Sets the initial value of a coordinate (`theta`), a rate (`theta.rate`) or a discrete state.
     ///
     /// # Errors
-    /// [`Unknown`] if the model has none of that name.
-    pub fn set_initial(&mut self, name: &str, value: f64) -> Result<(), Unknown> {
-        let (model, initial) = (self.model, &mut self.initial);
+    /// [`Invalid`] if the model has none of that name, or it must not have this value.
+    pub fn set_initial(&mut self, name: &str, value: f64) -> Result<(), Invalid> {
+        let model = self.model;
+        let mut initial = self.initial.clone();
         let rate = name
             .strip_suffix(".rate")
             .and_then(|name| model.coordinate(name));
@@ -192,8 +185,12 @@ impl Problem {
         } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
             initial.discrete[i] = value;
         } else {
-            return Err(self.unknown("coordinate, rate or discrete state", name));
+            return Err(self
+                .unknown("coordinate, rate or discrete state", name)
+                .into());
         }
+        check_initial(model, &initial)?;
+        self.initial = initial;
         Ok(())
     }
 

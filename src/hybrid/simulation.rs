@@ -13,6 +13,7 @@ use super::problem::{Initial, Problem};
 use super::samples::Samples;
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
+use super::validate::{check_initial, check_parameters};
 use super::visited::Visited;
 use crate::input::Side;
 use crate::kernel::copy_few;
@@ -141,7 +142,9 @@ impl<'p> Simulation<'p> {
     /// A simulation before its first instant.
     pub fn new(problem: &'p Problem) -> Result<Self, Reason> {
         let model = problem.model;
+        problem.check()?;
         let plan = Plan::new(problem)?;
+        problem.check_method(&plan)?;
         let mut context = Context::new(model, &problem.parameters);
         context
             .discrete_mut()
@@ -204,6 +207,7 @@ impl<'p> Simulation<'p> {
     pub fn begin(&mut self) -> Result<(), Reason> {
         self.choose_initial_mode()?;
         self.set_context();
+        self.check_start()?;
         if self.ledger.is_some() {
             self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
         }
@@ -212,13 +216,15 @@ impl<'p> Simulation<'p> {
 
     /// Takes the place of a member of an ensemble, at its start.
     pub fn become_member(&mut self, member: &Member<'p>) -> Result<(), Reason> {
-        self.initial = member.initial;
         let model = self.problem.model;
+        check_parameters(model, member.parameters)?;
+        check_initial(model, member.initial)?;
+        self.initial = member.initial;
         self.context.set_parameters(model, member.parameters);
         self.rewind(0);
         self.choose_initial_mode()?;
         self.set_context();
-        Ok(())
+        self.check_start()
     }
 
     /// Goes back to the start, in the mode that was found for it.

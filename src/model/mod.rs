@@ -2,6 +2,11 @@
 //! its modes and transitions. Everything here is `'static` data emitted by `codegen/` (one
 //! `Model` a folder under `models/`); the numbers behind it are computed in [`crate::kernel`].
 
+mod bounds;
+
+pub use bounds::Bounds;
+pub(crate) use bounds::shown;
+
 use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
 
 /// A model: one folder under `models/`.
@@ -177,6 +182,8 @@ pub struct Mode {
     pub drifts: &'static [bool],
     /// Index of the mode at the limit of an accumulation of this mode's events, if one is declared.
     pub rest: Option<usize>,
+    /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
+    pub without_series: Option<&'static str>,
     /// Generated functions, typed by the number of free coordinates.
     pub kernels: ModeKernels,
     /// Operation counts of the generated functions, by name.
@@ -268,6 +275,24 @@ impl Model {
     /// Index of a parameter by name.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
+    }
+}
+
+impl Parameter {
+    /// The values that it may have.
+    pub fn bounds(&self) -> Bounds {
+        Bounds {
+            minimum: self.minimum,
+            minimum_exclusive: self.minimum_exclusive,
+            maximum: self.maximum,
+        }
+    }
+}
+
+impl Coordinate {
+    /// The values that it may have.
+    pub fn bounds(&self) -> Bounds {
+        Bounds::at_least(self.minimum.unwrap_or(f64::NEG_INFINITY))
     }
 }
 

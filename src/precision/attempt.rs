@@ -14,6 +14,8 @@ pub enum Attempt {
     GivenUp(Run),
     /// From outside.
     Interrupted,
+    /// It is to be by the Taylor method, and the equations have no series: why.
+    NoSeries(String),
 }
 
 /// Progress with a limit of time.
@@ -54,7 +56,10 @@ pub fn attempt(
         expired: false,
         interrupted: false,
     };
-    let run = simulate(problem, &mut limited)?;
+    let run = match simulate(problem, &mut limited) {
+        Err(why @ Reason::NoSeries { .. }) => return Ok(Attempt::NoSeries(why.to_string())),
+        run => run?,
+    };
     Ok(match (limited.interrupted, limited.expired) {
         (true, _) => Attempt::Interrupted,
         (false, true) => Attempt::GivenUp(run),

@@ -121,14 +121,12 @@ impl Pair {
         let taylor = variation(problem, Method::Taylor, TIGHTEST);
         let taylor = attempt(&taylor, Some(limit), progress)?;
         let alone = match &taylor {
+            Attempt::NoSeries(why) => Some(why.clone()),
             Attempt::Interrupted => return Ok(None),
             Attempt::GivenUp(_) => Some(format!(
                 "taylor did not come to its end in {} s",
                 limit.as_secs()
             )),
-            Attempt::Done(run) if !used_taylor(run) => {
-                Some("the equations of no mode that is visited have a Taylor series".into())
-            }
             Attempt::Done(run) => match &run.failure {
                 Some(failure) if implicit.failure.is_none() => {
                     let (t, reason) = (failure.at.t, &failure.reason);

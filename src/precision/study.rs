@@ -1,7 +1,7 @@
 //! Time against error: every method at every tolerance, beside a reference of its own.
 
 use super::attempt::{Attempt, attempt};
-use super::{Bound, Difference, GIVEN_UP, Reference, used_taylor, variation};
+use super::{Bound, Difference, GIVEN_UP, Reference, variation};
 use crate::hybrid::{Method, Problem, Reason, Simulator};
 use crate::record::Progress;
 use std::time::{Duration, Instant};
@@ -51,8 +51,11 @@ pub enum Verdict {
         /// How long it took until then, s.
         seconds: f64,
     },
-    /// It is the Taylor method, and no mode that is visited has a series: Radau made all steps.
-    NoSeries,
+    /// It is the Taylor method, and the equations have no series.
+    NoSeries {
+        /// In which mode, and why.
+        why: String,
+    },
     /// The study was interrupted before it was there.
     Interrupted,
 }
@@ -201,13 +204,11 @@ fn measure(
             return Ok(Verdict::GivenUp { seconds });
         }
         Attempt::Interrupted => return Ok(Verdict::Interrupted),
+        Attempt::NoSeries(why) => return Ok(Verdict::NoSeries { why }),
     };
     if let Some(failure) = run.failure {
         let (at, reason) = (failure.at.t, failure.reason);
         return Ok(Verdict::Stopped { at, reason });
-    }
-    if problem.method == Method::Taylor && !used_taylor(&run) {
-        return Ok(Verdict::NoSeries);
     }
     problem.record.ledger = false;
     let Some(seconds) = fastest(&problem, progress)? else {

@@ -7,6 +7,7 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use super::source::{Position, Span};
 use super::wording::shown;
+use crate::hybrid::Exceeds;
 use crate::input::TableError;
 
 /// One thing that is wrong with a scene.
@@ -115,17 +116,8 @@ pub enum SceneErrorKind {
         range: String,
     },
     /// A parameter is larger than one that it must not exceed.
-    #[error("{name} = {} exceeds {limit} = {}", shown(*.value), shown(*.limit_value))]
-    Exceeds {
-        /// The parameter.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The parameter that limits it.
-        limit: &'static str,
-        /// Its value.
-        limit_value: f64,
-    },
+    #[error(transparent)]
+    Exceeds(#[from] Exceeds),
     /// Choices that the model does not offer together.
     #[error("the model does not offer {chosen} together")]
     NoVariant {

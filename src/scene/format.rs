@@ -5,7 +5,7 @@
 use super::shape::{Key, Object, Quantity, Shape};
 use crate::hybrid::Method;
 use crate::integrate::Tolerances;
-use crate::model::{Coordinate, Input, Model, Variant};
+use crate::model::{Bounds, Coordinate, Input, Model, Variant};
 
 /// Relative tolerance of a scene that asks for none: eight digits, well above the rounding of long
 /// runs and well below what a plot shows.
@@ -84,12 +84,7 @@ fn parameters(model: Option<&Model>) -> Object {
         ));
     }
     keys.extend(model.parameters.iter().map(|p| {
-        let quantity = Quantity {
-            unit: p.unit.into(),
-            minimum: p.minimum,
-            minimum_exclusive: p.minimum_exclusive,
-            maximum: p.maximum,
-        };
+        let quantity = Quantity::within(p.bounds(), p.unit);
         let meaning = match p.at_most {
             Some(limit) => format!("{}; at most {limit}", p.meaning),
             None => p.meaning.into(),
@@ -247,7 +242,7 @@ fn initial(model: Option<&Model>) -> Object {
         Shape::Choice("mode", mode_names(model.variants)),
     )];
     for c in model.coordinates {
-        let position = Quantity::at_least(c.minimum.unwrap_or(f64::NEG_INFINITY), c.unit);
+        let position = Quantity::within(c.bounds(), c.unit);
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
         keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
@@ -302,12 +297,11 @@ fn end(model: Option<&Model>) -> Shape {
 
 fn accuracy(model: Option<&Model>) -> Object {
     // Below, no method can tell a step's error from rounding; above, it controls nothing.
-    let relative = Quantity {
-        unit: "1".into(),
-        minimum: Tolerances::<0>::SMALLEST_RELATIVE,
-        minimum_exclusive: false,
+    let relative = Bounds {
         maximum: 0.1,
+        ..Bounds::at_least(Tolerances::<0>::SMALLEST_RELATIVE)
     };
+    let relative = Quantity::within(relative, "1");
     let each = match model {
         None => Object::new("coordinate", Vec::new()).others(Quantity::positive("")),
         Some(model) => {

@@ -9,7 +9,7 @@ use super::shape::Shape;
 use super::tree::{Node, Value};
 use super::wording::listing;
 use super::{Scene, SceneSource, format, inputs, state};
-use crate::hybrid::{Accuracy, End, Method, Problem, Record};
+use crate::hybrid::{Accuracy, End, Exceeds, Method, Problem, Record, check_limits_of_parameters};
 use crate::model::{Model, Variant};
 use crate::record::Recorded;
 
@@ -164,29 +164,13 @@ fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
             *value = given.number();
         }
     }
-    for (i, parameter) in model.parameters.iter().enumerate() {
-        let Some(limit) = parameter.at_most else {
-            continue;
-        };
-        let Some(j) = model.parameter(limit) else {
-            continue;
-        };
-        if values[i] > values[j] {
-            let place = [parameter.name, limit, "set"].into_iter().find_map(entry);
-            let place = place
-                .or(object)
-                .map_or(&scene.place, |checked| &checked.place);
-            let (name, value, limit_value) = (parameter.name, values[i], values[j]);
-            let kind = SceneErrorKind::Exceeds {
-                name,
-                value,
-                limit,
-                limit_value,
-            };
-            let help = format!("lower `{name}` or raise `{limit}`");
-            return Err(SceneError::new(kind, place).help(help));
-        }
-    }
+    check_limits_of_parameters(model, &values).map_err(|exceeds| {
+        let Exceeds { name, limit, .. } = exceeds;
+        let place = [name, limit, "set"].into_iter().find_map(entry);
+        let place = place.or(object).map_or(&scene.place, |found| &found.place);
+        let help = format!("lower `{name}` or raise `{limit}`");
+        SceneError::new(SceneErrorKind::Exceeds(exceeds), place).help(help)
+    })?;
     Ok(values)
 }
 

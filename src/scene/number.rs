@@ -57,12 +57,12 @@ pub(crate) fn quantity(node: &Node, quantity: &Quantity) -> Result<f64, SceneErr
         Value::Number(text) => parse_finite(node, text)?,
         _ => unreachable!("the caller has seen a number or a text"),
     };
-    if quantity.admits(value) {
+    if quantity.bounds.admit(value) {
         return Ok(value);
     }
     let kind = SceneErrorKind::OutOfRange {
         value,
-        range: quantity.range(),
+        range: quantity.bounds.describe(&quantity.unit),
     };
     Err(SceneError::new(kind, &node.place()))
 }

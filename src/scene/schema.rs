@@ -50,16 +50,16 @@ fn shape(shape: &Shape) -> Value {
 
 fn quantity(q: &Quantity) -> Value {
     let mut number = Map::from_iter([("type".to_owned(), json!("number"))]);
-    if q.minimum.is_finite() {
-        let key = if q.minimum_exclusive {
+    if q.bounds.minimum.is_finite() {
+        let key = if q.bounds.minimum_exclusive {
             "exclusiveMinimum"
         } else {
             "minimum"
         };
-        number.insert(key.into(), json!(q.minimum));
+        number.insert(key.into(), json!(q.bounds.minimum));
     }
-    if q.maximum.is_finite() {
-        number.insert("maximum".into(), json!(q.maximum));
+    if q.bounds.maximum.is_finite() {
+        number.insert("maximum".into(), json!(q.bounds.maximum));
     }
     let text = json!({ "type": "string", "pattern": "^\\s*[-+]?[0-9]", "description": "a number and its unit" });
     json!({ "anyOf": [number, text] })

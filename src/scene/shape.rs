@@ -4,6 +4,7 @@
 //! prints it as a JSON Schema.
 
 use super::wording::shown;
+use crate::model::Bounds;
 
 /// The admissible values at one place of a scene.
 #[derive(Debug, Clone)]
@@ -39,9 +40,7 @@ pub(crate) enum Shape {
 pub(crate) struct Quantity {
     /// Unit of a plain number; empty if the model, and with it the unit, is not known.
     pub unit: String,
-    pub minimum: f64,
-    pub minimum_exclusive: bool,
-    pub maximum: f64,
+    pub bounds: Bounds,
 }
 
 /// An object.
@@ -68,60 +67,25 @@ pub(crate) struct Key {
 }
 
 impl Quantity {
+    /// A number within bounds.
+    pub fn within(bounds: Bounds, unit: impl Into<String>) -> Self {
+        let unit = unit.into();
+        Quantity { unit, bounds }
+    }
+
     /// Any number.
     pub fn any(unit: impl Into<String>) -> Self {
-        let (minimum, maximum) = (f64::NEG_INFINITY, f64::INFINITY);
-        Quantity {
-            unit: unit.into(),
-            minimum,
-            minimum_exclusive: false,
-            maximum,
-        }
+        Quantity::within(Bounds::NONE, unit)
     }
 
     /// A number > 0.
     pub fn positive(unit: impl Into<String>) -> Self {
-        Quantity {
-            minimum: 0.0,
-            minimum_exclusive: true,
-            ..Quantity::any(unit)
-        }
+        Quantity::within(Bounds::POSITIVE, unit)
     }
 
     /// A number from `minimum` on.
     pub fn at_least(minimum: f64, unit: impl Into<String>) -> Self {
-        Quantity {
-            minimum,
-            ..Quantity::any(unit)
-        }
-    }
-
-    /// Whether a number is in the range.
-    pub fn admits(&self, value: f64) -> bool {
-        let above = if self.minimum_exclusive {
-            value > self.minimum
-        } else {
-            value >= self.minimum
-        };
-        above && value <= self.maximum
-    }
-
-    /// The range in words, such as `> 0 kg` or `>= 0 and <= 1`.
-    pub fn range(&self) -> String {
-        let unit = if self.unit.is_empty() || self.unit == "1" {
-            String::new()
-        } else {
-            format!(" {}", self.unit)
-        };
-        let sign = if self.minimum_exclusive { ">" } else { ">=" };
-        let above = format!("{sign} {}{unit}", shown(self.minimum));
-        let below = format!("<= {}{unit}", shown(self.maximum));
-        match (self.minimum.is_finite(), self.maximum.is_finite()) {
-            (true, true) => format!("{above} and {below}"),
-            (true, false) => above,
-            (false, true) => below,
-            (false, false) => "finite".into(),
-        }
+        Quantity::within(Bounds::at_least(minimum), unit)
     }
 }
 

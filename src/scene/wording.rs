@@ -1,5 +1,7 @@
 //! How errors name things.
 
+pub(crate) use crate::model::shown;
+
 /// The known name nearest to a mistyped one, if one is near.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Names of which at least half agree: nearer ones are typing mistakes, farther ones chance.
@@ -27,10 +29,4 @@ pub(crate) fn listing<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
         Some((only, [])) => only.clone(),
         Some((last, others)) => format!("{} or {last}", others.join(", ")),
     }
-}
-
-/// A number in its shortest form, with an exponent where it is very small or very large.
-pub(crate) fn shown(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }

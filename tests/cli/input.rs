@@ -223,3 +223,20 @@ fn all_independent_errors_come_at_once() {
     let output = ends_with(2, home.path(), &["run", "scene.json"]);
     assert_eq!(stderr(&output).matches("error: ").count(), 2);
 }
+
+#[test]
+fn an_initial_state_beyond_a_stop() {
+    let scene = r#"{
+  "model": "coulomb_oscillator",
+  "parameters": { "static_friction": 0, "kinetic_friction": 0, "stop": 1.0 },
+  "initial": { "x": ¶2 },
+  "end": 1
+}
+"#;
+    let words = [
+        "the initial state is beyond a stop",
+        "impact",
+        "admissible side",
+    ];
+    check("scene.json", scene, &[("scene.json", scene)], &words);
+}

@@ -121,7 +121,7 @@ pub(super) fn outcome(verdict: &Verdict) -> String {
             format!("stopped early at t = {} s: {reason}", rounded(*at, 6))
         }
         Verdict::GivenUp { .. } => format!("given up: takes {GIVEN_UP} times as long as radau"),
-        Verdict::NoSeries => "no mode that is visited has a Taylor series".into(),
+        Verdict::NoSeries { why } => why.clone(),
         Verdict::Interrupted => "interrupted".into(),
     }
 }
@@ -156,7 +156,7 @@ fn cells(verdict: &Verdict, bound: Bound) -> [String; 9] {
         Verdict::GivenUp { seconds } => {
             return only("given up", format!("> {}", duration(*seconds)));
         }
-        Verdict::NoSeries => return only("no series", String::new()),
+        Verdict::NoSeries { .. } => return only("no series", String::new()),
         Verdict::Interrupted => return only("interrupted", String::new()),
     };
     let events = &found.error.events;

@@ -67,24 +67,26 @@ impl Ensemble {
     /// # Errors
     /// As [`super::simulate`].
     pub fn new(problem: &Problem) -> Result<Self, Reason> {
+        problem.check()?;
         let mut problem = problem.clone();
         problem.record.ledger = false;
         problem.record.event_states = false;
         problem.record.columns = Recorded::default();
         problem.record.every = Some(problem.end.time);
         let modes = problem.variant.modes;
+        let mut pilot = Simulation::new(&problem)?;
+        pilot.begin()?;
         let stiff = match problem.method {
             Method::Radau => vec![true; modes.len()],
             Method::Taylor => vec![false; modes.len()],
             Method::Auto => {
-                let mut pilot = Simulation::new(&problem)?;
-                pilot.begin()?;
                 // Where it fails it has shown what it can.
                 let _ = pilot.run(&mut Silent);
                 let verdicts = pilot.stiffness.iter();
                 verdicts.map(|s| s.is_stiff()).collect()
             }
         };
+        drop(pilot);
         let in_lanes = (modes.iter().zip(stiff))
             .map(|(mode, stiff)| !stiff && with_kernel!(&mode.kernels, k => k.goes_in_lanes()))
             .collect();

@@ -1,0 +1,85 @@
+//! An initial state must be one that the model can be in: not beyond a stop.
+
+use super::failure::Reason;
+use super::simulation::Simulation;
+use crate::kernel::{Free, ModeKernel, with_kernel};
+use crate::model::GuardShape;
+
+/// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+impl Simulation<'_> {
+    /// Refuses an initial state that settling would move: where a guard is negative, by more than its rounding, and its
+    /// transition changes a coordinate or a velocity. That is no event; the state is beyond where the mode ends. A
+    /// change of mode and of discrete states alone is what settling is for: friction that cannot hold what
+    /// the scene lets rest. An impact from a guard's very zero is an event.
+    pub fn check_start(&mut self) -> Result<(), Reason> {
+        let start = self.here.mode;
+        let mut refused = None;
+        // Longer chains of modes are cycles, which settling names.
+        for _ in 0..=self.modes.len() {
+            let mode = self.mode();
+            match with_kernel!(&mode.kernels, k => self.step_of_settling(k)) {
+                Some(Ok(target)) => self.here.mode = target,
+                Some(Err(reason)) => {
+                    refused = Some(reason);
+                    break;
+                }
+                None => break,
+            }
+        }
+        self.here.mode = start;
+        self.here.a.fill(0.0);
+        (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
+        self.set_context();
+        refused.map_or(Ok(()), Err)
+    }
+
+    /// Takes the transition of a guard that is violated, if it is one of the mode and of discrete states alone: its
+    /// target. `None`: there is nothing to refuse.
+    fn step_of_settling<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+    ) -> Option<Result<usize, Reason>> {
+        let mode = self.mode();
+        // What else is wrong with the mode is said when it is entered.
+        let violation = self.enter(kernel).ok()??;
+        let guard = &mode.guards[violation.guard];
+        let [q, v, a] = self.here.free::<F>(mode.free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let value = kernel.guard(&self.context, &guard.kernel, at);
+        let magnitude = kernel.guard_magnitude(&self.context, &guard.kernel, at);
+        if value >= -ROUNDING * magnitude {
+            return None;
+        }
+        let transition = &guard.transitions[self.choose(kernel, violation.guard)?];
+        let n = self.here.q.len();
+        let moved = self.here.q[..] != self.next[..n] || self.here.v[..] != self.next[n..2 * n];
+        if moved {
+            return Some(Err(Reason::Beyond {
+                mode: mode.name,
+                transition: transition.name,
+                what: match transition.impact {
+                    true => "a stop",
+                    false => "where this mode ends",
+                },
+                text: guard.text,
+                value,
+                unit: guard.unit,
+                of: match guard.shape {
+                    GuardShape::Linear { index, rate, .. } => {
+                        let name = self.problem.model.coordinates[mode.free[index]].name;
+                        format!("{name}{}", if rate { ".rate" } else { "" })
+                    }
+                    GuardShape::General { .. } => String::new(),
+                },
+            }));
+        }
+        (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
+        Some(Ok(transition.target))
+    }
+}
