@@ -7,7 +7,7 @@ import json
 
 import casadi as ca
 
-from . import graph, units
+from . import drawing, graph, units
 from .emit_c import KEPT_ANGLES
 
 MOST_FREE = 6
@@ -170,6 +170,7 @@ def _variant(variant):
     yield "        Variant {"
     yield f"            options: &[{', '.join(_text(c[3]) for c in model.choices)}],"
     yield f"            defaults: &[{_flags(c[3] == c[4] for c in model.choices)}],"
+    yield f"            drawing: {_text(drawing.program(model))},"
     yield "            modes: &["
     for i, equations in enumerate(variant.modes):
         yield from _mode(variant, i, equations)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 from casadi import atan2, cos, exp, pi, sin, sqrt, tan  # noqa: F401  (for model files)
 
-from . import units
+from . import drawing, units
 from .errors import ModelError, caller_location
 
 HELD = None
@@ -147,6 +147,7 @@ class Model:
         self.modes, self.transitions = [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
+        self.shapes = []
         self.dimensions = {}
         context.model = self
 
@@ -310,6 +311,16 @@ class Model:
     def requires(self, mode, positive, failure):
         """Stops the run with the reason `failure` where `positive` is not > 0."""
         mode.requirements.append((ca.SX(positive), failure, caller_location(self.file)))
+
+    # ---- drawing ------------------------------------------------------------------------------
+
+    def draw(self, name, points, *, kind="body", radius=None):
+        """A shape of the drawing that pages animate; `points` are (X, Y) in m, in the frame of the ground.
+
+        Kinds: `body` and `liquid` (closed outlines), `line`, `spring`, `fixed` (ground or wall, hatched to the right of
+        the way along it), `point` (a disc; `radius` in m), `contact` (where a body touches the ground).
+        """
+        self.shapes.append(drawing.shape(self, name, points, kind, radius, caller_location(self.file)))
 
     # ---- helpers ------------------------------------------------------------------------------
 

@@ -33,3 +33,8 @@ model.transition("stick", slips, sticks, when=stops, provided=[limit + sticks.re
 model.transition("reversal", slips, slips, when=stops, reset=[(slip, -slip), (x.rate, belt)])
 for direction in (+1, -1):
     model.transition("slip", sticks, slips, when=falls(limit + direction * sticks.reaction(x)), reset=[(slip, direction)])
+
+model.draw("belt", [(-1, -0.1), (2, -0.1)], kind="fixed")
+model.draw("wall", [(-1, -0.1), (-1, 0.4)], kind="fixed")
+model.draw("spring", [(-1, 0), (x - 0.1, 0)], kind="spring")
+model.draw("mass", [(x - 0.1, -0.1), (x + 0.1, -0.1), (x + 0.1, 0.1), (x - 0.1, 0.1)])

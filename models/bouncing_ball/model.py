@@ -19,3 +19,6 @@ rests = model.mode("rests", "on the floor", freeze=[(h, 0)])
 model.transition("impact", flies, flies, when=falls(h), impact=True, reset=[(h, 0), (h.rate, -e * h.rate)])
 model.transition("take_off", rests, flies, when=falls(rests.reaction(h)))
 model.rest(flies, rests)
+
+model.draw("floor", [(-1, 0), (1, 0)], kind="fixed")
+model.draw("ball", [(0, h)], kind="point")

@@ -33,3 +33,8 @@ for direction in (+1, -1):
     model.transition(
         "impact", slides, slides, when=falls(stop - direction * x), impact=True,
         reset=[(x, direction * stop), (x.rate, -e * x.rate), (slip, -direction)])
+
+model.draw("ground", [(-3, -0.1), (3, -0.1)], kind="fixed")
+model.draw("wall", [(-3, -0.1), (-3, 0.4)], kind="fixed")
+model.draw("spring", [(-3, 0), (x - 0.1, 0)], kind="spring")
+model.draw("mass", [(x - 0.1, -0.1), (x + 0.1, -0.1), (x + 0.1, 0.1), (x - 0.1, 0.1)])

@@ -20,3 +20,9 @@ model.point_mass(m_1, position=upper)
 model.point_mass(m_2, position=lower)
 
 model.mode("swings", "both rods swing")
+
+model.draw("ceiling", [(0.25 * l_1, 0), (-0.25 * l_1, 0)], kind="fixed")
+model.draw("upper rod", [(0, 0), upper], kind="line")
+model.draw("lower rod", [upper, lower], kind="line")
+model.draw("upper mass", [upper], kind="point")
+model.draw("lower mass", [lower], kind="point")

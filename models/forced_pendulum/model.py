@@ -16,3 +16,7 @@ model.point_mass(m, position=(l * sin(theta), -l * cos(theta)))
 model.force(theta, moment)
 
 model.mode("swings", "the rod swings")
+
+model.draw("ceiling", [(0.25 * l, 0), (-0.25 * l, 0)], kind="fixed")
+model.draw("rod", [(0, 0), (l * sin(theta), -l * cos(theta))], kind="line")
+model.draw("mass", [(l * sin(theta), -l * cos(theta))], kind="point")

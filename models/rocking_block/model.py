@@ -39,3 +39,18 @@ model.transition(
 model.rest(rocks, stands)
 for mode in (stands, rocks):
     model.requires(mode, mode.reaction(y), "the block would leave the ground")
+
+# The pivot edge is where the block stands on it: half a width to the left or right of the centre.
+half_width = R * sin(alpha)
+
+
+def place(along, up):
+    """A point of the block, from the pivot edge along its base and up its side."""
+    return (side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
+
+
+model.draw("ground", [(-2 * R, 0), (2 * R, 0)], kind="fixed")
+model.draw("block", [place(*p) for p in (
+    (0, 0), (2 * half_width, 0), (2 * half_width, 2 * R * cos(alpha)), (0, 2 * R * cos(alpha)))])
+model.draw("centre", [place(half_width, R * cos(alpha))], kind="point")
+model.draw("pivot", [place(0, 0)], kind="contact")

@@ -37,3 +37,8 @@ model.transition(
 model.transition("reversal", slips, slips, when=stops, reset=[(slip, -slip), (u.rate, 0)])
 for direction in (+1, -1):
     model.transition("slip", sticks, slips, when=falls(limit + direction * sticks.reaction(u)), reset=[(slip, direction)])
+
+model.draw("ground", [(-0.5, -0.05), (0.8, -0.05)], kind="fixed")
+model.draw("lower mass", [(u - 0.1, -0.05), (u + 0.1, -0.05), (u + 0.1, 0.05), (u - 0.1, 0.05)])
+model.draw("spring", [(u + 0.1, 0), (u + d + 0.3, 0)], kind="spring")
+model.draw("upper mass", [(u + d + 0.3, -0.04), (u + d + 0.4, -0.04), (u + d + 0.4, 0.04), (u + d + 0.3, 0.04)])

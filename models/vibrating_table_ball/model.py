@@ -20,3 +20,6 @@ sticks = model.mode("sticks", "on the table", freeze=[(gap, 0)])
 model.transition("impact", flies, flies, when=falls(gap), impact=True, reset=[(gap, 0), (gap.rate, -e * gap.rate)])
 model.transition("take_off", sticks, flies, when=falls(sticks.reaction(gap)))
 model.rest(flies, sticks)
+
+model.draw("table", [(-1, 0), (1, 0)], kind="fixed")
+model.draw("ball", [(0, gap)], kind="point")

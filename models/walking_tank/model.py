@@ -202,3 +202,20 @@ for stands, rocks, conserved in (
 
 for mode in model.modes:
     model.requires(mode, mode.reaction(y), "the normal force is not positive: the tank would leave the ground")
+
+# Width and height of the tank are those that the centre of its contents, R_0 and alpha_0, says; the pivot edge is half a
+# width to the left or right of where the centre of the base has slipped to.
+half_width, height = R_0 * sin(alpha_0), 2 * R_0 * cos(alpha_0)
+
+
+def place(along, up):
+    """A point of the tank, from the pivot edge along its base and up its shell."""
+    return (x + side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
+
+
+model.draw("ground", [(-6 * half_width, 0), (6 * half_width, 0)], kind="fixed")
+levels = [(part * height, sin(part * pi / 2) * x_I * side) for part in (0, 0.25, 0.5, 0.75, 0.95)]
+model.draw("liquid", [place(bulge, up) for up, bulge in levels]
+           + [place(2 * half_width + bulge, up) for up, bulge in reversed(levels)], kind="liquid")
+model.draw("shell", [place(0, height), place(0, 0), place(2 * half_width, 0), place(2 * half_width, height)], kind="line")
+model.draw("pivot", [place(0, 0)], kind="contact")

@@ -1,12 +1,14 @@
 //! `dalembert run`.
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::print;
-use crate::hybrid::{Reason, resume, simulate};
+use crate::hybrid::{Problem, Reason, resume, simulate};
 use crate::kernel::MODELS;
+use crate::page::{Told, run_page};
 use crate::precision::estimate;
 use crate::record::{OutputFolder, ProgressLine, Report, Run};
 use crate::scene::Scene;
@@ -36,6 +38,9 @@ pub struct RunArguments {
     /// Replace a value of the scene, such as `parameters.mu_s=0.3`; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
+    /// Also write a page with plots that zoom and the mechanism in motion
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     /// Continue the run in this folder, and write the longer run to --out, or back
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
@@ -95,6 +100,9 @@ pub fn run(arguments: &RunArguments) -> Result {
     if let Some(folder) = &folder {
         run.write(folder)?;
     }
+    if let Some(page) = &arguments.html {
+        write_page(page, &run, &arguments.scene, problem)?;
+    }
     print::output(Report::new(&run))?;
     if let Some(reason) = &no_estimate {
         print::error(format!("no estimate of the error: {reason}"));
@@ -112,6 +120,53 @@ pub fn run(arguments: &RunArguments) -> Result {
             }
             Ok(Outcome::StoppedEarly)
         }
+    }
+}
+
+/// Writes the page of a run, whole or not at all.
+fn write_page(
+    path: &Path,
+    run: &Run,
+    scene: &Path,
+    problem: &Problem,
+) -> std::result::Result<(), Failure> {
+    let failed = |error: &dyn std::fmt::Display| {
+        Failure::system(format!("cannot write the page {}: {error}", path.display()))
+    };
+    let arguments: Vec<String> = std::env::args().skip(1).map(|a| quoted(&a)).collect();
+    let text = std::fs::read_to_string(scene).unwrap_or_default();
+    let page = run_page(
+        run,
+        Told {
+            drawing: problem.variant.drawing,
+            scene: &text,
+            command: &format!("dalembert {}", arguments.join(" ")),
+        },
+    );
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::fs::Permissions;
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(Permissions::from_mode(0o666)); // less the umask
+    }
+    let mut file = builder
+        .tempfile_in(folder.unwrap_or(Path::new(".")))
+        .map_err(|e| failed(&e))?;
+    file.write_all(page.as_bytes())
+        .and_then(|()| file.as_file().sync_all())
+        .map_err(|e| failed(&e))?;
+    file.persist(path).map_err(|e| failed(&e.error))?;
+    Ok(())
+}
+
+/// An argument as a shell takes it.
+fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-=+,:@%".contains(c);
+    match !argument.is_empty() && argument.chars().all(plain) {
+        true => argument.to_owned(),
+        false => format!("'{}'", argument.replace('\'', "'\\''")),
     }
 }
 

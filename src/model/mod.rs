@@ -159,6 +159,8 @@ pub struct Variant {
     /// Whether each chosen option is the default, given the choices made before it. A scene gets
     /// the variant that has the options it names and the default for every other choice.
     pub defaults: &'static [bool],
+    /// What pages draw, as `codegen/drawing.py` writes it (JSON); empty where the model draws nothing.
+    pub drawing: &'static str,
     /// The modes; the first is where a scene starts when it names none and several fit.
     pub modes: &'static [Mode],
 }

@@ -5,6 +5,7 @@ mod describe;
 mod input;
 mod interrupt;
 mod output;
+mod page;
 mod precision;
 mod run;
 mod verify;

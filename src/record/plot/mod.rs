@@ -17,5 +17,6 @@ mod symbol;
 pub use axis::Scale;
 pub use chart::{Chart, Dimension, comparison};
 pub use overview::overview;
+pub(crate) use overview::{Grouped, grouped};
 pub use panel::Curve;
 pub use phase::phase_portraits;

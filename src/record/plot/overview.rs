@@ -183,6 +183,29 @@ fn panels(run: &Run) -> (Vec<Panel>, String) {
     (panels, constants)
 }
 
+/// Columns that are drawn together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Grouped {
+    /// What they are.
+    pub group: Group,
+    /// Their indices.
+    pub columns: Vec<usize>,
+}
+
+/// How a run's columns are divided among panels, the response before the inputs; also a sentence about those that never
+/// change.
+pub(crate) fn grouped(run: &Run) -> (Vec<Grouped>, String) {
+    let (panels, constants) = panels(run);
+    let mut groups: Vec<Grouped> = (panels.into_iter())
+        .map(|panel| Grouped {
+            group: panel.group,
+            columns: panel.columns.iter().map(|c| c.0).collect(),
+        })
+        .collect();
+    groups.sort_by_key(|g| g.group == Group::Input);
+    (groups, constants)
+}
+
 fn varies((low, high): (f64, f64)) -> bool {
     high - low > VARIES * low.abs().max(high.abs())
 }

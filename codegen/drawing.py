@@ -1,0 +1,119 @@
+"""What a model draws: shapes whose points are expressions of state and parameters, as a small program.
+
+The page of a run evaluates the program at its key frames (`src/page/`), so that a drawing needs no
+generated C. X to the right, Y up, in metres, in the frame of the ground.
+"""
+
+import json
+from dataclasses import dataclass
+
+import casadi as ca
+
+from . import graph, units
+from .errors import ModelError
+
+POINTS = {"body": (3, None), "liquid": (3, None), "line": (2, None), "fixed": (2, None), "spring": (2, 2),
+          "point": (1, 1), "contact": (1, 1)}
+"""Kinds of shapes, with the least and the largest number of their points: closed outlines of bodies and of liquid, open
+lines, ground and walls (hatched to the right of the way from their first point to the last), springs, discs, places
+where a body touches the ground."""
+
+_NAMES = {
+    ca.OP_ADD: "add", ca.OP_SUB: "sub", ca.OP_MUL: "mul", ca.OP_DIV: "div", ca.OP_NEG: "neg", ca.OP_SQ: "sq",
+    ca.OP_TWICE: "twice", ca.OP_INV: "inv", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan", ca.OP_EXP: "exp",
+    ca.OP_LOG: "log", ca.OP_SQRT: "sqrt", ca.OP_ATAN2: "atan2", ca.OP_FABS: "abs", ca.OP_SIGN: "sign",
+    ca.OP_FMIN: "min", ca.OP_FMAX: "max", ca.OP_POW: "pow", ca.OP_CONSTPOW: "pow", ca.OP_ATAN: "atan",
+    ca.OP_ASIN: "asin", ca.OP_ACOS: "acos",
+}
+"""Operations of a program, as the page knows them."""
+
+
+@dataclass
+class Shape:
+    """A shape of the drawing."""
+
+    name: str
+    kind: str
+    points: list
+    radius: object
+    location: str
+
+
+def shape(model, name, points, kind, radius, location):
+    """A checked shape."""
+    what = f"drawing of `{name}`"
+    if kind not in POINTS:
+        raise ModelError(f"{what}: there is no kind `{kind}`; write one of {', '.join(POINTS)}", location)
+    least, most = POINTS[kind]
+    try:
+        pairs = [(ca.SX(x), ca.SX(y)) for x, y in points]
+    except (TypeError, ValueError, NotImplementedError):
+        raise ModelError(f"{what}: points are a list of pairs (X, Y)", location) from None
+    if len(pairs) < least or most is not None and len(pairs) > most:
+        wanted = f"{least}" if least == most else f"at least {least}"
+        raise ModelError(f"{what}: a `{kind}` has {wanted} points, not {len(pairs)}", location)
+    if radius is not None and kind != "point":
+        raise ModelError(f"{what}: only a `point` has a radius", location)
+    lengths = [value for pair in pairs for value in pair] + ([] if radius is None else [ca.SX(radius)])
+    known = {s.element_hash() for s in symbols(model)[1]}
+    for value in lengths:
+        for symbol in ca.symvar(value):
+            if symbol.element_hash() not in known:
+                raise ModelError(
+                    f"{what}: `{symbol.name()}` is no coordinate, parameter or discrete state", location)
+        for term in graph.additive_terms(value):
+            if ca.SX(term).is_constant():
+                continue  # A number is metres: how large a picture is drawn is not physics.
+            try:
+                found = units.dimension_of(ca.SX(term), model.dimensions)
+            except units.UnitError as error:
+                raise ModelError(f"{what}: {error}", location) from None
+            if found != units.parse("m") and not ca.SX(term).is_zero():
+                raise ModelError(
+                    f"{what}: the term `{units.short(term)}` has the dimension {units.text(found)}, expected m (numbers alone are metres)", location)
+    return Shape(name, kind, pairs, None if radius is None else ca.SX(radius), location)
+
+
+def symbols(model):
+    """Names and symbols that a drawing may depend on."""
+    declared = [(d.name, d.symbol) for d in (*model.coordinates, *model.discretes, *model.parameters)]
+    return [name for name, _ in declared], [symbol for _, symbol in declared]
+
+
+def program(model):
+    """The drawing as JSON: names of the symbols, instructions on registers, and shapes by the registers of their
+    points; the empty text where nothing is drawn."""
+    if not model.shapes:
+        return ""
+    names, all_symbols = symbols(model)
+    outputs, shapes = [], []
+    for s in model.shapes:
+        start = len(outputs)
+        outputs += [value for pair in s.points for value in pair] + ([] if s.radius is None else [s.radius])
+        shapes.append((s, start))
+    used = {symbol.element_hash() for symbol in ca.symvar(ca.vertcat(*outputs))}
+    chosen = [(n, s) for n, s in zip(names, all_symbols) if s.element_hash() in used]
+    function = ca.Function("drawing", [s for _, s in chosen], [ca.densify(ca.cse(ca.vertcat(*outputs)))])
+    instructions = []
+    for k in range(function.n_instructions()):
+        op, given = function.instruction_id(k), function.instruction_input(k)
+        if op == ca.OP_OUTPUT:
+            instructions.append(["out", function.instruction_output(k)[1], given[0]])
+            continue
+        to = function.instruction_output(k)[0]
+        if op == ca.OP_CONST:
+            instructions.append(["const", to, function.instruction_constant(k)])
+        elif op == ca.OP_INPUT:
+            instructions.append(["in", to, given[0]])
+        elif op in _NAMES:
+            instructions.append([_NAMES[op], to, *given])
+        else:
+            raise ModelError(
+                f"drawing: an operation of it is not known to pages; write it with {', '.join(sorted(set(_NAMES.values())))}",
+                model.shapes[0].location)
+    return json.dumps({
+        "symbols": [name for name, _ in chosen],
+        "registers": function.sz_w(), "outputs": len(outputs), "program": instructions,
+        "shapes": [dict(name=s.name, kind=s.kind, start=start, points=len(s.points), radius=s.radius is not None)
+                   for s, start in shapes],
+    }, separators=(",", ":"))

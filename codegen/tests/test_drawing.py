@@ -1,0 +1,69 @@
+"""Drawings: what is refused, and that the program gives the points."""
+
+import json
+import math
+import os
+import unittest
+
+import casadi as ca
+
+from codegen import drawing, generate
+from codegen.tests.scratch import BODY, HEAD, MODE, ScratchTest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+FUNCTIONS = dict(
+    add=lambda a, b: a + b, sub=lambda a, b: a - b, mul=lambda a, b: a * b, div=lambda a, b: a / b, neg=lambda a: -a,
+    sq=lambda a: a * a, twice=lambda a: 2 * a, inv=lambda a: 1 / a, sin=math.sin, cos=math.cos, sqrt=math.sqrt)
+
+
+def run(program, values):
+    """The outputs of a program, as pages compute them."""
+    w, out = [0.0] * program["registers"], [None] * program["outputs"]
+    for op, to, *rest in program["program"]:
+        if op == "const":
+            w[to] = rest[0]
+        elif op == "in":
+            w[to] = values[program["symbols"][rest[0]]]
+        elif op == "out":
+            out[to] = w[rest[0]]
+        else:
+            w[to] = FUNCTIONS[op](*(w[i] for i in rest))
+    return out
+
+
+class Programs(unittest.TestCase):
+    def test_the_program_of_every_model_gives_the_points_that_it_states(self):
+        folder = os.path.join(ROOT, "models")
+        names = sorted(name for name in os.listdir(folder) if os.path.exists(os.path.join(folder, name, "model.py")))
+        for name in names:
+            model = generate.load(os.path.join(folder, name))[0]
+            self.assertTrue(model.shapes, f"{name} draws nothing")
+            program = json.loads(drawing.program(model))
+            known, symbols = drawing.symbols(model)
+            values = {name: 0.1 + 0.07 * k for k, name in enumerate(known)}
+            lengths = []
+            for shape in model.shapes:
+                lengths += [x for pair in shape.points for x in pair] + ([] if shape.radius is None else [shape.radius])
+            function = ca.Function("points", symbols, [ca.densify(ca.vertcat(*lengths))])
+            wanted = [float(x) for x in function(*(values[n] for n in known)).full().ravel()]
+            self.assertEqual(len(wanted), program["outputs"])
+            for given, want in zip(run(program, values), wanted):
+                self.assertAlmostEqual(given, want, places=12, msg=name)
+
+
+class Refusals(ScratchTest):
+    def refused(self, call, words):
+        self.assertIn(words, self.refusal(HEAD + BODY + MODE + call, 8))
+
+    def test_what_is_no_drawing_is_refused_with_its_line(self):
+        self.refused('model.draw("b", [(x, 0)], kind="ball")', "there is no kind `ball`; write one of body,")
+        self.refused('model.draw("b", [(x, 0)])', "a `body` has at least 3 points, not 1")
+        self.refused('model.draw("b", [(x, 0), (0, 0), (1, 0)], kind="spring")', "a `spring` has 2 points, not 3")
+        self.refused('model.draw("b", [x, 0], kind="line")', "points are a list of pairs (X, Y)")
+        self.refused('model.draw("b", [(x, k)], kind="point")', "the term `k` has the dimension")
+        self.refused('model.draw("b", [(x.rate, 0)], kind="point")', "`x.rate` is no coordinate, parameter or discrete state")
+        self.refused('model.draw("b", [(x, 0), (0, 0)], kind="line", radius=x)', "only a `point` has a radius")
+
+
+if __name__ == "__main__":
+    unittest.main()

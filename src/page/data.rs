@@ -1,0 +1,204 @@
+//! The data of a run's page.
+
+use super::thin::thin;
+use crate::record::plot::{Grouped, grouped};
+use crate::record::{Group, Run, exact};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Most points of a panel, frames of the drawing, and marks of events: more than a screen is wide, also after a zoom
+/// tenfold, and some megabytes at most.
+const MOST_POINTS: usize = 20_000;
+const MOST_MARKS: usize = 4_000;
+
+/// Everything that the script of the page reads.
+#[derive(Debug, Serialize)]
+pub(super) struct Data {
+    /// First and last time, s.
+    span: [f64; 2],
+    /// Names of the modes.
+    modes: Vec<String>,
+    /// From when to when the run was in which mode.
+    visits: Vec<(f64, f64, usize)>,
+    /// Times and names of transitions.
+    events: Vec<(f64, &'static str)>,
+    panels: Vec<Panel>,
+    frames: Option<Frames>,
+    /// The drawing of the model.
+    drawing: Option<Value>,
+    /// Names of the coordinates.
+    coordinates: Vec<String>,
+    parameters: BTreeMap<String, f64>,
+    /// What is left out.
+    #[serde(skip)]
+    pub notes: Vec<String>,
+}
+
+/// Curves over the same times.
+#[derive(Debug, Serialize)]
+struct Panel {
+    kind: &'static str,
+    unit: String,
+    names: Vec<String>,
+    t: Vec<f64>,
+    y: Vec<Vec<f64>>,
+}
+
+/// What the drawing depends on, over time; between two frames the script takes the cubic of positions and rates.
+#[derive(Debug, Serialize)]
+struct Frames {
+    t: Vec<f64>,
+    /// By name; of single precision, which is ample for a picture.
+    columns: BTreeMap<String, Vec<f32>>,
+}
+
+impl Data {
+    /// The data of a run, with the drawing of its model as `codegen/drawing.py` wrote it.
+    pub fn new(run: &Run, drawing: &str) -> Data {
+        let mut notes = Vec::new();
+        let (groups, constants) = grouped(run);
+        let panels = (groups.iter())
+            .filter_map(|group| panel(run, group, &mut notes))
+            .collect();
+        notes.extend((!constants.is_empty()).then_some(constants));
+        let drawing: Option<Value> = serde_json::from_str(drawing).ok();
+        let times = run.trajectory.t.iter().copied();
+        let times = times
+            .chain(run.events.iter().map(|e| e.t))
+            .chain([run.end.t]);
+        let span = times.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], t| {
+            [low.min(t), high.max(t)]
+        });
+        let (visits, events) = marks(run, span, &mut notes);
+        Data {
+            span,
+            modes: run.layout.modes.clone(),
+            visits,
+            events,
+            panels,
+            frames: drawing.as_ref().map(|drawing| frames(run, drawing)),
+            drawing,
+            coordinates: (run.layout.coordinates.iter())
+                .map(|c| c.name.clone())
+                .collect(),
+            parameters: run.subject.parameters.iter().cloned().collect(),
+            notes,
+        }
+    }
+}
+
+/// The curves of a panel; none where their range is not to be drawn.
+fn panel(run: &Run, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
+    let name = |i: usize| run.trajectory.columns[i].name.clone();
+    let drawable = |&i: &usize| {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (_, x) in run.curve(i).filter(|(_, x)| !x.is_nan()) {
+            (low, high) = (low.min(x), high.max(x));
+        }
+        // Scales of a canvas divide by the range and multiply by pixels.
+        let range = high - low;
+        let is_drawable = range.is_finite()
+            && (range == 0.0 || range > 1e-290)
+            && high.abs().max(low.abs()) < 1e300;
+        if !is_drawable {
+            notes.push(format!(
+                "not drawn: {}, from {} to {} {}",
+                name(i),
+                exact(low),
+                exact(high),
+                run.trajectory.columns[i].unit
+            ));
+        }
+        is_drawable
+    };
+    let columns: Vec<usize> = group.columns.iter().copied().filter(drawable).collect();
+    let &first = columns.first()?;
+    let t: Vec<f64> = run.curve(first).map(|(t, _)| t).collect();
+    let values = |&i: &usize| run.curve(i).map(|(_, x)| x).collect();
+    let y: Vec<Vec<f64>> = columns.iter().map(values).collect();
+    let kept = thin(&y, t.len(), MOST_POINTS);
+    let pick = |column: &Vec<f64>| kept.iter().map(|&i| column[i]).collect();
+    Some(Panel {
+        kind: match group.group {
+            Group::Coordinate => "coordinate",
+            Group::Velocity => "velocity",
+            Group::Reaction => "reaction",
+            Group::Discrete => "discrete",
+            Group::Energy => "energy",
+            Group::Input => "input",
+        },
+        unit: run.trajectory.columns[first].unit.clone(),
+        names: columns.iter().map(|&i| name(i)).collect(),
+        t: pick(&t),
+        y: y.iter().map(pick).collect(),
+    })
+}
+
+/// Visits of modes and times of transitions; of many, one in each of [`MOST_MARKS`] parts of the run.
+#[expect(clippy::type_complexity)]
+fn marks(
+    run: &Run,
+    [first, last]: [f64; 2],
+    notes: &mut Vec<String>,
+) -> (Vec<(f64, f64, usize)>, Vec<(f64, &'static str)>) {
+    let mode = run.events.first().map_or(run.end.mode, |e| e.from);
+    let mut visits = vec![(first, last, mode)];
+    let mut events: Vec<(f64, &'static str)> = Vec::new();
+    let part = match run.events.len() > MOST_MARKS {
+        true => (last - first) / MOST_MARKS as f64,
+        false => 0.0,
+    };
+    for event in &run.events {
+        if let Some(&(t, _)) = events.last()
+            && event.t - t < part
+        {
+            visits.last_mut().expect("there is one").2 = event.to;
+            continue;
+        }
+        events.push((event.t, event.transition));
+        let visit = visits.last_mut().expect("there is one");
+        if visit.2 != event.to {
+            visit.1 = event.t;
+            visits.push((event.t, last, event.to));
+        }
+    }
+    if part > 0.0 {
+        notes.push(format!(
+            "{} of {} transitions are marked",
+            events.len(),
+            run.events.len()
+        ));
+    }
+    (visits, events)
+}
+
+/// Key frames: the samples and both sides of every transition, as far as the drawing depends on them.
+fn frames(run: &Run, drawing: &Value) -> Frames {
+    let symbols = drawing["symbols"].as_array().map_or(&[][..], Vec::as_slice);
+    let names = symbols.iter().filter_map(Value::as_str);
+    let names: Vec<String> = names
+        .flat_map(|name| [name.to_owned(), format!("{name}.rate")])
+        .collect();
+    let columns: Vec<(String, usize)> = (names.into_iter())
+        .filter_map(|name| Some((name.clone(), run.trajectory.column(&name)?)))
+        .collect();
+    let Some((_, any)) = columns.first() else {
+        // A drawing of parameters alone.
+        return Frames {
+            t: vec![0.0, run.end.t],
+            columns: BTreeMap::new(),
+        };
+    };
+    let t: Vec<f64> = run.curve(*any).map(|(t, _)| t).collect();
+    let values: Vec<Vec<f64>> = (columns.iter())
+        .map(|(_, i)| run.curve(*i).map(|(_, x)| x).collect())
+        .collect();
+    let kept = thin(&values, t.len(), MOST_POINTS);
+    Frames {
+        t: kept.iter().map(|&i| t[i]).collect(),
+        columns: (columns.into_iter().zip(&values))
+            .map(|((name, _), column)| (name, kept.iter().map(|&i| column[i] as f32).collect()))
+            .collect(),
+    }
+}
