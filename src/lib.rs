@@ -37,6 +37,7 @@ pub mod integrate;
 #[allow(unsafe_code)]
 pub mod kernel;
 pub mod model;
+pub mod motion;
 pub mod page;
 pub mod precision;
 pub mod record;
