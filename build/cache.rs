@@ -1,9 +1,9 @@
 //! Folders that are expensive to make, kept under a key that says what they were made from.
 //!
-//! An entry is filled in a temporary sibling, listed in an inventory, and renamed into place under
-//! a file lock. So it is there whole or not at all, and of two builds that want it at once one
-//! makes it and the other waits. An entry from which something was deleted later no longer agrees
-//! with its inventory and is made again.
+//! An entry is filled in a temporary sibling, listed in an inventory, written to the disk, and renamed
+//! into place under a file lock. So it is there whole or not at all, and of two builds that want it at
+//! once one makes it and the other waits. An entry in which something was changed or deleted later no
+//! longer agrees with its inventory and is made again.
 
 use std::env;
 use std::fs::{self, File, OpenOptions};
@@ -11,12 +11,31 @@ use std::path::{self, Path, PathBuf};
 use std::time::SystemTime;
 
 use super::error::Error;
+use super::fingerprint::Fingerprint;
 
 /// Variable that names the cache folder.
 pub const SETTING: &str = "DALEMBERT_CACHE";
 
-/// Name of the list of an entry's files and sizes. It is written last.
+/// Name of the list of an entry's files. It is written last.
 pub const INVENTORY: &str = "inventory";
+
+/// A kind of entries: a sub-folder, and what its inventories compare.
+#[derive(Debug, Clone, Copy)]
+pub struct Kind {
+    /// Name of the sub-folder.
+    pub name: &'static str,
+    /// What is compared.
+    pub compares: Compares,
+}
+
+/// What an inventory knows of a file.
+#[derive(Debug, Clone, Copy)]
+pub enum Compares {
+    /// A hash of its content.
+    Digests,
+    /// Its size: for what takes longer to read than a build, and was checked when it was installed.
+    Sizes,
+}
 
 /// A folder of entries, in one sub-folder per kind.
 #[derive(Debug)]
@@ -58,47 +77,48 @@ impl Cache {
     }
 
     /// Whether the entry is there, whole.
-    pub fn contains(&self, kind: &str, key: &str) -> bool {
-        is_whole(&self.path(kind, key))
+    pub fn contains(&self, kind: Kind, key: &str) -> bool {
+        is_whole(&self.path(kind, key), kind.compares)
     }
 
     /// The folder of the entry `key`, made by `fill` (which gets an empty folder) if it is not
     /// there or not whole.
     pub fn entry(
         &self,
-        kind: &str,
+        kind: Kind,
         key: &str,
         fill: impl FnOnce(&Path) -> Result<(), Error>,
     ) -> Result<PathBuf, Error> {
         let entry = self.path(kind, key);
-        if is_whole(&entry) {
+        if is_whole(&entry, kind.compares) {
             return Ok(entry);
         }
-        let folder = self.root.join(kind);
+        let folder = self.root.join(kind.name);
         fs::create_dir_all(&folder).map_err(Error::io("create", &folder))?;
         let lock_path = folder.join(format!("{key}.lock"));
         let lock = File::create(&lock_path).map_err(Error::io("create", &lock_path))?;
         // Held until the file is closed, by a crash too.
         lock.lock().map_err(Error::io("lock", &lock_path))?;
-        if is_whole(&entry) {
+        if is_whole(&entry, kind.compares) {
             return Ok(entry);
         }
         let staging = folder.join(format!("{key}.partial"));
         remove(&staging)?;
         remove(&entry)?;
         fs::create_dir(&staging).map_err(Error::io("create", &staging))?;
-        let filled = fill(&staging).and_then(|()| write_inventory(&staging));
+        let filled = fill(&staging).and_then(|()| write_inventory(&staging, kind.compares));
         if let Err(error) = filled {
             remove(&staging)?;
             return Err(error);
         }
         fs::rename(&staging, &entry).map_err(Error::io("create", &entry))?;
+        sync_folder(&folder)?;
         Ok(entry)
     }
 
     /// Removes the entries of a kind other than `keys`. For a cache that no other build uses.
-    pub fn retain(&self, kind: &str, keys: &[String]) -> Result<(), Error> {
-        for path in list(&self.root.join(kind))? {
+    pub fn retain(&self, kind: Kind, keys: &[String]) -> Result<(), Error> {
+        for path in list(&self.root.join(kind.name))? {
             if path.is_dir() && !keys.iter().any(|key| path.ends_with(key)) {
                 remove(&path)?;
             }
@@ -106,8 +126,8 @@ impl Cache {
         Ok(())
     }
 
-    fn path(&self, kind: &str, key: &str) -> PathBuf {
-        self.root.join(kind).join(key)
+    fn path(&self, kind: Kind, key: &str) -> PathBuf {
+        self.root.join(kind.name).join(key)
     }
 }
 
@@ -173,37 +193,52 @@ fn target_dir(out_dir: &Path) -> &Path {
         .unwrap_or(out_dir)
 }
 
-/// The sizes and names of the files of an entry, a line each.
-fn inventory(entry: &Path) -> Result<String, Error> {
+/// What an inventory says of a file.
+fn mark(file: &Path, compares: Compares) -> std::io::Result<String> {
+    Ok(match compares {
+        Compares::Digests => Fingerprint::default().with(fs::read(file)?).finish(),
+        Compares::Sizes => fs::metadata(file)?.len().to_string(),
+    })
+}
+
+/// Lists what an entry holds, a mark and a name a line, in a file older than any build: cargo is told to
+/// watch it, and must see it vanish but not appear. All of it is on the disk before it gets its name.
+fn write_inventory(entry: &Path, compares: Compares) -> Result<(), Error> {
     let inventory = entry.join(INVENTORY);
     let mut lines = String::new();
     for file in files(entry, &|path| path == inventory)? {
-        let size = fs::metadata(&file).map_err(Error::io("read", &file))?.len();
+        let mark = mark(&file, compares).map_err(Error::io("read", &file))?;
         let name = file.strip_prefix(entry).unwrap_or(&file);
-        lines += &format!("{size} {}\n", name.display());
+        lines += &format!("{mark} {}\n", name.display());
+        (File::open(&file).and_then(|file| file.sync_all())).map_err(Error::io("write", &file))?;
     }
-    Ok(lines)
+    fs::write(&inventory, lines)
+        .and_then(|()| File::options().write(true).open(&inventory))
+        .and_then(|file| {
+            file.set_modified(SystemTime::UNIX_EPOCH)?;
+            file.sync_all()
+        })
+        .map_err(Error::io("write", &inventory))
 }
 
-/// Lists what an entry holds, in a file older than any build: cargo is told to watch it, and must
-/// see it vanish but not appear.
-fn write_inventory(entry: &Path) -> Result<(), Error> {
-    let path = entry.join(INVENTORY);
-    fs::write(&path, inventory(entry)?)
-        .and_then(|()| File::options().write(true).open(&path))
-        .and_then(|file| file.set_modified(SystemTime::UNIX_EPOCH))
-        .map_err(Error::io("write", &path))
+/// Writes the names in a folder to the disk, where a folder can be opened for that.
+fn sync_folder(folder: &Path) -> Result<(), Error> {
+    if cfg!(unix) {
+        (File::open(folder).and_then(|folder| folder.sync_all()))
+            .map_err(Error::io("write to", folder))?;
+    }
+    Ok(())
 }
 
-/// Whether an entry holds every file of its inventory, in its size. Files added since (bytecode,
-/// say) do no harm.
-fn is_whole(entry: &Path) -> bool {
+/// Whether an entry holds every file of its inventory, as it was. Files added since (bytecode, say) do
+/// no harm.
+fn is_whole(entry: &Path, compares: Compares) -> bool {
     let Ok(inventory) = fs::read_to_string(entry.join(INVENTORY)) else {
         return false;
     };
     inventory.lines().all(|line| {
-        line.split_once(' ').is_some_and(|(size, name)| {
-            fs::metadata(entry.join(name)).is_ok_and(|file| Ok(file.len()) == size.parse())
+        line.split_once(' ').is_some_and(|(known, name)| {
+            mark(&entry.join(name), compares).is_ok_and(|found| found == known)
         })
     })
 }

@@ -3,14 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::cache::Cache;
+use super::cache::{Cache, Compares, Kind};
 use super::error::Error;
 use super::fingerprint::Fingerprint;
 use super::generate::Generated;
 use super::parallel;
 
 /// Kind of the entries that hold libraries, in the package's own output folder.
-const KIND: &str = "libraries";
+const KIND: Kind = Kind {
+    name: "libraries",
+    compares: Compares::Digests,
+};
 
 /// C that generated code and the crate call, relative to the project, and for lanes; what they include.
 const ELEMENTARY: [&str; 3] = ["codegen/elementary.c", "codegen/ranges.c", "codegen/sums.c"];

@@ -5,14 +5,17 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::cache::{self, Cache};
+use super::cache::{self, Cache, Compares, Kind};
 use super::error::{Error, ModelFailure};
 use super::fingerprint::Fingerprint;
 use super::install::{Environment, Lock};
 use super::parallel;
 
 /// Kind of the cache entries that hold generated code.
-const KIND: &str = "generated";
+const KIND: Kind = Kind {
+    name: "code",
+    compares: Compares::Digests,
+};
 
 /// How the generator begins when it names the fault of a model, with file and line.
 const NAMED_FAULT: &str = "error: ";

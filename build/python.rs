@@ -225,9 +225,11 @@ fn command(program: &OsStr) -> Command {
 }
 
 /// A command that runs `program` as Python, in UTF-8 and without the caller's Python environment:
-/// an active virtual environment, module paths, pip's options other than how to reach a registry.
+/// an active virtual environment, module paths, packages and start-up code of the user's own site, pip's
+/// options other than how to reach a registry.
 fn isolated(program: &OsStr) -> Command {
     let mut command = Command::new(program);
+    command.arg("-s");
     for (name, _) in env::vars_os().filter(|(name, _)| is_foreign(name)) {
         command.env_remove(name);
     }

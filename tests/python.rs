@@ -5,6 +5,7 @@ use std::process::Command;
 /// Runs the tests of a folder under the project's root.
 fn run_tests(folder: &str) {
     let mut command = Command::new(env!("DALEMBERT_PYTHON_EXE"));
+    command.arg("-s");
     for (name, _) in std::env::vars_os() {
         let name = name.to_string_lossy().into_owned();
         if name.starts_with("PYTHON") || name == "VIRTUAL_ENV" {
@@ -13,7 +14,7 @@ fn run_tests(folder: &str) {
     }
     let packages = env!("DALEMBERT_PYTHON_PATH");
     if !packages.is_empty() {
-        command.env("PYTHONPATH", packages);
+        command.arg("-S").env("PYTHONPATH", packages);
     }
     let output = command
         .current_dir(env!("CARGO_MANIFEST_DIR"))

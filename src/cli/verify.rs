@@ -107,7 +107,8 @@ fn python() -> std::result::Result<(PathBuf, Command), Failure> {
             command.env_remove(name);
         }
     }
-    command.env("PYTHONUTF8", "1");
+    // Without packages and start-up code of the user's own site.
+    command.arg("-s").env("PYTHONUTF8", "1");
     if !packages.is_empty() {
         if !Path::new(&packages).is_dir() {
             let packages = Path::new(&packages).display();
@@ -116,7 +117,7 @@ fn python() -> std::result::Result<(PathBuf, Command), Failure> {
                 advice()
             )));
         }
-        command.env("PYTHONPATH", packages);
+        command.arg("-S").env("PYTHONPATH", packages);
     }
     Ok((program, command))
 }

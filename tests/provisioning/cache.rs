@@ -40,10 +40,18 @@ fn a_damaged_cache_heals() {
     succeeds(&mut fixture.installing());
     assert_eq!(fixture.log(), ["install"]);
 
-    let generated = only_folder(&cache.join("generated"), "alpha-");
+    let generated = only_folder(&cache.join("code"), "alpha-");
     fs::remove_file(generated.join("alpha/model.rs")).unwrap();
     succeeds(&mut fixture.installing());
     assert_eq!(fixture.log(), ["generate alpha"]);
+
+    // Of the same size, and C as good as before.
+    let c = generated.join("alpha/alpha.c");
+    let text = fs::read_to_string(&c).unwrap();
+    fs::write(&c, text.replace("return 1.0", "return 7.0")).unwrap();
+    succeeds(&mut fixture.installing());
+    assert_eq!(fixture.log(), ["generate alpha"]);
+    assert_eq!(fs::read_to_string(&c).unwrap(), text);
 
     // What a killed installation leaves.
     let partial = format!("{}.partial", packages.display());
@@ -71,7 +79,7 @@ fn a_home_that_cannot_be_written_is_done_without() {
         succeeds(&mut script);
         assert_eq!(fixture.log(), ["generate alpha", "generate beta"]);
         let cache = fixture.path("target/dalembert-cache");
-        only_folder(&cache.join("generated"), "alpha-");
+        only_folder(&cache.join("code"), "alpha-");
         fs::remove_dir_all(cache).unwrap();
     }
     assert!(!missing.exists());
@@ -81,8 +89,8 @@ fn a_home_that_cannot_be_written_is_done_without() {
 fn the_cache_can_be_put_elsewhere() {
     let fixture = Fixture::new();
     for (variable, folder) in [
-        ("DALEMBERT_CACHE", "cache/generated"),
-        ("XDG_CACHE_HOME", "caches/dalembert/generated"),
+        ("DALEMBERT_CACHE", "cache/code"),
+        ("XDG_CACHE_HOME", "caches/dalembert/code"),
     ] {
         let value = fixture.path(folder.split('/').next().unwrap());
         succeeds(fixture.script().env(variable, value));

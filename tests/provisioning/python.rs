@@ -1,6 +1,7 @@
 //! Which interpreter is taken, what is installed for it, and what is said when that fails.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::fixture::{Fixture, PYTHON, VERSION, fails, succeeds};
@@ -189,6 +190,37 @@ fn the_python_environment_of_the_caller_changes_nothing() {
             .env("PIP_CONFIG_FILE", settings),
     );
     assert_eq!(fixture.log(), ALL);
+}
+
+/// Code that Python runs at its start where a user or a site wants it to.
+#[test]
+fn no_code_of_a_user_or_a_site_runs_in_the_generator() {
+    let Some(fixture) = Fixture::if_pip() else {
+        return;
+    };
+    let ask = "import site, sys; print(site.getusersitepackages())";
+    let user_site = Command::new(PYTHON)
+        .args(["-c", ask])
+        .env("HOME", fixture.path("home"))
+        .env_remove("PYTHONUSERBASE")
+        .output()
+        .expect("the interpreter runs");
+    let user_site = PathBuf::from(String::from_utf8(user_site.stdout).unwrap().trim());
+    let mark = fixture.path("mark");
+    let code = format!("open({mark:?}, 'a').write('run')");
+    let below_home = user_site.strip_prefix(fixture.path("home"));
+    let user_site = Path::new("home").join(below_home.expect("the user's site is at home"));
+    fixture.write(user_site.join("usercustomize.py").to_str().unwrap(), &code);
+    fixture.write(user_site.join("casadi.py").to_str().unwrap(), &code);
+    // Where the generator is started.
+    fixture.write("project/sitecustomize.py", &code);
+    succeeds(&mut fixture.installing());
+    assert_eq!(fixture.log(), ALL);
+    assert!(!mark.exists());
+    // Nor for an interpreter that is named.
+    fixture.model("alpha", "3.0");
+    succeeds(&mut fixture.script());
+    assert!(!mark.exists());
 }
 
 #[test]
