@@ -1,4 +1,4 @@
-//! How far and which way the tank walks, as the table of the README:
+//! How far and which way the tank walks, as the table of docs/walking.md:
 //! `cargo run --release --example walk`.
 //!
 //! Every scene of the tank under both rule sets and both landing laws.

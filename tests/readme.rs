@@ -1,4 +1,4 @@
-//! What the README says is what the program does.
+//! What the README and the page of the walk say is what the program does.
 
 use dalembert::kernel::MODELS;
 use dalembert::scene::{Disk, Scene};
@@ -10,11 +10,11 @@ mod walk;
 
 #[test]
 fn the_table_of_the_walk_is_the_computed_one() {
-    let readme = include_str!("../README.md");
+    let page = include_str!("../docs/walking.md");
     for row in walk::table().lines() {
         assert!(
-            readme.contains(row),
-            "README.md lacks the row\n{row}\nrun `cargo run --release --example walk`"
+            page.contains(row),
+            "docs/walking.md lacks the row\n{row}\nrun `cargo run --release --example walk`"
         );
     }
 }

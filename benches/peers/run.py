@@ -1,7 +1,7 @@
 """Compares dalembert with other solvers on one machine: python3 benches/peers/run.py SCRATCH; see README.md.
 
 Installs the peers into the folder SCRATCH (once), runs them, and writes results.csv, best.md and overhead.md here,
-docs/peers.svg and the table in README.md of the project. The rows of each peer and problem are written as soon as they are there.
+docs/peers.svg and the table in docs/peers.md. The rows of each peer and problem are written as soon as they are there.
 """
 
 import argparse
@@ -95,7 +95,7 @@ def main():
     text = table(rows)
     (results / "best.md").write_text(text)
     print(text)
-    page = ROOT / "README.md"
+    page = ROOT / "docs" / "peers.md"
     if not arguments.quick:
         page.write_text(with_summary(page.read_text(), rows))
     peers.venv()
