@@ -10,6 +10,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Dict, List, Optional, Tuple
 
+from .intervals import intervals, signs
 from .judgements import Violation
 
 # A budget of some ten seconds. What is undecided by then lies at a point where the matrix is nearly
@@ -52,24 +53,6 @@ def states(paper, forms=None):
     if forms is not None:
         names = [n for n in names if any(n in form.names() for form in forms)]
     return [dict(zip(names, values)) for values in product((1, -1), repeat=len(names))]
-
-
-def intervals(values):
-    """Intervals by name from decimal strings, numbers or (low, high) pairs."""
-    from mpmath import iv
-
-    return {n: iv.mpf(list(map(str, v))) if isinstance(v, tuple) else iv.mpf(str(v)) for n, v in values.items()}
-
-
-def signs(forms, values):
-    """For each form +1, -1 or 0 (not decided) over intervals by name."""
-    from mpmath import iv
-
-    result = []
-    for form in forms:
-        value = form.evaluate(values, iv.sin, iv.cos, iv.mpf(0))
-        result.append(1 if value.a > 0 else -1 if value.b < 0 else 0)
-    return result
 
 
 @dataclass

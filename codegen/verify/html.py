@@ -2,7 +2,7 @@
 
 from html import escape
 
-from . import latex
+from . import mathml, transcription
 from .corrections import KINDS
 from .judgements import TITLES
 from .report import closed, effect_lines, extent_lines, number_text, verdict_text
@@ -26,7 +26,7 @@ def inline(form, paper):
     """A form, or words, inside a sentence."""
     if isinstance(form, str):
         return escape(form)
-    return latex.mathml_inline(form_latex(form, paper))
+    return mathml.mathml_inline(form_latex(form, paper))
 
 
 def as_html(report):
@@ -61,7 +61,7 @@ def _equations(report):
         count = f": {len(comparison.agree)} of {total} terms agree" if comparison else ""
         out.append(f"<h3>({escape(number)}) {escape(equation.title)}{count}</h3>")
         if equation.latex:
-            out.append(f'<div class="equation">{latex.mathml(latex.parse(equation.latex), marks)}</div>')
+            out.append(f'<div class="equation">{mathml.mathml(transcription.statement(equation, paper), marks)}</div>')
         else:
             terms = []
             for k, form in enumerate(report.printed.forms[number]):

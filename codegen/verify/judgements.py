@@ -1,7 +1,8 @@
 """Five of the six judgements on printed equations; definite.py has the sixth.
 
 Each takes a `Subject` and returns its violations. Each is exact: a violation is a non-zero
-normal form, and none means that the identity is proved.
+normal form, and none means that the identity is proved, where the judgement has something to
+judge by: `unjudged` says where it has not.
 """
 
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from fractions import Fraction
 from itertools import product
 from typing import List, Tuple
 
-from sympy import sympify
+from sympy import Expr, sympify
 
 from . import units
 from .algebra import Opaque
@@ -22,7 +23,7 @@ TITLES = {
     "difference": "Term by term against the energies",
     "mirror": "Mirror symmetry",
     "galilei": "Galilean invariance",
-    "definite": "Positive definite kinetic energy",
+    "definite": "Positive definite kinetic energy at rest",
 }
 
 
@@ -43,6 +44,8 @@ class Subject:
 
     def __init__(self, paper, base=None):
         """`base` is a subject that shares all but a few equations: their forms are not redone."""
+        if not base:
+            paper.check()
         self.paper = paper
         self.ring = base.ring if base else ring_of(paper)
         self.s = base.s if base else sympy_namespace(paper)
@@ -57,6 +60,8 @@ class Subject:
             else:
                 self.expressions[number] = self._terms(equation)
                 self.forms[number] = [self.ring.read(term) for term in self.expressions[number]]
+            if not base and not self.forms[number]:
+                raise PaperError(f"equation ({number}) has no terms")
         if base:
             self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
         self.multipliers = self._multipliers()
@@ -64,9 +69,20 @@ class Subject:
     def _terms(self, equation):
         """The terms of an equation as SymPy expressions; an error in its function names it."""
         try:
-            return [sympify(term) for term in equation.terms(self.s, self.m)]
+            terms = list(equation.terms(self.s, self.m))
         except Exception as error:  # whatever a model file does wrong is its author's to read
             raise PaperError(f"equation ({equation.number}): {error}") from error
+        known, result = set(self.paper.names()), []
+        for k, term in enumerate(terms, 1):
+            # text would be read as a formula of other symbols, a list as no formula at all
+            if not isinstance(term, (Expr, int, Fraction)) or isinstance(term, bool):
+                raise PaperError(f"equation ({equation.number}), term {k}: {term!r} is not an expression of the symbols s.… "
+                                 "with exact numbers" + ("; write *group(...)" if isinstance(term, (list, tuple)) else ""))
+            result.append(sympify(term))
+            for symbol in sorted(result[-1].free_symbols, key=str):
+                if symbol.name not in known:
+                    raise PaperError(f"equation ({equation.number}), term {k}: the symbol '{symbol}' is not declared")
+        return result
 
     def each(self, name, judge, *context):
         """The violations of all equations, where `judge(number)` gives those of one: what is known
@@ -121,7 +137,7 @@ def dimensions(subject, motion=None) -> List[Violation]:
             try:
                 found.append(units.measure(term, subject.dimension))
             except units.UnitError as error:
-                found.append(str(error))
+                found.append(error)
         if equation.kind == "motion":
             expected = units.parse("J").times(units.parse(symbols[equation.of].unit), -1)
         elif equation.kind == "value":
@@ -129,9 +145,14 @@ def dimensions(subject, motion=None) -> List[Violation]:
         elif equation.kind == "reset":
             expected = subject.dimension["d" + equation.of]
         else:
-            expected = max(found, key=found.count)
+            # an error is no dimension: terms that are wrong in the same way do not agree
+            readable = [x for x in found if not isinstance(x, units.UnitError)]
+            expected = max(readable, key=readable.count, default=None)
         for index, dimension in enumerate(found):
-            if dimension != expected:
+            if isinstance(dimension, units.UnitError):
+                violations.append(Violation("dimensions", (number,), (index,), [
+                    "the term ", subject.forms[number][index], f" has no dimension: it is or contains {dimension}"]))
+            elif dimension != expected:
                 violations.append(Violation("dimensions", (number,), (index,), [
                     "the term ", subject.forms[number][index], f" is in {dimension}, the equation in {expected}"]))
         return violations
@@ -157,6 +178,8 @@ def lagrangian(subject, motion=None) -> List[Violation]:
     def report(i, j, what, form):
         violations.append(Violation("lagrangian", (motions[i].number, motions[j].number), (), [what, form]))
 
+    for e, row in zip(motions, rows):
+        violations += _outside(subject, e, row)
     for i, j in product(range(len(q)), repeat=2):
         number_i, number_j = motions[i].number, motions[j].number
         for name in q:
@@ -177,11 +200,43 @@ def lagrangian(subject, motion=None) -> List[Violation]:
     return violations
 
 
+def _outside(subject, equation, row):
+    """What the Helmholtz conditions cannot judge and no Lagrangian gives: a sign or modulus of what
+    moves (its derivative is not a function), and a force that is given elsewhere."""
+    violations = []
+    moving = {d + x.name for x in subject.paper.symbols.values() if x.role in ("coordinate", "input") for d in ("d", "dd")}
+    for name in sorted({n for monomial, _ in row.terms for n, _ in monomial if isinstance(n, Opaque)}, key=str):
+        if moving & name.argument.names():
+            violations.append(Violation("lagrangian", (equation.number,), _holding(subject, equation.number, name), [
+                f"no Lagrangian gives ({equation.number}) the factor ", row.ring.symbol(name), "; what is dissipative is declared so"]))
+    for name in sorted(row.names()):
+        symbol = subject.paper.symbols.get(name)
+        if symbol and symbol.role == "force":
+            violations.append(Violation("lagrangian", (equation.number,), _holding(subject, equation.number, name), [
+                f"({equation.number}) contains the force {name}, which may depend on anything: put in what it is, or declare it "
+                "dissipative"]))
+    return violations
+
+
+def _holding(subject, number, name):
+    """Ordinals of the terms that contain a name or an opaque factor."""
+    def holds(form):
+        return name in form.names() or any(n == name for monomial, _ in form.terms for n, _ in monomial)
+
+    return tuple(k for k, form in enumerate(subject.forms[number]) if holds(form))
+
+
 def _momentum(subject, number, q, chain):
     """The Helmholtz conditions of a reaction of a translation of the whole system. No other
-    equation depends on its displacement or velocity, so they concern its own terms only."""
+    equation depends on its displacement or velocity, so they concern its own terms only. A sign
+    that multiplies all terms alike (that of friction) is a constant here; another is no momentum."""
     total = subject.total(number)
     violations = []
+    moving = set(chain) | set(chain.values())
+    opaque = [{n for n, _ in monomial if isinstance(n, Opaque) and moving & n.argument.names()} for monomial, _ in total.terms]
+    if opaque and any(x != opaque[0] or any(n.function != "sign" for n in x) for x in opaque):
+        violations.append(Violation("lagrangian", (number,), (), [
+            f"({number}) is not the rate of a momentum: a sign or modulus of what moves multiplies some of its terms only"]))
     for name in q:
         velocity, mass = total.diff("d" + name), total.diff("dd" + name)
         if form := velocity - mass.rate(chain) * 2:
@@ -209,37 +264,23 @@ class Comparison:
     difference: object
 
 
-def _opaque(form):
-    """Whether a form has sign(...) or Abs(...) in it."""
-    return any(isinstance(name, Opaque) for monomial, _ in form.terms for name, _ in monomial)
-
-
-def _aligned(form):
-    """A form with |u| read as (discrete state) u: a condition that sums moduli can only be right
-    where everything pushes to the side of the pivot."""
-    states = sorted(form.ring.involutions)
-    moduli = {n for monomial, _ in form.terms for n, _ in monomial if isinstance(n, Opaque) and n.function == "Abs"}
-    if len(states) != 1:
-        return form
-    return form.substitute({modulus: modulus.argument * form.ring.symbol(states[0]) for modulus in moduli})
-
-
 def compare(subject, motion, number):
     """Judgement 3 for one equation, or None where the energies say nothing about it. A term
     agrees if none of its parts occurs in the difference of printed and derived."""
-    reference = motion.reference(subject.paper.equations[number])
+    equation = subject.paper.equations[number]
+    reference = motion.reference(equation)
     if reference is None:
         return None
-    kind = subject.paper.equations[number].kind
     forms = subject.forms[number]
-    if kind == "rule":
-        # only the sign counts: the printed sum may be the derived one over a positive factor
-        scaled = [form * motion.scale(number) for form in forms]
-        forms = min((forms, scaled), key=lambda f: len((sum(f, subject.ring.number(0)) - reference).terms))
-    if kind == "condition" and not _opaque(reference):
-        forms = [_aligned(form) for form in forms]
+    if equation.kind == "rule":
+        # the reference is positive where the state is +1; only the sign counts: the printed sum may
+        # be the derived one over a positive factor
+        orientation = equation.result * (1 if equation.relation == ">" else -1)
+        scaled = [form * motion.scale(number) * orientation for form in forms]
+        forms = min(([form * orientation for form in forms], scaled),
+                    key=lambda f: len((sum(f, subject.ring.number(0)) - reference).terms))
     total = sum(forms, subject.ring.number(0))
-    factors = subject.factors() if kind == "motion" else [subject.ring.number(1)]
+    factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
     factor = min(factors, key=lambda c: len((total - c * reference).terms))
     difference = total - factor * reference
     differ = [i for i, form in enumerate(forms) if form.terms.keys() & difference.terms.keys()]
@@ -261,11 +302,6 @@ def difference(subject, motion) -> List[Violation]:
                 "the energies do not give ", subject.forms[number][index]]))
         for form in comparison.absent:
             violations.append(Violation("difference", (number,), (), ["the energies give also ", form]))
-        equation = subject.paper.equations[number]
-        moduli = [i for i, form in enumerate(subject.forms[number]) if _opaque(form)]
-        if equation.kind == "condition" and len(moduli) > 1 and not _opaque(motion.reference(equation)):
-            violations.append(Violation("difference", (number,), tuple(moduli), [
-                "the condition sums moduli where the energies give the modulus of a sum"]))
         return violations
 
     return subject.each("difference", judge, motion)
@@ -322,20 +358,46 @@ def galilei(subject, motion=None) -> List[Violation]:
             return violations
         forms = [form.substitute(dissipative) for form in subject.forms[number]]
         total = subject.conservative(number)
-        for name in (x, z, "d" + x, "d" + z):
-            if total.diff(name):
-                blame = tuple(i for i, form in enumerate(forms) if form.diff(name))
-                what = "velocity" if name.startswith("d") else "displacement"
+        for name, what in ((x, "displacement"), (z, "displacement"), ("d" + x, "velocity"), ("d" + z, "velocity")):
+            # the velocity of the slip may stand in a sign: friction knows it
+            moved = {name: ring.symbol(name) + shift}
+            if total.diff(name) if name == "d" + x else total.substitute(moved) != total:
+                blame = tuple(i for i, form in enumerate(forms) if form.substitute(moved) != form)
                 violations.append(Violation("galilei", (number,), blame, [
                     f"a constant {what} added to that of the ground and tank changes ", total - total.substitute({name: 0})]))
         left = total.substitute(swap) - total
         if left and ("dd" + x in total.names() or equation.kind != "value"):
             violations.append(Violation("galilei", (number,), (), [
                 f"the accelerations of {x} and {z} do not enter as their sum; the factor of dd{x} less that of dd{z} is ",
-                left.coefficient("(shift)")]))
+                left.coefficient("(shift)") or "not a number"]))
         return violations
 
     return subject.each("galilei", judge)
+
+
+def unjudged(subject, motion):
+    """For each judgement that has nothing to judge by, why: its silence says nothing."""
+    paper, reasons = subject.paper, {}
+    if not paper.motions():
+        reasons["lagrangian"] = reasons["definite"] = "there are no equations of motion"
+        if any(equation.momentum for equation in paper.equations.values()):
+            del reasons["lagrangian"]
+    elif not paper.sets:
+        reasons["definite"] = "the paper has no parameter sets"
+    if motion is None:
+        reasons["difference"] = "no energies are given"
+    elif all(motion.reference(equation) is None for equation in paper.equations.values()):
+        reasons["difference"] = "the energies say nothing about any equation"
+    if all(symbol.mirror == 1 for symbol in paper.symbols.values()):
+        reasons["mirror"] = "no symbol is declared to change its sign in the mirror image"
+    if paper.translation is None:
+        reasons["galilei"] = "no translation is declared"
+    return reasons
+
+
+def unreferenced(subject, motion):
+    """Numbers of the equations that the energies say nothing about."""
+    return [n for n, equation in subject.paper.equations.items() if motion is None or motion.reference(equation) is None]
 
 
 FIVE = {"dimensions": dimensions, "lagrangian": lagrangian, "difference": difference, "mirror": mirror, "galilei": galilei}

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Callable, Dict, Optional
 
 from .algebra import Ring
+from .intervals import intervals, signs
 from .printed import PaperError, Symbol, latex_name
 
 
@@ -15,8 +16,8 @@ class Energies:
     `forces` gives further generalized forces by coordinate. `squares`, where known, lists pairs
     (coefficient, velocity) with T = 1/2 sum coefficient velocity^2 while the further coordinates
     are held: a certificate that T >= 0 where no coefficient is negative. `references` says,
-    by equation number, what a printed value, condition or rule must equal: a function of `s`, `m`
-    and the derived `Motion`. Coordinates that the paper does not have (the height whose reaction
+    by equation number, what a printed value, condition or rule must equal (of a rule: what is
+    positive where the state is +1): a function of `s`, `m` and the derived `Motion`. Coordinates that the paper does not have (the height whose reaction
     is the normal force) are declared with `coordinate` and are held at zero.
     """
 
@@ -63,11 +64,12 @@ def ring_of(paper):
     return Ring([x.name for x in symbols if x.role == "discrete"], [x.name for x in symbols if x.role == "parameter"])
 
 
-def sympy_namespace(paper, extra=()):
-    """SymPy symbols for every name of a paper and of `extra` coordinates."""
+def sympy_namespace(paper, extra=(), defined=True):
+    """SymPy symbols for every name of a paper and of `extra` coordinates. What the paper leaves
+    undefined is put in by its reading, or (not `defined`) is a symbol of its own."""
     import sympy
 
-    names = [n for n in paper.names() if n not in paper.definitions]
+    names = [n for n in paper.names() if not (defined and n in paper.definitions)]
     for symbol in extra:
         names += [symbol, "d" + symbol, "dd" + symbol]
     return paper.namespace({n: sympy.Symbol(n, real=True) for n in names}, Mathematics())
@@ -93,6 +95,22 @@ class Motion:
         self.dissipation = self._read(energies.dissipation) if energies.dissipation else self.ring.number(0)
         self.held = {p + n: 0 for n in energies.extra for p in ("", "d", "dd")}
         self._residuals = {}
+        self._check(moving)
+
+    def _check(self, moving):
+        """Raises a PaperError where Lagrange's equations would not be what `residual` computes."""
+        rates, accelerations = {"d" + n for n in moving}, {"dd" + n for n in moving}
+        wrong = [("kinetic energy", self.kinetic, accelerations), ("potential", self.potential, rates | accelerations),
+                 ("dissipation", self.dissipation, accelerations)]
+        for what, form, names in wrong:
+            if found := sorted(form.names() & names):
+                raise PaperError(f"the {what} of '{self.energies.name}' contains {', '.join(found)}")
+        for name in self.energies.forces:
+            if name not in self.coordinates:
+                raise PaperError(f"'{self.energies.name}' has a force on '{name}', which is no coordinate")
+        for number in [*self.energies.references, *self.energies.scales]:
+            if number not in self.paper.equations:
+                raise PaperError(f"'{self.energies.name}' has a reference for equation ({number}), which the paper does not have")
 
     def _read(self, function):
         """The form of a function of the namespaces."""
@@ -127,9 +145,15 @@ class Motion:
         return None
 
     def scale(self, number):
-        """The factor of the printed terms of a sign rule."""
+        """The factor of the printed terms of a sign rule, proved positive for every parameter set."""
         function = self.energies.scales.get(number)
-        return self.ring.read(function(self.s, self.m)) if function else self.ring.number(1)
+        if not function:
+            return self.ring.number(1)
+        factor = self.ring.read(function(self.s, self.m))
+        if not self.paper.sets or any(signs([factor], intervals(values)) != [1] for values in self.paper.sets.values()):
+            raise PaperError(f"the scale of the reference for ({number}) is not shown to be positive: it must be so for every one "
+                             "of the paper's parameter sets, of which there is at least one")
+        return factor
 
     def mass(self):
         """Mass matrix of the paper's coordinates, as a list of rows."""

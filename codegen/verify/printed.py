@@ -8,6 +8,7 @@ with SymPy symbols (verification) and with CasADi symbols or numbers (simulation
 Names: a coordinate or input `x` has the rate `dx` and the acceleration `ddx`.
 """
 
+import re
 from dataclasses import dataclass, field, replace
 from typing import Callable, Dict, Optional, Tuple
 
@@ -56,8 +57,8 @@ class Equation:
 
     - motion: they sum to zero (left side minus right side); `of` is the coordinate
     - value: they sum to the symbol `of`
-    - condition: the function returns two lists, left and right of `relation`
-    - rule: the discrete state `of` takes `result` when the terms' sum is `relation` 0
+    - condition: the function returns two lists, left and right of `relation`, < or >
+    - rule: the discrete state `of` takes `result` when the terms' sum is `relation` 0, < or >
     - reset: they sum to the rate of the coordinate `of` after an impact, in the state before it
 
     `margin` marks a condition whose function already gives the terms of its margin, `momentum` a
@@ -122,8 +123,20 @@ class Paper:
     special: Dict[str, Dict[str, object]] = field(default_factory=dict)
 
     def _declare(self, symbol):
+        """Adds a symbol. No two may have a name, a rate's name or a LaTeX in common: one would be
+        taken for the other, and what is judged would not be what is printed."""
+        if not re.fullmatch(r"[A-Za-z]\w*", symbol.name):
+            raise PaperError(f"the symbol '{symbol.name}' must have a name of letters, digits and _, so that s.name is it")
         if symbol.name in self.symbols:
             raise PaperError(f"the symbol '{symbol.name}' is declared twice")
+        if symbol.mirror not in (1, -1):
+            raise PaperError(f"the symbol '{symbol.name}' has mirror={symbol.mirror}: it is 1 or -1")
+        for other in self.symbols.values():
+            if common := set(rates(symbol)) & set(rates(other)):
+                raise PaperError(f"the symbols '{other.name}' and '{symbol.name}' cannot be told apart: "
+                                 f"'{min(common)}' is a rate of one of them; rename the other")
+            if plain_latex(other.latex) == plain_latex(symbol.latex):
+                raise PaperError(f"the symbols '{other.name}' and '{symbol.name}' have the same LaTeX {symbol.latex}")
         self.symbols[symbol.name] = symbol
 
     def coordinate(self, name, unit, meaning, latex=None, mirror=1, minimum=None):
@@ -190,6 +203,38 @@ class Paper:
         """Register an impact law for the rate of the coordinate `of`."""
         return self._equation(number, "reset", of, latex, title)
 
+    def check(self):
+        """Raises a PaperError where the declarations do not fit together."""
+        if not self.equations:
+            raise PaperError(f"'{self.title}' has no equations: there is nothing to judge")
+        roles = {"motion": ("coordinate",), "reset": ("coordinate",), "rule": ("discrete",), "value": ("force", "parameter")}
+        for number, equation in self.equations.items():
+            symbol = self.symbols.get(equation.of)
+            wanted = roles.get(equation.kind, ("coordinate", "discrete", "force"))
+            if symbol is None or symbol.role not in wanted:
+                raise PaperError(f"equation ({number}) is of '{equation.of}', which is not declared as a {' or '.join(wanted)}")
+            if equation.kind in ("condition", "rule") and equation.relation not in ("<", ">"):
+                raise PaperError(f"equation ({number}) has the relation '{equation.relation}': it is '<' or '>'")
+            if equation.kind == "rule" and equation.result not in symbol.values:
+                raise PaperError(f"equation ({number}) sets {equation.of} to {equation.result}, which is none of its values")
+        of = [equation.of for equation in self.motions()]
+        for name in of:
+            if of.count(name) > 1:
+                raise PaperError(f"there are {of.count(name)} equations of motion of '{name}': one belongs to each coordinate")
+        if self.translation:
+            found = [self.symbols[n].role if n in self.symbols else None for n in self.translation]
+            if found != ["coordinate", "input"]:
+                raise PaperError(f"translation={self.translation} must name a coordinate and an input")
+        for where, names in [("negligible", self.negligible), ("box", self.box),
+                             *[(f"set '{n}'", v) for n, v in self.sets.items()],
+                             *[(f"special case '{n}'", v) for n, v in self.special.items()]]:
+            for name in names:
+                if name not in self.names():
+                    raise PaperError(f"the {where} names '{name}', which is not declared")
+        for name, (low, high) in self.box.items():
+            if not -float("inf") < low <= high < float("inf"):
+                raise PaperError(f"the box has {name} from {low} to {high}: the bounds are finite, the lower one first")
+
     def coordinates(self):
         """Names of the coordinates, in declared order."""
         return [name for name, symbol in self.symbols.items() if symbol.role == "coordinate"]
@@ -202,9 +247,7 @@ class Paper:
         """Every name that the namespace `s` offers: symbols, rates and accelerations."""
         names = []
         for symbol in self.symbols.values():
-            names.append(symbol.name)
-            if symbol.role in ("coordinate", "input"):
-                names += ["d" + symbol.name, "dd" + symbol.name]
+            names += rates(symbol)
         return names
 
     def namespace(self, values, m):
@@ -218,6 +261,17 @@ class Paper:
     def with_equations(self, equations):
         """The same paper with some equations replaced (corrected or mutated)."""
         return replace(self, equations={**self.equations, **{e.number: e for e in equations}})
+
+
+def rates(symbol):
+    """A symbol's name with those of its rate and acceleration, if it moves."""
+    moving = symbol.role in ("coordinate", "input")
+    return [symbol.name] + (["d" + symbol.name, "dd" + symbol.name] if moving else [])
+
+
+def plain_latex(latex):
+    """LaTeX of a symbol without braces, backslashes and spaces: what symbols are told apart by."""
+    return re.sub(r"[\\{}\s]", "", latex)
 
 
 GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "lambda", "mu", "nu",

@@ -4,11 +4,12 @@ import json
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional
 
-from . import latex
+from . import transcription
 from .algebra import expression
 from .corrections import KINDS, apply
-from .definite import critical, determinant, intervals, minors, printed_mass, prove, signs, states
+from .definite import critical, determinant, minors, printed_mass, prove, states
 from .findings import Finding, from_corrections, judge, scores, unexplained
+from .intervals import intervals, signs
 from .judgements import TITLES, Subject, compare
 from .lagrange import Motion
 from .numbers import check
@@ -49,22 +50,6 @@ class Report:
     variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
 
 
-def transcription(subject):
-    """Numbers of the equations whose function is proved to say what their LaTeX says, term by term;
-    an equation where it does not is an error."""
-    proved = []
-    for number, equation in subject.paper.equations.items():
-        if not equation.latex:
-            continue
-        forms = [subject.ring.read(t) for t in latex.terms(latex.parse(equation.latex), subject.paper, subject.s, subject.m)]
-        if forms != subject.forms[number]:
-            k = next((k for k, pair in enumerate(zip(forms, subject.forms[number])) if pair[0] != pair[1]),
-                     min(len(forms), len(subject.forms[number])))
-            raise PaperError(f"equation ({number}): the function and the LaTeX beside it differ from term {k + 1} on")
-        proved.append(number)
-    return proved
-
-
 def verify(case, thorough=True):
     """Judge a case. `thorough` also bounds the mass matrices over the whole box."""
     paper = case.paper
@@ -81,7 +66,7 @@ def verify(case, thorough=True):
         case, printed, corrected, motions, comparisons, violations,
         judge(corrected, first) if corrected else None,
         from_corrections(case, first) if case.corrections else unexplained(printed, first, violations))
-    report.transcribed = transcription(printed)
+    report.transcribed = transcription.proved(printed)
     report.numbers = check(case.numbers)
     report.scores = scores(case)
     if paper.motions():

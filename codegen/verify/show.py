@@ -12,11 +12,12 @@ ACCENTS = {1: "\u0307", 2: "\u0308", 3: "\u20db"}
 
 def _split(name, paper):
     """A name as (dots, symbol name): `ddx_I` is (2, `x_I`)."""
-    for dots in (3, 2, 1):
-        base = name[dots:]
-        if name.startswith("d" * dots) and name not in paper.symbols and (base in paper.symbols or dots < 3):
-            return dots, base
-    return 0, name
+    if name in paper.symbols:
+        return 0, name
+    found = [dots for dots in (1, 2, 3) if name.startswith("d" * dots)]
+    # of a coordinate that only the energies have, the dots are all that is known
+    dots = next((k for k in found if name[k:] in paper.symbols), found[-1] if found else 0)
+    return dots, name[dots:]
 
 
 def _latex(name, paper):
@@ -67,8 +68,10 @@ def term_latex(key, value, paper):
 
 def _power(name, exponent, paper):
     """LaTeX of a power of a symbol."""
-    text = _latex(name, paper)
-    raised = text if abs(exponent) == 1 else f"{text}^{abs(exponent)}"
+    text, power = _latex(name, paper), f"^{{{abs(exponent)}}}" if abs(exponent) > 9 else f"^{abs(exponent)}"
+    raised = text if abs(exponent) == 1 else text + power
+    if isinstance(name, Opaque) and name.function == "sign" and abs(exponent) != 1:
+        raised = text.replace("{sign}", "{sign}" + power, 1)
     return raised if exponent > 0 else rf"\frac{{1}}{{{raised}}}"
 
 
@@ -84,11 +87,12 @@ def form_latex(form, paper):
 def plain(latex):
     """LaTeX as plain text with Greek letters and dots over the symbols."""
     text = re.sub(r"\\(d+)ot\{\\?(\w+)\}", lambda x: ENTITIES.get(x[2], x[2]) + ACCENTS[len(x[1])], latex)
+    text = re.sub(r"_\{(\w+)\}", r"_\1", text)
     text = re.sub(r"\\frac\{(\w+)\}\{([^{}]+)\}", r"\1/\2", text)
     text = re.sub(r"\\operatorname\{(\w+)\}", r"\1", text)
     text = re.sub(r"\\(sin|cos)", r"\1", text)
     text = re.sub(r"\\([A-Za-z]+)", lambda x: ENTITIES.get(x[1], x[1]), text)
-    text = re.sub(r"_\{(\w+)\}", r"_\1", text).replace("^2", "²").replace("^3", "³").replace("-", "−")
+    text = text.replace("^2", "²").replace("^3", "³").replace("-", "−")
     return re.sub(r"\s+", " ", text).strip()
 
 
