@@ -56,7 +56,7 @@ def main(argv=None):
 
 def _judge(arguments):
     """Judge one model and write the report."""
-    from . import effects, html, report
+    from . import effects, html, machine, report, text
     from .load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
@@ -71,7 +71,7 @@ def _judge(arguments):
         simulated = effects.simulate(case.effects, case.corrections, arguments.program)
         effects.attach(result.findings, case.corrections, simulated)
         result.variants = simulated.variants
-    print(report.as_json(result) if arguments.json else report.as_text(result), end="")
+    print(machine.as_json(result) if arguments.json else text.as_text(result), end="")
     if arguments.html:
         path = Path(arguments.html)
         partial = path.with_name(path.name + ".tmp")

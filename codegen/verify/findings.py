@@ -4,20 +4,25 @@ it is, and where it makes no difference."""
 from dataclasses import dataclass, field
 from typing import List, Optional, Tuple
 
+from . import repairs
 from .algebra import NotInClass
 from .corrections import apply, without
 from .definite import definite
-from .judgements import FIVE, Subject, compare
+from .judgements import FIVE, TITLES, Subject, compare
 from .lagrange import Motion
+from .show import message_text
 
 JUDGEMENTS = {**FIVE, "definite": definite}
 
 
 @dataclass
 class Finding:
-    """One slip. `printed` and `consistent` are forms (terms) or words, `ordinals` those of the printed terms
-    (from 0); `judgements` the names of those that find it when everything else is right;
-    `order` the lowest degree in the coordinates of what it changes (None: not a term); `vanishes` the special cases in
+    """One slip, or one objection that no slip explains. `kind` is that of a correction, `repair`
+    (found here) or `objection`. `printed` and `consistent` are forms (terms) or words, `ordinals`
+    those of the printed terms (from 0); `proved` says whether the equation raises no objection
+    with all that is called consistent; `slip` is a kind of slip (edits.SLIPS) or empty;
+    `judgements` the names of those that find it when everything else is right; `order` the lowest
+    degree in the coordinates of what it changes (None: not a term); `vanishes` the special cases in
     which it changes nothing; `effects` what a simulation made of it, by scene."""
 
     key: str
@@ -27,8 +32,10 @@ class Finding:
     ordinals: Tuple[int, ...]
     printed: list
     consistent: list
+    proved: bool
     judgements: List[str]
     order: Optional[int]
+    slip: str = ""
     vanishes: List[str] = field(default_factory=list)
     effects: dict = field(default_factory=dict)
 
@@ -38,9 +45,17 @@ def judge(subject, motion):
     return {name: function(subject, motion) for name, function in JUDGEMENTS.items()}
 
 
-def detected(subject, motion):
-    """Names of the judgements that object to a subject."""
-    return [name for name, violations in judge(subject, motion).items() if violations]
+def detected(subject, motion, beside=None):
+    """Names of the judgements that object to a subject, beyond the violations `beside`."""
+    beside = beside or {}
+    return [name for name, violations in judge(subject, motion).items()
+            if any(v not in beside.get(name, ()) for v in violations)]
+
+
+def judged_right(subject, motion, violations, number):
+    """Whether an equation is what the energies give, and no judgement objects to it."""
+    comparison = motion and compare(subject, motion, number)
+    return bool(comparison) and not any(number in v.equations for found in violations.values() for v in found)
 
 
 def special_cases(paper, form):
@@ -56,17 +71,15 @@ def special_cases(paper, form):
     return result
 
 
-def from_corrections(case, motion):
-    """One finding for each correction. A judgement finds a slip if it objects to the corrected
-    equations with this one slip put back."""
-    paper, corrections = case.paper, case.corrections
-    printed = Subject(paper)
-    whole = Subject(apply(paper, corrections), printed)
-    findings = []
+def from_corrections(case, motion, printed, whole, violations):
+    """One finding for each correction; `whole` has all of them and raises `violations`. A judgement
+    finds a slip if it objects beyond these to the equations with this one slip put back, and with
+    those whose corrections require its own."""
+    corrections, findings = case.corrections, []
     for correction in corrections:
         others = without(corrections, correction.key)
-        slipped = Subject(apply(paper, corrections, others), printed)
-        right = Subject(apply(paper, corrections, [*others, correction.key]), printed)
+        slipped = Subject(apply(case.paper, corrections, others), printed)
+        right = Subject(apply(case.paper, corrections, [*others, correction.key]), printed)
         number = correction.equation
         if correction.whole:
             ordinals = tuple(range(len(printed.forms[number])))
@@ -79,55 +92,50 @@ def from_corrections(case, motion):
         change = slipped.total(number) - right.total(number)
         findings.append(Finding(
             correction.key, number, correction.kind, correction.reason, ordinals,
-            [printed.forms[number][k] for k in ordinals], consistent, detected(slipped, motion),
-            change.order(paper.coordinates()), special_cases(paper, change)))
+            [printed.forms[number][k] for k in ordinals], consistent, judged_right(whole, motion, violations, number),
+            detected(slipped, motion, violations), change.order(case.paper.coordinates()),
+            vanishes=special_cases(case.paper, change)))
     return findings
 
 
-def unexplained(subject, motion, violations):
-    """Findings of a paper without corrections: each differing term beside the derived term that is
-    most like it, and each derived term that nothing printed is like."""
+def repaired(subject, motion):
+    """The repairs of all equations, and the subject with all of them."""
+    found = {n: repairs.repairs(subject, motion, n) for n in subject.paper.equations}
+    found = {n: list_ for n, list_ in found.items() if list_}
+    return found, _with(subject, found)
+
+
+def _with(subject, found):
+    """The subject with repairs applied: {equation number: repairs}."""
+    changed = [repairs.apply(subject.paper.equations[n], subject.expressions[n], list_) for n, list_ in found.items()]
+    return Subject(subject.paper.with_equations(changed), subject)
+
+
+def from_repairs(subject, motion, found, whole, violations):
+    """One finding for each repair; `whole` has all of them and raises `violations`."""
     findings = []
-    for number in subject.paper.equations:
-        comparison = motion and compare(subject, motion, number)
-        if comparison is None:
-            continue
-        pairs = _pairs(subject, comparison)
-        for k, (ordinals, printed, consistent) in enumerate(pairs, 1):
-            found = [name for name, list_ in violations.items()
-                     if any(number in v.equations and (not v.terms or set(v.terms) & set(ordinals)) for v in list_)]
-            change = sum(printed, subject.ring.number(0)) - sum(consistent, subject.ring.number(0))
-            findings.append(Finding(f"{number}-{k}", number, "unexplained", "", ordinals, printed, consistent, found,
-                                    change.order(subject.paper.coordinates()), special_cases(subject.paper, change)))
+    for number, list_ in found.items():
+        proved = judged_right(whole, motion, violations, number)
+        for k, repair in enumerate(list_, 1):
+            slipped = _with(subject, {**found, number: [r for r in list_ if r is not repair]})
+            change = slipped.total(number) - whole.total(number)
+            findings.append(Finding(
+                f"{number}-{k}", number, "repair", "", repair.ordinals, repair.printed, repair.consistent, proved,
+                detected(slipped, motion, violations), change.order(subject.paper.coordinates()), repair.slip,
+                special_cases(subject.paper, change)))
     return findings
 
 
-def _pairs(subject, comparison):
-    """(ordinals, printed, derived) of one equation: differing and absent terms, the most alike first."""
-    differ, absent = list(comparison.differ), list(comparison.absent)
-    forms = subject.forms[comparison.number]
-    ranked = sorted(((-_likeness(forms[i], other), i, k) for i in differ for k, other in enumerate(absent)))
-    partner, taken = {}, set()
-    for score, i, k in ranked:
-        if score < 0 and i not in partner and k not in taken:
-            partner[i] = k
-            taken.add(k)
-    pairs = [((i,), [forms[i]], [absent[partner[i]]] if i in partner else []) for i in differ]
-    return pairs + [((), [], [form]) for k, form in enumerate(absent) if k not in taken]
-
-
-def _likeness(form, other):
-    """Number of factors that two terms share."""
-    def factors(x):
-        found = []
-        for monomial, harmonic in list(x.terms)[:1]:
-            for name, exponent in monomial:
-                found += [str(name)] * abs(exponent)
-            found.append(str(harmonic))
-        return found
-
-    left, right = factors(form), factors(other)
-    return sum(min(left.count(x), right.count(x)) for x in set(left))
+def from_objections(subject, violations):
+    """One finding for each objection, to the terms that it blames."""
+    findings = []
+    for name, list_ in violations.items():
+        for k, v in enumerate(list_, 1):
+            findings.append(Finding(
+                f"{name}-{k}", ", ".join(dict.fromkeys(v.equations)), "objection",
+                f"{TITLES[name]}: {message_text(v.message, subject.paper)}", v.terms,
+                [subject.forms[v.equations[0]][i] for i in v.terms], [], False, [name], None))
+    return findings
 
 
 def scores(case):

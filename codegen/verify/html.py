@@ -3,10 +3,11 @@
 from html import escape
 
 from . import mathml, transcription
-from .corrections import KINDS
 from .judgements import TITLES
-from .report import closed, effect_lines, extent_lines, number_text, verdict_text
+from .report import closed
 from .show import form_latex
+from .text import (agreement_text, consistent_label, consistent_text, effect_lines, extent_lines, headline, judged_text,
+                   judgement_text, number_text, printed_text, reason_lines, squares_text, transcription_lines, verdict_text)
 
 STYLE = """
 body { font: 16px/1.5 Georgia, serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1b1b1b; background: #fff; }
@@ -35,7 +36,7 @@ def as_html(report):
     out = ["<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{escape(case.name)}: verification</title>",
            f"<style>{STYLE}</style></head><body>", f"<h1>{escape(paper.title)}</h1>", f"<p>{escape(paper.source)}</p>"]
     out += _equations(report) + _candidates(report) + _judgements(report)
-    out.append(f"<h2>{len(report.findings)} findings</h2>")
+    out.append(f"<h2>{escape(headline(report))}</h2>")
     for finding in report.findings:
         out += _finding(finding, paper)
     out += _variants(report) + _definiteness(report) + _numbers(report)
@@ -49,16 +50,13 @@ def _equations(report):
                                      '<p><span class="differ">Marked</span>: the energies do not give this term. '
                                      '<span class="absent">Blue</span>: the energies give this term too.</p>']
     found = report.comparisons[report.motions[0].energies.name] if report.motions else {}
-    agree = sum(len(c.agree) for c in found.values())
-    total = sum(len(c.agree) + len(c.differ) for c in found.values())
-    if found:
-        out.append(f"<p>{agree} of {total} printed terms agree with the energies "
-                   f"<em>{escape(report.motions[0].energies.name)}</em>.</p>")
+    out += [f"<p>{escape(line)}</p>" for line in transcription_lines(report)]
+    out += [f"<p>{escape(agreement_text(motion, report.comparisons[motion.energies.name]))}.</p>" for motion in report.motions]
     for number, equation in paper.equations.items():
         comparison = found.get(number)
         marks = {k: "differ" for k in comparison.differ} if comparison else {}
         total = len(report.printed.forms[number])
-        count = f": {len(comparison.agree)} of {total} terms agree" if comparison else ""
+        count = f": {len(comparison.agree)} of {total} terms agree" if comparison else ": not judged by energies"
         out.append(f"<h3>({escape(number)}) {escape(equation.title)}{count}</h3>")
         if equation.latex:
             out.append(f'<div class="equation">{mathml.mathml(transcription.statement(equation, paper), marks)}</div>')
@@ -87,10 +85,9 @@ def _candidates(report):
 def _judgements(report):
     """The objections of each judgement."""
     out = ["<h2>Judgements</h2>"]
-    for name, title in TITLES.items():
+    for name in TITLES:
         violations = report.violations[name]
-        after = f"; {len(report.corrected_violations[name])} after correction" if report.corrected else ""
-        out.append(f"<h3>{escape(title)}: {len(violations)} objections{after}</h3>")
+        out.append(f"<h3>{escape(judgement_text(report, name))}</h3>")
         if name != "difference" and violations:
             items = "".join("<li>" + "".join(escape(p) if isinstance(p, str) else inline(p, report.case.paper) for p in v.message)
                             + "</li>" for v in violations)
@@ -100,14 +97,15 @@ def _judgements(report):
 
 def _finding(finding, paper):
     """One finding."""
-    def terms(forms):
-        return ", ".join(inline(form, paper) for form in forms) or "(nothing)"
+    def show(part):
+        return inline(part, paper)
 
     out = [f'<div class="finding {finding.kind}"><h3>{escape(finding.key)}: equation ({escape(finding.equation)})</h3>',
-           f'<p>printed: <span class="differ">{terms(finding.printed)}</span><br/>consistent: {terms(finding.consistent)}</p>']
-    if finding.kind in KINDS:
-        out.append(f"<p>{escape(finding.reason)}</p><p><em>{escape(KINDS[finding.kind])}</em></p>")
-    out.append("<p>" + "".join(f'<span class="tag">{escape(TITLES[name])}</span>' for name in finding.judgements) + "</p>")
+           f'<p>printed: <span class="differ">{printed_text(finding, show)}</span><br/>'
+           f'{consistent_label(finding)}: {consistent_text(finding, show)}</p>']
+    out += [f"<p>{escape(line)}</p>" for line in reason_lines(finding)]
+    out.append("<p>" + ("".join(f'<span class="tag">{escape(TITLES[name])}</span>' for name in finding.judgements)
+                        or escape(judged_text(finding))) + "</p>")
     out += [f"<p>{escape(line)}</p>" for line in extent_lines(finding) + effect_lines(finding)]
     return out + ["</div>"]
 
@@ -144,8 +142,7 @@ def _definiteness(report):
             out.append(f"<p>critical {escape(d.critical.parameter)}: roots of the quadratic with "
                        f"<code>{escape(terms)}</code></p><table>{rows}</table>")
         if d.squares is not None:
-            verb = "is" if d.squares else "is not"
-            out.append(f"<p>The kinetic energy {verb} the declared sum of squares (identity proved).</p>")
+            out.append(f"<p>{escape(squares_text(d))}</p>")
         if d.boxes:
             items = "".join(f"<li>{escape(key)}: {escape(verdict_text(v))}</li>" for key, v in d.boxes.items())
             out.append(f"<ul>{items}</ul>")

@@ -10,10 +10,11 @@ from fractions import Fraction
 from itertools import product
 from typing import List, Tuple
 
-from sympy import Expr, sympify
+from sympy import Expr, Mul, cos, sin, sympify
 
 from . import units
-from .algebra import Opaque
+from .algebra import NotInClass, Opaque
+from .edits import Editor
 from .lagrange import Mathematics, ring_of, sympy_namespace
 from .printed import PaperError
 
@@ -51,6 +52,8 @@ class Subject:
         self.s = base.s if base else sympy_namespace(paper)
         self.m = base.m if base else Mathematics()
         self.dimension = base.dimension if base else units.table(paper.symbols.values())
+        self.editor = base.editor if base else Editor(paper)
+        self.known = base.known if base else {}
         self.expressions, self.forms, self.memo = {}, {}, {}
         kept = set()
         for number, equation in paper.equations.items():
@@ -59,7 +62,7 @@ class Subject:
                 kept.add(number)
             else:
                 self.expressions[number] = self._terms(equation)
-                self.forms[number] = [self.ring.read(term) for term in self.expressions[number]]
+                self.forms[number] = [self._form(number, k, term) for k, term in enumerate(self.expressions[number], 1)]
             if not base and not self.forms[number]:
                 raise PaperError(f"equation ({number}) has no terms")
         if base:
@@ -83,6 +86,30 @@ class Subject:
                 if symbol.name not in known:
                     raise PaperError(f"equation ({equation.number}), term {k}: the symbol '{symbol}' is not declared")
         return result
+
+    def _form(self, number, k, term):
+        """The form of a term; an error names it."""
+        try:
+            return self.read(term)
+        except NotInClass as error:
+            raise NotInClass(f"equation ({number}), term {k}: {error}") from error
+
+    def read(self, term):
+        """The form of an expression, read once."""
+        if term not in self.known:
+            self.known[term] = self.ring.read(term)
+        return self.known[term]
+
+    def units(self):
+        """The sines, cosines and their products that the paper prints and the algebra takes apart."""
+        found = {}
+        for terms in self.expressions.values():
+            for term in terms:
+                factors = [f for f in Mul.make_args(term) if f.as_base_exp()[0].func in (sin, cos)]
+                form = self.read(Mul(*factors))
+                if len(form.terms) > 1:
+                    found[form] = True
+        return list(found)
 
     def each(self, name, judge, *context):
         """The violations of all equations, where `judge(number)` gives those of one: what is known
@@ -253,41 +280,53 @@ def _momentum(subject, number, q, chain):
 @dataclass
 class Comparison:
     """A printed equation beside what the energies give: the ordinals of the terms that agree and
-    that differ, the derived terms that no printed term covers, the constant by which the derived
-    equation was multiplied, and printed minus derived."""
+    that differ, the derived terms that no printed term covers, printed minus derived with the
+    constant that makes it smallest (and with each of the constants that an equation may be
+    multiplied by), and of a sign rule its orientation and what its terms are multiplied by."""
 
     number: str
     agree: List[int]
     differ: List[int]
     absent: list
-    factor: object
     difference: object
+    differences: list
+    orientation: int
+    weight: object
 
 
 def compare(subject, motion, number):
     """Judgement 3 for one equation, or None where the energies say nothing about it. A term
     agrees if none of its parts occurs in the difference of printed and derived."""
+    key = ("compare", number, motion)
+    if key not in subject.memo:
+        subject.memo[key] = _compare(subject, motion, number)
+    return subject.memo[key]
+
+
+def _compare(subject, motion, number):
     equation = subject.paper.equations[number]
     reference = motion.reference(equation)
     if reference is None:
         return None
-    forms = subject.forms[number]
+    forms, orientation = subject.forms[number], 1
+    weights = [subject.ring.number(1)]
     if equation.kind == "rule":
         # the reference is positive where the state is +1; only the sign counts: the printed sum may
         # be the derived one over a positive factor
         orientation = equation.result * (1 if equation.relation == ">" else -1)
-        scaled = [form * motion.scale(number) * orientation for form in forms]
-        forms = min(([form * orientation for form in forms], scaled),
-                    key=lambda f: len((sum(f, subject.ring.number(0)) - reference).terms))
+        weights = [subject.ring.number(orientation), motion.scale(number) * orientation]
     total = sum(forms, subject.ring.number(0))
+    weight = min(weights, key=lambda w: len((w * total - reference).terms))
+    forms, total = [form * weight for form in forms], total * weight
     factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
-    factor = min(factors, key=lambda c: len((total - c * reference).terms))
-    difference = total - factor * reference
+    differences = [total - factor * reference for factor in factors]
+    least = min(range(len(factors)), key=lambda k: len(differences[k].terms))
+    difference, derived = differences[least], (factors[least] * reference).terms
     differ = [i for i, form in enumerate(forms) if form.terms.keys() & difference.terms.keys()]
     printed = set().union(*(form.terms for form in forms))
-    derived = (factor * reference).terms
     absent = [subject.ring.form({key: derived[key]}) for key in difference.terms if key in derived and key not in printed]
-    return Comparison(number, [i for i in range(len(forms)) if i not in differ], differ, absent, factor, difference)
+    return Comparison(number, [i for i in range(len(forms)) if i not in differ], differ, absent, difference, differences,
+                      orientation, weight)
 
 
 def difference(subject, motion) -> List[Violation]:

@@ -1,12 +1,12 @@
 """Seeded errors: correct hand-written equations, every kind of slip put in one at a time, and the
-table of which judgement finds what."""
+table of which judgement finds what, and whether the slip is undone."""
 
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Callable, List
 
-from .findings import JUDGEMENTS, detected
+from .findings import JUDGEMENTS, detected, repaired
 from .judgements import Subject
 from .lagrange import Motion
 from .load import load
@@ -18,6 +18,13 @@ KINDS = (
     "sign", "missing discrete state", "swapped symbol", "lost dot", "lost power", "dropped velocity term", "dropped term",
     "sine for cosine", "factor 2", "asymmetric coupling", "rewritten (no error)",
 )
+
+# what the repair of each kind is called (edits.SLIPS)
+SLIP = {
+    "sign": "sign", "missing discrete state": "discrete state", "swapped symbol": "symbol", "lost dot": "dot", "lost power": "power",
+    "dropped velocity term": "lost term", "dropped term": "lost term", "sine for cosine": "function", "factor 2": "number",
+    "asymmetric coupling": "number",
+}
 
 
 @dataclass
@@ -34,11 +41,15 @@ class Seed:
 @dataclass
 class Outcome:
     """Which judgements object to a seed; `equivalent` if its normal form is unchanged, up to a
-    constant factor of the whole equation: then it is no error, and none must object."""
+    constant factor of the whole equation: then it is no error, and none must object. `repairs` are
+    the slips that were found in its place, as (equation, kind), and `repaired` says whether they are
+    this one alone, called by its name, and give back the terms as they were."""
 
     seed: Seed
     equivalent: bool
     found: List[str]
+    repairs: list
+    repaired: bool
 
 
 def variants(term, equation, paper):
@@ -114,7 +125,12 @@ def run(name, folder=None):
         mutated = Subject(case.paper.with_equations([replace(equation, function=seed.terms, latex="")]), subject)
         before, after = subject.total(seed.equation), mutated.total(seed.equation)
         factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
-        outcomes.append(Outcome(seed, any(after == factor * before for factor in factors), detected(mutated, motion)))
+        found, whole = repaired(mutated, motion)
+        slips = [(number, repair.slip) for number, list_ in found.items() for repair in list_]
+        # the terms may come back in another order: a lost one at the end
+        right = Counter(whole.forms[seed.equation]) == Counter(subject.forms[seed.equation])
+        outcomes.append(Outcome(seed, any(after == factor * before for factor in factors), detected(mutated, motion), slips,
+                                right and slips == [(seed.equation, SLIP.get(seed.kind))]))
     return outcomes
 
 
@@ -124,7 +140,7 @@ def run_all():
 
 
 def table(outcomes):
-    """Rows (kind, errors, equal, found, found without the energies, {judgement: found by it})."""
+    """Rows (kind, errors, equal, found, found without the energies, repaired, {judgement: found by it})."""
     rows = []
     for kind in KINDS:
         chosen = [o for o in outcomes if o.seed.kind == kind]
@@ -132,27 +148,44 @@ def table(outcomes):
         counts = Counter(name for o in errors for name in o.found)
         if chosen:
             rows.append((kind, len(errors), len(chosen) - len(errors), sum(bool(o.found) for o in errors),
-                         sum(bool(set(o.found) - {"difference"}) for o in errors), {name: counts[name] for name in JUDGEMENTS}))
+                         sum(bool(set(o.found) - {"difference"}) for o in errors), sum(o.repaired for o in errors),
+                         {name: counts[name] for name in JUDGEMENTS}))
     return rows
 
 
 def as_text(results):
     """The detection table of each system and of all."""
-    head = f"{'slip':24}{'errors':>7}{'equal':>6}{'found':>6}{'blind':>6} " + "".join(f"{n:>12}" for n in JUDGEMENTS)
+    head = f"{'slip':24}{'errors':>7}{'equal':>6}{'found':>6}{'blind':>6}{'repaired':>9} " + "".join(f"{n:>12}" for n in JUDGEMENTS)
     lines = ["Seeded errors: each slip put into correct equations, one at a time. 'equal': provably no change;",
-             "'blind': found without the energies, by the other five judgements."]
-    for name, outcomes in [*results.items(), ("all systems", [o for x in results.values() for o in x])]:
+             "'blind': found without the energies, by the other five judgements; 'repaired': undone and named, as the",
+             "only finding."]
+    for name, outcomes in [*results.items(), ("all systems", _all(results))]:
         lines += ["", name, head]
         rows = table(outcomes)
-        for kind, errors, equal, found, blind, by in rows:
-            lines.append(f"{kind:24}{errors:7}{equal:6}{found:6}{blind:6} " + "".join(f"{by[n]:12}" for n in JUDGEMENTS))
-        total = [sum(r[k] for r in rows) for k in (1, 2, 3, 4)]
-        lines.append(f"{'sum':24}{total[0]:7}{total[1]:6}{total[2]:6}{total[3]:6} "
-                     + "".join(f"{sum(r[5][n] for r in rows):12}" for n in JUDGEMENTS))
+        for kind, *counts, by in rows:
+            lines.append(f"{kind:24}{_counts(counts)} " + "".join(f"{by[n]:12}" for n in JUDGEMENTS))
+        lines.append(f"{'sum':24}{_counts([sum(row[k] for row in rows) for k in range(1, 6)])} "
+                     + "".join(f"{sum(row[-1][n] for row in rows):12}" for n in JUDGEMENTS))
     return "\n".join(lines)
 
 
+def _counts(counts):
+    """The columns before the judgements."""
+    return "".join(f"{count:{width}}" for count, width in zip(counts, (7, 6, 6, 6, 9)))
+
+
+def _all(results):
+    """The outcomes of all systems."""
+    return [o for outcomes in results.values() for o in outcomes]
+
+
 def as_dictionary(results):
-    """The tables for machines."""
-    return {name: [dict(zip(("slip", "errors", "equal", "found", "blind", "by"), row)) for row in table(outcomes)]
-            for name, outcomes in results.items()}
+    """The counts and the tables for machines."""
+    errors = [o for o in _all(results) if not o.equivalent]
+    equal = [o for o in _all(results) if o.equivalent]
+    names = ("slip", "errors", "equal", "found", "blind", "repaired", "by")
+    return {
+        "seeded": len(errors), "detected": sum(bool(o.found) for o in errors), "repaired": sum(o.repaired for o in errors),
+        "rewritings": len(equal), "false_alarms": sum(bool(o.found or o.repairs) for o in equal),
+        "systems": {name: [dict(zip(names, row)) for row in table(outcomes)] for name, outcomes in results.items()},
+    }

@@ -104,3 +104,8 @@ def form_text(form, paper):
 def shown(part, paper):
     """A form, or words, as plain text."""
     return part if isinstance(part, str) else form_text(part, paper)
+
+
+def message_text(message, paper):
+    """A violation's message as plain text."""
+    return "".join(shown(part, paper) for part in message)

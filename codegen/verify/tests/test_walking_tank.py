@@ -10,7 +10,7 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 from types import SimpleNamespace
 
-from codegen.verify import cli, html, report
+from codegen.verify import cli, html, machine, report, text
 from codegen.verify.corrections import apply, closure, without
 from codegen.verify.effects import Simulated, attach
 from codegen.verify.findings import JUDGEMENTS
@@ -143,7 +143,7 @@ class Verdict(unittest.TestCase):
         place = 1 + [c.key for c in corrections].index("10-sign")
         runs[place]["stopped"] = "the uplift becomes negative"
         findings = [f for f in self.report.findings if f.key in ("1-dot", "10-sign")]
-        self.assertEqual(report.effect_lines(findings[0]), ["effect on the scenes: not simulated"])
+        self.assertEqual(text.effect_lines(findings[0]), ["effect on the scenes: not simulated"])
         attach(findings, corrections, Simulated(slips={"free release": runs}))
         dot, sign = (f.effects["free release"] for f in findings)
         self.assertEqual(dot["without"], runs[0])
@@ -165,13 +165,13 @@ class Verdict(unittest.TestCase):
         self.assertNotIn("5-moduli", without(self.case.corrections, "5-total"))
 
     def test_reports_hold_every_finding(self):
-        text, page = report.as_text(self.report), html.as_html(self.report)
-        data = json.loads(report.as_json(self.report))
+        terminal, page = text.as_text(self.report), html.as_html(self.report)
+        data = json.loads(machine.as_json(self.report))
         self.assertEqual(set(data["judgements"]), set(JUDGEMENTS))
         for finding in self.report.findings:
-            self.assertIn(f"[{finding.key}]", text)
+            self.assertIn(f"[{finding.key}]", terminal)
             self.assertIn(f"<h3>{finding.key}:", page)
-            self.assertIn(finding.key, [f["key"] for f in data["findings"]])
+            self.assertIn(finding.key, [f["id"] for f in data["findings"]])
         xml.fromstring(page.replace("<!DOCTYPE html>", "").replace('<meta charset="utf-8">', ""))
         for outside in ("http", "<script", "<link", "@import", "url("):
             self.assertNotIn(outside, page)
