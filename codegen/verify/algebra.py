@@ -327,15 +327,18 @@ class Form:
         })
 
     def order(self, small):
-        """Lowest total degree of the Taylor expansion in the names `small`; None for zero."""
-        if not self:
-            return None
-        layer, degree = [self], 0
-        while True:
-            if any(form.substitute({name: 0 for name in small}) for form in layer):
-                return degree
+        """Lowest total degree of the Taylor expansion in the names `small`; None for zero, and for
+        what has none (the modulus, or the reciprocal, of what vanishes)."""
+        layer, degree = [self] if self else [], 0
+        while layer:
+            try:
+                if any(form.substitute({name: 0 for name in small}) for form in layer):
+                    return degree
+            except NotInClass:
+                return None
             layer = [slope for form in layer for name in small if (slope := form.diff(name))]
             degree += 1
+        return None
 
     def evaluate(self, values, sin, cos, zero=0):
         """The value for numbers (or intervals) by name; not for opaque factors."""

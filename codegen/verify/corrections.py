@@ -84,14 +84,16 @@ def _corrected(equation, corrections, keys):
                     raise PaperError(f"the correction '{correction.key}' names term {ordinal}; "
                                      f"equation ({equation.number}) has {count}")
                 if make is None:
-                    slots.pop(ordinal)
+                    slots.pop(ordinal, None)
                 else:
                     slots[ordinal] = make(s, m, keys.__contains__)
             for make in correction.adds:
-                slots[max(slots) + 1] = make(s, m)
-        for correction in corrections:
-            if correction.whole:
-                return list(correction.whole(s, m))
+                slots[max(slots, default=count) + 1] = make(s, m)
+        wholes = [correction for correction in corrections if correction.whole]
+        if len(wholes) > 1:
+            raise PaperError(f"the corrections {', '.join(repr(c.key) for c in wholes)} all give equation ({equation.number}) anew")
+        if wholes:
+            return list(wholes[0].whole(s, m))
         return list(slots.values())
 
     # a corrected condition is already written as the terms of its margin

@@ -70,6 +70,21 @@ def attach(findings, corrections, simulated):
             }
 
 
+def quantity(summary, path):
+    """The number at a place of a summary. What is counted and did not happen is 0; a place that does
+    not exist is an error, not a quantity that no slip changes."""
+    value = summary
+    for k, key in enumerate(path):
+        counts = isinstance(value, dict) and all(type(x) is int for x in value.values())
+        if isinstance(value, dict) and key in value:
+            value = value[key]
+        elif counts and k == len(path) - 1:
+            return 0
+        else:
+            raise PaperError(f"the summary of a run has no {'.'.join(path)}; paper_effects.py asks for it")
+    return value
+
+
 def run(program, scene, overrides, quantities):
     """One run of the program: the quantities, and why it stopped where it did early."""
     command = [program, "run", scene]
@@ -84,10 +99,7 @@ def run(program, scene, overrides, quantities):
             summary = json.load(stream)
     result = {}
     for name, path in quantities.items():
-        value = summary
-        for key in path:
-            value = value.get(key, 0) if isinstance(value, dict) else value
-        result[name] = value
+        result[name] = quantity(summary, path)
     if done.returncode == 3:
         failure = summary["failure"]
         result["stopped"] = f"at t = {failure['t']:.6g} s in mode {failure['mode']}: {failure['reason']}"

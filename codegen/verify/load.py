@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import List, Optional
 
 from ..errors import error_location
-from .printed import PaperError
+from .effects import Effects
+from .printed import Paper, PaperError
 
 
 @dataclass
@@ -41,7 +42,7 @@ def load(folder, name: Optional[str] = None) -> Case:
     sys.modules[package] = parent
     importlib.invalidate_caches()
 
-    def offered(file, attribute, fallback):
+    def offered(file, attribute, fallback, kind=list):
         if not (folder / (file + ".py")).is_file():
             return fallback
         path = folder / (file + ".py")
@@ -53,10 +54,13 @@ def load(folder, name: Optional[str] = None) -> Case:
             raise PaperError(f"{error_location(error, str(path))}: {type(error).__name__}: {error}") from error
         if not hasattr(module, attribute):
             raise PaperError(f"{folder / (file + '.py')} does not define '{attribute}'")
-        return getattr(module, attribute)
+        found = getattr(module, attribute)
+        if not isinstance(found, kind):
+            raise PaperError(f"{path}: '{attribute}' must be a {kind.__name__}, not {type(found).__name__}")
+        return found
 
     energies = offered("paper_energies", "energies", [])
     candidates = getattr(sys.modules.get(f"{package}.paper_energies"), "candidates", [])
-    return Case(name, folder, offered("paper", "paper", None), list(energies),
+    return Case(name, folder, offered("paper", "paper", None, Paper), list(energies),
                 list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates),
-                offered("paper_effects", "effects", None))
+                offered("paper_effects", "effects", None, Effects))

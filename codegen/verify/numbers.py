@@ -1,7 +1,8 @@
 """Printed numbers against what the other printed numbers give, with the rounding of both.
 
 A printed number stands for all numbers that round to it. The recomputed value is an interval over
-the roundings of what it is computed from; the two agree if they have a point in common.
+the roundings of what it is computed from; the two agree if they have a point in common. Where the
+recomputed interval is unbounded (a divisor may be zero), nothing is decided.
 """
 
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ from decimal import Decimal
 from typing import Callable, Optional
 
 from . import units
+from .printed import PaperError
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,8 @@ class Number:
 
 @dataclass
 class Checked:
-    """The verdict on a number: `low` and `high` bound the recomputed value."""
+    """The verdict on a number: `low` and `high` bound the recomputed value; `agrees` is None where
+    there is nothing to compare, or nothing is decided."""
 
     number: Number
     low: Optional[float]
@@ -52,17 +55,23 @@ class _Intervals:
         return self._monotone("atan", x)
 
     def asin(self, x):
+        if not (x.a >= -1 and x.b <= 1):
+            raise ValueError(f"asin of {x}, which is not between -1 and 1")
         return self._monotone("asin", x)
 
     def _monotone(self, name, x):
         from mpmath import iv, mp
 
-        function = getattr(mp, name)
-        return iv.mpf([function(x.a), function(x.b)])
+        function, x = getattr(mp, name), iv.mpf(x)
+        # rounded outwards: the bounds hold
+        return iv.mpf([function(mp.mpf(x.a), rounding="f"), function(mp.mpf(x.b), rounding="c")])
 
 
 class _Known:
     """Numbers by attribute."""
+
+    def __getattr__(self, name):
+        raise PaperError(f"the number '{name}' is not given before it is used")
 
 
 def rounding(printed, exact=False):
@@ -78,12 +87,17 @@ def rounding(printed, exact=False):
 
 def check(numbers):
     """Verdicts in order."""
+    from mpmath import iv, mp
+
     known, m, result = _Known(), _Intervals(), []
     for number in numbers:
-        computed = number.formula(known, m) if number.formula else None
-        stated = rounding(number.printed, number.exact) if number.printed else None
+        try:
+            computed = iv.mpf(number.formula(known, m)) if number.formula else None
+            stated = rounding(number.printed, number.exact) if number.printed else None
+        except Exception as error:  # whatever a model file does wrong is its author's to read
+            raise PaperError(f"the number '{number.name}': {error}") from error
         agrees = None
-        if computed is not None and stated is not None:
+        if computed is not None and stated is not None and mp.isfinite(mp.mpf(computed.a)) and mp.isfinite(mp.mpf(computed.b)):
             agrees = bool(computed.a <= stated.b and stated.a <= computed.b)
         setattr(known, number.name, stated if stated is not None else computed)
         unit_agrees = number.unit_printed is None or units.parse(number.unit_printed) == units.parse(number.unit)

@@ -136,6 +136,8 @@ def terms(tree, paper, s, m):
         found = by_latex[_key(node)]
         if node.dots and found.role not in ("coordinate", "input"):
             raise LatexError(f"the symbol {found.name} has dots and is neither a coordinate nor an input")
+        if node.dots > 2:
+            raise LatexError(f"the symbol {found.name} has {node.dots} dots; equations of motion have two at most")
         return getattr(s, "d" * node.dots + found.name)
 
     def value(node):
