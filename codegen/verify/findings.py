@@ -6,11 +6,13 @@ from typing import List, Optional, Tuple
 
 from . import repairs
 from .algebra import NotInClass
+from .comparison import compare
 from .corrections import apply, without
 from .definite import definite
-from .judgements import FIVE, TITLES, Subject, compare
+from .judgements import FIVE, TITLES
 from .lagrange import Motion
 from .show import message_text
+from .subject import Subject
 
 JUDGEMENTS = {**FIVE, "definite": definite}
 

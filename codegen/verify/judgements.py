@@ -10,13 +10,9 @@ from fractions import Fraction
 from itertools import product
 from typing import List, Tuple
 
-from sympy import Expr, Mul, cos, sin, sympify
-
 from . import units
-from .algebra import NotInClass, Opaque
-from .edits import Editor
-from .lagrange import Mathematics, ring_of, sympy_namespace
-from .printed import PaperError
+from .algebra import Opaque
+from .comparison import compare
 
 TITLES = {
     "dimensions": "Dimensions of each term",
@@ -38,120 +34,6 @@ class Violation:
     equations: Tuple[str, ...]
     terms: Tuple[int, ...]
     message: list
-
-
-class Subject:
-    """Printed equations in normal form: `forms[number]` lists one form for each term."""
-
-    def __init__(self, paper, base=None):
-        """`base` is a subject that shares all but a few equations: their forms are not redone."""
-        if not base:
-            paper.check()
-        self.paper = paper
-        self.ring = base.ring if base else ring_of(paper)
-        self.s = base.s if base else sympy_namespace(paper)
-        self.m = base.m if base else Mathematics()
-        self.dimension = base.dimension if base else units.table(paper.symbols.values())
-        self.editor = base.editor if base else Editor(paper)
-        self.known = base.known if base else {}
-        self.expressions, self.forms, self.memo = {}, {}, {}
-        kept = set()
-        for number, equation in paper.equations.items():
-            if base and base.paper.equations.get(number) is equation:
-                self.expressions[number], self.forms[number] = base.expressions[number], base.forms[number]
-                kept.add(number)
-            else:
-                self.expressions[number] = self._terms(equation)
-                self.forms[number] = [self._form(number, k, term) for k, term in enumerate(self.expressions[number], 1)]
-            if not base and not self.forms[number]:
-                raise PaperError(f"equation ({number}) has no terms")
-        if base:
-            self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
-        self.multipliers = self._multipliers()
-
-    def _terms(self, equation):
-        """The terms of an equation as SymPy expressions; an error in its function names it."""
-        try:
-            terms = list(equation.terms(self.s, self.m))
-        except Exception as error:  # whatever a model file does wrong is its author's to read
-            raise PaperError(f"equation ({equation.number}): {error}") from error
-        known, result = set(self.paper.names()), []
-        for k, term in enumerate(terms, 1):
-            # text would be read as a formula of other symbols, a list as no formula at all
-            if not isinstance(term, (Expr, int, Fraction)) or isinstance(term, bool):
-                raise PaperError(f"equation ({equation.number}), term {k}: {term!r} is not an expression of the symbols s.… "
-                                 "with exact numbers" + ("; write *group(...)" if isinstance(term, (list, tuple)) else ""))
-            result.append(sympify(term))
-            for symbol in sorted(result[-1].free_symbols, key=str):
-                if symbol.name not in known:
-                    raise PaperError(f"equation ({equation.number}), term {k}: the symbol '{symbol}' is not declared")
-        return result
-
-    def _form(self, number, k, term):
-        """The form of a term; an error names it."""
-        try:
-            return self.read(term)
-        except NotInClass as error:
-            raise NotInClass(f"equation ({number}), term {k}: {error}") from error
-
-    def read(self, term):
-        """The form of an expression, read once."""
-        if term not in self.known:
-            self.known[term] = self.ring.read(term)
-        return self.known[term]
-
-    def units(self):
-        """The sines, cosines and their products that the paper prints and the algebra takes apart."""
-        found = {}
-        for terms in self.expressions.values():
-            for term in terms:
-                factors = [f for f in Mul.make_args(term) if f.as_base_exp()[0].func in (sin, cos)]
-                form = self.read(Mul(*factors))
-                if len(form.terms) > 1:
-                    found[form] = True
-        return list(found)
-
-    def each(self, name, judge, *context):
-        """The violations of all equations, where `judge(number)` gives those of one: what is known
-        from the base about an equation that has not changed is not judged again."""
-        violations = []
-        for number in self.paper.equations:
-            key = (name, number, *context)
-            if key not in self.memo:
-                self.memo[key] = judge(number)
-            violations += self.memo[key]
-        return violations
-
-    def total(self, number):
-        """The sum of an equation's terms."""
-        return sum(self.forms[number], self.ring.number(0))
-
-    def conservative(self, number):
-        """The sum without what is declared dissipative."""
-        dissipative = {x.name: 0 for x in self.paper.symbols.values() if x.dissipative}
-        return self.total(number).substitute(dissipative)
-
-    def factors(self):
-        """The constants that an equation may have been multiplied by: 1, -1 and these times
-        each discrete state."""
-        one = self.ring.number(1)
-        return [one, -one] + [sign * self.ring.symbol(n) for n in sorted(self.ring.involutions) for sign in (one, -one)]
-
-    def _multipliers(self):
-        """For each equation of motion, the constant that makes the mass matrix most nearly
-        symmetric; the first equation keeps 1, and 1 is preferred."""
-        motions = self.paper.motions()
-        rows = [[self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
-        if not motions or not any(row[i] != rows[i][j] for j, row in enumerate(rows) for i in range(len(motions))):
-            return {e.number: self.ring.number(1) for e in motions}
-        best = None
-        for choice in product(self.factors(), repeat=len(motions) - 1):
-            choice = (self.ring.number(1),) + choice
-            cost = sum(len((choice[i] * rows[i][j] - choice[j] * rows[j][i]).terms)
-                       for i in range(len(motions)) for j in range(i))
-            if best is None or cost < best[0]:
-                best = (cost, choice)
-        return {e.number: factor for e, factor in zip(motions, best[1])}
 
 
 def dimensions(subject, motion=None) -> List[Violation]:
@@ -275,58 +157,6 @@ def _momentum(subject, number, q, chain):
                 f"({number}) is not the rate of a momentum: its terms in {name} do not belong to those in the velocities; "
                 "left over: ", form]))
     return violations
-
-
-@dataclass
-class Comparison:
-    """A printed equation beside what the energies give: the ordinals of the terms that agree and
-    that differ, the derived terms that no printed term covers, printed minus derived with the
-    constant that makes it smallest (and with each of the constants that an equation may be
-    multiplied by), and of a sign rule its orientation and what its terms are multiplied by."""
-
-    number: str
-    agree: List[int]
-    differ: List[int]
-    absent: list
-    difference: object
-    differences: list
-    orientation: int
-    weight: object
-
-
-def compare(subject, motion, number):
-    """Judgement 3 for one equation, or None where the energies say nothing about it. A term
-    agrees if none of its parts occurs in the difference of printed and derived."""
-    key = ("compare", number, motion)
-    if key not in subject.memo:
-        subject.memo[key] = _compare(subject, motion, number)
-    return subject.memo[key]
-
-
-def _compare(subject, motion, number):
-    equation = subject.paper.equations[number]
-    reference = motion.reference(equation)
-    if reference is None:
-        return None
-    forms, orientation = subject.forms[number], 1
-    weights = [subject.ring.number(1)]
-    if equation.kind == "rule":
-        # the reference is positive where the state is +1; only the sign counts: the printed sum may
-        # be the derived one over a positive factor
-        orientation = equation.result * (1 if equation.relation == ">" else -1)
-        weights = [subject.ring.number(orientation), motion.scale(number) * orientation]
-    total = sum(forms, subject.ring.number(0))
-    weight = min(weights, key=lambda w: len((w * total - reference).terms))
-    forms, total = [form * weight for form in forms], total * weight
-    factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
-    differences = [total - factor * reference for factor in factors]
-    least = min(range(len(factors)), key=lambda k: len(differences[k].terms))
-    difference, derived = differences[least], (factors[least] * reference).terms
-    differ = [i for i, form in enumerate(forms) if form.terms.keys() & difference.terms.keys()]
-    printed = set().union(*(form.terms for form in forms))
-    absent = [subject.ring.form({key: derived[key]}) for key in difference.terms if key in derived and key not in printed]
-    return Comparison(number, [i for i in range(len(forms)) if i not in differ], differ, absent, difference, differences,
-                      orientation, weight)
 
 
 def difference(subject, motion) -> List[Violation]:

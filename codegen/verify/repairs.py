@@ -8,7 +8,7 @@ from typing import List, Tuple
 from sympy import sympify
 
 from .algebra import ONE, NotInClass, expression
-from .judgements import compare
+from .comparison import compare
 
 # Two edits in one term are looked for where one does not explain it; three are not a misprint but
 # another term.

@@ -7,13 +7,15 @@ from typing import Dict, List, Optional
 
 from . import transcription
 from .algebra import NotInClass, expression
+from .comparison import compare
 from .corrections import apply
 from .definite import critical, determinant, minors, printed_mass, prove, states
 from .findings import Finding, from_corrections, from_objections, from_repairs, judge, repaired, scores
 from .intervals import intervals, signs
-from .judgements import Subject, compare, unjudged, unreferenced
+from .judgements import unjudged, unreferenced
 from .lagrange import Motion
 from .numbers import check
+from .subject import Subject
 
 
 @dataclass

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Callable, List
 
 from .findings import JUDGEMENTS, detected, repaired
-from .judgements import Subject
+from .subject import Subject
 from .lagrange import Motion
 from .load import load
 from .units import parse

@@ -12,14 +12,16 @@ from pathlib import Path
 import sympy
 
 from codegen.verify import html, machine, report, seeded, text, transcription
+from codegen.verify.comparison import compare
 from codegen.verify.definite import prove
 from codegen.verify.effects import quantity
 from codegen.verify.findings import judge
-from codegen.verify.judgements import Subject, compare, unjudged
+from codegen.verify.judgements import unjudged
 from codegen.verify.lagrange import Energies, Motion
 from codegen.verify.load import Case, load
 from codegen.verify.numbers import Number, check
 from codegen.verify.printed import Paper, PaperError
+from codegen.verify.subject import Subject
 
 HEAD = "from codegen.verify.printed import Paper\n"
 

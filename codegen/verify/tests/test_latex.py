@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from codegen.verify import latex, mathml, show, transcription
-from codegen.verify.judgements import Subject
+from codegen.verify.subject import Subject
 from codegen.verify.load import load
 from codegen.verify.printed import PaperError
 

@@ -14,7 +14,7 @@ from codegen.verify import cli, html, machine, report, text
 from codegen.verify.corrections import apply, closure, without
 from codegen.verify.effects import Simulated, attach
 from codegen.verify.findings import JUDGEMENTS
-from codegen.verify.judgements import Subject
+from codegen.verify.subject import Subject
 from codegen.verify.load import load
 from codegen.verify.printed import PaperError
 
