@@ -42,7 +42,7 @@ class Editor:
         self.alike, kinds = {}, {}
         for name, symbol in paper.symbols.items():
             moving = symbol.role in ("coordinate", "input")
-            if symbol.role in ("parameter", "force") or moving:
+            if (symbol.role in ("parameter", "force") or moving) and name not in paper.definitions:
                 kinds.setdefault((moving, symbol.role == "force", parse(symbol.unit)), []).append(name)
         for names in kinds.values():
             for name in names:

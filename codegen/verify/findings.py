@@ -11,6 +11,7 @@ from .corrections import apply, without
 from .definite import definite
 from .judgements import FIVE, TITLES
 from .lagrange import Motion
+from .locate import locate
 from .show import message_text
 from .subject import Subject
 
@@ -25,7 +26,8 @@ class Finding:
     with all that is called consistent; `slip` is a kind of slip (edits.SLIPS) or empty;
     `judgements` the names of those that find it when everything else is right; `order` the lowest
     degree in the coordinates of what it changes (None: not a term); `vanishes` the special cases in
-    which it changes nothing; `effects` what a simulation made of it, by scene."""
+    which it changes nothing; `effects` what a simulation made of it, by scene; `possible` the edits,
+    as (equation number, Repair), with each of which alone an objection vanishes and none comes."""
 
     key: str
     equation: str
@@ -40,6 +42,7 @@ class Finding:
     slip: str = ""
     vanishes: List[str] = field(default_factory=list)
     effects: dict = field(default_factory=dict)
+    possible: list = field(default_factory=list)
 
 
 def judge(subject, motion):
@@ -133,11 +136,31 @@ def from_objections(subject, violations):
     findings = []
     for name, list_ in violations.items():
         for k, v in enumerate(list_, 1):
-            findings.append(Finding(
-                f"{name}-{k}", ", ".join(dict.fromkeys(v.equations)), "objection",
-                f"{TITLES[name]}: {message_text(v.message, subject.paper)}", v.terms,
-                [subject.forms[v.equations[0]][i] for i in v.terms], [], False, [name], None))
+            findings.append(_objection(f"{name}-{k}", subject, [v], v.equations, v.terms))
     return findings
+
+
+def from_locations(subject):
+    """Without energies: one finding for the objections that vanish with one edit of a term, and one
+    for each that vanishes with none."""
+    locations, left = locate(subject)
+    findings = []
+    for k, found in enumerate(locations, 1):
+        numbers = tuple(dict.fromkeys(number for number, _ in found.candidates))
+        same = len(numbers) == 1 and len({repair.ordinals for _, repair in found.candidates}) == 1
+        ordinals = found.candidates[0][1].ordinals if same else ()
+        findings.append(_objection(f"slip-{k}", subject, found.violations, numbers, ordinals, found.candidates))
+    by_name = {name: [v for v in left if v.judgement == name] for name in JUDGEMENTS}
+    return findings + from_objections(subject, by_name)
+
+
+def _objection(key, subject, violations, equations, terms, possible=()):
+    """A finding that is one objection, or several with one place."""
+    reason = "; ".join(f"{TITLES[v.judgement]}: {message_text(v.message, subject.paper)}" for v in violations)
+    judgements = list(dict.fromkeys(v.judgement for v in violations))
+    printed = [subject.forms[equations[0]][k] for k in terms]
+    return Finding(key, ", ".join(dict.fromkeys(equations)), "objection", reason, terms, printed, [], False, judgements, None,
+                   possible=list(possible))
 
 
 def scores(case):

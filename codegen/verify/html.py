@@ -7,7 +7,8 @@ from .judgements import TITLES
 from .report import closed
 from .show import form_latex
 from .text import (agreement_text, consistent_label, consistent_text, effect_lines, extent_lines, headline, judged_text,
-                   judgement_text, number_text, printed_text, reason_lines, squares_text, transcription_lines, verdict_text)
+                   judgement_text, number_text, possible_lines, printed_text, reason_lines, squares_text, transcription_lines,
+                   verdict_text)
 
 STYLE = """
 body { font: 16px/1.5 Georgia, serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1b1b1b; background: #fff; }
@@ -104,6 +105,7 @@ def _finding(finding, paper):
            f'<p>printed: <span class="differ">{printed_text(finding, show)}</span><br/>'
            f'{consistent_label(finding)}: {consistent_text(finding, show)}</p>']
     out += [f"<p>{escape(line)}</p>" for line in reason_lines(finding)]
+    out += [f"<p>{line}</p>" for line in possible_lines(finding, show)]
     out.append("<p>" + ("".join(f'<span class="tag">{escape(TITLES[name])}</span>' for name in finding.judgements)
                         or escape(judged_text(finding))) + "</p>")
     out += [f"<p>{escape(line)}</p>" for line in extent_lines(finding) + effect_lines(finding)]

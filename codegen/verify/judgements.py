@@ -5,7 +5,7 @@ normal form, and none means that the identity is proved, where the judgement has
 judge by: `unjudged` says where it has not.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from typing import List, Tuple
@@ -28,12 +28,13 @@ TITLES = {
 class Violation:
     """What one judgement objects to: equation numbers, ordinals of the terms to blame (from 0,
     within the first equation; empty if the whole is to blame) and the message, a list of strings
-    and normal forms."""
+    and normal forms. `missing` lists what a lost term may have been: (equation number, form)."""
 
     judgement: str
     equations: Tuple[str, ...]
     terms: Tuple[int, ...]
     message: list
+    missing: list = field(default_factory=list)
 
 
 def dimensions(subject, motion=None) -> List[Violation]:
@@ -84,8 +85,13 @@ def lagrangian(subject, motion=None) -> List[Violation]:
     x = [[row.diff(name) for name in q] for row in rows]
     violations = []
 
-    def report(i, j, what, form):
-        violations.append(Violation("lagrangian", (motions[i].number, motions[j].number), (), [what, form]))
+    def report(i, j, what, form, *missing):
+        # each equation's own terms are what is printed, before it was multiplied by its constant
+        lost = [(motions[k].number, subject.multipliers[motions[k].number] * f) for k, f in missing]
+        violations.append(Violation("lagrangian", (motions[i].number, motions[j].number), (), [what, form], lost))
+
+    def acceleration(k):
+        return subject.ring.symbol("dd" + q[k])
 
     for e, row in zip(motions, rows):
         violations += _outside(subject, e, row)
@@ -96,10 +102,12 @@ def lagrangian(subject, motion=None) -> List[Violation]:
                 report(i, j, f"({number_i}) is not linear in the accelerations: ", a[i][j])
         if j < i and (form := a[i][j] - a[j][i]):
             report(i, j, f"the mass matrix is not symmetric: acceleration of {q[j]} in ({number_i}) minus "
-                         f"acceleration of {q[i]} in ({number_j}) leaves ", form)
+                         f"acceleration of {q[i]} in ({number_j}) leaves ", form,
+                   (i, -form * acceleration(j)), (j, form * acceleration(i)))
         if j <= i and (form := v[i][j] + v[j][i] - (a[i][j] + a[j][i]).rate(chain)):
             report(i, j, f"the velocity terms of ({number_i}) and ({number_j}) do not belong to their mass "
-                         "matrix; left over: ", form)
+                         "matrix; left over: ", form,
+                   *[(k, _integral(form * Fraction(-1, 1 + (i == j)), "d" + q[l])) for k, l in ((i, j), (j, i))])
         if j < i and (form := x[i][j] - x[j][i] - (v[i][j] - v[j][i]).rate(chain) * Fraction(1, 2)):
             report(i, j, f"the terms of ({number_i}) in {q[j]} and of ({number_j}) in {q[i]} do not come from one "
                          "energy; left over: ", form)
@@ -107,6 +115,15 @@ def lagrangian(subject, motion=None) -> List[Violation]:
         if equation.momentum:
             violations += _momentum(subject, number, q, chain)
     return violations
+
+
+def _integral(form, name):
+    """A form with this derivative by `name`, which is a factor, not an angle."""
+    total = form.ring.number(0)
+    for (monomial, harmonic), value in form.terms.items():
+        power = dict(monomial).get(name, 0)
+        total += form.ring.form({(monomial, harmonic): Fraction(value) / (power + 1)}) * form.ring.symbol(name)
+    return total
 
 
 def _outside(subject, equation, row):
@@ -151,7 +168,7 @@ def _momentum(subject, number, q, chain):
         if form := velocity - mass.rate(chain) * 2:
             violations.append(Violation("lagrangian", (number,), (), [
                 f"({number}) is not the rate of a momentum: its terms in the velocity of {name} do not belong to those in "
-                "the acceleration; left over: ", form]))
+                "the acceleration; left over: ", form], [(number, _integral(-form, "d" + name))]))
         if form := total.diff(name) - velocity.rate(chain) * Fraction(1, 2):
             violations.append(Violation("lagrangian", (number,), (), [
                 f"({number}) is not the rate of a momentum: its terms in {name} do not belong to those in the velocities; "
@@ -236,9 +253,10 @@ def galilei(subject, motion=None) -> List[Violation]:
                     f"a constant {what} added to that of the ground and tank changes ", total - total.substitute({name: 0})]))
         left = total.substitute(swap) - total
         if left and ("dd" + x in total.names() or equation.kind != "value"):
+            excess = left.coefficient("(shift)")
             violations.append(Violation("galilei", (number,), (), [
                 f"the accelerations of {x} and {z} do not enter as their sum; the factor of dd{x} less that of dd{z} is ",
-                left.coefficient("(shift)") or "not a number"]))
+                excess or "not a number"], [(number, excess * ring.symbol("dd" + z)), (number, -excess * ring.symbol("dd" + x))]))
         return violations
 
     return subject.each("galilei", judge)

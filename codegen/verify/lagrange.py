@@ -139,7 +139,10 @@ class Motion:
         """The normal form that an equation must have: its equation of motion, or what the
         energies' reference says; None where nothing is known."""
         if equation.number in self.energies.references:
-            return self.ring.read(self.energies.references[equation.number](self.s, self.m, self))
+            form = self.ring.read(self.energies.references[equation.number](self.s, self.m, self))
+            if equation.kind == "value" and equation.of in form.names():
+                raise PaperError(f"the reference of '{self.energies.name}' for ({equation.number}) gives {equation.of} by itself")
+            return form
         if equation.kind == "motion":
             return self.residual(equation.of)
         return None

@@ -44,6 +44,8 @@ def as_dictionary(report):
             "id": f.key, "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": f.reason,
             "term": [k + 1 for k in f.ordinals], "printed": [show(x) for x in f.printed],
             "consistent": None if f.kind == "objection" else [show(x) for x in f.consistent], "proved": f.proved,
+            "possible": [{"equation": n, "term": [k + 1 for k in r.ordinals], "slip": r.slip,
+                          "printed": [show(x) for x in r.printed], "edited": [show(x) for x in r.consistent]} for n, r in f.possible],
             "judgements": f.judgements, "order": f.order, "vanishes": f.vanishes, "effects": f.effects or None,
         } for f in report.findings],
         "variants": report.variants or None,

@@ -10,7 +10,7 @@ from .algebra import NotInClass, expression
 from .comparison import compare
 from .corrections import apply
 from .definite import critical, determinant, minors, printed_mass, prove, states
-from .findings import Finding, from_corrections, from_objections, from_repairs, judge, repaired, scores
+from .findings import Finding, from_corrections, from_locations, from_objections, from_repairs, judge, repaired, scores
 from .intervals import intervals, signs
 from .judgements import unjudged, unreferenced
 from .lagrange import Motion
@@ -57,7 +57,8 @@ class Report:
 
 
 def verify(case, thorough=True):
-    """Judge a case. `thorough` also bounds the mass matrices over the whole box."""
+    """Judge a case. `thorough` also bounds the mass matrices over the whole box, and locates what is
+    objected to where there are no energies."""
     paper = case.paper
     printed = Subject(paper)
     motions = [Motion(paper, energies) for energies in case.energies]
@@ -75,7 +76,8 @@ def verify(case, thorough=True):
         found, whole = repaired(printed, first)
         after = judge(whole, first)
         findings = from_repairs(printed, first, found, whole, after)
-    findings += from_objections(whole, after)
+    blind = thorough and not motions and not case.corrections
+    findings += from_locations(whole) if blind else from_objections(whole, after)
     report = Report(case, printed, whole, bool(case.corrections), motions, comparisons, violations, after, findings,
                     unjudged(printed, first), unreferenced(printed, first))
     report.transcribed = transcription.proved(printed)

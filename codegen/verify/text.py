@@ -76,6 +76,17 @@ def consistent_text(finding, show):
     return ",  ".join(show(part) for part in finding.consistent) or "(no such term)"
 
 
+def possible_lines(finding, show):
+    """The edits with each of which an objection vanishes: none is proved to be what was meant."""
+    lines = []
+    for number, repair in finding.possible:
+        where = f"({number})" + (f" term {repair.ordinals[0] + 1}" if repair.ordinals else "")
+        before = ",  ".join(show(x) for x in repair.printed) or "(not printed)"
+        after = ",  ".join(show(x) for x in repair.consistent) or "(no such term)"
+        lines.append(f"would remove it and raise no other: {where}: {before} → {after}: {slip_text(repair.slip)}")
+    return lines
+
+
 def consistent_label(finding):
     """Whether what is called consistent is proved so."""
     return "consistent" if finding.proved or finding.kind == "objection" else "proposed, not proved consistent"
@@ -121,7 +132,7 @@ def as_text(report):
         label = consistent_label(f) + ":"
         lines += ["", f"  [{f.key}] equation ({f.equation}){where}", f"    printed:    {printed_text(f, show)}",
                   f"    {label:11} {consistent_text(f, show)}"]
-        lines += [f"    {line}" for line in reason_lines(f)]
+        lines += [f"    {line}" for line in reason_lines(f) + possible_lines(f, show)]
         lines.append("    found by: " + judged_text(f))
         lines += [f"    {line}" for line in extent_lines(f) + effect_lines(f)]
     if report.variants:
