@@ -8,8 +8,10 @@ independent, and so are 1 and lambda on {+1, -1}. Hence two expressions are iden
 their normal forms are equal, and no heuristic simplification is involved.
 
 Inside the class: sums, products, integer powers, division by monomials, sin and cos of rational
-combinations of angles (each possibly times a discrete state), sign and Abs of any of these as
-opaque factors. Anything else raises `NotInClass`, which names the expression.
+combinations of angles (each possibly times a discrete state, or a sign), sign and Abs of any of these
+as opaque factors. Anything else raises `NotInClass`, which names the expression.
+
+The square of a sign is 1, but where its argument is zero: identities with signs hold almost everywhere.
 """
 
 from fractions import Fraction
@@ -28,6 +30,10 @@ class Ring:
     def __init__(self, involutions=(), first=()):
         self.involutions = frozenset(involutions)
         self.first = {name: i for i, name in enumerate(first)}
+
+    def involutive(self, name):
+        """Whether the square of a factor is 1."""
+        return name in self.involutions or isinstance(name, Opaque) and name.function == "sign"
 
     def form(self, terms):
         """The form of a dictionary of terms, without zeros; whole numbers as integers, which are
@@ -63,8 +69,8 @@ class Ring:
         plain, flipped, state = {}, {}, None
         for (monomial, harmonic), value in argument.terms.items():
             names = dict(monomial)
-            states = [n for n in names if n in self.involutions]
-            others = [n for n in names if n not in self.involutions]
+            states = [n for n in names if self.involutive(n)]
+            others = [n for n in names if not self.involutive(n)]
             if harmonic != ONE or len(others) != 1 or names[others[0]] != 1 or len(states) > 1 \
                     or (states and state not in (None, states[0])):
                 raise NotInClass(f"{kind}({argument}) is not the {kind} of a rational combination of angles")
@@ -154,7 +160,7 @@ def _multiply(ring, left, right):
     powers = dict(left)
     for name, exponent in right:
         powers[name] = powers.get(name, 0) + exponent
-        if name in ring.involutions:
+        if ring.involutive(name):
             powers[name] %= 2
     return tuple(sorted(((n, e) for n, e in powers.items() if e), key=lambda item: str(item[0])))
 
@@ -237,7 +243,7 @@ class Form:
         if len(self.terms) != 1 or next(iter(self.terms))[1] != ONE:
             raise NotInClass(f"1/({self}): only monomials can be divided by; multiply the equation through")
         (monomial, harmonic), value = next(iter(self.terms.items()))
-        flipped = tuple((n, e if n in self.ring.involutions else -e) for n, e in monomial)
+        flipped = tuple((n, e if self.ring.involutive(n) else -e) for n, e in monomial)
         return self.ring.form({(flipped, harmonic): Fraction(1, value)})
 
     def __eq__(self, other):

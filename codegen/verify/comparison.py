@@ -3,13 +3,16 @@
 from dataclasses import dataclass
 from typing import List
 
+from . import scales
+
 
 @dataclass
 class Comparison:
     """A printed equation beside what the energies give: the ordinals of the terms that agree and
     that differ, the derived terms that no printed term covers, printed minus derived with the
     constant that makes it smallest (and with each of the constants that an equation may be
-    multiplied by), and of a sign rule its orientation and what its terms are multiplied by."""
+    multiplied by), of a sign rule its orientation and what its terms are multiplied by, and what
+    an equation of motion must be multiplied by to be that of the energies."""
 
     number: str
     agree: List[int]
@@ -19,6 +22,7 @@ class Comparison:
     differences: list
     orientation: int
     weight: object
+    scale: object
 
 
 def compare(subject, motion, number):
@@ -46,6 +50,14 @@ def _compare(subject, motion, number):
     weight = min(weights, key=lambda w: len((w * total - reference).terms))
     forms, total = [form * weight for form in forms], total * weight
     factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
+    scale = subject.scales.get(number, factors[0])
+    if scale != factors[0]:
+        # divided by something: by what, the energies say better than dimensions
+        moving = ["dd" + name for name in subject.paper.coordinates()]
+        found = [ratio for name in moving for ratio in scales.ratios(total.diff(name), reference.diff(name))]
+        scale = min([*dict.fromkeys(found), scale],
+                    key=lambda r: min(len((total * r - factor * reference).terms) for factor in factors))
+        reference = reference * scale.inverse()
     differences = [total - factor * reference for factor in factors]
     least = min(range(len(factors)), key=lambda k: len(differences[k].terms))
     difference, derived = differences[least], (factors[least] * reference).terms
@@ -53,4 +65,4 @@ def _compare(subject, motion, number):
     printed = set().union(*(form.terms for form in forms))
     absent = [subject.ring.form({key: derived[key]}) for key in difference.terms if key in derived and key not in printed]
     return Comparison(number, [i for i in range(len(forms)) if i not in differ], differ, absent, difference, differences,
-                      orientation, weight)
+                      orientation, weight, scale)

@@ -7,7 +7,7 @@ from .judgements import TITLES
 from .report import closed
 from .show import form_latex
 from .text import (agreement_text, consistent_label, consistent_text, effect_lines, extent_lines, headline, judged_text,
-                   judgement_text, number_text, possible_lines, printed_text, reason_lines, squares_text, transcription_lines,
+                   judgement_text, number_text, possible_lines, printed_text, reason_lines, scale_lines, squares_text, transcription_lines,
                    verdict_text)
 
 STYLE = """
@@ -52,6 +52,7 @@ def _equations(report):
                                      '<span class="absent">Blue</span>: the energies give this term too.</p>']
     found = report.comparisons[report.motions[0].energies.name] if report.motions else {}
     out += [f"<p>{escape(line)}</p>" for line in transcription_lines(report)]
+    out += [f"<p>{line}</p>" for line in scale_lines(report, lambda form: inline(form, paper))]
     out += [f"<p>{escape(agreement_text(motion, report.comparisons[motion.energies.name]))}.</p>" for motion in report.motions]
     for number, equation in paper.equations.items():
         comparison = found.get(number)

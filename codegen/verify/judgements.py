@@ -10,7 +10,7 @@ from fractions import Fraction
 from itertools import product
 from typing import List, Tuple
 
-from . import units
+from . import scales, units
 from .algebra import Opaque
 from .comparison import compare
 
@@ -49,7 +49,8 @@ def dimensions(subject, motion=None) -> List[Violation]:
             except units.UnitError as error:
                 found.append(error)
         if equation.kind == "motion":
-            expected = units.parse("J").times(units.parse(symbols[equation.of].unit), -1)
+            scale = scales.measure(subject, subject.scales[number])
+            expected = scales.expected(subject, equation).times(scale, -1)
         elif equation.kind == "value":
             expected = units.parse(symbols[equation.of].unit)
         elif equation.kind == "reset":
@@ -87,7 +88,7 @@ def lagrangian(subject, motion=None) -> List[Violation]:
 
     def report(i, j, what, form, *missing):
         # each equation's own terms are what is printed, before it was multiplied by its constant
-        lost = [(motions[k].number, subject.multipliers[motions[k].number] * f) for k, f in missing]
+        lost = [(motions[k].number, subject.multipliers[motions[k].number].inverse() * f) for k, f in missing]
         violations.append(Violation("lagrangian", (motions[i].number, motions[j].number), (), [what, form], lost))
 
     def acceleration(k):

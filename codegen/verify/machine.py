@@ -24,6 +24,8 @@ def as_dictionary(report):
         "transcription_proved": report.transcribed,
         "agreeing_terms": sum(len(c.agree) for c in first.values()),
         "terms": sum(len(c.agree) + len(c.differ) for c in first.values()),
+        "multipliers": {n: show(first[n].scale if n in first else scale) for n, scale in report.printed.scales.items()
+                        if (first[n].scale if n in first else scale) != report.printed.ring.number(1)},
         "unreferenced_equations": report.unreferenced,
         "energies": [{
             "name": m.energies.name, "description": m.energies.description,

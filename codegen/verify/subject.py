@@ -10,6 +10,7 @@ from .algebra import NotInClass
 from .edits import Editor
 from .lagrange import Mathematics, ring_of, sympy_namespace
 from .printed import PaperError
+from .scales import scales
 
 
 class Subject:
@@ -39,6 +40,7 @@ class Subject:
                 raise PaperError(f"equation ({number}) has no terms")
         if base:
             self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
+        self.scales = scales(self)
         self.multipliers = self._multipliers()
 
     def _terms(self, equation):
@@ -110,12 +112,12 @@ class Subject:
         return [one, -one] + [sign * self.ring.symbol(n) for n in sorted(self.ring.involutions) for sign in (one, -one)]
 
     def _multipliers(self):
-        """For each equation of motion, the constant that makes the mass matrix most nearly
-        symmetric; the first equation keeps 1, and 1 is preferred."""
+        """For each equation of motion, its scale times the constant that makes the mass matrix most
+        nearly symmetric; the first equation keeps 1, and 1 is preferred."""
         motions = self.paper.motions()
-        rows = [[self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
+        rows = [[self.scales[e.number] * self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
         if not motions or not any(row[i] != rows[i][j] for j, row in enumerate(rows) for i in range(len(motions))):
-            return {e.number: self.ring.number(1) for e in motions}
+            return dict(self.scales)
         best = None
         for choice in product(self.factors(), repeat=len(motions) - 1):
             choice = (self.ring.number(1),) + choice
@@ -123,4 +125,4 @@ class Subject:
                        for i in range(len(motions)) for j in range(i))
             if best is None or cost < best[0]:
                 best = (cost, choice)
-        return {e.number: factor for e, factor in zip(motions, best[1])}
+        return {e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}

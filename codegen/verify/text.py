@@ -24,6 +24,17 @@ def transcription_lines(report):
     return lines
 
 
+def scale_lines(report, show):
+    """What equations are divided by, if they are."""
+    lines, one = [], report.printed.ring.number(1)
+    for number, scale in report.printed.scales.items():
+        if report.motions and (comparison := report.comparisons[report.motions[0].energies.name].get(number)):
+            scale = comparison.scale
+        if scale != one:
+            lines.append(f"Equation ({number}) is judged as multiplied by {show(scale)}.")
+    return lines
+
+
 def agreement_text(motion, comparisons):
     """How many printed terms agree with energies."""
     agree = sum(len(c.agree) for c in comparisons.values())
@@ -111,7 +122,8 @@ def as_text(report):
     def show(part):
         return shown(part, paper)
 
-    lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", "", *transcription_lines(report), ""]
+    lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", "", *transcription_lines(report),
+             *scale_lines(report, show), ""]
     for motion in report.motions:
         found = report.comparisons[motion.energies.name]
         lines.append(agreement_text(motion, found))

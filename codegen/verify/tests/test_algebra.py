@@ -54,11 +54,14 @@ class NormalForm(unittest.TestCase):
             (sympy.sign(-LAM * V), -LAM * sympy.sign(V)),
             (sympy.Abs(-LAM * V), sympy.Abs(V)),
             (1 / (A * M), A**-1 / M),
+            (sympy.sign(V)**3, sympy.sign(V)),
+            (sympy.sin(sympy.sign(Q) * A - Q), sympy.sign(Q) * sympy.sin(A) * sympy.cos(Q) - sympy.cos(A) * sympy.sin(Q)),
         ]:
             self.assertEqual(self.ring.read(left), self.ring.read(right), (left, right))
 
     def test_of_different_expressions_differs(self):
-        for left, right in [(sympy.sin(Q), Q), (LAM * Q, Q), (sympy.cos(A - Q), sympy.cos(A + Q)), (sympy.Abs(V), V)]:
+        for left, right in [(sympy.sin(Q), Q), (LAM * Q, Q), (sympy.cos(A - Q), sympy.cos(A + Q)), (sympy.Abs(V), V),
+                            (sympy.sin(sympy.sign(Q) * A - Q), sympy.sin(A - Q)), (sympy.sign(Q), sympy.sign(V))]:
             self.assertNotEqual(self.ring.read(left), self.ring.read(right), (left, right))
 
     def test_differentiates_like_sympy(self):
