@@ -8,8 +8,8 @@ from . import scales
 
 @dataclass
 class Comparison:
-    """A printed equation beside what the energies give: the ordinals of the terms that agree and
-    that differ, the derived terms that no printed term covers, printed minus derived with the
+    """A printed equation beside what the energies give: the ordinals of the terms that agree, that
+    differ, and that are idle (nothing derived is like them, but they cancel one another), the derived terms that no printed term covers, printed minus derived with the
     constant that makes it smallest (and with each of the constants that an equation may be
     multiplied by), of a sign rule its orientation and what its terms are multiplied by, and what
     an equation of motion must be multiplied by to be that of the energies."""
@@ -17,6 +17,7 @@ class Comparison:
     number: str
     agree: List[int]
     differ: List[int]
+    idle: List[int]
     absent: list
     difference: object
     differences: list
@@ -24,10 +25,14 @@ class Comparison:
     weight: object
     scale: object
 
+    def terms(self):
+        """Number of printed terms."""
+        return len(self.agree) + len(self.differ) + len(self.idle)
+
 
 def compare(subject, motion, number):
     """Judgement 3 for one equation, or None where the energies say nothing about it. A term
-    agrees if none of its parts occurs in the difference of printed and derived."""
+    agrees if some of its parts are derived, and none occurs in the difference of printed and derived."""
     key = ("compare", number, motion)
     if key not in subject.memo:
         subject.memo[key] = _compare(subject, motion, number)
@@ -64,5 +69,7 @@ def _compare(subject, motion, number):
     differ = [i for i, form in enumerate(forms) if form.terms.keys() & difference.terms.keys()]
     printed = set().union(*(form.terms for form in forms))
     absent = [subject.ring.form({key: derived[key]}) for key in difference.terms if key in derived and key not in printed]
-    return Comparison(number, [i for i in range(len(forms)) if i not in differ], differ, absent, difference, differences,
+    idle = [i for i, form in enumerate(forms) if i not in differ and not form.terms.keys() & derived.keys()]
+    agree = [i for i in range(len(forms)) if i not in differ and i not in idle]
+    return Comparison(number, agree, differ, idle, absent, difference, differences,
                       orientation, weight, scale)

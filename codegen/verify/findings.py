@@ -173,5 +173,5 @@ def scores(case):
         chosen = [n for n, e in case.paper.equations.items() if e.kind in ("motion", "value")]
         found = [c for c in (compare(subject, motion, n) for n in chosen) if c]
         result.append((energies.name, sum(len(c.agree) for c in found),
-                       sum(len(c.agree) + len(c.differ) for c in found), sum(len(c.absent) for c in found)))
+                       sum(c.terms() for c in found), sum(len(c.absent) for c in found)))
     return result

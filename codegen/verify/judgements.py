@@ -60,6 +60,8 @@ def dimensions(subject, motion=None) -> List[Violation]:
             readable = [x for x in found if not isinstance(x, units.UnitError)]
             expected = max(readable, key=readable.count, default=None)
         for index, dimension in enumerate(found):
+            if subject.expressions[number][index] == 0:
+                continue  # zero is of every dimension
             if isinstance(dimension, units.UnitError):
                 violations.append(Violation("dimensions", (number,), (index,), [
                     "the term ", subject.forms[number][index], f" has no dimension: it is or contains {dimension}"]))

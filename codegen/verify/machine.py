@@ -23,7 +23,7 @@ def as_dictionary(report):
         "schema": SCHEMA, "model": report.case.name, "title": paper.title, "source": paper.source,
         "transcription_proved": report.transcribed,
         "agreeing_terms": sum(len(c.agree) for c in first.values()),
-        "terms": sum(len(c.agree) + len(c.differ) for c in first.values()),
+        "terms": sum(c.terms() for c in first.values()),
         "multipliers": {n: show(first[n].scale if n in first else scale) for n, scale in report.printed.scales.items()
                         if (first[n].scale if n in first else scale) != report.printed.ring.number(1)},
         "unreferenced_equations": report.unreferenced,
@@ -32,6 +32,7 @@ def as_dictionary(report):
             "equations": {n: {
                 "agree": [{"term": k + 1, **show(report.printed.forms[n][k])} for k in c.agree],
                 "differ": [{"term": k + 1, **show(report.printed.forms[n][k])} for k in c.differ],
+                "idle": [{"term": k + 1, **show(report.printed.forms[n][k])} for k in c.idle],
                 "absent": [show(x) for x in c.absent],
             } for n, c in report.comparisons[m.energies.name].items()},
         } for m in report.motions],

@@ -79,9 +79,14 @@ class Equation:
     def terms(self, s, m):
         """The printed terms, in printed order. Of a condition, with the signs that make their
         sum positive where the condition holds."""
+        terms = self.function(s, m)
+        if not isinstance(terms, (list, tuple)):
+            raise PaperError(f"its function returns {terms} where a list of its terms belongs")
         if self.kind != "condition" or self.margin:
-            return list(self.function(s, m))
-        left, right = self.function(s, m)
+            return list(terms)
+        if len(terms) != 2 or not all(isinstance(side, (list, tuple)) for side in terms):
+            raise PaperError("the function of a condition returns two lists: the terms on the left and on the right")
+        left, right = terms
         if self.relation == "<":
             return [-term for term in left] + list(right)
         return list(left) + [-term for term in right]

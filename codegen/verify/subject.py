@@ -46,7 +46,7 @@ class Subject:
     def _terms(self, equation):
         """The terms of an equation as SymPy expressions; an error in its function names it."""
         try:
-            terms = list(equation.terms(self.s, self.m))
+            terms = equation.terms(self.s, self.m)
         except Exception as error:  # whatever a model file does wrong is its author's to read
             raise PaperError(f"equation ({equation.number}): {error}") from error
         known, result = set(self.paper.names()), []

@@ -38,9 +38,10 @@ def scale_lines(report, show):
 def agreement_text(motion, comparisons):
     """How many printed terms agree with energies."""
     agree = sum(len(c.agree) for c in comparisons.values())
-    total = agree + sum(len(c.differ) for c in comparisons.values())
+    total, idle = sum(c.terms() for c in comparisons.values()), sum(len(c.idle) for c in comparisons.values())
     return (f"Energies '{motion.energies.name}': {agree} of {total} printed terms agree, "
-            f"{sum(len(c.absent) for c in comparisons.values())} derived terms are not printed")
+            + (f"{idle} cancel one another or vanish, " if idle else "")
+            + f"{sum(len(c.absent) for c in comparisons.values())} derived terms are not printed")
 
 
 def judgement_text(report, name):
@@ -128,7 +129,7 @@ def as_text(report):
         found = report.comparisons[motion.energies.name]
         lines.append(agreement_text(motion, found))
         for number, c in found.items():
-            lines.append(f"  ({number})  {len(c.agree)} of {len(c.agree) + len(c.differ)} terms agree")
+            lines.append(f"  ({number})  {len(c.agree)} of {c.terms()} terms agree")
         lines.append("")
     if report.scores:
         lines.append("Candidate energies (equations of motion, forces and reactions): agreeing terms, absent terms")

@@ -242,6 +242,11 @@ class Agrees(unittest.TestCase):
         self.assertEqual(counts, (1, 0, 1))
         self.assertEqual([f.slip for f in result.findings], ["lost term"])
 
+    def test_terms_that_cancel_one_another_agree_with_nothing(self):
+        counts, result = self.verdict(lambda s, m: [s.m * s.ddq, s.k * s.z, s.k * s.q, -s.k * s.z, 0 * s.q])
+        self.assertEqual((counts, result.findings), ((2, 0, 0), []))
+        self.assertIn("2 of 5 printed terms agree, 3 cancel one another or vanish", text.as_text(result))
+
     def test_a_rule_turned_round_does_not_agree(self):
         reference = lambda s, m, motion: s.ddq
         self.assertEqual(self.verdict(lambda s, m: [s.ddq], "rule", "lam", reference, result=1, relation=">")[0], (1, 0, 0))
