@@ -175,6 +175,9 @@ def _variant(variant):
     for i, equations in enumerate(variant.modes):
         yield from _mode(variant, i, equations)
     yield "            ],"
+    index = {m.name: k for k, m in enumerate(model.modes)}
+    rests = ", ".join(f"Rest {{ source: {index[s.name]}, target: {index[t.name]} }}" for s, t in model.rests)
+    yield f"            rests: &[{rests}],"
     yield "        },"
 
 
@@ -189,7 +192,6 @@ def _mode(variant, i, equations):
         _option(mode.held.get(c.name), _number) for c in model.coordinates)
     drifts = _flags(c.name in mode.drift for c in model.coordinates)
     index = {m.name: k for k, m in enumerate(model.modes)}
-    rest = None if mode.rest is None else index[mode.rest.name]
     pad = " " * 16
     yield f"{pad}Mode {{"
     yield f"{pad}    name: {_text(mode.name)}, meaning: {_text(mode.meaning)},"
@@ -220,7 +222,6 @@ def _mode(variant, i, equations):
         yield (f"{pad}        Requirement {{ text: {_text(units.short(requirement, 200))}, "
                f"failure: {_text(failure)}, unit: {_text(_unit(model, requirement))} }},")
     yield f"{pad}    ],"
-    yield f"{pad}    rest: {_option(rest, str)},"
     without = functions[("series",)].without or None
     yield f"{pad}    without_series: {_option(without, _text)},"
     yield f"{pad}    kernels: ModeKernels::F{free}(ModeKernel {{"

@@ -96,7 +96,7 @@ class Mode:
     def __init__(self, model, name, meaning, freeze, drift):
         self.model, self.name, self.meaning = model, name, meaning
         self.held, self.drift = freeze, drift
-        self.forces, self.requirements, self.rest = [], [], None
+        self.forces, self.requirements = [], []
 
     def is_free(self, coordinate):
         """Whether the coordinate is integrated in this mode."""
@@ -144,7 +144,7 @@ class Model:
         self.bodies, self.kinetic_terms, self.potentials, self.dissipations = [], [], [], []
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
-        self.modes, self.transitions = [], []
+        self.modes, self.transitions, self.rests = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
         self.shapes = []
@@ -305,8 +305,22 @@ class Model:
             caller_location(self.file)))
 
     def rest(self, source, target):
-        """The mode at the limit of an accumulation of events that ends in `source`."""
-        source.rest = target
+        """A mode at the limit of infinitely many events in finite time, some of which lead to `source`.
+
+        It is entered where the limit satisfies what `target` holds: values and rates. A source may have
+        several; the one that holds the most is taken, the first in the order of the file among equals.
+        """
+        for mode in (source, target):
+            if not isinstance(mode, Mode):
+                raise self.error(f"rest: `{mode}` is not a mode; give what model.mode(…) returned")
+        freed = [name for name in source.held if name not in target.held]
+        if freed or len(target.held) == len(source.held):
+            what = f"lets `{freed[0]}` move, which `{source.name}` holds" if freed else f"holds no more than `{source.name}`"
+            raise self.error(f"rest of `{source.name}` in `{target.name}`: `{target.name}` {what}; what comes to rest"
+                             " is held in the target, and what was held stays so")
+        if (source, target) in self.rests:
+            raise self.error(f"rest of `{source.name}` in `{target.name}` is declared twice")
+        self.rests.append((source, target))
 
     def requires(self, mode, positive, failure):
         """Stops the run with the reason `failure` where `positive` is not > 0."""

@@ -34,10 +34,10 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// All of it, and whether the event was an impact, in one number. A model has fewer of each than 2¹⁶.
-    pub fn key(self, impact: bool) -> u64 {
+    /// All of it in one number. A model has fewer of each than 2¹⁶.
+    pub fn key(self) -> u64 {
         let [guard, transition, mode] = [self.guard, self.transition, self.mode].map(|i| i as u64);
-        guard | transition << 16 | mode << 32 | u64::from(impact) << 48
+        guard | transition << 16 | mode << 32
     }
 }
 
@@ -48,10 +48,11 @@ pub struct Limit {
     pub at: Instant,
     /// Coordinates, then velocities, at the limit.
     pub state: Vec<f64>,
-    /// Number of events of the repeating pattern.
-    pub pattern: usize,
-    /// Ratio of the durations of successive patterns.
-    pub ratio: f64,
+    /// What each of them may be off by: what is left of the series moves it, the last two predictions differ, and
+    /// their rounding.
+    pub uncertainty: Vec<f64>,
+    /// The modes that the events of the repeating pattern lead to, that of the last event first.
+    pub modes: Vec<usize>,
 }
 
 /// A geometric series of patterns.
@@ -197,8 +198,9 @@ impl Accumulation {
         Instant::of_parts(self.times[self.place(back)])
     }
 
-    fn is_impact(&self, back: usize) -> bool {
-        self.keys[self.place(back)] >> 48 != 0
+    /// The mode that an event has led to ([`Signature::key`]).
+    fn mode(&self, back: usize) -> usize {
+        (self.keys[self.place(back)] >> 32) as usize
     }
 
     /// Coordinates, velocities and discrete states after an event.
@@ -248,6 +250,13 @@ impl Accumulation {
             .find_map(|p| self.series(p, relative))?;
         let ends = self.is_negligible(&series, relative);
         ends.then(|| self.end_of(&series))
+    }
+
+    /// The limit, if the last events accumulate, however far the rest of the series moves the state.
+    pub fn extrapolated(&self, relative: f64) -> Option<Limit> {
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
+        let series = (1..=known).find_map(|p| self.series(p, relative))?;
+        Some(self.end_of(&series))
     }
 
     /// Whether the time since the last event but one is so short that the rest of a series, at least
@@ -306,9 +315,7 @@ impl Accumulation {
             return None;
         }
         let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
-        // Only impacts come to rest; stick and slip alone have modes of their own.
-        let comes_to_rest = repeats && (0..p).any(|i| self.is_impact(i));
-        comes_to_rest.then_some(Series {
+        repeats.then_some(Series {
             pattern: p,
             ratio,
             ratio_before,
@@ -339,23 +346,27 @@ impl Accumulation {
         let p = series.pattern;
         let [now, before, earlier] = [0, p, 2 * p].map(|back| self.state(back));
         let mut state = now.to_vec();
+        let mut uncertainty = vec![0.0; now.len()];
         for (i, value) in state.iter_mut().enumerate() {
             let factor_before = series.ratio_before / (1.0 - series.ratio_before);
             let limit_before = before[i] + (before[i] - earlier[i]) * factor_before;
-            *value += (now[i] - before[i]) * series.factor();
+            let left = (now[i] - before[i]) * series.factor();
+            *value += left;
             // A component whose limit is not told from zero, by two successive predictions and the
             // rounding of the extrapolation, dies with the pattern.
             let size = now[i].abs() + before[i].abs();
             let rounding = f64::EPSILON * size * (1.0 + series.factor());
-            if value.abs() <= (*value - limit_before).abs() + rounding {
+            let differs = (*value - limit_before).abs() + rounding;
+            uncertainty[i] = left.abs() + differs;
+            if value.abs() <= differs {
                 *value = 0.0;
             }
         }
         Limit {
             at: series.limit,
             state,
-            pattern: p,
-            ratio: series.ratio,
+            uncertainty,
+            modes: (0..p).map(|back| self.mode(back)).collect(),
         }
     }
 
@@ -392,7 +403,6 @@ mod tests {
     fn push(
         accumulation: &mut Accumulation,
         guard: usize,
-        impact: bool,
         at: Instant,
         before: &[f64],
         after: &[f64],
@@ -402,7 +412,7 @@ mod tests {
             ..Signature::default()
         };
         accumulation.compare([before, &[]]);
-        accumulation.push(signature.key(impact), at, after);
+        accumulation.push(signature.key(), at, after);
     }
 
     fn bounce(e: f64, tolerance: f64) -> (usize, Limit) {
@@ -411,7 +421,7 @@ mod tests {
         let mut t = Instant::new((2.0f64 / g).sqrt());
         let mut v = e * (2.0 * g).sqrt();
         for k in 0.. {
-            push(&mut accumulation, 1, true, t, &[0.0, -v], &[0.0, v]);
+            push(&mut accumulation, 1, t, &[0.0, -v], &[0.0, v]);
             if let Some(limit) = accumulation.limit(tolerance) {
                 return (k, limit);
             }
@@ -451,7 +461,7 @@ mod tests {
         let (mut long, mut short) = (1.0, 0.3);
         let mut found = None;
         for k in 0..400 {
-            push(&mut accumulation, k % 2, true, t, &[0.0], &[long]);
+            push(&mut accumulation, k % 2, t, &[0.0], &[long]);
             found = accumulation.limit(1e-12);
             if found.is_some() {
                 break;
@@ -465,7 +475,7 @@ mod tests {
             }
         }
         let limit = found.expect("accumulates");
-        assert_eq!(limit.pattern, 2);
+        assert_eq!(limit.modes.len(), 2);
         assert!((limit.at.seconds() - 1.3 / 0.3).abs() < 1e-12, "{limit:?}");
     }
 
@@ -476,13 +486,13 @@ mod tests {
         let (mut t, mut hop) = (Instant::new(0.0), 1.0);
         let found = (0..40).find_map(|k| {
             let now = if k % 2 == 0 { 1.0 } else { -1.0 };
-            push(&mut accumulation, k % 2, true, t, &[-now], &[now]);
+            push(&mut accumulation, k % 2, t, &[-now], &[now]);
             t = t.plus(hop);
             hop *= if k % 2 == 0 { 0.3 } else { 1e-3 / 0.3 };
             accumulation.limit(1e-12)
         });
         let limit = found.expect("the time stands still");
-        assert_eq!(limit.pattern, 2);
+        assert_eq!(limit.modes.len(), 2);
         assert!((limit.at.seconds() - 1.3 / 0.999).abs() < 1e-15);
     }
 
@@ -491,7 +501,7 @@ mod tests {
         let mut accumulation = Accumulation::new([1.0].into(), 0);
         for k in 0..100 {
             let (at, v) = (Instant::new(k as f64 * 1e-6), 1.0);
-            push(&mut accumulation, 0, true, at, &[-v], &[v]);
+            push(&mut accumulation, 0, at, &[-v], &[v]);
             assert!(accumulation.limit(1e-12).is_none());
             assert!(!accumulation.stands_still(at));
         }
@@ -504,7 +514,7 @@ mod tests {
             let mut now = Instant::default();
             for k in 0..Accumulation::MEMORY + 1 {
                 let (at, x) = (Instant::new(1.0 + k as f64 * 1e-15), 1.0 + k as f64 * moved);
-                push(&mut accumulation, 0, false, at, &[x], &[x]);
+                push(&mut accumulation, 0, at, &[x], &[x]);
                 now = at;
             }
             assert_eq!(accumulation.stands_still(now), stands);

@@ -75,13 +75,15 @@ pub enum Reason {
     },
     /// Events follow each other without a limit, and between them neither time nor motion goes on.
     #[error(
-        "events accumulate without a limit (chattering): between the last {count} nothing moved by more than rounding; transitions involved: {transitions}; a mode is missing in which the motion goes on between them"
+        "events accumulate and neither time nor motion goes on (chattering): between the last {count} nothing moved by more than rounding; transitions involved: {transitions}; {missing}"
     )]
     Chattering {
         /// Number of events looked at.
         count: usize,
         /// Names of the transitions.
         transitions: String,
+        /// Why they do not come to rest.
+        missing: String,
     },
     /// The model needs a mode that the scene left out by freezing a coordinate.
     #[error("no mode is left in which {frozen} may be frozen")]

@@ -3,7 +3,6 @@
 use super::accumulation::Signature;
 use super::failure::{Reason, Stoppable};
 use super::guards::Conditions;
-use super::plan::is_impact;
 use super::simulation::Simulation;
 use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
@@ -45,7 +44,7 @@ impl Simulation<'_> {
         }
         self.accumulation.compare([&self.here.q, &self.here.v]);
         self.commit(transition.name, transition.impact, transition.target)?;
-        self.remember(guard, t, is_impact(fired))
+        self.remember(guard, t)
     }
 
     /// Takes a transition of a guard. Gives whether it has led to the same mode again, which goes on: with
@@ -193,14 +192,14 @@ impl Simulation<'_> {
 
     /// Remembers the event, and goes to the limit of an accumulation if there is one.
     #[inline(always)]
-    fn remember(&mut self, guard: usize, transition: usize, impact: bool) -> Stoppable<()> {
+    fn remember(&mut self, guard: usize, transition: usize) -> Stoppable<()> {
         let signature = Signature {
             guard,
             transition,
             mode: self.here.mode,
         };
         // What the reset has written is the state now.
-        let key = signature.key(impact);
+        let key = signature.key();
         self.accumulation.push(key, self.here.now, &self.next);
         self.look_for_accumulation()
     }

@@ -21,6 +21,7 @@ mod plan;
 mod problem;
 mod requirements;
 mod resume;
+mod rest;
 pub mod roots;
 mod samples;
 mod search;

@@ -2,7 +2,7 @@
 
 use super::failure::Reason;
 use super::problem::Problem;
-use crate::model::{Guard, Mode};
+use crate::model::{Guard, Rest};
 
 /// Modes and guards that are left after the scene's `freeze`.
 #[derive(Debug)]
@@ -13,6 +13,8 @@ pub(super) struct Plan {
     pub drifts: Vec<bool>,
     /// Per mode: what is watched.
     pub watched: Vec<Vec<Watched>>,
+    /// The rests that the scene may visit, in the order of the file.
+    pub rests: Vec<Rest>,
 }
 
 /// A smooth scalar that is watched for falling through zero.
@@ -53,16 +55,21 @@ impl Plan {
                     .collect()
             })
             .collect();
+        let rests = (problem.variant.rests.iter().copied())
+            .filter(|rest| allowed[rest.target])
+            .collect();
         Ok(Plan {
+            rests,
             allowed,
             drifts: modes.iter().map(|m| m.drifts.contains(&true)).collect(),
             watched,
         })
     }
 
-    /// The rest mode of `mode`, if the scene may visit it.
-    pub fn rest(&self, mode: &Mode) -> Option<usize> {
-        mode.rest.filter(|&r| self.allowed[r])
+    /// Whether accumulations with events that lead to a mode, by its index, may come to rest.
+    #[inline]
+    pub fn rests(&self, mode: usize) -> bool {
+        self.rests.iter().any(|rest| rest.source == mode)
     }
 }
 
@@ -91,7 +98,7 @@ fn watched(guard: usize, model: &Guard, allowed: &[bool]) -> Vec<Watched> {
     all
 }
 
-/// Whether a guard's zero is an impact, whose accumulation has the mode's rest as its limit.
+/// Whether a guard's zero is an impact.
 pub(super) fn is_impact(guard: &Guard) -> bool {
     guard.transitions.iter().any(|t| t.impact)
 }

@@ -1,6 +1,6 @@
 //! The run: settle, advance to the next event, apply it, and so on to the end.
 
-use super::accumulation::{Accumulation, Limit};
+use super::accumulation::Accumulation;
 use super::crossing::Signs;
 use super::doubt::Doubts;
 use super::ensemble::Member;
@@ -420,69 +420,10 @@ impl<'p> Simulation<'p> {
         Ok(!self.is_over())
     }
 
-    /// A violated guard: the limit of its accumulation if it is an impact from rest, else its
-    /// transition.
-    fn resolve(&mut self, violation: Violation) -> Stoppable<()> {
-        let mode = self.mode();
-        let rests = violation.rests && super::plan::is_impact(&mode.guards[violation.guard]);
-        match self.plan.rest(mode) {
-            Some(rest) if rests => self.come_to_rest(rest, None),
-            _ => self.fire(violation.guard),
-        }
-    }
-
     pub fn is_over(&self) -> bool {
         let after = self.problem.end.after;
         self.here.now.seconds() >= self.problem.end.time
             || after.is_some_and(|(_, count)| self.counted >= count)
-    }
-
-    /// The mode and the limit of an accumulation that the last events make certain.
-    pub fn rest(&self) -> Option<(usize, Limit)> {
-        let accuracy = &self.problem.accuracy;
-        let rest = self.plan.rest(self.mode())?;
-        let limit = self.accumulation.limit(accuracy.relative)?;
-        (limit.at.seconds() < self.problem.end.time).then_some((rest, limit))
-    }
-
-    /// Goes to the limit of an accumulation, if the last events have one.
-    pub fn look_for_accumulation(&mut self) -> Stoppable<()> {
-        if let Some((rest, limit)) = self.rest() {
-            return self.come_to_rest(rest, Some(limit));
-        }
-        if self.accumulation.stands_still(self.here.now) {
-            let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
-            let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
-            transitions.sort_unstable();
-            transitions.dedup();
-            return Err(Box::new(Reason::Chattering {
-                count: Accumulation::MEMORY,
-                transitions: transitions.join(", "),
-            }));
-        }
-        Ok(())
-    }
-
-    /// Enters the mode at the limit of an accumulation; `None`: the limit is here.
-    fn come_to_rest(&mut self, rest: usize, limit: Option<Limit>) -> Stoppable<()> {
-        let n = self.here.q.len();
-        if let Some(limit) = limit {
-            self.here.now = limit.at;
-            self.here.q.copy_from_slice(&limit.state[..n]);
-            self.here.v.copy_from_slice(&limit.state[n..]);
-        }
-        let mode = &self.modes[rest];
-        self.next[..n].copy_from_slice(&self.here.q);
-        self.next[n..2 * n].copy_from_slice(&self.here.v);
-        self.next[2 * n..].copy_from_slice(self.context.discrete());
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
-        for i in (0..n).filter(|i| !mode.free.contains(i)) {
-            if let Some(value) = mode.held_at[i] {
-                self.next[i] = value;
-            }
-            self.next[n + i] = self.drift[i];
-        }
-        self.commit("rest", false, rest)
     }
 
     /// Sets signals and held coordinates to the present instant.

@@ -163,6 +163,17 @@ pub struct Variant {
     pub drawing: &'static str,
     /// The modes; the first is where a scene starts when it names none and several fit.
     pub modes: &'static [Mode],
+    /// Where accumulations may come to rest, in the order of the file.
+    pub rests: &'static [Rest],
+}
+
+/// A mode at the limit of infinitely many events in finite time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rest {
+    /// Index of a mode that some of the events lead to.
+    pub source: usize,
+    /// Index of the mode that is entered where the limit satisfies what it holds.
+    pub target: usize,
 }
 
 /// A mode: which coordinates are free, and the functions of the reduced system.
@@ -182,8 +193,6 @@ pub struct Mode {
     pub requirements: &'static [Requirement],
     /// Rate of each frozen coordinate that drifts (a belt); false: it rests. One entry a coordinate.
     pub drifts: &'static [bool],
-    /// Index of the mode at the limit of an accumulation of this mode's events, if one is declared.
-    pub rest: Option<usize>,
     /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
     pub without_series: Option<&'static str>,
     /// Generated functions, typed by the number of free coordinates.

@@ -130,7 +130,7 @@ fn json_says_the_same() {
     assert!(json["parameters"][0]["maximum"].is_null());
     let flies = &json["modes"][0];
     assert_eq!(flies["free"], serde_json::json!(["h"]));
-    assert_eq!(flies["rest"], "rests");
+    assert_eq!(flies["rests"], serde_json::json!(["rests"]));
     let impact = &flies["guards"][0]["transitions"][0];
     assert_eq!(impact["name"], "impact");
     assert_eq!(impact["impact"], true);

@@ -101,8 +101,8 @@ pub struct Mode {
     pub held: Vec<Held>,
     pub guards: Vec<Guard>,
     pub requirements: Vec<Requirement>,
-    /// Mode at the limit of an accumulation of this mode's impacts.
-    pub rest: Option<&'static str>,
+    /// Modes at the limit of accumulations with events that lead to this mode.
+    pub rests: Vec<&'static str>,
     pub operations: Vec<Operations>,
 }
 
@@ -207,7 +207,8 @@ impl Description {
             modes: variant
                 .modes
                 .iter()
-                .map(|mode| Mode::new(model, variant, mode))
+                .enumerate()
+                .map(|(index, mode)| Mode::new(model, variant, (index, mode)))
                 .collect(),
         }
     }
@@ -229,7 +230,7 @@ impl Parameter {
 }
 
 impl Mode {
-    fn new(model: &Model, variant: &Variant, mode: &model::Mode) -> Mode {
+    fn new(model: &Model, variant: &Variant, (index, mode): (usize, &model::Mode)) -> Mode {
         let name = |i: usize| model.coordinates[i].name;
         let is_held = |i: &usize| !mode.free.contains(i);
         let to = |target: usize| variant.modes[target].name;
@@ -267,7 +268,10 @@ impl Mode {
                     failure: r.failure,
                 })
                 .collect(),
-            rest: mode.rest.map(to),
+            rests: (variant.rests.iter())
+                .filter(|rest| rest.source == index)
+                .map(|rest| to(rest.target))
+                .collect(),
             operations: (mode.operations.iter())
                 .map(|&(function, count)| Operations { function, count })
                 .collect(),

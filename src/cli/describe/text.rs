@@ -148,8 +148,9 @@ fn mode(f: &mut Formatter, mode: &Mode) -> fmt::Result {
         let text = within(r.text, mode);
         writeln!(f, "  needs {text} > 0 {}, else {}", r.unit, r.failure)?;
     }
-    if let Some(rest) = mode.rest {
-        writeln!(f, "  rest  impacts that accumulate end in {rest}")?;
+    if !mode.rests.is_empty() {
+        let rests = mode.rests.join(", ");
+        writeln!(f, "  rest  events that accumulate end in {rests}, where their limit fits")?;
     }
     let heads = [
         "transition",

@@ -4,7 +4,6 @@ use super::super::accumulation::{Accumulation, SHORTEST_PATTERN, Signature};
 use super::super::crossing::Signs;
 use super::super::guards::slope;
 use super::super::instant::Instant;
-use super::super::plan::is_impact;
 use super::super::roots::Watch;
 use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
@@ -173,7 +172,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 linear,
                 transition,
                 name: transition.map_or("", |t| own.transitions[t].name),
-                key: signature.key(is_impact(own)),
+                key: signature.key(),
                 falls: LaneMask::NONE,
                 reset: LaneRows::zeros(2 * coordinates + discretes),
                 after: linear,
@@ -199,7 +198,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             past: LanePast {
                 coordinates,
                 free: mode.free,
-                may_rest: like.plan.rest(mode).is_some(),
+                may_rest: like.plan.rests(like.here.mode),
                 hardly: Accumulation::HARDLY,
                 shortest: SHORTEST_PATTERN,
                 tolerances: tolerances.all().into(),

@@ -1,0 +1,195 @@
+//! Rest: the mode at the limit of an accumulation.
+//!
+//! A model declares where accumulations may come to rest. A declared rest is taken only where the limit satisfies
+//! everything that its mode holds, within the tolerances of the run: nothing is moved there that is not there
+//! already. Of several that fit the limit decides how much comes to rest: what it tells from the value that a mode
+//! holds goes on, and all else is held.
+
+use super::accumulation::{Accumulation, Limit};
+use super::failure::{Reason, Stoppable};
+use super::plan::is_impact;
+use super::simulation::{Simulation, Violation};
+use crate::kernel::with_kernel;
+use crate::model::Mode;
+
+/// What a mode holds, by the index of the coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Held {
+    /// It holds the coordinate at a value.
+    At(usize, f64),
+    /// It holds the rate of the coordinate at a value.
+    Rate(usize, f64),
+}
+
+impl Held {
+    /// Index among coordinates, then velocities, of so many each; and the value.
+    fn place(self, coordinates: usize) -> (usize, f64) {
+        match self {
+            Held::At(i, value) => (i, value),
+            Held::Rate(i, value) => (coordinates + i, value),
+        }
+    }
+}
+
+impl Simulation<'_> {
+    /// The mode and the limit of an accumulation that the last events make certain, where a rest fits it.
+    pub fn rest(&self) -> Option<(usize, Limit)> {
+        if !self.plan.rests(self.here.mode) {
+            return None;
+        }
+        let limit = self.accumulation.limit(self.problem.accuracy.relative)?;
+        if limit.at.seconds() >= self.problem.end.time {
+            return None;
+        }
+        let target = self.fitting(&limit)?;
+        Some((target, limit))
+    }
+
+    /// Goes to the limit of an accumulation, if the last events have one.
+    pub fn look_for_accumulation(&mut self) -> Stoppable<()> {
+        if let Some((target, limit)) = self.rest() {
+            return self.come_to_rest(target, &limit);
+        }
+        if self.accumulation.stands_still(self.here.now) {
+            let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
+            let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
+            transitions.sort_unstable();
+            transitions.dedup();
+            return Err(Box::new(Reason::Chattering {
+                count: Accumulation::MEMORY,
+                transitions: transitions.join(", "),
+                missing: self.missing_rest(),
+            }));
+        }
+        Ok(())
+    }
+
+    /// A violated guard: a rest that fits the state if it is an impact from rest, else its transition.
+    pub fn resolve(&mut self, violation: Violation) -> Stoppable<()> {
+        if violation.rests && is_impact(&self.mode().guards[violation.guard]) {
+            let n = self.here.q.len();
+            let here = Limit {
+                at: self.here.now,
+                state: [&*self.here.q, &self.here.v].concat(),
+                uncertainty: vec![0.0; 2 * n],
+                modes: vec![self.here.mode],
+            };
+            if let Some(target) = self.fitting(&here) {
+                return self.come_to_rest(target, &here);
+            }
+        }
+        self.fire(violation.guard)
+    }
+
+    /// Enters a mode that fits the limit of an accumulation.
+    fn come_to_rest(&mut self, target: usize, limit: &Limit) -> Stoppable<()> {
+        let n = self.here.q.len();
+        self.here.now = limit.at;
+        self.here.q.copy_from_slice(&limit.state[..n]);
+        self.here.v.copy_from_slice(&limit.state[n..]);
+        self.next[..2 * n].copy_from_slice(&limit.state);
+        self.next[2 * n..].copy_from_slice(self.context.discrete());
+        for held in self.holds(&self.modes[target]) {
+            let (place, value) = held.place(n);
+            self.next[place] = value;
+        }
+        self.commit("rest", false, target)
+    }
+
+    /// The rest that a limit of events in some modes comes to: of those declared for these modes that fit it the
+    /// one with the least that the limit tells from what is held; of these the one that holds the most, and of these
+    /// the first in the order of the file.
+    fn fitting(&self, limit: &Limit) -> Option<usize> {
+        let fits = self.declared(limit).filter_map(|target| {
+            let mode = &self.modes[target];
+            let told = self.told_apart(mode, limit).ok()?;
+            Some((told, mode.free.len(), target))
+        });
+        let best = fits.min_by_key(|&(told, free, _)| (told, free));
+        best.map(|(_, _, target)| target)
+    }
+
+    /// The modes of the rests that are declared for the modes of a limit.
+    fn declared<'s>(&'s self, limit: &'s Limit) -> impl Iterator<Item = usize> + 's {
+        let rests = self.plan.rests.iter();
+        rests.filter_map(|rest| limit.modes.contains(&rest.source).then_some(rest.target))
+    }
+
+    /// How many components of a limit are told from what a mode holds, by the limit's own uncertainty.
+    ///
+    /// # Errors
+    /// The first component that differs from what the mode holds by more than its tolerance.
+    fn told_apart(&self, mode: &'static Mode, limit: &Limit) -> Result<usize, Held> {
+        let accuracy = &self.problem.accuracy;
+        let n = self.here.q.len();
+        let mut told = 0;
+        for held in self.holds(mode) {
+            let (place, value) = held.place(n);
+            let absolute = match held {
+                Held::At(i, _) => accuracy.q_absolute[i],
+                Held::Rate(i, _) => accuracy.v_absolute[i],
+            };
+            let distance = (limit.state[place] - value).abs();
+            // What is not a number fits nothing.
+            let fits = distance <= absolute + accuracy.relative * value.abs();
+            if !fits {
+                return Err(held);
+            }
+            told += usize::from(distance > limit.uncertainty[place]);
+        }
+        Ok(told)
+    }
+
+    /// Everything that a mode holds: values, and rates.
+    fn holds(&self, mode: &'static Mode) -> impl Iterator<Item = Held> + use<> {
+        let mut rates = vec![0.0; self.here.v.len()];
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        let held = (0..rates.len()).filter(|i| !mode.free.contains(i));
+        held.flat_map(move |i| {
+            let value = mode.held_at[i].map(|value| Held::At(i, value));
+            value.into_iter().chain([Held::Rate(i, rates[i])])
+        })
+    }
+
+    /// Why events that accumulate do not come to rest.
+    fn missing_rest(&self) -> String {
+        let modes = self.modes;
+        let Some(limit) = self.accumulation.extrapolated(self.problem.accuracy.relative) else {
+            return "their durations do not shrink like a geometric series, so that no limit is known; a mode is \
+                    missing in which the motion goes on between them"
+                .into();
+        };
+        let names: Vec<_> = limit.modes.iter().map(|&m| modes[m].name).collect();
+        let of = match &names[..] {
+            [one] => format!("mode `{one}`"),
+            several => format!("modes `{}`", several.join("`, `")),
+        };
+        let unfit = self.declared(&limit).filter_map(|target| {
+            let mode = &modes[target];
+            let held = self.told_apart(mode, &limit).err()?;
+            Some(format!("rest in `{}` {}", mode.name, self.unfit(held, &limit)))
+        });
+        let unfit: Vec<_> = unfit.collect();
+        match unfit.is_empty() {
+            true => format!("no rest is declared for {of}, nor is there a mode in which the motion goes on"),
+            false => format!("no rest that is declared for {of} fits the limit: {}", unfit.join("; ")),
+        }
+    }
+
+    /// What a mode holds that a limit does not satisfy, in words.
+    fn unfit(&self, held: Held, limit: &Limit) -> String {
+        let coordinates = self.problem.model.coordinates;
+        let (place, value) = held.place(coordinates.len());
+        let there = limit.state[place];
+        match held {
+            Held::At(i, _) => {
+                let (name, unit) = (coordinates[i].name, coordinates[i].unit);
+                format!("holds `{name}` at {value} {unit}, which is {there:.6e} {unit} there")
+            }
+            Held::Rate(i, _) => {
+                let (name, unit) = (coordinates[i].name, coordinates[i].unit);
+                format!("holds `{name}.rate` at {value} {unit}/s, which is {there:.6e} {unit}/s there")
+            }
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! An accumulation comes to rest where its limit is, and nowhere else.
+
+mod common;
+use common::*;
+use dalembert::hybrid::{Problem, simulate};
+use dalembert::kernel::MODELS;
+use dalembert::record::{Run, Silent};
+use dalembert::scene::Scene;
+use std::path::Path;
+
+const G: f64 = 9.81;
+
+/// A scene of the tests.
+fn scene(name: &str) -> Problem {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/scenes");
+    let scene = Scene::load(&folder.join(format!("{name}.json")), &[], MODELS);
+    scene.unwrap_or_else(|errors| panic!("{errors}")).problem
+}
+
+/// Two balls with restitution 1/2, dropped from heights.
+fn balls(a: f64, b: f64) -> Problem {
+    let mut problem = problem("two_balls", &[("g", G)]);
+    problem.set_initial("a", a).unwrap();
+    problem.set_initial("b", b).unwrap();
+    problem.end.time = 5.0;
+    problem
+}
+
+/// When a ball with restitution 1/2 that is dropped comes to rest.
+fn limit(height: f64) -> f64 {
+    3.0 * (2.0 * height / G).sqrt()
+}
+
+/// Times and modes of the rests.
+fn rests(run: &Run, problem: &Problem) -> Vec<(f64, &'static str)> {
+    let rests = run.events.iter().filter(|e| e.transition == "rest");
+    let name = |mode: usize| problem.variant.modes[mode].name;
+    rests.map(|e| (e.t, name(e.to))).collect()
+}
+
+/// No coordinate and no rate differs by more than a tolerance where a run comes to rest.
+fn nothing_jumps_at_rests(run: &Run, problem: &Problem) {
+    let accuracy = &problem.accuracy;
+    for event in run.events.iter().filter(|e| e.transition == "rest") {
+        let [before, after] = [&event.before, &event.after];
+        for (part, absolute) in [
+            ([&before.q, &after.q], &accuracy.q_absolute),
+            ([&before.v, &after.v], &accuracy.v_absolute),
+        ] {
+            for i in 0..absolute.len() {
+                let jump = (part[0][i] - part[1][i]).abs();
+                assert!(jump <= absolute[i], "t = {}: {event:?}", event.t);
+            }
+        }
+    }
+}
+
+#[test]
+fn each_ball_rests_at_its_own_limit_while_the_other_flies() {
+    with_each_method(|| {
+        for (a, b, first, second) in [
+            (4.0, 1.0, "b_rests", "both_rest"),
+            (1.0, 4.0, "a_rests", "both_rest"),
+        ] {
+            let problem = balls(a, b);
+            let run = run(&problem);
+            nothing_jumps_at_rests(&run, &problem);
+            let rests = rests(&run, &problem);
+            let names: Vec<_> = rests.iter().map(|r| r.1).collect();
+            assert_eq!(names, [first, second]);
+            for ((t, _), height) in rests.into_iter().zip([1.0, 4.0]) {
+                assert!((t - limit(height)).abs() < 1e-12, "{t}");
+            }
+            assert_eq!(run.end.state.q, [0.0, 0.0]);
+            let energy = run.energy.unwrap();
+            assert!((energy.lost_at_impacts - 5.0 * G).abs() < 1e-12);
+            assert!(energy.imbalance().abs() < 1e-12, "{}", energy.imbalance());
+        }
+    });
+}
+
+#[test]
+fn balls_that_bounce_together_rest_together() {
+    with_each_method(|| {
+        let problem = balls(1.0, 1.0);
+        let run = run(&problem);
+        nothing_jumps_at_rests(&run, &problem);
+        let rests = rests(&run, &problem);
+        let names: Vec<_> = rests.iter().map(|r| r.1).collect();
+        assert_eq!(names, ["a_rests", "both_rest"]);
+        assert!(rests.iter().all(|(t, _)| (t - limit(1.0)).abs() < 1e-12));
+    });
+}
+
+#[test]
+fn where_no_rest_fits_the_limit_the_run_stops_and_says_what_does_not_fit() {
+    with_each_method(|| {
+        let mut problem = balls(4.0, 1.0);
+        problem.choose(&[("rests", "first_only")]).unwrap();
+        let run = simulate(&problem, &mut Silent).unwrap();
+        let failure = run.failure.clone().expect("no rest is there");
+        assert!((failure.at.t - limit(1.0)).abs() < 1e-9);
+        for part in [
+            "chattering",
+            "impact_b",
+            "no rest that is declared for mode `both_fly` fits the limit",
+            "rest in `a_rests` holds `a` at 0 m, which is",
+        ] {
+            assert!(failure.reason.contains(part), "{}", failure.reason);
+        }
+        // The first ball is where it flies.
+        let fall = limit(1.0) - limit(4.0) / 3.0;
+        let v = (2.0 * G * 4.0).sqrt() / 2.0;
+        let height = v * fall - G * fall * fall / 2.0;
+        assert!((failure.at.state.q[0] - height).abs() < 1e-7);
+    });
+}
+
+/// The slip of the tank dies with the landings that end its rocking, so that it rests sticking.
+#[test]
+fn a_slip_that_dies_with_the_landings_rests_sticking() {
+    let problem = scene("tank_rests_sticking");
+    let run = run(&problem);
+    nothing_jumps_at_rests(&run, &problem);
+    let rests = rests(&run, &problem);
+    assert!((rests[0].0 - 0.438_865_681_778_778_3).abs() < 1e-12);
+    assert_eq!(rests[0].1, "stands_sticks");
+}
+
+/// With C = 3/10 successive switches are half as far apart; from x = 1 at rest the limit is √20 s.
+#[test]
+fn switches_without_an_impact_come_to_rest() {
+    with_each_method(|| {
+        let mut problem = problem("fuller", &[]);
+        problem.set_initial("x", 1.0).unwrap();
+        problem.end.time = 10.0;
+        problem.set_tolerance(1e-10);
+        let run = run(&problem);
+        nothing_jumps_at_rests(&run, &problem);
+        let rests = rests(&run, &problem);
+        assert_eq!(rests.len(), 1);
+        assert_eq!(rests[0].1, "held");
+        assert!((rests[0].0 - 20.0f64.sqrt()).abs() < 1e-8, "{rests:?}");
+    });
+}
+
+#[test]
+fn switches_without_a_rest_stop_and_say_what_is_missing() {
+    with_each_method(|| {
+        for (end, part) in [
+            ("missing", "no rest is declared for modes `left`, `right`"),
+            ("elsewhere", "rest in `held` holds `x` at 1 m, which is"),
+        ] {
+            let mut problem = problem("fuller", &[]);
+            problem.choose(&[("end", end)]).unwrap();
+            problem.set_initial("x", 1.0).unwrap();
+            problem.end.time = 10.0;
+            let run = simulate(&problem, &mut Silent).unwrap();
+            let failure = run.failure.expect("no rest is there");
+            assert!((failure.at.t - 20.0f64.sqrt()).abs() < 1e-6);
+            assert!(failure.reason.contains(part), "{}", failure.reason);
+        }
+    });
+}
