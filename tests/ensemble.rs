@@ -271,7 +271,9 @@ fn transitions_in_lanes_are_those_of_the_engine_to_the_bit() {
     let balls = balls.iter().map(|p| (p, "impact"));
     let shuttles = shuttles();
     let shuttles = ["turn", "left", "right"].map(|name| (&shuttles, name));
-    for (problems, name) in blocks.chain(balls).chain(shuttles) {
+    let pairs = pairs_of_balls();
+    let pairs = ["impact_a", "impact_b"].map(|name| (&pairs, name));
+    for (problems, name) in blocks.chain(balls).chain(shuttles).chain(pairs) {
         let ends = together(problems, processor_level(), 1);
         let happens = |end: &End| end.events.iter().any(|e| e.0 == name);
         assert!(ends.iter().any(happens), "{name}");
@@ -292,6 +294,31 @@ fn shuttles() -> Vec<Problem> {
     variations(&shuttle, 37, |p, x| {
         p.set_parameter("k", 1.0 + 5.0 * x).unwrap()
     })
+}
+
+/// Two balls each, dropped from heights of which one differs: accumulations of one while the other flies.
+fn pairs_of_balls() -> Vec<Problem> {
+    let mut balls = problem("two_balls", &[]);
+    balls.set_initial("b", 1.0).unwrap();
+    balls.end.time = 6.0;
+    set_size(&mut balls, 1e-9, 1.0, 4.4);
+    variations(&balls, 23, |p, x| {
+        p.set_initial("a", 0.25 + 4.0 * x).unwrap();
+    })
+}
+
+#[test]
+fn rests_of_a_mode_that_has_several_are_those_of_single_runs() {
+    let pairs = pairs_of_balls();
+    let ends = together(&pairs, processor_level(), 1);
+    for end in &ends {
+        let rests = end.events.iter().filter(|e| e.0 == "rest").count();
+        assert_eq!((rests, &end.state), (2, &vec![0.0; 4]), "{end:?}");
+    }
+    assert!(difference(&alone(&pairs), &ends) < 1e-8);
+    for level in 0..processor_level() {
+        assert_eq!(together(&pairs, level, 2), ends, "level {level}");
+    }
 }
 
 #[test]

@@ -147,12 +147,12 @@ fn switches_without_an_impact_come_to_rest() {
 #[test]
 fn switches_without_a_rest_stop_and_say_what_is_missing() {
     with_each_method(|| {
-        for (end, part) in [
+        for (limit, part) in [
             ("missing", "no rest is declared for modes `left`, `right`"),
             ("elsewhere", "rest in `held` holds `x` at 1 m, which is"),
         ] {
             let mut problem = problem("fuller", &[]);
-            problem.choose(&[("end", end)]).unwrap();
+            problem.choose(&[("limit", limit)]).unwrap();
             problem.set_initial("x", 1.0).unwrap();
             problem.end.time = 10.0;
             let run = simulate(&problem, &mut Silent).unwrap();

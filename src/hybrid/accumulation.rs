@@ -370,6 +370,29 @@ impl Accumulation {
         }
     }
 
+    /// Whether the last events have a limit, to the relative accuracy `relative`, before which no time is left: what is
+    /// left of the series does not advance the time by one unit in its last place. Then the run can go on in a rest
+    /// only.
+    #[inline]
+    pub fn is_over(&self, relative: f64) -> bool {
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
+        if known == 0 {
+            return false;
+        }
+        let now = self.at(0);
+        let place = now.seconds().abs() * f64::EPSILON;
+        now.since(self.at(1)) < place && self.has_limit_within(known, place, relative)
+    }
+
+    #[cold]
+    fn has_limit_within(&self, known: usize, place: f64, relative: f64) -> bool {
+        let mut all = (1..=known).filter_map(|p| self.series(p, relative));
+        all.any(|series| {
+            let steady = (series.ratio - series.ratio_before).abs() <= relative * series.ratio;
+            steady && series.remaining < place
+        })
+    }
+
     /// Whether the memory is full of events that together do not advance the time by one unit in
     /// its last place, or between which nothing moves by more than rounding; `new`: when the last of them happened,
     /// which was remembered a moment before.
@@ -494,6 +517,20 @@ mod tests {
         let limit = found.expect("the time stands still");
         assert_eq!(limit.modes.len(), 2);
         assert!((limit.at.seconds() - 1.3 / 0.999).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_series_is_over_where_what_is_left_of_it_takes_no_time() {
+        let mut accumulation = Accumulation::new([1e-9].into(), 0);
+        let (mut t, mut hop) = (Instant::new(1.0), 1.0);
+        let over = (0..100).find(|k| {
+            push(&mut accumulation, k % 2, t, &[hop], &[-hop]);
+            t = t.plus(hop);
+            hop *= 0.5;
+            accumulation.is_over(1e-12)
+        });
+        // After 3 s less than one place of it is left.
+        assert_eq!(over, Some(52));
     }
 
     #[test]

@@ -73,13 +73,11 @@ pub enum Reason {
         /// The transitions of the cycle, `name (from → to)`, separated by commas.
         cycle: String,
     },
-    /// Events follow each other without a limit, and between them neither time nor motion goes on.
+    /// Events follow each other without end, and between them neither time nor motion goes on.
     #[error(
-        "events accumulate and neither time nor motion goes on (chattering): between the last {count} nothing moved by more than rounding; transitions involved: {transitions}; {missing}"
+        "events accumulate (chattering) and neither time nor motion goes on by more than rounding; transitions involved: {transitions}; {missing}"
     )]
     Chattering {
-        /// Number of events looked at.
-        count: usize,
         /// Names of the transitions.
         transitions: String,
         /// Why they do not come to rest.

@@ -11,6 +11,7 @@ use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
 use crate::kernel::with_kernel;
 use crate::model::Mode;
+use std::collections::BTreeSet;
 
 /// What a mode holds, by the index of the coordinate.
 #[derive(Debug, Clone, Copy)]
@@ -50,13 +51,13 @@ impl Simulation<'_> {
         if let Some((target, limit)) = self.rest() {
             return self.come_to_rest(target, &limit);
         }
-        if self.accumulation.stands_still(self.here.now) {
+        let relative = self.problem.accuracy.relative;
+        if self.accumulation.stands_still(self.here.now) || self.accumulation.is_over(relative) {
             let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
             let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
             transitions.sort_unstable();
             transitions.dedup();
             return Err(Box::new(Reason::Chattering {
-                count: Accumulation::MEMORY,
                 transitions: transitions.join(", "),
                 missing: self.missing_rest(),
             }));
@@ -154,12 +155,16 @@ impl Simulation<'_> {
     /// Why events that accumulate do not come to rest.
     fn missing_rest(&self) -> String {
         let modes = self.modes;
-        let Some(limit) = self.accumulation.extrapolated(self.problem.accuracy.relative) else {
+        let Some(limit) = self
+            .accumulation
+            .extrapolated(self.problem.accuracy.relative)
+        else {
             return "their durations do not shrink like a geometric series, so that no limit is known; a mode is \
                     missing in which the motion goes on between them"
                 .into();
         };
-        let names: Vec<_> = limit.modes.iter().map(|&m| modes[m].name).collect();
+        let involved: BTreeSet<_> = limit.modes.iter().copied().collect();
+        let names: Vec<_> = involved.iter().map(|&m| modes[m].name).collect();
         let of = match &names[..] {
             [one] => format!("mode `{one}`"),
             several => format!("modes `{}`", several.join("`, `")),
@@ -167,12 +172,21 @@ impl Simulation<'_> {
         let unfit = self.declared(&limit).filter_map(|target| {
             let mode = &modes[target];
             let held = self.told_apart(mode, &limit).err()?;
-            Some(format!("rest in `{}` {}", mode.name, self.unfit(held, &limit)))
+            Some(format!(
+                "rest in `{}` {}",
+                mode.name,
+                self.unfit(held, &limit)
+            ))
         });
         let unfit: Vec<_> = unfit.collect();
         match unfit.is_empty() {
-            true => format!("no rest is declared for {of}, nor is there a mode in which the motion goes on"),
-            false => format!("no rest that is declared for {of} fits the limit: {}", unfit.join("; ")),
+            true => format!(
+                "no rest is declared for {of}, nor is there a mode in which the motion goes on"
+            ),
+            false => format!(
+                "no rest that is declared for {of} fits the limit: {}",
+                unfit.join("; ")
+            ),
         }
     }
 
@@ -188,7 +202,9 @@ impl Simulation<'_> {
             }
             Held::Rate(i, _) => {
                 let (name, unit) = (coordinates[i].name, coordinates[i].unit);
-                format!("holds `{name}.rate` at {value} {unit}/s, which is {there:.6e} {unit}/s there")
+                format!(
+                    "holds `{name}.rate` at {value} {unit}/s, which is {there:.6e} {unit}/s there"
+                )
             }
         }
     }

@@ -150,7 +150,10 @@ fn mode(f: &mut Formatter, mode: &Mode) -> fmt::Result {
     }
     if !mode.rests.is_empty() {
         let rests = mode.rests.join(", ");
-        writeln!(f, "  rest  events that accumulate end in {rests}, where their limit fits")?;
+        writeln!(
+            f,
+            "  rest  events that accumulate end in {rests}, where their limit fits"
+        )?;
     }
     let heads = [
         "transition",
