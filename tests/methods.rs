@@ -2,8 +2,9 @@
 
 mod common;
 use common::*;
-use dalembert::hybrid::{Method, Problem};
+use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::{Function, Sine};
+use dalembert::record::Silent;
 use std::f64::consts::PI;
 
 /// The names of the methods that `auto` used, after a check of its result against each fixed method.
@@ -48,6 +49,58 @@ fn sliding_oscillator(factor: f64, relative: f64) -> Problem {
 /// Largest difference of the methods, in tolerances, where slips and sticks end the errors before them:
 /// 0.09 was found.
 const FORGETTING: f64 = 0.2;
+
+/// A mass with dry friction, in N, whose damper, in N s/m, lets it creep.
+fn creeping(friction: f64, c: f64) -> Problem {
+    let friction = [
+        ("static_friction", friction),
+        ("kinetic_friction", friction),
+    ];
+    let mut problem = problem("coulomb_oscillator", &[&friction[..], &[("c", c)]].concat());
+    problem.set_tolerance(1e-10);
+    problem
+}
+
+/// A damper so strong that no series of the motion is finite: there the implicit method goes on.
+#[test]
+fn where_no_series_is_finite_the_implicit_method_goes_on() {
+    let mut problem = creeping(0.0, 1e15);
+    problem.set_initial("x", 0.1).unwrap();
+    problem.set_initial("x.rate", 1.0).unwrap();
+    let auto = run(&problem);
+    assert!(
+        auto.solver.method.contains("Radau"),
+        "{}",
+        auto.solver.method
+    );
+    problem.method = Method::Radau;
+    let radau = run(&problem);
+    assert_eq!(transitions(&auto), transitions(&radau));
+    assert!((auto.end.state.q[0] - radau.end.state.q[0]).abs() < 1e-10);
+}
+
+/// What takes no time does not take less.
+#[test]
+fn the_time_does_not_go_back_where_damping_is_extreme() {
+    for c in [1e10, 1e12, 1e13, 1e14, 3e14, 1e15] {
+        for method in [Method::Auto, Method::Radau] {
+            let mut problem = creeping(0.6, c);
+            let force = Function::from(Sine::new(1.0, 0.2, 0.0));
+            problem.set_input("force", force).unwrap();
+            problem.end.time = 120.0;
+            problem.method = method;
+            problem.record.every = None;
+            let run = simulate(&problem, &mut Silent).unwrap();
+            let t = &run.trajectory.t;
+            assert!(t.windows(2).all(|t| t[0] <= t[1]), "{c:e}, {method:?}");
+            let events: Vec<_> = run.events.iter().map(|e| e.t).collect();
+            assert!(
+                events.windows(2).all(|t| t[0] <= t[1]),
+                "{c:e}, {method:?}: {events:?}"
+            );
+        }
+    }
+}
 
 #[test]
 fn an_oscillation_that_is_resolved_is_left_to_the_explicit_method() {

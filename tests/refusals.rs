@@ -45,6 +45,69 @@ fn chattering_without_a_limit_names_its_guards() {
 }
 
 #[test]
+fn a_mass_that_vanishes_on_the_way_is_named_before_it_does() {
+    let methods = [Method::Auto, Method::Radau, Method::Taylor];
+    for (method, tolerance) in methods
+        .into_iter()
+        .flat_map(|m| [(m, 1e-4), (m, 1e-8), (m, 1e-12)])
+    {
+        let mut problem = problem("vanishing_mass", &[]);
+        problem.method = method;
+        problem.end.time = 10.0;
+        problem.set_tolerance(tolerance);
+        let (_, failure) = stopped(&problem);
+        for part in ["mode `moves`", "effective mass of `x` vanishes"] {
+            assert!(
+                failure.reason.contains(part),
+                "{method:?}: {}",
+                failure.reason
+            );
+        }
+        // m (1 − x/L) ẋ²/2 = F x: nothing is left of the mass at t = π/2 √(m L/(2 F)).
+        let end = std::f64::consts::FRAC_PI_2 * 0.5f64.sqrt();
+        assert!(
+            (failure.at.t - end).abs() < 100.0 * tolerance.max(1e-9),
+            "{}",
+            failure.at.t
+        );
+        assert!(failure.at.state.q[0] < 1.0);
+    }
+}
+
+#[test]
+fn numbers_that_leave_the_range_of_doubles_stop_the_run() {
+    for method in [Method::Auto, Method::Radau, Method::Taylor] {
+        for (end, h, rate) in [
+            (1e155, 1.0, 0.0),
+            (1e308, 1.0, 0.0),
+            (1.0, 1.0, 1e200),
+            (1.0, 1e300, -1e308),
+            (1e10, 1e308, 1e305),
+        ] {
+            let mut problem = problem("bouncing_ball", &[("e", 1.0)]);
+            problem.method = method;
+            problem.end.time = end;
+            problem.end.after = Some(("impact", 3));
+            problem.set_initial("h", h).unwrap();
+            problem.set_initial("h.rate", rate).unwrap();
+            let run = simulate(&problem, &mut Silent).expect("the problem can be started");
+            let state = [&run.end.state.q[..], &run.end.state.v].concat();
+            assert!(
+                state.iter().all(|x| x.is_finite()),
+                "{method:?}, {end:e}: {state:?}"
+            );
+            let energy = run.energy.expect("it is kept");
+            let overflows = !(energy.final_.is_finite() && energy.imbalance().is_finite());
+            let stops = run.failure.as_ref().map(|failure| failure.reason.clone());
+            if overflows || run.end.t < end && run.events.len() < 3 {
+                let reason = stops.expect("it does not reach its end");
+                assert!(reason.contains("is not finite"), "{reason}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_block_that_would_leave_the_ground_stops() {
     let mut problem = problem("rocking_block", &[]);
     problem.set_initial("theta", 0.05).unwrap();

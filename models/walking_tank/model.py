@@ -28,7 +28,7 @@ landing = model.choice(
 
 # Masses, first moments and inertias of the full plate; the doughnut is a parameter set.
 M_0 = model.parameter("M_0", "kg", 50.3, "mass of the contents", above=0)
-M_I = model.parameter("M_I", "kg", 0.782 * 50.3, "effective mass of liquid for bulging", above=0)
+M_I = model.parameter("M_I", "kg", 0.782 * 50.3, "effective mass of liquid for bulging", above=0, at_most=M_0)
 M_E = model.parameter("M_E", "kg", 50.3, "effective mass of liquid for rocking", above=0)
 M_rb = model.parameter("M_rb", "kg", 0.782 * 50.3, "effective mass of liquid for rocking-bulging interaction", minimum=0, at_most=M_I)
 M_S = model.parameter("M_S", "kg", 7.477, "mass of shell and bottom plate", above=0)

@@ -379,13 +379,12 @@ impl Accumulation {
         if known == 0 {
             return false;
         }
-        let now = self.at(0);
-        let place = now.seconds().abs() * f64::EPSILON;
-        now.since(self.at(1)) < place && self.has_limit_within(known, place, relative)
+        self.is_short() && self.has_limit_within(known, relative)
     }
 
     #[cold]
-    fn has_limit_within(&self, known: usize, place: f64, relative: f64) -> bool {
+    fn has_limit_within(&self, known: usize, relative: f64) -> bool {
+        let place = self.at(0).seconds().abs() * f64::EPSILON;
         let mut all = (1..=known).filter_map(|p| self.series(p, relative));
         all.any(|series| {
             let steady = (series.ratio - series.ratio_before).abs() <= relative * series.ratio;
@@ -529,7 +528,7 @@ mod tests {
             hop *= 0.5;
             accumulation.is_over(1e-12)
         });
-        // After 3 s less than one place of it is left.
+        // At 3 s less than one place of it is left.
         assert_eq!(over, Some(52));
     }
 

@@ -2,6 +2,7 @@
 
 use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, value, watched_value};
+use super::inertia::pivots;
 use super::requirements::check_requirements;
 use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
@@ -176,36 +177,13 @@ impl Simulation<'_> {
         [q, v]: [&SVector<f64, F>; 2],
     ) -> Stoppable<()> {
         if !(kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]) {
-            self.factorize_inertia(&kernel.inertia(&self.context, q, v))?;
+            let mode = self.mode();
+            pivots(&kernel.inertia(&self.context, q, v)).map_err(|not| Reason::Indefinite {
+                mode: mode.name,
+                coordinate: self.problem.model.coordinates[mode.free[not.coordinate]].name,
+                pivot: not.pivot,
+            })?;
             self.has_inertia[self.here.mode] = true;
-        }
-        Ok(())
-    }
-
-    /// The symmetric part of an inertia must be positive definite: its factors L D Lᵀ have positive pivots D.
-    fn factorize_inertia<const F: usize>(&self, inertia: &SMatrix<f64, F, F>) -> Stoppable<()> {
-        // L D below the diagonal, D on it.
-        let mut lower = SMatrix::<f64, F, F>::zeros();
-        for i in 0..F {
-            for j in 0..=i {
-                let symmetric = 0.5 * (inertia[(i, j)] + inertia[(j, i)]);
-                let product = |k| lower[(i, k)] * (lower[(j, k)] / lower[(k, k)]);
-                let rest = symmetric - (0..j).map(product).sum::<f64>();
-                if i == j {
-                    // A pivot within the rounding of its own sum is not told from zero.
-                    let rounding = (F + 1) as f64 * ROUNDOFF * symmetric.abs();
-                    if rest.is_nan() || rest <= rounding {
-                        let mode = self.mode();
-                        let coordinate = self.problem.model.coordinates[mode.free[i]].name;
-                        return Err(Box::new(Reason::Indefinite {
-                            mode: mode.name,
-                            coordinate,
-                            pivot: rest,
-                        }));
-                    }
-                }
-                lower[(i, j)] = rest;
-            }
         }
         Ok(())
     }

@@ -43,6 +43,24 @@ pub enum Reason {
         /// Its pivot.
         pivot: f64,
     },
+    /// An effective mass vanishes on the way.
+    #[error(
+        "mode `{mode}`: the effective mass of `{coordinate}` vanishes: {left:.1e} of what it was at the last event is left, and beyond zero no motion is determined; check the mass, or end the mode before"
+    )]
+    VanishingMass {
+        /// Mode.
+        mode: &'static str,
+        /// Free coordinate.
+        coordinate: &'static str,
+        /// What is left of it, as a part of what it was; negative beyond zero.
+        left: f64,
+    },
+    /// A number of the run is too large for a double.
+    #[error("{what} is not finite: the numbers of this scene leave the range of doubles")]
+    NotFinite {
+        /// Which.
+        what: &'static str,
+    },
     /// The determinant of the effective mass matrix is negative: without friction it is positive.
     #[error(
         "mode `{mode}`: friction makes the determinant of the effective mass matrix negative; it would accelerate the slip that it opposes (Painlevé's paradox), and the motion is not determined"

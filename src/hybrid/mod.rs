@@ -14,6 +14,7 @@ mod equations;
 mod failure;
 mod fire;
 mod guards;
+mod inertia;
 mod instant;
 mod ledger;
 mod locate;

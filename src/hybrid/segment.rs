@@ -5,6 +5,7 @@ use super::doubt::Searched;
 use super::equations::{Clock, Equations, Piece, free_of};
 use super::failure::{Reason, Stoppable};
 use super::guards::{self, Conditions};
+use super::inertia::vanished;
 use super::instant::Instant;
 use super::problem::{Method, Problem};
 use super::requirements::{cut_where_unmet, hold_throughout};
@@ -219,12 +220,15 @@ impl Simulation<'_> {
             plan: &self.plan,
             next: &mut self.next,
         };
-        let mut determinant = match kernel.mass_is_constant() {
-            true => 1,
-            false => {
-                let State { q, v, .. } = *method.state();
-                determinant_sign(&kernel.system(equations.context, &q, &v).mass)
-            }
+        let mass_changes = !kernel.mass_is_constant();
+        let began = *method.state();
+        let determinant = match mass_changes {
+            true => determinant_sign(&kernel.system(equations.context, &began.q, &began.v).mass),
+            false => 1,
+        };
+        let vanished = |context: &Context, now: &State<F>| {
+            let states = [&began, now].map(|state| [&state.q, &state.v]);
+            vanished(kernel, context, (problem, mode), states)
         };
         let stiffness = &mut self.stiffness[self.here.mode];
         if chooses {
@@ -236,7 +240,15 @@ impl Simulation<'_> {
         let relative = problem.accuracy.relative;
 
         loop {
-            method.step(&mut equations, until)?;
+            if let Err(error) = method.step(&mut equations, until) {
+                if chooses && is_explicit {
+                    // What no series reaches the other method may.
+                    stiffness.explicit_failure();
+                    return Ok(Stop::Method);
+                }
+                let mass = vanished(equations.context, method.state()).filter(|_| mass_changes);
+                return Err(mass.map_or_else(|| error.into(), Box::new));
+            }
 
             let mut found = cut(
                 method,
@@ -245,6 +257,9 @@ impl Simulation<'_> {
                 (mode, watched),
                 (&mut self.signs, &mut state),
             )?;
+            if let Some(what) = state.not_finite() {
+                return Err(Box::new(Reason::NotFinite { what }));
+            }
             let mut unmet = None;
             if !mode.requirements.is_empty()
                 && !hold_throughout(method, &mut equations, mode, state.t)
@@ -275,6 +290,18 @@ impl Simulation<'_> {
             };
             self.doubts
                 .look(&searched, method, &mut equations, &mut conditions);
+
+            if mass_changes {
+                equations.at(state.t);
+                let mass = kernel.system(equations.context, &state.q, &state.v).mass;
+                if determinant_sign(&mass) != determinant {
+                    if let Some(reason) = vanished(equations.context, &state) {
+                        return Err(Box::new(reason));
+                    }
+                    let mode = mode.name;
+                    unmet = Some(Box::new(Reason::DeterminantChangesSign { mode }));
+                }
+            }
 
             let end = method.end();
             let dense = method.dense().expect("a step was made");
@@ -351,14 +378,6 @@ impl Simulation<'_> {
                 copy_drifting(&mut self.here.q, mode.drifts, equations.context.held());
             }
 
-            if !kernel.mass_is_constant() {
-                let mass = kernel.system(equations.context, &state.q, &state.v).mass;
-                let sign = determinant_sign(&mass);
-                if sign != determinant {
-                    return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
-                }
-                determinant = sign;
-            }
             if problem.record.every.is_none() {
                 let Here { q, v, .. } = &self.here;
                 let row = Row {

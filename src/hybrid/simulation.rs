@@ -355,6 +355,7 @@ impl<'p> Simulation<'p> {
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
         let mut run = || -> Stoppable<()> {
+            self.check_energy()?;
             while self.settle()? && self.advance_to_event(true, progress)? {}
             Ok(())
         };
@@ -391,7 +392,12 @@ impl<'p> Simulation<'p> {
     pub fn pass(&mut self, stop: Stop) -> Stoppable<bool> {
         match stop {
             Stop::End => {
+                if !(are_finite(&self.here.q) && are_finite(&self.here.v)) {
+                    let what = "a coordinate or a velocity";
+                    return Err(Box::new(Reason::NotFinite { what }));
+                }
                 self.set_context();
+                self.check_energy()?;
                 return Ok(false);
             }
             Stop::Breakpoint | Stop::Method => self.visited.clear(),
@@ -433,6 +439,17 @@ impl<'p> Simulation<'p> {
         let signals = &self.problem.signals;
         self.context.set_signals(signals, t, Side::Right);
         copy_few(&self.here.q, self.context.held_mut());
+    }
+
+    /// Where energies are kept they are finite.
+    fn check_energy(&self) -> Stoppable<()> {
+        match &self.ledger {
+            Some(ledger) if !are_finite(&ledger.row(self.stored_energy())) => {
+                let what = "an energy";
+                Err(Box::new(Reason::NotFinite { what }))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// T + V here, J.
@@ -535,6 +552,10 @@ impl<'p> Simulation<'p> {
             wall: clock.elapsed(),
         }
     }
+}
+
+fn are_finite(numbers: &[f64]) -> bool {
+    numbers.iter().all(|number| number.is_finite())
 }
 
 impl Here {

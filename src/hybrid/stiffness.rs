@@ -161,6 +161,14 @@ impl Stiffness {
         }
     }
 
+    /// The explicit method can make no step: until its term is over the verdict is the implicit one, however short
+    /// its steps.
+    #[cold]
+    pub fn explicit_failure(&mut self) {
+        let (length, idle) = (0.0, 0);
+        self.decide(Verdict::Stiff { length, idle });
+    }
+
     /// Takes note of a step of the implicit method of length `h`, which an event may have ended: where
     /// segments are short, the method does not pay either.
     pub fn implicit_step(&mut self, h: f64) {
@@ -192,6 +200,16 @@ mod tests {
 
     fn explicit(stiffness: &mut Stiffness, steps: u32, lag: f64, rate: f64) {
         (0..steps).for_each(|_| stiffness.explicit_step(1.0, |_| lag, || rate));
+    }
+
+    #[test]
+    fn where_the_explicit_method_can_make_no_step_the_implicit_one_goes_on_for_a_term() {
+        let mut stiffness = Stiffness::default();
+        stiffness.explicit_failure();
+        (1..TERM).for_each(|_| stiffness.implicit_step(1e-300));
+        assert!(stiffness.prefers_implicit());
+        stiffness.implicit_step(1e-300);
+        assert!(!stiffness.prefers_implicit());
     }
 
     #[test]

@@ -28,7 +28,8 @@ impl<const F: usize> State<F> {
     }
 
     /// Name of the part that is not finite, if any.
-    pub(super) fn not_finite(&self) -> Option<&'static str> {
+    #[inline]
+    pub(crate) fn not_finite(&self) -> Option<&'static str> {
         let finite = |x: &SVector<f64, F>| x.iter().all(|x| x.is_finite());
         match self {
             state if !state.t.is_finite() => Some("time"),
