@@ -9,9 +9,10 @@ use nalgebra::{SMatrix, SVector};
 /// Unit roundoff of a double.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-/// Part of itself to which a pivot has fallen where it vanishes: half of its digits. What follows from it is not known
-/// to more than the other half.
-const VANISHED: f64 = 1.5e-8;
+/// Part of itself to which a pivot has fallen where it is the reason why no step can be made. Masses that vary stay far
+/// above it; a series with a radius of convergence ρ of one that vanishes ends where ρ⁻³⁴ leaves the range of doubles,
+/// and a mass may still be ρ^½ there, in units of a time constant.
+const VANISHED: f64 = 1e-4;
 
 /// A pivot that is not positive, by the index of its free coordinate.
 #[derive(Debug, Clone, Copy)]
