@@ -1,7 +1,7 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
-use super::failure::{Reason, Stoppable};
 use super::departure::Departure;
+use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, watched_value};
 use super::requirements::check_requirements;
 use super::roots::Watch;
