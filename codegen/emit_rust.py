@@ -7,7 +7,7 @@ import json
 
 import casadi as ca
 
-from . import drawing, graph, units
+from . import drawing, graph, limits, units
 from .emit_c import KEPT_ANGLES
 
 MOST_FREE = 6
@@ -49,7 +49,8 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     model = variants[0].model
     signals = len(_signals(model))
     functions = [(slot, f) for v in variants for slot, f in v.functions.items()]
-    externs = sorted({f.symbol for slot, f in functions if slot[1] not in SERIES} | {constants_symbol})
+    of_parameters = {constants_symbol} | {v.declared for v in variants}
+    externs = sorted({f.symbol for slot, f in functions if slot[1] not in SERIES} | of_parameters)
     series = [f.symbol for slot, f in functions if slot[1] in SERIES and f.symbol]
     lines = ["use crate::model::*;", "#[allow(unused_imports)]", "use crate::jets::{Instruction as I, Name, Pick, Tape};",
              "", 'unsafe extern "C" {']
@@ -84,7 +85,7 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
         f"    inputs: &[{', '.join(_inputs(model))}],",
         f"    discretes: &[{', '.join(_discrete(d) for d in model.discretes)}],",
         f"    choices: &[{', '.join(_choice(*c[:3]) for c in model.choices)}],",
-        f"    constants: ConstantsKernel {{ dimensions: &DIMENSIONS, function: {constants_symbol} }},",
+        f"    constants: {_of_parameters(constants_symbol, constants_count)},",
         "    variants: &[",
     ]
     for variant in variants:
@@ -127,7 +128,17 @@ def _reaction_unit(unit):
 def _coordinate(c):
     return (f"Coordinate {{ name: {_text(c.name)}, unit: {_text(c.unit)}, meaning: {_text(c.meaning)}, "
             f"reaction_unit: {_text(_reaction_unit(c.unit))}, scale: {_number(c.scale)}, "
-            f"rate_scale: {_number(c.rate_scale)}, minimum: {_option(c.minimum, _number)} }}")
+            f"rate_scale: {_number(c.rate_scale)}, minimum: {_fixed_bound(c.minimum)}, "
+            f"maximum: {_fixed_bound(c.maximum)} }}")
+
+
+def _fixed_bound(bound):
+    """A bound that does not depend on parameters."""
+    return _option(None if isinstance(bound, ca.SX) else bound, _number)
+
+
+def _of_parameters(symbol, count):
+    return f"ConstantsKernel {{ dimensions: &DIMENSIONS, function: {symbol}, count: {count} }}"
 
 
 def _motion(m):
@@ -179,6 +190,24 @@ def _variant(variant):
     index = {m.name: k for k, m in enumerate(model.modes)}
     rests = ", ".join(f"Rest {{ source: {index[s.name]}, target: {index[t.name]} }}" for s, t in model.rests)
     yield f"            rests: &[{rests}],"
+    yield "            limits: &["
+    for limit in model.limits:
+        yield (f"                Limit {{ name: {_text(limit.name)}, message: {_text(limit.message)}, "
+               f"text: {_text(limit.text)}, ends: {_bool(limit.ends)} }},")
+    yield "            ],"
+    for field, of_parameters in (("valid_motion", False), ("valid_parameters", True)):
+        yield f"            {field}: &["
+        for entry in model.validity:
+            if limits.is_of_parameters(model, entry.margin) == of_parameters:
+                yield f"                Validity {{ condition: {_text(entry.text)}, sentence: {_text(entry.sentence)} }},"
+        yield "            ],"
+    bounds = limits.bounds(model)
+    yield "            bounds: &["
+    for i, upper, bound in bounds:
+        yield (f"                ParametricBound {{ coordinate: {i}, upper: {_bool(upper)}, "
+               f"text: {_text(units.short(bound))} }},")
+    yield "            ],"
+    yield f"            declared: {_of_parameters(variant.declared, limits.of_parameters(model).numel())},"
     yield "        },"
 
 
@@ -223,6 +252,8 @@ def _mode(variant, i, equations):
         yield (f"{pad}        Requirement {{ text: {_text(units.short(requirement, 200))}, "
                f"failure: {_text(failure)}, unit: {_text(_unit(model, requirement))} }},")
     yield f"{pad}    ],"
+    shapes = [_margin_shape(model, equations, margin) for margin in equations.margins]
+    yield f"{pad}    margins: &[{', '.join(shapes)}],"
     without = functions[("series",)].without or None
     yield f"{pad}    without_series: {_option(without, _text)},"
     yield f"{pad}    system: {variant.tapes[i, 'system']}, guard_values: {variant.tapes[i, 'guards']},"
@@ -230,7 +261,8 @@ def _mode(variant, i, equations):
     yield f"{pad}        dimensions: &DIMENSIONS,"
     for what in _MODE_FUNCTIONS:
         yield f"{pad}        {what}: {functions[(what,)].symbol},"
-    yield f"{pad}        requirements: ({functions[('requirements',)].symbol}, {len(mode.requirements)}),"
+    requirements = functions[("requirements",)]
+    yield f"{pad}        requirements: ({requirements.symbol}, {requirements.output.numel()}),"
     yield f"{pad}        requirement_bounds: {functions[('requirement_bounds',)].symbol},"
     for what in SERIES:
         series = functions[(what,)]
@@ -292,6 +324,11 @@ def _shape(model, equations, expression):
     depends = lambda *columns: bool(present(ca.symvar(placed), *columns))
     return (f"GuardShape::General {{ accelerations: {_bool(depends(equations.a))}, "
             f"signals: {_bool(depends(ca.vertcat(*_signals(model))))} }}")
+
+
+def _margin_shape(model, equations, margin):
+    """The shape of a margin; None where it does not change while the mode lasts."""
+    return _option(None if _is_constant(model, equations, margin) else margin, lambda m: _shape(model, equations, m))
 
 
 def _is_constant(model, equations, entries):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import bounds, derive, emit_rust, emit_series, graph, tape, units
+from . import bounds, derive, emit_rust, emit_series, graph, limits, tape, units
 from .emit_c import Source
 from .errors import ModelError, error_location
 from .model import build
@@ -39,6 +39,8 @@ class Variant:
     functions: dict = field(default_factory=dict)
     tapes: dict = field(default_factory=dict)
     """Rust text of what the program expands itself, by slot as the functions."""
+    declared: str = ""
+    """The C function of what follows from parameters alone: see `limits.of_parameters`."""
 
 
 def load(folder):
@@ -86,6 +88,10 @@ def generate(folder, for_tests=False):
             ]
             function.symbol = source.add(f"{prefix}_{function.name}", arguments, function.output)
             function.operations = source.operations[f"{prefix}_{function.name}"]
+    for variant in variants:
+        own = ca.vertcat(*[p.symbol for p in variant.model.parameters])
+        variant.declared = source.add(
+            f"{prefix}_{_tag(variant.model)}declared", [("q", own)], limits.of_parameters(variant.model))
     c_text = source.text(name)
     lanes_text = source.lanes_text(name, _lane_functions(variants))
     rust_text = emit_rust.model_text(name, variants, constants_symbol, constants.values.numel(), for_tests)
@@ -183,9 +189,8 @@ def _variant(model):
     parameters = [p.symbol for p in model.parameters]
     names = [m.name for m in model.modes]
     index = {m.name: i for i, m in enumerate(model.modes)}
-    tag = "_".join(str(c[1].index(c[3])) for c in model.choices)
     for i, equations in enumerate(modes):
-        prefix = f"v{tag}_{names[i]}_" if tag else f"{names[i]}_"
+        prefix = f"{_tag(model)}{names[i]}_"
         _mode_functions(variant, equations, (i,), prefix)
         guards = _guards(model, equations)
         equations.guards = guards
@@ -213,6 +218,12 @@ def _variant(model):
         rates = _drift_rates(model, equations)
         _add(variant, prefix + "guard_series", ca.vertcat(*values, rates), equations, (i, "guard_series"))
     return variant
+
+
+def _tag(model):
+    """What names of functions begin with: the options of the variant, by their places."""
+    tag = "_".join(str(c[1].index(c[3])) for c in model.choices)
+    return f"v{tag}_" if tag else ""
 
 
 def _add(variant, name, output, equations, slot):
@@ -251,7 +262,9 @@ def _mode_functions(variant, equations, slot, prefix):
     reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
     for i, reaction in equations.reactions:
         reactions[i] = reaction
-    requirements = ca.vertcat(*[equations.place(r[0]) for r in equations.mode.requirements])
+    equations.margins = limits.margins(equations)
+    requirements = ca.vertcat(
+        *[equations.place(r[0]) for r in equations.mode.requirements], *equations.margins)
     for what, output in (
         ("residual", equations.r),
         ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
@@ -442,6 +455,8 @@ def _check_energies(model):
     for mode in model.modes:
         for requirement, _, location in mode.requirements:
             _check_unit(requirement, None, table, "requirement", location)
+    limits.check_units(model, lambda expression, want, what, location: _check_unit(
+        expression, want, table, what, location))
 
 
 def _check_unit(expression, want, table, what, location):

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 from casadi import atan2, cos, exp, pi, sin, sqrt, tan  # noqa: F401  (for model files)
 
-from . import drawing, units
+from . import drawing, limits, units
 from .errors import ModelError, caller_location
 
 HELD = None
@@ -145,6 +145,7 @@ class Model:
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
+        self.limits, self.validity = [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
         self.shapes = []
@@ -171,9 +172,11 @@ class Model:
                 raise self.error(f"parameter set `{name}`: there is no parameter `{key}`")
         self.parameter_sets.append((name, meaning, values))
 
-    def coordinate(self, name, unit, meaning, *, minimum=None, scale=1.0, rate_scale=None):
+    def coordinate(self, name, unit, meaning, *, minimum=None, maximum=None, scale=1.0, rate_scale=None):
         """A generalized coordinate with its velocity.
 
+        `minimum` and `maximum` are bounds of every admissible state, such as a stop: numbers, or expressions in
+        parameters. A state beyond them is refused.
         `scale` and `rate_scale` (per second) are typical magnitudes: a scene that gives no
         absolute tolerance gets relative tolerance × scale.
         """
@@ -182,8 +185,10 @@ class Model:
         symbol.acceleration = self._declare(
             name + ".acceleration", unit + "/s^2", ca.SX.sym(name + ".acceleration"))
         symbol.jerk = ca.SX.sym(name + ".jerk")
+        minimum, maximum = (limits.bound(self, name, b, caller_location(self.file)) for b in (minimum, maximum))
         self.coordinates.append(Declaration(name, unit, meaning, symbol, dict(
-            minimum=minimum, scale=float(scale), rate_scale=float(scale if rate_scale is None else rate_scale))))
+            minimum=minimum, maximum=maximum, scale=float(scale),
+            rate_scale=float(scale if rate_scale is None else rate_scale))))
         return symbol
 
     def discrete(self, name, values, meaning):
@@ -325,6 +330,25 @@ class Model:
     def requires(self, mode, positive, failure):
         """Stops the run with the reason `failure` where `positive` is not > 0."""
         mode.requirements.append((ca.SX(positive), failure, caller_location(self.file)))
+
+    def limit(self, name, message, *, when, ends=True, modes=None):
+        """A limit state: reached where the comparison `when`, such as `theta > pi / 2`, first holds.
+
+        A run ends there, unless the scene lets it go on; one that does not end by itself (`ends=False`) is noted,
+        unless the scene lets it end. Reactions are those of one mode: `modes` says in which it is watched.
+        """
+        location = caller_location(self.file)
+        if any(known.name == name for known in self.limits):
+            raise self.error(f"limit `{name}` is declared twice")
+        margin, text = limits.comparison(when, f"limit `{name}`", location)
+        self.limits.append(limits.Limit(name, message, -margin, text, ends, modes, location))
+
+    def valid(self, condition, sentence, *, modes=None):
+        """A condition under which the model is meant, a comparison of parameters or of the motion, and a sentence
+        that says what it assumes. A run that leaves it goes on, and says so."""
+        location = caller_location(self.file)
+        margin, text = limits.comparison(condition, "valid", location)
+        self.validity.append(limits.Validity(sentence, margin, text, modes, location))
 
     # ---- drawing ------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ kinetic = model.parameter("kinetic_friction", "N", 0.1, "kinetic friction force"
 stop = model.parameter("stop", "m", 1e3, "distance of the two stops from the position of rest", above=0)
 e = model.parameter("e", "1", 1.0, "restitution at the stops", minimum=0, maximum=1)
 
-x = model.coordinate("x", "m", "displacement from the position of rest")
+x = model.coordinate("x", "m", "displacement from the position of rest", minimum=-stop, maximum=stop)
 slip = model.discrete("slip", (+1, -1), "direction of slip")
 force = model.input("force", "N", "force on the mass")
 

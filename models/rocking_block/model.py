@@ -54,3 +54,7 @@ model.draw("block", [place(*p) for p in (
     (0, 0), (2 * half_width, 0), (2 * half_width, 2 * R * cos(alpha)), (0, 2 * R * cos(alpha)))])
 model.draw("centre", [place(half_width, R * cos(alpha))], kind="point")
 model.draw("pivot", [place(0, 0)], kind="contact")
+
+model.limit("past_balance", "the centre is beyond the pivot edge: at rest the block would fall, shaken it may come back",
+            when=theta > alpha, ends=False)
+model.limit("overturned", "the side of the block reaches the ground", when=theta > pi / 2)

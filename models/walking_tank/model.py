@@ -46,6 +46,8 @@ mu_s = model.parameter("mu_s", "1", 0.2, "static friction coefficient", minimum=
 mu_k = model.parameter("mu_k", "1", 0.19, "kinetic friction coefficient", minimum=0, at_most=mu_s)
 e = model.parameter("e", "1", 0.6, "restitution of the uplift rate at a landing", minimum=0, maximum=1)
 g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
+B_plate = model.parameter(
+    "B_plate", "N m", 309.0, "flexural rigidity of the bottom plate; tells whether it is rigid and acts on nothing else", above=0)
 printed_slip = model.parameter(
     "printed_slip", "1", 0, "with equations = corrected: number of the correction that is left out, in the order of"
     " corrections.py (0: none)", minimum=0, maximum=len(corrections))
@@ -219,3 +221,21 @@ model.draw("liquid", [place(bulge, up) for up, bulge in levels]
            + [place(2 * half_width + bulge, up) for up, bulge in reversed(levels)], kind="liquid")
 model.draw("shell", [place(0, height), place(0, 0), place(2 * half_width, 0), place(2 * half_width, height)], kind="line")
 model.draw("pivot", [place(0, 0)], kind="contact")
+
+# Where the weight of tank and rocking liquid turns about the pivot edge the other way.
+weight_moment = M_E * R_0 * sin(alpha_0 - theta) + M_S * R_S * sin(alpha_S - theta)
+model.limit("past_balance", "the centre is beyond the pivot edge: at rest the tank would fall, shaken it may come back",
+            when=weight_moment < 0, ends=False)
+model.limit("overturned", "the side of the tank reaches the ground", when=theta > pi / 2)
+
+# Where the model ends; README.md has the reasons for the numbers.
+radius = half_width
+dish = (5 + 0.3) / (1 + 0.3) * M_E * g * radius**2 / (64 * pi * B_plate)
+model.valid(dish < radius / 100,
+            "the bottom plate is rigid and lifts the liquid with it: held at its rim, the weight of the liquid dishes it by"
+            " less than a hundredth of the radius; a thinner plate uplifts in a strip along its edge (API 650, Annex E)")
+for bulge in (x_I, -x_I):
+    model.valid(bulge < radius / 20,
+                "the displacements of the liquid are small: bulging stays below a twentieth of the radius")
+model.valid(theta < alpha_0 / 4,
+            "the uplift is moderate: the free surface of the liquid, which rocks with the tank, is nearly level")

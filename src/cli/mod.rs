@@ -20,6 +20,7 @@ mod run;
 mod schema;
 mod table;
 mod verify;
+mod warnings;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

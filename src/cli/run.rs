@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
-use super::print;
-use crate::hybrid::{Problem, Reason, resume, simulate};
+use super::{print, warnings};
+use crate::hybrid::{Invalid, Problem, Reason, resume, simulate};
 use crate::kernel::MODELS;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
@@ -75,6 +75,7 @@ pub fn run(arguments: &RunArguments) -> Result {
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
 
+    warnings::before(problem);
     interrupt::listen()?;
     let mut progress = Interruptible(ProgressLine::new(problem.end.time));
     let run = match earlier {
@@ -103,7 +104,9 @@ pub fn run(arguments: &RunArguments) -> Result {
     if let Some(page) = &arguments.html {
         write_page(page, &run, &arguments.scene, problem)?;
     }
-    print::output(Report::new(&run))?;
+    let report = Report::new(&run);
+    print::output(&report)?;
+    warnings::after(report.summary());
     if let Some(reason) = &no_estimate {
         print::error(format!("no estimate of the error: {reason}"));
     }
@@ -175,6 +178,10 @@ pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
     let (path, help) = match reason {
         Reason::NoModeLeft { .. } => ("freeze".into(), "freeze fewer coordinates"),
         Reason::NoSeries { .. } => ("method".into(), "choose `auto` or `radau`"),
+        Reason::Invalid(Invalid::BeyondStop { coordinate, .. }) => (
+            format!("initial.{coordinate}"),
+            "start on the admissible side",
+        ),
         Reason::Beyond { of, .. } => (format!("initial.{of}"), "start on the admissible side"),
         _ => (
             "initial".into(),

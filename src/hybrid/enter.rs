@@ -4,7 +4,6 @@ use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, watched_value};
 use super::inertia::pivots;
-use super::requirements::check_requirements;
 use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
 use crate::integrate::{determinant_sign, solve};
@@ -123,7 +122,8 @@ impl Simulation<'_> {
                 v: &v,
                 a: &a,
             };
-            check_requirements(kernel, &self.context, mode, at)?;
+            let t = self.here.now.seconds();
+            (self.margins).look_at_start(kernel, &self.context, (mode, at), t)?;
         }
         self.here.a.fill(0.0);
         self.here.set_free(mode.free, [&q, &v, &a]);

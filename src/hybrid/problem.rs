@@ -24,6 +24,8 @@ pub struct Problem {
     pub freeze: Vec<usize>,
     /// Where it ends.
     pub end: End,
+    /// Limit states.
+    pub limits: Limits,
     /// Tolerances.
     pub accuracy: Accuracy,
     /// Method of integration.
@@ -67,6 +69,44 @@ pub struct End {
     pub time: f64,
     /// Name of a transition and how often it happens before the run ends right after it.
     pub after: Option<(&'static str, u64)>,
+}
+
+/// Limit states of a problem.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Limits {
+    /// Of limits of the model by name: whether a run ends there. The others are as the model says.
+    pub of_model: Vec<(&'static str, bool)>,
+    /// Limits beside those of the model.
+    pub own: Vec<OwnLimit>,
+}
+
+/// A limit state that is not the model's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnLimit {
+    /// Name; of several with one name the first that is reached counts.
+    pub name: String,
+    /// What it means, in words.
+    pub message: String,
+    /// What it is about.
+    pub of: Observed,
+    /// Whether it is reached above the level, else below.
+    pub above: bool,
+    /// The level, in the unit of what it is about.
+    pub level: f64,
+    /// Whether a run ends there.
+    pub ends: bool,
+}
+
+/// A quantity that a limit is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Observed {
+    /// A coordinate, by its index.
+    Coordinate(usize),
+    /// The rate of a coordinate, by its index.
+    Rate(usize),
+    /// A reaction, by its index: those of the coordinates, then those of the motions of the ground. It is 0 where the
+    /// coordinate is free.
+    Reaction(usize),
 }
 
 /// Tolerances of the local error of a step: absolute + relative × magnitude.
@@ -122,6 +162,7 @@ impl Problem {
                 time: 1.0,
                 after: None,
             },
+            limits: Limits::default(),
             accuracy: Accuracy::default(),
             method: Method::default(),
             record: Record {

@@ -68,8 +68,10 @@ impl Simulation<'_> {
             solver,
             energy,
             uncertain,
+            reached,
             ..
         } = run;
+        self.margins.go_on(&reached);
         self.here.now = Instant::new(end.t);
         self.here.j = end.j;
         self.here.mode = end.mode;

@@ -251,7 +251,7 @@ pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
 
 /// Searches a polynomial in s = (τ − start)/length of the step.
 #[inline]
-fn search_polynomial<const F: usize>(
+pub(super) fn search_polynomial<const F: usize>(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     dense: &impl Motion<F>,
     ((from, to), isolation): ((f64, f64), Isolation),

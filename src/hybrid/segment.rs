@@ -7,8 +7,8 @@ use super::failure::{Reason, Stoppable};
 use super::guards::{self, Conditions};
 use super::inertia::vanished;
 use super::instant::Instant;
+use super::margins::Ended;
 use super::problem::{Method, Problem};
-use super::requirements::{cut_where_unmet, hold_throughout};
 use super::samples::{Row, Samples, row_of};
 use super::simulation::{Here, Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
@@ -235,6 +235,7 @@ impl Simulation<'_> {
             let states = [&began, now].map(|state| [&state.q, &state.v]);
             vanished(kernel, context, (problem, mode), states)
         };
+        let watches = self.margins.watches(mode);
         let stiffness = &mut self.stiffness[self.here.mode];
         if chooses {
             stiffness.begin();
@@ -265,15 +266,13 @@ impl Simulation<'_> {
             if let Some(what) = state.not_finite() {
                 return Err(Box::new(Reason::NotFinite { what }));
             }
-            let mut unmet = None;
-            if !mode.requirements.is_empty()
-                && !hold_throughout(method, &mut equations, mode, state.t)
-            {
-                (found, unmet) = cut_where_unmet(
+            let mut ended = None;
+            if watches && !(self.margins).hold_throughout(method, &mut equations, mode, state.t) {
+                (found, ended) = self.margins.cut_where_reached(
                     method,
                     &mut equations,
                     &mut conditions,
-                    (mode, watched),
+                    (mode, watched, start),
                     (&mut self.signs, &mut state),
                     found,
                 )?;
@@ -396,8 +395,10 @@ impl Simulation<'_> {
                         row.fill(kernel, equations.context, at, values)
                     });
             }
-            if let Some(reason) = unmet {
-                return Err(reason);
+            match ended {
+                Some(Ended::Unmet(reason)) => return Err(reason),
+                Some(Ended::Limit) => return Ok(Stop::End),
+                None => {}
             }
             if progress
                 .advance(self.here.now.seconds(), self.here.j)

@@ -8,6 +8,7 @@ use super::equations::Piece;
 use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
 use super::ledger::RunningLedger;
+use super::limits::Margins;
 use super::plan::Plan;
 use super::problem::{Initial, Problem};
 use super::samples::Samples;
@@ -107,6 +108,7 @@ pub(super) struct Simulation<'p> {
     /// Remembered signs of what is watched in the present mode.
     pub signs: Signs,
     pub doubts: Doubts,
+    pub margins: Margins,
     /// Room for a reset: q, v, discrete states.
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
@@ -186,6 +188,7 @@ impl<'p> Simulation<'p> {
             drift: zeros(n),
             signs: Signs::default(),
             doubts: Doubts::new(problem.variant.modes.len()),
+            margins: Margins::new(problem),
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
             visited: Visited::default(),
@@ -212,9 +215,10 @@ impl<'p> Simulation<'p> {
 
     /// Finds the mode of the initial state, and opens the ledger.
     pub fn begin(&mut self) -> Result<(), Reason> {
+        let problem = self.problem;
         self.choose_initial_mode()?;
         self.set_context();
-        self.check_start()?;
+        self.check_start(&problem.parameters)?;
         if self.ledger.is_some() {
             self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
         }
@@ -232,7 +236,7 @@ impl<'p> Simulation<'p> {
         self.rewind(0);
         self.choose_initial_mode()?;
         self.set_context();
-        self.check_start()
+        self.check_start(member.parameters)
     }
 
     /// Goes back to the start, in the mode that was found for it.
@@ -256,6 +260,7 @@ impl<'p> Simulation<'p> {
         self.accumulation.clear();
         self.visited.clear();
         self.doubts.clear();
+        self.margins.clear();
         self.recorder.clear();
         self.jumps.clear();
         self.states_at_jumps.clear();
@@ -436,7 +441,8 @@ impl<'p> Simulation<'p> {
 
     pub fn is_over(&self) -> bool {
         let after = self.problem.end.after;
-        self.here.now.seconds() >= self.problem.end.time
+        self.margins.has_ended()
+            || self.here.now.seconds() >= self.problem.end.time
             || after.is_some_and(|(_, count)| self.counted >= count)
     }
 
@@ -557,6 +563,11 @@ impl<'p> Simulation<'p> {
             energy,
             error: None,
             uncertain: self.doubts.uncertain,
+            reached: {
+                let mut reached = self.margins.reached();
+                reached.validity.splice(..0, problem.invalid_parameters());
+                reached
+            },
             wall: clock.elapsed(),
         }
     }

@@ -3,7 +3,7 @@
 use super::failure::Reason;
 use super::problem::Problem;
 use super::simulation::Simulation;
-use crate::record::{Jump, Progress, Solver};
+use crate::record::{Jump, Progress, Reached, Solver};
 
 /// A problem made ready to run: tables, room and the initial mode. Runs after the first allocate
 /// nothing, as long as the record does not grow.
@@ -67,6 +67,11 @@ impl<'p> Simulator<'p> {
     /// The transitions so far.
     pub fn events(&self) -> &[Jump] {
         &self.simulation.jumps
+    }
+
+    /// Limit states that were reached, and conditions on the motion under which the model is meant that were left.
+    pub fn reached(&self) -> Reached {
+        self.simulation.margins.reached()
     }
 
     /// Work done by the integrator; the method is not named.

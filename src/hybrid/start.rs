@@ -1,19 +1,21 @@
 //! An initial state must be one that the model can be in: not beyond a stop.
 
 use super::failure::Reason;
+use super::limits::check_bounds;
+use super::problem::Problem;
 use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::GuardShape;
 
 /// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Simulation<'_> {
     /// Refuses an initial state that settling would move: where a guard is negative, by more than its rounding, and its
     /// transition changes a coordinate or a velocity. That is no event; the state is beyond where the mode ends. A
     /// change of mode and of discrete states alone is what settling is for: friction that cannot hold what
     /// the scene lets rest. An impact from a guard's very zero is an event.
-    pub fn check_start(&mut self) -> Result<(), Reason> {
+    pub fn check_start(&mut self, parameters: &[f64]) -> Result<(), Reason> {
         let start = self.here.mode;
         let mut refused = None;
         // Longer chains of modes are cycles, which settling names.
@@ -31,8 +33,13 @@ impl Simulation<'_> {
         self.here.mode = start;
         self.here.a.fill(0.0);
         (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
+        self.margins.clear();
         self.set_context();
-        refused.map_or(Ok(()), Err)
+        if let Some(reason) = refused {
+            return Err(reason);
+        }
+        let Problem { model, variant, .. } = self.problem;
+        Ok(check_bounds(model, variant, parameters, &self.initial.q)?)
     }
 
     /// Takes the transition of a guard that is violated, if it is one of the mode and of discrete states alone: its

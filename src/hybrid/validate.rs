@@ -27,6 +27,16 @@ pub enum Invalid {
     /// A parameter is larger than one that it must not exceed.
     #[error(transparent)]
     Exceeds(#[from] Exceeds),
+    /// A coordinate starts beyond a bound that depends on parameters.
+    #[error("the initial state is beyond a stop: `{coordinate}` is {}, it must be {range}", shown(*.value))]
+    BeyondStop {
+        /// The coordinate.
+        coordinate: &'static str,
+        /// Its value.
+        value: f64,
+        /// The bounds, in words.
+        range: String,
+    },
     /// A list has not an entry for each thing that it is about.
     #[error("{what}: {found} values, expected {expected}")]
     Count {
@@ -157,6 +167,7 @@ impl Problem {
         check_parameters(self.model, &self.parameters)?;
         check_initial(self.model, &self.initial)?;
         self.check_accuracy()?;
+        self.check_limits()?;
         let positive = Bounds::POSITIVE;
         within(positive, "s", self.end.time, || "the end".into())?;
         match self.record.every {

@@ -731,13 +731,17 @@ impl Context {
 }
 
 impl ConstantsKernel {
-    fn evaluate(&self, parameters: &[f64], out: &mut [f64]) {
+    /// Values at the parameters of a model, in its order.
+    ///
+    /// # Panics
+    /// If the number of parameters is not the model's, or `out` has not one entry a value.
+    pub fn evaluate(&self, parameters: &[f64], out: &mut [f64]) {
         assert_eq!(
             parameters.len(),
             self.dimensions.parameters,
             "number of parameters"
         );
-        assert_eq!(out.len(), self.dimensions.constants);
+        assert_eq!(out.len(), self.count);
         let mut angles = vec![KeptAngle::ZERO; self.dimensions.angles];
         let raw = RawContext {
             u: std::ptr::null(),
@@ -749,7 +753,7 @@ impl ConstantsKernel {
             angles: angles.as_mut_ptr(),
         };
         let none = std::ptr::null();
-        // SAFETY: the function reads `parameters` only and writes `constants` outputs.
+        // SAFETY: the function reads `parameters` only and writes `count` outputs.
         unsafe { (self.function)(parameters.as_ptr(), none, none, &raw, out.as_mut_ptr()) }
     }
 }

@@ -10,6 +10,14 @@ use nalgebra::{SMatrix, SVector};
 pub struct ConstantsKernel {
     pub(super) dimensions: &'static Dimensions,
     pub(super) function: Raw,
+    pub(super) count: usize,
+}
+
+impl ConstantsKernel {
+    /// Number of values.
+    pub fn count(&self) -> usize {
+        self.count
+    }
 }
 
 /// State and accelerations of the free coordinates of a mode, as every mode function takes them.

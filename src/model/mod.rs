@@ -56,8 +56,11 @@ pub struct Coordinate {
     pub scale: f64,
     /// Typical magnitude of the velocity, in `unit/s`.
     pub rate_scale: f64,
-    /// Lower bound that every admissible state respects, if any (`theta >= 0`).
+    /// Lower bound that every admissible state respects, if it is a number (`theta >= 0`). Bounds that depend on
+    /// parameters are [`Variant::bounds`].
     pub minimum: Option<f64>,
+    /// Upper bound, likewise.
+    pub maximum: Option<f64>,
 }
 
 /// A prescribed motion of the ground along one axis.
@@ -166,6 +169,16 @@ pub struct Variant {
     pub modes: &'static [Mode],
     /// Where accumulations may come to rest, in the order of the file.
     pub rests: &'static [Rest],
+    /// Limit states.
+    pub limits: &'static [Limit],
+    /// Under which conditions on the motion the model is meant.
+    pub valid_motion: &'static [Validity],
+    /// Under which conditions on the parameters it is meant.
+    pub valid_parameters: &'static [Validity],
+    /// Bounds of coordinates that depend on parameters.
+    pub bounds: &'static [ParametricBound],
+    /// Of the parameters: by how much each of the conditions on them holds, then these bounds.
+    pub declared: ConstantsKernel,
 }
 
 /// A mode at the limit of infinitely many events in finite time.
@@ -175,6 +188,39 @@ pub struct Rest {
     pub source: usize,
     /// Index of the mode that is entered where the limit satisfies what it holds.
     pub target: usize,
+}
+
+/// A state in which something has happened that the model is not about, such as that a block has overturned.
+#[derive(Debug)]
+pub struct Limit {
+    /// Name.
+    pub name: &'static str,
+    /// What it means, in words.
+    pub message: &'static str,
+    /// When it is reached, as text.
+    pub text: &'static str,
+    /// Whether a run ends there if the scene does not say otherwise.
+    pub ends: bool,
+}
+
+/// A condition under which the model is meant.
+#[derive(Debug)]
+pub struct Validity {
+    /// The condition as text.
+    pub condition: &'static str,
+    /// What the model assumes, in words.
+    pub sentence: &'static str,
+}
+
+/// A bound of a coordinate that depends on parameters.
+#[derive(Debug)]
+pub struct ParametricBound {
+    /// Index of the coordinate.
+    pub coordinate: usize,
+    /// Whether it is the upper bound.
+    pub upper: bool,
+    /// The bound as text.
+    pub text: &'static str,
 }
 
 /// A mode: which coordinates are free, and the functions of the reduced system.
@@ -190,8 +236,11 @@ pub struct Mode {
     pub held_at: &'static [Option<f64>],
     /// Guards of this mode, in the order of the guards function.
     pub guards: &'static [Guard],
-    /// What must stay positive in this mode, in the order of the requirements function.
+    /// What must stay positive in this mode: the first values of the requirements function.
     pub requirements: &'static [Requirement],
+    /// Shapes of its other values: margins of the variant's limits, then of its validity in motion. A limit is reached,
+    /// or the validity left, where its margin is negative. `None`: it does not change in this mode.
+    pub margins: &'static [Option<GuardShape>],
     /// Rate of each frozen coordinate that drifts (a belt); false: it rests. One entry a coordinate.
     pub drifts: &'static [bool],
     /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
@@ -310,7 +359,10 @@ impl Parameter {
 impl Coordinate {
     /// The values that it may have.
     pub fn bounds(&self) -> Bounds {
-        Bounds::at_least(self.minimum.unwrap_or(f64::NEG_INFINITY))
+        Bounds {
+            maximum: self.maximum.unwrap_or(f64::INFINITY),
+            ..Bounds::at_least(self.minimum.unwrap_or(f64::NEG_INFINITY))
+        }
     }
 }
 

@@ -55,6 +55,18 @@ pub(super) fn head(summary: &Summary) -> String {
             text(&failure.reason)
         ),
     };
+    for state in &summary.reached.limit_states {
+        let (name, t, message) = (text(&state.name), number(state.t), text(&state.message));
+        let _ = writeln!(out, "<p>Limit state {name} at t = {t} s: {message}.</p>");
+    }
+    for left in &summary.reached.validity {
+        let (condition, message) = (text(&left.condition), text(&left.message));
+        let from = (left.t).map_or(String::new(), |t| format!(" from t = {} s on", number(t)));
+        let _ = writeln!(
+            out,
+            "<p class=\"alarm\">Not {condition}{from}: {message}.</p>"
+        );
+    }
     out
 }
 
@@ -80,7 +92,14 @@ pub(super) fn all(summary: &Summary) -> String {
     );
     if summary.events.total > 0 {
         out += "<h2>Transitions</h2>\n";
-        let lost = |name: &str| summary.impacts.0.iter().find(|(n, _)| n == name);
+        let lost = |name: &str| {
+            summary
+                .impacts
+                .by_transition
+                .0
+                .iter()
+                .find(|(n, _)| n == name)
+        };
         out += &table(
             &["", "count", "energy lost / J", "gained energy"],
             summary.events.by_transition.iter().map(|(name, count)| {

@@ -13,7 +13,7 @@ pub struct Difference {
     /// Largest of these, each divided by what a tolerance of 1 would allow: its typical size (absolute
     /// ÷ relative tolerance) and its magnitude.
     pub end: f64,
-    /// The events.
+    /// The events and limit states.
     pub events: Match,
 }
 
@@ -30,9 +30,12 @@ impl Difference {
             .zip(other.q.iter().chain(&other.v))
             .map(|(size, value)| size + value.abs());
         let parts = q.iter().chain(&v).zip(allowed).map(|(d, a)| d / a);
+        let mut events = match_events(&run.events, &better.events);
+        let [own, other] = [run, better].map(|run| &run.reached.limit_states);
+        events.add_limits(own, other);
         Difference {
             end: parts.fold(0.0, f64::max),
-            events: match_events(&run.events, &better.events),
+            events,
             q,
             v,
         }

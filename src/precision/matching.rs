@@ -2,7 +2,7 @@
 
 use super::TOLERANCES;
 use crate::hybrid::LONGEST_PATTERN;
-use crate::record::Event;
+use crate::record::{Event, LimitState};
 
 /// Name of the transition at the limit of an accumulation.
 const REST: &str = "rest";
@@ -93,6 +93,32 @@ impl Match {
     fn extra(&mut self, event: &Event) {
         self.extra += 1;
         self.until = self.until.min(event.t);
+    }
+
+    /// Takes note of the limit states of both runs: at one that ends them they end at times of their own.
+    pub(super) fn add_limits(&mut self, run: &[LimitState], better: &[LimitState]) {
+        let of = |all: &[LimitState], name: &str| all.iter().find(|s| s.name == name).map(|s| s.t);
+        for LimitState { name, t, .. } in run {
+            match of(better, name) {
+                Some(exact) => {
+                    let (apart, first) = ((t - exact).abs(), t.min(exact));
+                    self.time = self.time.max(apart);
+                    if apart > TOLERANCES[0] * exact {
+                        self.until = self.until.min(first);
+                    } else if first < self.until {
+                        self.common = self.common.max(first);
+                    }
+                }
+                None => {
+                    self.extra += 1;
+                    self.until = self.until.min(*t);
+                }
+            }
+        }
+        for LimitState { t, .. } in better.iter().filter(|s| of(run, &s.name).is_none()) {
+            self.missed += 1;
+            self.until = self.until.min(*t);
+        }
     }
 }
 

@@ -20,12 +20,14 @@
 
 mod files;
 pub mod folder;
+mod gains;
 mod layout;
 mod looks;
 mod number;
 mod peaks;
 pub mod plot;
 mod progress;
+mod reached;
 mod read;
 mod recorder;
 mod report;
@@ -36,11 +38,13 @@ mod uncertain;
 
 pub use files::{OVERVIEW, PHASE};
 pub use folder::{FolderError, OutputFolder};
+pub use gains::Gain;
 pub use layout::{Layout, Quantity, Recorded};
 pub(crate) use looks::Looks;
 pub(crate) use number::{exact, rounded};
 pub use peaks::{Peak, peaks};
 pub use progress::{Progress, ProgressLine, Silent};
+pub use reached::{Left, LimitState, Reached};
 pub use read::ReadError;
 pub use recorder::Recorder;
 pub use report::Report;

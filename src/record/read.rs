@@ -11,6 +11,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::layout::{Layout, Quantity, Recorded};
+use super::reached::Reached;
 use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
 use super::summary::SUMMARY;
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
@@ -40,6 +41,8 @@ struct Written {
     energy: Option<Energy>,
     #[serde(default)]
     uncertain: Uncertain,
+    #[serde(flatten)]
+    reached: Reached,
     solver: Solver,
     wall_seconds: f64,
 }
@@ -103,6 +106,7 @@ impl Run {
             }),
             error: None,
             uncertain: written.uncertain,
+            reached: written.reached,
             wall: Duration::try_from_secs_f64(written.wall_seconds).unwrap_or_default(),
             failure: None,
         })

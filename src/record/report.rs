@@ -24,6 +24,13 @@ impl Report {
     }
 }
 
+impl Report {
+    /// The summary that it shows.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
+}
+
 impl Display for Report {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let summary = &self.summary;
@@ -59,6 +66,7 @@ impl Display for Report {
         energies(f, summary)?;
         error_estimate(f, summary)?;
         uncertain(f, summary)?;
+        reached(f, summary)?;
         let solver = &summary.solver;
         writeln!(
             f,
@@ -153,6 +161,30 @@ fn uncertain(f: &mut Formatter, summary: &Summary) -> fmt::Result {
     )
 }
 
+/// One line a limit state, and one a condition of the model that does not hold.
+fn reached(f: &mut Formatter, summary: &Summary) -> fmt::Result {
+    for state in &summary.reached.limit_states {
+        let ended = if state.ends {
+            "; the run ends there"
+        } else {
+            ""
+        };
+        let (name, t, message) = (&state.name, number(state.t), &state.message);
+        writeln!(f, "limit       {name} at t = {t} s: {message}{ended}")?;
+    }
+    for left in &summary.reached.validity {
+        let when = left
+            .t
+            .map_or(String::new(), |t| format!(" from t = {} s on", number(t)));
+        writeln!(
+            f,
+            "validity    not {}{when}: {}",
+            left.condition, left.message
+        )?;
+    }
+    Ok(())
+}
+
 fn error_estimate(f: &mut Formatter, summary: &Summary) -> fmt::Result {
     let Some(estimate) = &summary.error_estimate else {
         return Ok(());
@@ -195,7 +227,7 @@ fn energies(f: &mut Formatter, summary: &Summary) -> fmt::Result {
     if !energy.frame.is_empty() {
         writeln!(f, "            {}", energy.frame)?;
     }
-    for (name, impacts) in &summary.impacts.0 {
+    for (name, impacts) in &summary.impacts.by_transition.0 {
         writeln!(
             f,
             "            {} × {name}: lost {} J, from {} to {} J each{}",

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Layout, Uncertain};
+use super::{Layout, Reached, Uncertain};
 
 /// The result of a simulation, complete or stopped early.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ pub struct Run {
     pub error: Option<ErrorEstimate>,
     /// What the run cannot tell at its tolerance.
     pub uncertain: Uncertain,
+    /// Limit states and conditions of validity that it has reached.
+    pub reached: Reached,
     /// Time the simulation took on the wall clock (without reading and writing files).
     pub wall: Duration,
     /// Why the run stopped before its end; `None` when it reached it.

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 
+use super::gains::{Gain, gains};
 use super::layout::Quantity;
 use super::number::push_exact;
 use super::peaks::peaks;
@@ -35,8 +36,8 @@ pub struct Summary {
     pub peaks: Named<Extremes>,
     /// The transitions.
     pub events: Events,
-    /// What the impacts did to the energy, by transition.
-    pub impacts: Named<Impacts>,
+    /// What the impacts did to the energy.
+    pub impacts: AllImpacts,
     /// The balance of energies.
     /// `None` where the ledger was not kept.
     pub energy: Option<Energy>,
@@ -45,6 +46,9 @@ pub struct Summary {
     pub error_estimate: Option<Estimate>,
     /// What the run cannot tell at its tolerance.
     pub uncertain: super::Uncertain,
+    /// Limit states that were reached, and where the model's validity was left.
+    #[serde(flatten)]
+    pub reached: super::Reached,
     /// Work done by the integrator.
     pub solver: super::Solver,
     /// Time the simulation took on the wall clock (s).
@@ -102,6 +106,16 @@ pub struct Events {
     pub total: usize,
     /// By name.
     pub by_transition: BTreeMap<&'static str, usize>,
+}
+
+/// What the impacts did to the energy.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct AllImpacts {
+    /// By transition.
+    #[serde(flatten)]
+    pub by_transition: Named<Impacts>,
+    /// The first that gained energy; all are counted by transition.
+    pub gains: Vec<Gain>,
 }
 
 /// What the impacts of one kind did to the energy.
@@ -213,7 +227,10 @@ impl Summary {
                 total: run.events.len(),
                 by_transition,
             },
-            impacts: impacts(run),
+            impacts: AllImpacts {
+                by_transition: impacts(run),
+                gains: gains(run),
+            },
             energy: run.energy.as_ref().map(|energy| Energy {
                 initial: energy.initial,
                 final_: energy.final_,
@@ -235,6 +252,7 @@ impl Summary {
                 events_in_tails: error.in_tails,
             }),
             uncertain: run.uncertain.clone(),
+            reached: run.reached.clone(),
             solver: run.solver.clone(),
             wall_seconds: run.wall.as_secs_f64(),
         }

@@ -2,10 +2,11 @@
 //!
 //! Reading a scene and `dalembert schema` both follow these tables.
 
+use super::limits;
 use super::shape::{Key, Object, Quantity, Shape};
 use crate::hybrid::Method;
 use crate::integrate::Tolerances;
-use crate::model::{Bounds, Coordinate, Input, Model, Variant};
+use crate::model::{Bounds, Coordinate, Input, Limit, Model, Variant};
 
 /// Relative tolerance of a scene that asks for none: eight digits, well above the rounding of long
 /// runs and well below what a plot shows.
@@ -17,6 +18,10 @@ pub(crate) const METHODS: [(&str, Method); 3] = [
     ("radau", Method::Radau),
     ("taylor", Method::Taylor),
 ];
+
+/// What a run does at a limit state.
+pub(crate) const END: &str = "end";
+pub(crate) const CONTINUE: &str = "continue";
 
 /// The shape of a scene of a model; of any model, with less detail, for `None`.
 pub(crate) fn scene(model: Option<&Model>) -> Object {
@@ -51,6 +56,11 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
         Key::new("initial", "state at t = 0", initial(model)),
         Key::new("freeze", "coordinates held still throughout", freeze(model)),
         Key::new("end", "when the run ends", end(model)).required(),
+        Key::new(
+            "limits",
+            "limit states: what becomes of those of the model, and further ones",
+            limits::shape(model),
+        ),
         Key::new("accuracy", "error tolerances", accuracy(model)),
         Key::new(
             "method",
@@ -358,6 +368,18 @@ pub(crate) fn mode_names(variants: &[Variant]) -> Vec<&'static str> {
 pub(crate) fn transition_names(variants: &[Variant]) -> Vec<&'static str> {
     let guards = variants.iter().flat_map(|v| v.modes).flat_map(|m| m.guards);
     unique(guards.flat_map(|g| g.transitions).map(|t| t.name))
+}
+
+/// The limit states of some variants, those of one name once.
+pub(crate) fn limits(variants: &[Variant]) -> Vec<&'static Limit> {
+    let all = variants.iter().flat_map(|v| v.limits);
+    let mut known: Vec<&Limit> = Vec::new();
+    for limit in all {
+        if known.iter().all(|k| k.name != limit.name) {
+            known.push(limit);
+        }
+    }
+    known
 }
 
 fn unique(names: impl Iterator<Item = &'static str>) -> Vec<&'static str> {

@@ -8,7 +8,7 @@ use super::files::Files;
 use super::shape::Shape;
 use super::tree::{Node, Value};
 use super::wording::listing;
-use super::{Scene, SceneSource, format, inputs, state};
+use super::{Scene, SceneSource, format, inputs, limits, state};
 use crate::hybrid::{Accuracy, End, Exceeds, Method, Problem, Record, check_limits_of_parameters};
 use crate::model::{Model, Variant};
 use crate::record::Recorded;
@@ -44,6 +44,7 @@ pub(crate) fn scene(
     let freeze = state::freeze(model, variant, &checked, &mut errors);
     let initial = state::initial(model, variant, &checked, &freeze, &mut errors);
     let end = errors.note(end(variant, &checked));
+    let limits = limits::limits(model, variant, &checked, &mut errors);
     errors.check()?;
     let (Some(parameters), Some(signals), Some(initial), Some(end)) =
         (parameters, signals, initial, end)
@@ -59,6 +60,7 @@ pub(crate) fn scene(
         initial,
         freeze,
         end,
+        limits,
         accuracy: Accuracy::default(),
         method: method(&checked),
         record: record(&checked),

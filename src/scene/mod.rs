@@ -10,6 +10,7 @@ mod files;
 mod format;
 mod inputs;
 mod interpret;
+mod limits;
 mod number;
 mod schema;
 mod set;

@@ -4,6 +4,7 @@ mod compare;
 mod describe;
 mod input;
 mod interrupt;
+mod limits;
 mod output;
 mod page;
 mod precision;

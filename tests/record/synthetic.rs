@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use dalembert::record::{
-    EnergyJump, Event, Group, Layout, Ledger, Place, Quantity, Recorder, Run, Snapshot, Solver,
-    Subject, Uncertain,
+    EnergyJump, Event, Group, Layout, Ledger, Place, Quantity, Reached, Recorder, Run, Snapshot,
+    Solver, Subject, Uncertain,
 };
 
 const G: f64 = 9.81;
@@ -126,6 +126,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         }),
         error: None,
         uncertain: Uncertain::default(),
+        reached: Reached::default(),
         wall: Duration::ZERO,
         failure: None,
     }
@@ -321,6 +322,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         }),
         error: None,
         uncertain: Uncertain::default(),
+        reached: Reached::default(),
         wall: Duration::from_millis(123),
         failure: None,
     }

@@ -19,6 +19,8 @@ pub struct Description {
     pub parameter_sets: Vec<ParameterSet>,
     pub reactions: Vec<Reaction>,
     pub modes: Vec<Mode>,
+    pub limits: Vec<Limit>,
+    pub validity: Vec<Validity>,
 }
 
 /// A modelling choice, and the option that is described.
@@ -34,8 +36,11 @@ pub struct Choice {
 pub struct Coordinate {
     pub name: &'static str,
     pub unit: &'static str,
-    /// Lower bound of every admissible state.
+    /// Bounds of every admissible state; `None` where there is none, or it depends on parameters.
     pub minimum: Option<f64>,
+    pub maximum: Option<f64>,
+    /// Bounds that depend on parameters, such as `<= stop`.
+    pub bounds: Vec<String>,
     /// Typical magnitudes, of the coordinate and of its velocity.
     pub scale: f64,
     pub rate_scale: f64,
@@ -145,6 +150,26 @@ pub struct Requirement {
     pub failure: &'static str,
 }
 
+/// A limit state.
+#[derive(Debug, Serialize)]
+pub struct Limit {
+    pub name: &'static str,
+    /// When it is reached.
+    pub when: &'static str,
+    /// Whether a run ends there, unless its scene says otherwise.
+    pub ends: bool,
+    pub message: &'static str,
+}
+
+/// A condition under which the model is meant.
+#[derive(Debug, Serialize)]
+pub struct Validity {
+    pub condition: &'static str,
+    /// Whether it is about the parameters, else about the motion.
+    pub of_parameters: bool,
+    pub message: &'static str,
+}
+
 /// Operations of a generated function.
 #[derive(Debug, Serialize)]
 pub struct Operations {
@@ -170,7 +195,16 @@ impl Description {
                 })
                 .collect(),
             coordinates: coordinates
-                .map(|c| Coordinate {
+                .enumerate()
+                .map(|(i, c)| Coordinate {
+                    bounds: (variant.bounds.iter())
+                        .filter(|bound| bound.coordinate == i)
+                        .map(|bound| match bound.upper {
+                            true => format!("<= {}", bound.text),
+                            false => format!(">= {}", bound.text),
+                        })
+                        .collect(),
+                    maximum: c.maximum,
                     name: c.name,
                     unit: c.unit,
                     minimum: c.minimum,
@@ -210,6 +244,27 @@ impl Description {
                 .enumerate()
                 .map(|(index, mode)| Mode::new(model, variant, (index, mode)))
                 .collect(),
+            limits: (variant.limits.iter())
+                .map(|limit| Limit {
+                    name: limit.name,
+                    when: limit.text,
+                    ends: limit.ends,
+                    message: limit.message,
+                })
+                .collect(),
+            validity: [
+                (variant.valid_parameters, true),
+                (variant.valid_motion, false),
+            ]
+            .into_iter()
+            .flat_map(|(all, of_parameters)| {
+                all.iter().map(move |validity| Validity {
+                    condition: validity.condition,
+                    of_parameters,
+                    message: validity.sentence,
+                })
+            })
+            .collect(),
         }
     }
 }

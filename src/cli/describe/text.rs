@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::description::{Description, Guard, Held, Mode, Parameter};
+use super::description::{Coordinate, Description, Guard, Held, Mode, Parameter};
 use crate::cli::table::Table;
 use crate::record::rounded;
 
@@ -40,8 +40,7 @@ impl Display for Text<'_> {
                 format!("{}/s", c.unit),
                 c.scale.to_string(),
                 c.rate_scale.to_string(),
-                c.minimum
-                    .map_or(String::new(), |minimum| format!(">= {minimum}")),
+                bounds_of(c),
                 c.meaning.to_owned(),
             ]);
         }
@@ -98,6 +97,32 @@ impl Display for Text<'_> {
         for mode in &d.modes {
             self::mode(f, mode)?;
         }
+
+        let mut limits = Table::new(["limit state", "when", "then", "meaning"]);
+        for limit in &d.limits {
+            let then = if limit.ends {
+                "the run ends"
+            } else {
+                "it goes on"
+            };
+            limits.row([limit.name, limit.when, then, limit.message]);
+        }
+        section(
+            f,
+            "Limit states (a scene may say what is done there)",
+            &limits,
+        )?;
+
+        let mut validity = Table::new(["condition", "of", "what is assumed"]);
+        for v in &d.validity {
+            let of = if v.of_parameters {
+                "parameters"
+            } else {
+                "motion"
+            };
+            validity.row([v.condition, of, v.message]);
+        }
+        section(f, "What the model is meant for", &validity)?;
         section(
             f,
             "Operations of one evaluation, by function and mode",
@@ -118,6 +143,20 @@ fn section(f: &mut Formatter, title: &str, table: &Table) -> fmt::Result {
 fn indented(text: &dyn Display) -> String {
     let text = text.to_string();
     text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// The bounds of a coordinate.
+fn bounds_of(c: &Coordinate) -> String {
+    let fixed = [
+        c.minimum.map(|minimum| format!(">= {minimum}")),
+        c.maximum.map(|maximum| format!("<= {maximum}")),
+    ];
+    let all: Vec<_> = fixed
+        .into_iter()
+        .flatten()
+        .chain(c.bounds.iter().cloned())
+        .collect();
+    all.join(", ")
 }
 
 /// The bounds of a parameter, such as `> 0, <= mu_s`.

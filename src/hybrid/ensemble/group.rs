@@ -119,8 +119,10 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub last: Lanes<W>,
     /// Time after which the inputs are analytic, s.
     pub analytic_from: f64,
-    /// Lower bounds, in the last step, of what the mode requires to be positive.
-    pub requirements: LaneRows<W>,
+    /// Lower bounds, in the last step, of what the mode requires to be positive, and of margins.
+    pub bounds: LaneRows<W>,
+    /// Of each margin, the lanes in which it has been reached before.
+    pub passed: Vec<LaneMask>,
     /// Lanes that have not made the last step.
     pub unclear: LaneMask,
     /// Steps of the group, and how many of them each lane has not made since it was loaded or came before.
@@ -207,7 +209,8 @@ impl<const F: usize, const W: usize> Group<F, W> {
             left: LaneRows::zeros(discretes),
             last: Lanes::of(f64::INFINITY),
             analytic_from: analytic_from(&problem.signals),
-            requirements: LaneRows::zeros(mode.requirements.len()),
+            bounds: LaneRows::zeros(mode.requirements.len() + mode.margins.len()),
+            passed: vec![LaneMask::NONE; mode.margins.len()],
             unclear: LaneMask::NONE,
             steps: 0,
             missed: [0; W],
@@ -280,6 +283,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
         }
         let [high, low] = from.here.now.parts();
         (here.t[0].0[lane], here.t[1].0[lane]) = (high, low);
+        for (margin, passed) in self.passed.iter_mut().enumerate() {
+            passed.set(lane, !from.margins.is_pending(margin));
+        }
         self.past.after.fill_lane(lane, f64::NAN);
         if let Some((at, states, discretes)) = from.accumulation.last() {
             let after = &mut self.past.after;

@@ -19,7 +19,7 @@ use super::failure::Reason;
 use super::problem::{Initial, Method, Problem};
 use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
-use crate::record::{Jump, Recorded, Silent};
+use crate::record::{Jump, Reached, Recorded, Silent};
 use rayon::prelude::*;
 use worker::Worker;
 
@@ -88,7 +88,11 @@ impl Ensemble {
         };
         drop(pilot);
         let in_lanes = (modes.iter().zip(stiff))
-            .map(|(mode, stiff)| !stiff && with_kernel!(&mode.kernels, k => k.goes_in_lanes()))
+            .map(|(mode, stiff)| {
+                !stiff
+                    && problem.limits.own.is_empty()
+                    && with_kernel!(&mode.kernels, k => k.goes_in_lanes())
+            })
             .collect();
         Ok(Ensemble {
             problem,
@@ -165,6 +169,11 @@ impl Finished<'_, '_> {
     /// The transitions.
     pub fn events(&self) -> &[Jump] {
         &self.simulation.jumps
+    }
+
+    /// Limit states that were reached, and conditions on the motion under which the model is meant that were left.
+    pub fn reached(&self) -> Reached {
+        self.simulation.margins.reached()
     }
 
     /// Steps made, in lanes and alone.

@@ -162,17 +162,24 @@ impl<const F: usize, const W: usize> Group<F, W> {
         unclear
     }
 
-    /// The lanes in which it is not certain that all that the mode requires holds in the whole step.
+    /// The lanes in which it is not certain that all that the mode requires holds in the whole step, and that
+    /// no limit is reached.
     fn unmet(&mut self) -> LaneMask {
-        if self.requirements.is_empty() {
+        if self.bounds.is_empty() {
             return LaneMask::NONE;
         }
         let which = (self.level, self.quiet);
         let series = (&self.taylor.series, self.taylor.order());
         let [tau, ..] = &self.way.durations;
-        let bounds = &mut self.requirements;
+        let bounds = &mut self.bounds;
         self.kernel
             .lane_requirement_bounds(which, &mut self.context, series, tau, bounds);
+        let margins = bounds.len() - self.passed.len();
+        for (bound, passed) in bounds[margins..].iter_mut().zip(&self.passed) {
+            for lane in (*passed & self.occupied).lanes() {
+                bound.0[lane] = f64::INFINITY;
+            }
+        }
         lane_unmet(self.level, bounds)
     }
 }

@@ -1,0 +1,280 @@
+//! Limit states and validity: what a run watches besides guards, and what it has reached.
+//!
+//! Each is a margin, watched as [`super::margins`] says until it has been negative once.
+
+use super::problem::{Observed, OwnLimit, Problem};
+use super::start::ROUNDING;
+use super::validate::{Invalid, Unknown, within};
+use crate::model::{Bounds, GuardShape, Mode, Model, Variant, shown};
+use crate::record::{Left, LimitState, Reached};
+
+/// What is watched in a run, and when it was reached.
+#[derive(Debug)]
+pub(super) struct Margins {
+    variant: &'static Variant,
+    /// The limits of the problem.
+    pub own: Box<[OwnLimit]>,
+    /// Whether the run ends there: limits of the model, its validity in motion, limits of the problem.
+    pub ends: Box<[bool]>,
+    /// When each was first reached, s.
+    reached: Box<[Option<f64>]>,
+    /// Whether the run has ended there.
+    has_ended: bool,
+    /// Room for the values of a mode's requirements and of all margins.
+    pub values: Box<[f64]>,
+    /// The same at the start of a step.
+    pub starts: Box<[f64]>,
+    /// Room for the reactions, and for the rates of frozen coordinates.
+    pub reactions: Box<[f64]>,
+    pub rates: Box<[f64]>,
+}
+
+impl Margins {
+    pub fn new(problem: &Problem) -> Self {
+        let (model, variant) = (problem.model, problem.variant);
+        let of_model = variant.limits.iter().map(|limit| {
+            let said = problem
+                .limits
+                .of_model
+                .iter()
+                .find(|(name, _)| *name == limit.name);
+            said.map_or(limit.ends, |(_, ends)| *ends)
+        });
+        let of_motion = variant.valid_motion.iter().map(|_| false);
+        let own = problem.limits.own.iter().map(|limit| limit.ends);
+        let ends: Box<[bool]> = of_model.chain(of_motion).chain(own).collect();
+        let required = variant.modes.iter().map(|mode| mode.requirements.len());
+        let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
+        let room = required.max().unwrap_or(0) + ends.len();
+        Margins {
+            variant,
+            own: problem.limits.own.clone().into(),
+            reached: vec![None; ends.len()].into(),
+            ends,
+            has_ended: false,
+            values: zeros(room),
+            starts: zeros(room),
+            reactions: zeros(model.coordinates.len() + model.motions.len()),
+            rates: zeros(model.coordinates.len()),
+        }
+    }
+
+    /// Forgets what was reached, for the next run.
+    pub fn clear(&mut self) {
+        self.reached.fill(None);
+        self.has_ended = false;
+    }
+
+    /// Whether the run has come to a limit at which it ends.
+    pub fn has_ended(&self) -> bool {
+        self.has_ended
+    }
+
+    /// Whether nothing was reached so far.
+    pub fn is_pending(&self, margin: usize) -> bool {
+        self.reached[margin].is_none()
+    }
+
+    /// Notes that a margin is negative at `t` (s).
+    #[cold]
+    pub fn reach(&mut self, margin: usize, t: f64) {
+        if self.reached[margin].is_none() {
+            self.reached[margin] = Some(t);
+            self.has_ended |= self.ends[margin];
+        }
+    }
+
+    /// Whether something is to be watched while a mode lasts.
+    pub fn watches(&self, mode: &Mode) -> bool {
+        let mut pending = (0..self.ends.len()).filter(|&margin| self.is_pending(margin));
+        !mode.requirements.is_empty() || pending.any(|margin| self.shape(mode, margin).is_some())
+    }
+
+    /// How a margin depends on the motion in a mode; `None`: it does not change there.
+    pub fn shape(&self, mode: &Mode, margin: usize) -> Option<GuardShape> {
+        let general = GuardShape::General {
+            accelerations: true,
+            signals: true,
+        };
+        let Some(own) = margin.checked_sub(mode.margins.len()) else {
+            return mode.margins[margin];
+        };
+        let (i, rate) = match self.own[own].of {
+            Observed::Coordinate(i) => (i, false),
+            Observed::Rate(i) => (i, true),
+            Observed::Reaction(i) if mode.free.contains(&i) => return None,
+            Observed::Reaction(_) => return Some(general),
+        };
+        match mode.free.iter().position(|&free| free == i) {
+            Some(index) => Some(GuardShape::Linear {
+                index,
+                rate,
+                factor: if self.own[own].above { -1.0 } else { 1.0 },
+                discrete: None,
+                offset: true,
+            }),
+            None if mode.drifts[i] && !rate => Some(general),
+            None => None,
+        }
+    }
+
+    /// What the run has reached.
+    pub fn reached(&self) -> Reached {
+        let Variant {
+            limits,
+            valid_motion,
+            ..
+        } = self.variant;
+        let (of_model, rest) = self.reached.split_at(limits.len());
+        let (of_motion, own) = rest.split_at(valid_motion.len());
+        let state = |name: &str, message: &str, t: f64, ends| LimitState {
+            name: name.into(),
+            t,
+            message: message.into(),
+            ends,
+        };
+        let of_model = limits.iter().zip(of_model).zip(&self.ends);
+        let of_model =
+            of_model.filter_map(|((l, t), &ends)| Some(state(l.name, l.message, (*t)?, ends)));
+        let own = self.own.iter().zip(own);
+        let own = own.filter_map(|(l, t)| Some(state(&l.name, &l.message, (*t)?, l.ends)));
+        let mut limit_states: Vec<_> = of_model.chain(own).collect();
+        limit_states.sort_by(|a, b| a.t.total_cmp(&b.t));
+        let mut names = std::collections::BTreeSet::new();
+        limit_states.retain(|state| names.insert(state.name.clone()));
+        let left = valid_motion.iter().zip(of_motion);
+        let left = left.filter_map(|(v, t)| {
+            Some(Left {
+                condition: v.condition.into(),
+                message: v.sentence.into(),
+                t: Some((*t)?),
+            })
+        });
+        let mut validity: Vec<_> = left.collect();
+        validity.sort_by(|a, b| a.t.partial_cmp(&b.t).unwrap_or(std::cmp::Ordering::Equal));
+        Reached {
+            limit_states,
+            validity,
+        }
+    }
+
+    /// Takes over what a run that is continued has reached. A limit at which it ends does so again.
+    pub fn go_on(&mut self, reached: &Reached) {
+        let names = self.variant.limits.iter().map(|l| l.name);
+        let conditions = self.variant.valid_motion.iter().map(|v| v.condition);
+        let own = self.own.iter().map(|l| l.name.as_str());
+        let known = names.chain(conditions).chain(own);
+        for ((of, name), ends) in self.reached.iter_mut().zip(known).zip(&self.ends) {
+            let state = reached.limit_states.iter().find(|s| s.name == name);
+            let left = reached.validity.iter().find(|l| l.condition == name);
+            let t = state.map(|s| s.t).or(left.and_then(|l| l.t));
+            *of = t.filter(|_| !ends);
+        }
+    }
+}
+
+impl Problem {
+    /// Says whether a run ends at a limit state of the model, or goes on past it.
+    ///
+    /// # Errors
+    /// [`Unknown`] if the model has no such limit under its present choices.
+    pub fn set_limit(&mut self, name: &str, ends: bool) -> Result<(), Unknown> {
+        let limits = self.variant.limits.iter();
+        let Some(limit) = limits.clone().find(|limit| limit.name == name) else {
+            return Err(Unknown {
+                model: self.model.name,
+                what: "limit state",
+                name: name.into(),
+            });
+        };
+        self.limits.of_model.retain(|(known, _)| *known != name);
+        self.limits.of_model.push((limit.name, ends));
+        Ok(())
+    }
+
+    /// The conditions on parameters, under which the model is meant, that do not hold.
+    pub fn invalid_parameters(&self) -> Vec<Left> {
+        let margins = declared(self.variant, &self.parameters);
+        let margins = self.variant.valid_parameters.iter().zip(margins);
+        let left = margins.filter(|(_, margin)| margin.is_nan() || *margin < 0.0);
+        left.map(|(validity, _)| Left {
+            condition: validity.condition.into(),
+            message: validity.sentence.into(),
+            t: None,
+        })
+        .collect()
+    }
+
+    /// Bounds of a coordinate of every admissible state, with the parameters as they are.
+    pub fn bounds(&self, coordinate: usize) -> Bounds {
+        let mut bounds = self.model.coordinates[coordinate].bounds();
+        let values = declared(self.variant, &self.parameters);
+        let values = &values[self.variant.valid_parameters.len()..];
+        let all = self.variant.bounds.iter().zip(values);
+        for (bound, &value) in all.filter(|(bound, _)| bound.coordinate == coordinate) {
+            match bound.upper {
+                true => bounds.maximum = value,
+                false => bounds.minimum = value,
+            }
+        }
+        bounds
+    }
+
+    /// The limits must be about what there is.
+    pub(super) fn check_limits(&self) -> Result<(), Invalid> {
+        let n = self.model.coordinates.len();
+        for limit in &self.limits.own {
+            within(Bounds::NONE, "", limit.level, || {
+                format!("limit `{}`", limit.name)
+            })?;
+            let (found, expected) = match limit.of {
+                Observed::Coordinate(i) | Observed::Rate(i) => (i, n),
+                Observed::Reaction(i) => (i, n + self.model.motions.len()),
+            };
+            if found >= expected {
+                let what = "index of what a limit is about";
+                return Err(Invalid::Count {
+                    what,
+                    found,
+                    expected,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What follows from parameters alone: margins of the validity, then bounds of coordinates.
+fn declared(variant: &Variant, parameters: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; variant.declared.count()];
+    variant.declared.evaluate(parameters, &mut values);
+    values
+}
+
+/// Coordinates must be within the bounds that depend on parameters.
+pub(super) fn check_bounds(
+    model: &Model,
+    variant: &Variant,
+    parameters: &[f64],
+    q: &[f64],
+) -> Result<(), Invalid> {
+    if variant.bounds.is_empty() {
+        return Ok(());
+    }
+    let values = declared(variant, parameters);
+    let values = &values[variant.valid_parameters.len()..];
+    for (bound, &value) in variant.bounds.iter().zip(values) {
+        let at = q[bound.coordinate];
+        let beyond = if bound.upper { at - value } else { value - at };
+        if beyond > ROUNDING * value.abs() {
+            let c = &model.coordinates[bound.coordinate];
+            let sign = if bound.upper { "<=" } else { ">=" };
+            return Err(Invalid::BeyondStop {
+                coordinate: c.name,
+                value: at,
+                range: format!("{sign} {} = {} {}", bound.text, shown(value), c.unit),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! The limit states of a scene: what becomes of those of the model, and those that the scene adds.
+
+use super::check::{Checked, unknown_name};
+use super::error::{Errors, SceneError, SceneErrorKind};
+use super::format::{self, CONTINUE, END};
+use super::interpret::under;
+use super::shape::{Key, Object, Quantity, Shape};
+use super::wording::shown;
+use crate::hybrid::{Limits, Observed, OwnLimit};
+use crate::model::{Model, Variant};
+use crate::record::{Layout, Recorded};
+
+/// A quantity that a limit may be about: its name, unit and place in the state.
+struct Observable {
+    name: String,
+    unit: String,
+    of: Observed,
+}
+
+/// Coordinates, velocities and reactions, as the trajectory names them.
+fn observables(model: &Model, variant: &Variant) -> Vec<Observable> {
+    let recorded = Recorded {
+        reactions: true,
+        ..Recorded::default()
+    };
+    let layout = Layout::new(model, variant, recorded);
+    type Place = fn(usize) -> Observed;
+    let groups: [(_, Place); 3] = [
+        (layout.coordinates, Observed::Coordinate),
+        (layout.velocities, Observed::Rate),
+        (layout.reactions, Observed::Reaction),
+    ];
+    let all = groups.into_iter().flat_map(|(quantities, place)| {
+        let observable = move |(i, q): (usize, crate::record::Quantity)| Observable {
+            name: q.name,
+            unit: q.unit,
+            of: place(i),
+        };
+        quantities.into_iter().enumerate().map(observable)
+    });
+    all.collect()
+}
+
+/// The shape of `limits`.
+pub(super) fn shape(model: Option<&Model>) -> Object {
+    let course = || Shape::Choice("course", vec![END, CONTINUE]);
+    let bounds = |unit: &str| {
+        Object::new(
+            "bound",
+            vec![
+                Key::new("above", "reached above this value", Quantity::any(unit)),
+                Key::new("below", "reached below this value", Quantity::any(unit)),
+            ],
+        )
+    };
+    let mut own = vec![
+        Key::new("then", "whether the run ends there", course()).default(END),
+        Key::new("message", "what it means", Shape::Text),
+    ];
+    let Some(model) = model else {
+        let own = Object::new("quantity", own).others(bounds(""));
+        return Object::new("limit", Vec::new()).others(Shape::Either(vec![course(), own.into()]));
+    };
+    let variant = &model.variants[0];
+    own.extend(observables(model, variant).into_iter().map(|o| {
+        let meaning = format!("where {} is a limit", o.name);
+        Key::new(o.name, meaning, bounds(&o.unit))
+    }));
+    let of_model = format::limits(model.variants).into_iter().map(|limit| {
+        let default = if limit.ends { END } else { CONTINUE };
+        Key::new(limit.name, limit.message, course()).default(default)
+    });
+    // A name that is not the model's, with the course of one, is a mistake that is named later.
+    let own = Object::new("quantity", own);
+    Object::new("limit", of_model.collect()).others(Shape::Either(vec![own.into(), course()]))
+}
+
+/// The limits of a checked scene.
+pub(super) fn limits(
+    model: &Model,
+    variant: &Variant,
+    scene: &Checked,
+    errors: &mut Errors,
+) -> Limits {
+    let mut limits = Limits::default();
+    let observables = observables(model, variant);
+    for (name, said) in scene.get("limits").map_or(&[][..], Checked::entries) {
+        if said.is_object() {
+            limits.own.extend(own(name, said, &observables, errors));
+            continue;
+        }
+        match variant.limits.iter().find(|limit| limit.name == name) {
+            Some(limit) => limits.of_model.push((limit.name, said.text() == END)),
+            None => {
+                let known: Vec<_> = variant.limits.iter().map(|limit| limit.name).collect();
+                let what = format!("limit{}:", under(model, variant));
+                errors.push(unknown_name(&what, name, &known, &said.place));
+            }
+        }
+    }
+    limits
+}
+
+/// A limit of the scene: one for each bound, with the same name.
+fn own(
+    name: &str,
+    said: &Checked,
+    observables: &[Observable],
+    errors: &mut Errors,
+) -> Vec<OwnLimit> {
+    let ends = said.get("then").is_none_or(|then| then.text() == END);
+    let bounds = observables.iter().flat_map(|o| {
+        let of = said.get(&o.name);
+        [("above", true), ("below", false)]
+            .map(|(key, above)| (o, key, above, of.and_then(|of| of.get(key))))
+    });
+    let limits: Vec<_> = bounds
+        .filter_map(|(o, key, above, level)| {
+            let level = level?.number();
+            let message = match said.get("message") {
+                Some(message) => message.text().to_owned(),
+                None => format!("`{}` is {key} {} {}", o.name, shown(level), o.unit),
+            };
+            Some(OwnLimit {
+                name: name.to_owned(),
+                message,
+                of: o.of,
+                above,
+                level,
+                ends,
+            })
+        })
+        .collect();
+    if limits.is_empty() {
+        let keys = vec!["`above` or `below` of a quantity".into()];
+        let error = SceneError::new(SceneErrorKind::MissingKey { keys }, &said.place);
+        errors.push(error.help("such as { \"x\": { \"above\": \"0.1 m\" } }"));
+    }
+    limits
+}
