@@ -47,6 +47,19 @@ fn text(models: &[Generated]) -> String {
         );
         let _ = writeln!(list, "    &{name}::{item},");
     }
+    for (most, what) in [
+        ("MOST_CONDITIONS", "conditions of a transition"),
+        ("MOST_REQUIREMENTS", "requirements of a mode"),
+    ] {
+        let _ = writeln!(
+            text,
+            "/// Most {what}, of any model.\npub const {most}: usize = most(&["
+        );
+        for model in models {
+            let _ = writeln!(text, "    {}::{most},", model.name);
+        }
+        text.push_str("]);\n\n");
+    }
     text + "/// Every model that was found when the crate was built, by name.\n\
             pub static MODELS: &[&Model] = &[\n"
         + &list

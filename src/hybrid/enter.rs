@@ -53,7 +53,7 @@ impl Simulation<'_> {
         for &watched in &self.plan.watched[self.here.mode] {
             let guard = &mode.guards[watched.guard];
             let mut conditions = Conditions {
-                variant: self.problem.variant,
+                modes: self.modes,
                 plan: &self.plan,
                 next: &mut self.next,
             };

@@ -88,7 +88,7 @@ impl Simulation<'_> {
             a: &a,
         };
         let mut conditions = Conditions {
-            variant: self.problem.variant,
+            modes: self.modes,
             plan: &self.plan,
             next: &mut self.next,
         };

@@ -8,11 +8,8 @@ use super::plan::Watched;
 use super::roots::Watch;
 use super::search::search_function;
 use crate::integrate::{Motion, OneStep, State};
-use crate::kernel::{Context, Free, ModeKernel};
+use crate::kernel::{Context, Free, MOST_REQUIREMENTS, ModeKernel};
 use crate::model::Mode;
-
-/// Most requirements that a mode may have.
-const MOST_REQUIREMENTS: usize = 8;
 
 /// What the mode requires to be positive must be so.
 #[inline(always)]

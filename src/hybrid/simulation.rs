@@ -152,6 +152,7 @@ impl<'p> Simulation<'p> {
         context.quiet = problem.signals.is_zero();
         let foresees = context.can_foresee(&problem.signals);
         let n = model.coordinates.len();
+        let modes = problem.automaton().modes;
         let layout = Layout::new(model, problem.variant, problem.record.columns);
         let rows = problem
             .record
@@ -164,7 +165,7 @@ impl<'p> Simulation<'p> {
         Ok(Simulation {
             problem,
             initial: &problem.initial,
-            modes: problem.variant.modes,
+            modes,
             plan,
             context,
             here: Here {
@@ -178,7 +179,7 @@ impl<'p> Simulation<'p> {
             at_start: zeros(n),
             drift: zeros(n),
             signs: Signs::default(),
-            doubts: Doubts::new(problem.variant.modes.len()),
+            doubts: Doubts::new(modes.len()),
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
             visited: Visited::default(),
@@ -188,12 +189,12 @@ impl<'p> Simulation<'p> {
             jumps: Vec::new(),
             states_at_jumps: Vec::new(),
             solver: Solver::default(),
-            solvers: Solvers::new(problem.variant.modes),
-            stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
+            solvers: Solvers::new(modes),
+            stiffness: vec![Stiffness::default(); modes.len()].into(),
             smooth_until: f64::NEG_INFINITY,
             piece: Piece::UNKNOWN,
             foresees,
-            has_inertia: vec![false; problem.variant.modes.len()].into(),
+            has_inertia: vec![false; modes.len()].into(),
             sizes: (accuracy.q_absolute.iter())
                 .map(|absolute| absolute / accuracy.relative)
                 .collect(),
@@ -309,7 +310,11 @@ impl<'p> Simulation<'p> {
     /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
     fn misfit(&mut self, mode: &'static Mode) -> Option<Misfit> {
         let model = self.problem.model;
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
+        let held = &mut self.next[..self.here.q.len()];
+        with_kernel!(&mode.kernels, k => {
+            k.held_rates(&self.context, &mut self.drift);
+            k.held_values(&self.context, held);
+        });
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
             if let Some(minimum) = c.minimum
                 && self.here.q[i] < minimum
@@ -320,7 +325,7 @@ impl<'p> Simulation<'p> {
                 return None;
             }
             match mode.held_at[i] {
-                Some(value) if self.here.q[i] != value => Some(Misfit::HeldAt(i, value)),
+                Some(_) if self.here.q[i] != held[i] => Some(Misfit::HeldAt(i, held[i])),
                 _ if self.here.v[i] != self.drift[i] => Some(Misfit::HeldRate(i, self.drift[i])),
                 _ => None,
             }
@@ -475,11 +480,13 @@ impl<'p> Simulation<'p> {
         self.next[..n].copy_from_slice(&self.here.q);
         self.next[n..2 * n].copy_from_slice(&self.here.v);
         self.next[2 * n..].copy_from_slice(self.context.discrete());
+        let held = || (0..n).filter(|i| !mode.free.contains(i));
+        with_kernel!(&mode.kernels, k => k.held_values(&self.context, &mut self.drift));
+        for i in held().filter(|&i| mode.held_at[i].is_some()) {
+            self.next[i] = self.drift[i];
+        }
         with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
-        for i in (0..n).filter(|i| !mode.free.contains(i)) {
-            if let Some(value) = mode.held_at[i] {
-                self.next[i] = value;
-            }
+        for i in held() {
             self.next[n + i] = self.drift[i];
         }
         self.commit("rest", false, rest)
