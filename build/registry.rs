@@ -47,6 +47,13 @@ fn text(models: &[Generated]) -> String {
         );
         let _ = writeln!(list, "    &{name}::{item},");
     }
+    text.push_str(
+        "/// Most conditions of a transition, of any model.\npub const MOST_CONDITIONS: usize = most(&[\n",
+    );
+    for model in models {
+        let _ = writeln!(text, "    {}::MOST_CONDITIONS,", model.name);
+    }
+    text.push_str("]);\n\n");
     text + "/// Every model that was found when the crate was built, by name.\n\
             pub static MODELS: &[&Model] = &[\n"
         + &list

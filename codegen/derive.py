@@ -125,12 +125,13 @@ class Substitution:
 class ModeEquations:
     """Everything that is generated for one mode, as expressions in its own symbols.
 
-    `held` are the symbols of the values at which coordinates are frozen; `radii` those of what coordinates,
-    velocities and accelerations may differ by from given ones, for bounds.
+    `held` are the symbols of the values at which coordinates are frozen; `absent` are the motions of the ground that
+    never act; `radii` are the symbols of what coordinates, velocities and accelerations may differ by from given ones,
+    for bounds.
     """
 
-    def __init__(self, model, mode, full_residual, held):
-        self.model, self.mode = model, mode
+    def __init__(self, model, mode, full_residual, held, absent=()):
+        self.model, self.mode, self.absent = model, mode, absent
         count = len(model.coordinates)
         self.free = [i for i, c in enumerate(model.coordinates) if c.name not in mode.held]
         self.freeze = self._freeze(held)
@@ -142,8 +143,8 @@ class ModeEquations:
         self.placeholders = self._placeholders()
         frictionless = residual
         residual = ca.SX(residual)
-        for coordinate, force, _ in mode.forces:
-            residual[_index(model, coordinate.name())] -= self.place(force)
+        for k, (coordinate, force, _) in enumerate(mode.forces):
+            residual[_index(model, coordinate.name())] -= self.place(force, model.location(mode.forces, k))
 
         symbols = [c.symbol for c in model.coordinates]
         pick = lambda column: ca.vertcat(*[column[i] for i in self.free]) if self.free else ca.SX(0, 1)
@@ -163,16 +164,16 @@ class ModeEquations:
         ])
         self._check_linear_in_accelerations()
 
-    def place(self, expression):
-        """An expression of the model file in the symbols of this mode: frozen coordinates and
+    def place(self, expression, location=None):
+        """An expression of the model file, written there, in the symbols of this mode: frozen coordinates and
         reactions put in."""
         expression = self.freeze(ca.SX(expression))
         for symbol in ca.symvar(expression):
             entry = self.model.placeholders.get(symbol.name())
             if entry is not None and entry[1] is not self.mode:
                 raise ModelError(
-                    f"`{symbol.name()}` is used in mode `{self.mode.name}`; reactions of another mode are not defined there"
-                )
+                    f"the reaction `{symbol.name()}` of mode `{entry[1].name}` is used in mode `{self.mode.name}`, where it is not"
+                    f" defined: take the one of that mode, {self.mode.name}.reaction({entry[2]})", location)
         return self.placeholders(expression)
 
     def _freeze(self, held):
@@ -187,6 +188,10 @@ class ModeEquations:
                 held[i] if value is None else ca.SX(value),
                 self.mode.drift.get(declaration.name, ca.SX(0)), ca.SX(0), ca.SX(0),
             ]
+        for motion in self.absent:
+            symbol = motion.symbol
+            old += [symbol, symbol.rate, symbol.acceleration]
+            new += [ca.SX(0)] * 3
         return Substitution(old, new)
 
     def _placeholders(self):
@@ -201,10 +206,16 @@ class ModeEquations:
                 new.append(value)
         return Substitution(old, new)
 
+    def values_of_held(self):
+        """Coordinates where the mode holds them; the others as they are."""
+        at = [self.mode.held.get(c.name) for c in self.model.coordinates]
+        return ca.vertcat(*[self.held[i] if value is None else ca.SX(value) for i, value in enumerate(at)])
+
     def _check_linear_in_accelerations(self):
         mass = ca.jacobian(self.r, self.a)
         if any(ca.which_depends(ca.vec(mass), self.a, 1, False)) if self.free and mass.nnz() else False:
-            raise ModelError(f"mode `{self.mode.name}`: the equations are not linear in the accelerations")
+            raise ModelError(f"mode `{self.mode.name}`: the equations are not linear in the accelerations: a force is multiplied"
+                             " by what contains an acceleration or a reaction", self.mode.location)
 
     def system(self):
         """Mass matrix M and b with r = M a + b."""
@@ -279,6 +290,8 @@ class ModeEquations:
 
 def impact_velocities(model, before, after, prescribed, conserve):
     """See Model.impact_velocities."""
+    if not conserve:
+        return [(coordinate.rate, ca.SX(rate)) for coordinate, rate in prescribed]
     x = configuration(model)
     kinetic = kinetic_energy(model)
     momentum = ca.jacobian(kinetic, x.v).T

@@ -10,9 +10,6 @@ import casadi as ca
 from . import drawing, graph, limits, units
 from .emit_c import KEPT_ANGLES
 
-MOST_FREE = 6
-"""Most free coordinates a mode may have; `ModeKernels` in src/kernel/mod.rs has one case for each."""
-
 _MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions",
                    "energies", "powers", "momenta")
 
@@ -46,7 +43,8 @@ def is_for_lanes(variant, slot, function):
 
 def model_text(name, variants, constants_symbol, constants_count, for_tests):
     """The Rust fragment of a model."""
-    model = variants[0].model
+    model, chosen = variants[0].model, variants
+    variants = [v for variant in chosen for v in (variant, variant.lean) if v]
     signals = len(_signals(model))
     functions = [(slot, f) for v in variants for slot, f in v.functions.items()]
     of_parameters = {constants_symbol} | {v.declared for v in variants}
@@ -75,6 +73,11 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
               f"    parameters: {len(model.parameters)},", f"    constants: {constants_count},",
               f"    angles: {KEPT_ANGLES},", f"    expanded: &[{_flags(_used(variants, (*SERIES, 'requirements')))}],",
               f"    required: &{[i for i, used in enumerate(_used(variants, ('requirements',))) if used]},", "};", ""]
+    transitions = [t for v in variants for e in v.modes for _, group in e.guards for t in group]
+    most = lambda counts: max(counts, default=0)
+    lines += [
+        "/// Most conditions of a transition.",
+        f"pub const MOST_CONDITIONS: usize = {most(0 if t.condition is None else t.condition.numel() for t in transitions)};", ""]
     lines += [f"/// {model.title}.", f"pub static {name.upper()}: Model = Model {{"]
     lines += [
         f"    name: {_text(name)},", f"    title: {_text(model.title)},", f"    source: {_text(model.source)},",
@@ -88,8 +91,9 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
         f"    constants: {_of_parameters(constants_symbol, constants_count)},",
         "    variants: &[",
     ]
-    for variant in variants:
-        lines += _variant(variant)
+    for variant in chosen:
+        lines += [f"        {line}" for line in _variant(variant)]
+        lines[-1] += ","
     lines += ["    ],", f"    for_tests: {_bool(for_tests)},", "};"]
     return "\n".join(lines) + "\n"
 
@@ -167,6 +171,12 @@ def _inputs(model):
         signal += len(i.signals)
 
 
+def _held_at(value):
+    """Where a coordinate is held."""
+    value = ca.SX(value)
+    return f"HeldAt::Number({_number(value)})" if value.is_constant() else f"HeldAt::Expression({_text(units.short(value))})"
+
+
 def _discrete(d):
     return (f"Discrete {{ name: {_text(d.name)}, values: &[{', '.join(map(_number, d.values))}], "
             f"meaning: {_text(d.meaning)} }}")
@@ -179,50 +189,56 @@ def _choice(name, options, meaning):
 
 def _variant(variant):
     model = variant.model
-    yield "        Variant {"
-    yield f"            options: &[{', '.join(_text(c[3]) for c in model.choices)}],"
-    yield f"            defaults: &[{_flags(c[3] == c[4] for c in model.choices)}],"
-    yield f"            drawing: {_text(drawing.program(model))},"
-    yield "            modes: &["
+    barred = [k for k, i in enumerate(model.inputs) for m in model.motions if m.name == i.motion and not m.available]
+    yield "Variant {"
+    yield f"    options: &[{', '.join(_text(c[3]) for c in model.choices)}],"
+    yield f"    defaults: &[{_flags(c[3] == c[4] for c in model.choices)}],"
+    yield f"    drawing: {_text(drawing.program(model))},"
+    yield f"    barred: &{barred},"
+    yield "    modes: &["
     for i, equations in enumerate(variant.modes):
         yield from _mode(variant, i, equations)
-    yield "            ],"
+    yield "    ],"
     index = {m.name: k for k, m in enumerate(model.modes)}
     rests = ", ".join(f"Rest {{ source: {index[s.name]}, target: {index[t.name]} }}" for s, t in model.rests)
-    yield f"            rests: &[{rests}],"
-    yield "            limits: &["
+    yield f"    rests: &[{rests}],"
+    yield "    limits: &["
     for limit in model.limits:
-        yield (f"                Limit {{ name: {_text(limit.name)}, message: {_text(limit.message)}, "
+        yield (f"        Limit {{ name: {_text(limit.name)}, message: {_text(limit.message)}, "
                f"text: {_text(limit.text)}, ends: {_bool(limit.ends)} }},")
-    yield "            ],"
+    yield "    ],"
     for field, of_parameters in (("valid_motion", False), ("valid_parameters", True)):
-        yield f"            {field}: &["
+        yield f"    {field}: &["
         for entry in model.validity:
             if limits.is_of_parameters(model, entry.margin) == of_parameters:
-                yield f"                Validity {{ condition: {_text(entry.text)}, sentence: {_text(entry.sentence)} }},"
-        yield "            ],"
+                yield f"        Validity {{ condition: {_text(entry.text)}, sentence: {_text(entry.sentence)} }},"
+        yield "    ],"
     bounds = limits.bounds(model)
-    yield "            bounds: &["
+    yield "    bounds: &["
     for i, upper, bound in bounds:
-        yield (f"                ParametricBound {{ coordinate: {i}, upper: {_bool(upper)}, "
+        yield (f"        ParametricBound {{ coordinate: {i}, upper: {_bool(upper)}, "
                f"text: {_text(units.short(bound))} }},")
-    yield "            ],"
-    yield f"            declared: {_of_parameters(variant.declared, limits.of_parameters(model).numel())},"
-    yield "        },"
+    yield "    ],"
+    yield f"    declared: {_of_parameters(variant.declared, limits.of_parameters(model).numel())},"
+    if variant.lean is None:
+        yield "    lean: None,"
+    else:
+        first, *others, last = _variant(variant.lean)
+        absent = [m.name for m in variant.lean.modes[0].absent]
+        yield f"    lean: Some((&{[k for k, i in enumerate(model.inputs) if i.motion in absent]}, &{first}"
+        yield from (f"    {line}" for line in others)
+        yield f"    {last})),"
+    yield "}"
 
 
 def _mode(variant, i, equations):
     model, mode = variant.model, equations.mode
     functions = {slot[1:]: f for slot, f in variant.functions.items() if slot[0] == i}
     free = len(equations.free)
-    if free > MOST_FREE:
-        from .errors import ModelError
-        raise ModelError(f"mode `{mode.name}` has {free} free coordinates; at most {MOST_FREE} are supported", model.file)
-    held = ", ".join(
-        _option(mode.held.get(c.name), _number) for c in model.coordinates)
+    held = ", ".join(_option(mode.held.get(c.name), _held_at) for c in model.coordinates)
     drifts = _flags(c.name in mode.drift for c in model.coordinates)
     index = {m.name: k for k, m in enumerate(model.modes)}
-    pad = " " * 16
+    pad = " " * 8
     yield f"{pad}Mode {{"
     yield f"{pad}    name: {_text(mode.name)}, meaning: {_text(mode.meaning)},"
     yield f"{pad}    free: &{equations.free}, held_at: &[{held}], drifts: &[{drifts}],"
@@ -275,6 +291,7 @@ def _mode(variant, i, equations):
     yield f"{pad}        inertia_is_fixed: {_bool(_is_fixed(model, equations, inertia))},"
     yield f"{pad}        is_linear: {_bool(_is_constant(model, equations, jacobian))},"
     yield f"{pad}        held_rates: {functions[('held_rates',)].symbol},"
+    yield f"{pad}        held_values: {functions[('held_values',)].symbol},"
     yield f"{pad}        lanes: {_lanes(variant, i, functions)},"
     yield f"{pad}    }}),"
     counts = ", ".join(

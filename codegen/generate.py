@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import bounds, derive, emit_rust, emit_series, graph, limits, tape, units
+from . import bounds, check, derive, dimensions, emit_rust, emit_series, graph, limits, momentum, tape
+from .arguments import NOT_FOLDERS
+from .context import build
 from .emit_c import Source
 from .errors import ModelError, error_location
-from .model import build
 
 
 @dataclass
@@ -41,12 +42,17 @@ class Variant:
     """Rust text of what the program expands itself, by slot as the functions."""
     declared: str = ""
     """The C function of what follows from parameters alone: see `limits.of_parameters`."""
+    lean: object = None
+    """The same where no optional motion of the ground acts, if there is one."""
 
 
 def load(folder):
     """The models (one a combination of choices) of a model folder."""
     name = os.path.basename(os.path.normpath(folder))
     file = os.path.abspath(os.path.join(folder, "model.py"))
+    if not name.isidentifier() or not name.isascii() or "__" in name or name in NOT_FOLDERS:
+        raise ModelError(f"`{name}` cannot be the name of a model: it names modules and functions of generated code; take another one,"
+                         " of letters, digits and single underscores", file)
     try:
         with open(file, encoding="utf-8") as stream:
             source = stream.read()
@@ -59,7 +65,11 @@ def load(folder):
             error.location = error_location(error, file)
         raise
     except Exception as error:
-        raise ModelError(f"{type(error).__name__}: {error}", error_location(error, file)) from error
+        message = f"{type(error).__name__}: {error}"
+        if "truth value" in message:
+            message = ("an `if`, `and`, `or`, `not`, `min`, `max` or the like asks whether an expression is true, which is not known"
+                       " before the run: write one mode or one guard for each case instead")
+        raise ModelError(message, error_location(error, file)) from error
 
 
 def generate(folder, for_tests=False):
@@ -67,7 +77,8 @@ def generate(folder, for_tests=False):
     models = load(folder)
     name = models[0].name
     _check_same_declarations(models)
-    variants = [_variant(model) for model in models]
+    chosen = [_variants(model) for model in models]
+    variants = [v for variant in chosen for v in (variant, variant.lean) if v]
     constants = _extract_constants(variants)
     source = Source()
     prefix = f"dalembert_{name}"
@@ -88,13 +99,15 @@ def generate(folder, for_tests=False):
             ]
             function.symbol = source.add(f"{prefix}_{function.name}", arguments, function.output)
             function.operations = source.operations[f"{prefix}_{function.name}"]
-    for variant in variants:
+    for variant in chosen:
         own = ca.vertcat(*[p.symbol for p in variant.model.parameters])
         variant.declared = source.add(
             f"{prefix}_{_tag(variant.model)}declared", [("q", own)], limits.of_parameters(variant.model))
+        if variant.lean is not None:
+            variant.lean.declared = variant.declared
     c_text = source.text(name)
     lanes_text = source.lanes_text(name, _lane_functions(variants))
-    rust_text = emit_rust.model_text(name, variants, constants_symbol, constants.values.numel(), for_tests)
+    rust_text = emit_rust.model_text(name, chosen, constants_symbol, constants.values.numel(), for_tests)
     manifest = {
         "name": name,
         "static": name.upper(),
@@ -179,24 +192,40 @@ def _discretes(model):
     return ca.vertcat(*[d.symbol for d in model.discretes])
 
 
-def _variant(model):
+def _variants(model):
+    """The variant of a model with all motions of the ground that may be given, and in it the one without the optional ones
+    among them."""
+    check.check(model)
+    dimensions.check(model)
+    momentum.check(model)
+    barred = [m for m in model.motions if not m.available]
+    optional = [m for m in model.motions if m.optional and m.available]
+    if optional:
+        variant, lean = _variant(model, barred, "moved_"), _variant(model, barred + optional)
+        variant.lean = lean
+    else:
+        variant = _variant(model, barred)
+    return variant
+
+
+def _variant(model, absent, kind=""):
     """Derives and checks the equations of every mode, and lists the functions to emit."""
-    _check_energies(model)
     residual = derive.residual_from_bodies(model)
     held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates])
-    modes = [derive.ModeEquations(model, mode, residual, held) for mode in model.modes]
+    modes = [derive.ModeEquations(model, mode, residual, held, absent) for mode in model.modes]
+    check.check_equations(model, modes)
     variant = Variant(model, modes)
     parameters = [p.symbol for p in model.parameters]
     names = [m.name for m in model.modes]
     index = {m.name: i for i, m in enumerate(model.modes)}
     for i, equations in enumerate(modes):
-        prefix = f"{_tag(model)}{names[i]}_"
+        prefix = f"{_tag(model)}{kind}{names[i]}_"
         _mode_functions(variant, equations, (i,), prefix)
         guards = _guards(model, equations)
         equations.guards = guards
         values = []
         for g, (expression, transitions) in enumerate(guards):
-            placed = equations.place(expression)
+            placed = equations.place(expression, transitions[0].location)
             _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
             _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
             # A linear guard is as good a polynomial as the motion itself.
@@ -211,7 +240,7 @@ def _variant(model):
                 function = _add(variant, prefix + f"guard{g}_reset{t}", reset, equations, (i, "reset", g, t))
                 function.stays = target is equations and _stays(model, equations, reset)
                 if transition.condition is not None:
-                    condition = target.place(transition.condition)
+                    condition = target.place(transition.condition, transition.location)
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
                     _add(variant, prefix + f"guard{g}_condition{t}", condition, target, (i, "condition", g, t))
         _tapes(variant, i, index)
@@ -253,7 +282,7 @@ def _mode_functions(variant, equations, slot, prefix):
     signals, rates = _signals(model), _signal_rates(model)
     if equations.free:
         name = equations.mode.name
-        _check_smooth(equations.r, f"equations of mode `{name}`", model.file, [p.symbol for p in model.parameters])
+        _check_smooth(equations.r, f"equations of mode `{name}`", equations.mode.location, [p.symbol for p in model.parameters])
     mass, load = equations.system()
     without_idle = lambda column: graph.without_idle(
         column, ca.vertcat(equations.q, equations.v), [(d.symbol, d.values) for d in model.discretes])
@@ -264,7 +293,7 @@ def _mode_functions(variant, equations, slot, prefix):
         reactions[i] = reaction
     equations.margins = limits.margins(equations)
     requirements = ca.vertcat(
-        *[equations.place(r[0]) for r in equations.mode.requirements], *equations.margins)
+        *[equations.place(r[0], r[2]) for r in equations.mode.requirements], *equations.margins)
     for what, output in (
         ("residual", equations.r),
         ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
@@ -281,6 +310,7 @@ def _mode_functions(variant, equations, slot, prefix):
         ("requirements", requirements),
         ("requirement_bounds", _bounds(model, equations, requirements)),
         ("held_rates", equations.freeze(equations.rates_of_held)),
+        ("held_values", equations.values_of_held()),
     ):
         _add(variant, prefix + what, output, equations, slot + (what,))
 
@@ -321,30 +351,19 @@ def _guards(model, equations):
     groups = {}
     for transition in model.transitions:
         if transition.source is equations.mode:
-            groups.setdefault(str(transition.guard), (transition.guard, []))[1].append(transition)
+            groups.setdefault(graph.structure(transition.guard), (transition.guard, []))[1].append(transition)
     return list(groups.values())
 
 
 def _reset(model, source, target, transition):
     """Column of q⁺, v⁺, d⁺ in the symbols of the source mode."""
     values = {}
-    allowed = {}
     for c in model.coordinates:
-        allowed[c.symbol.element_hash()] = c.name
-        allowed[c.symbol.rate.element_hash()] = c.name + ".rate"
         values[c.name], values[c.name + ".rate"] = c.symbol, c.symbol.rate
     for d in model.discretes:
-        allowed[d.symbol.element_hash()] = d.name
         values[d.name] = d.symbol
-    transition.changes = []
-    for symbol, expression in transition.reset:
-        key = allowed.get(symbol.element_hash())
-        if key is None:
-            raise ModelError(
-                f"transition `{transition.name}`: a reset can set a coordinate, its rate or a discrete"
-                f" state, not `{symbol}`", transition.location)
-        values[key] = expression
-        transition.changes.append(key)
+    values.update((symbol.name(), expression) for symbol, expression in transition.reset)
+    transition.changes = [symbol.name() for symbol, _ in transition.reset]
     for c in model.coordinates:
         if c.name in target.mode.held:
             value = target.mode.held[c.name]
@@ -353,7 +372,7 @@ def _reset(model, source, target, transition):
             values[c.name + ".rate"] = target.mode.drift.get(c.name, ca.SX(0))
     order = [c.name for c in model.coordinates]
     order += [c.name + ".rate" for c in model.coordinates] + [d.name for d in model.discretes]
-    return source.place(ca.vertcat(*[values[key] for key in order]))
+    return source.place(ca.vertcat(*[values[key] for key in order]), transition.location)
 
 
 def _stays(model, equations, reset):
@@ -385,7 +404,7 @@ def _extract_constants(variants):
     """Replaces sub-expressions of parameters alone, over all functions of all variants."""
     canonical = ca.vertcat(*[p.symbol for p in variants[0].model.parameters])
     columns, functions = [], []
-    for variant in variants:
+    for variant in chosen:
         own = ca.vertcat(*[p.symbol for p in variant.model.parameters])
         for function in variant.functions.values():
             column = function.output
@@ -404,67 +423,3 @@ def _extract_constants(variants):
         start += column.numel()
     return Constants(ca.vertcat(*symbols) if symbols else ca.SX(0, 1),
                      ca.vertcat(*values) if values else ca.SX(0, 1))
-
-
-def _check_energies(model):
-    """Dimensions of the energies, term by term, and of guards, forces, resets."""
-    table = model.dimensions
-    where = {"kinetic energy": model.kinetic_terms, "potential energy": model.potentials,
-             "dissipation": model.dissipations}
-    energy = units.parse("kg m^2/s^2")
-    for what, expressions in where.items():
-        want = units.combine(energy, units.parse("1/s")) if what == "dissipation" else energy
-        for k, expression in enumerate(expressions):
-            for term in graph.additive_terms(expression):
-                _check_unit(term, want, table, what, model.location(expressions, k))
-    for k, body in enumerate(model.bodies):
-        what, location = f"body {k + 1}", model.location(model.bodies, k)
-        _check_unit(body.mass, units.parse("kg"), table, what + ": mass", location)
-        for axis, position in zip("XY", body.position):
-            for term in graph.additive_terms(position):
-                _check_unit(term, units.parse("m"), table, f"{what}: position {axis}", location)
-        if body.angle is not None:
-            _check_unit(body.inertia, units.parse("kg m^2"), table, what + ": inertia", location)
-            _check_unit(body.angle, units.NONE, table, what + ": angle", location)
-    if model.bodies:
-        _check_unit(ca.SX(model.gravity_constant), units.parse("m/s^2"), table, "gravity", model.file)
-    forces = [
-        (c, f, f"force on `{c.name()}`", model.location(model.external, k)) for k, (c, f) in enumerate(model.external)
-    ]
-    for mode in model.modes:
-        forces += [
-            (c, f, f"force on `{c.name()}` in mode `{mode.name}`", model.location(mode.forces, k))
-            for k, (c, f, _) in enumerate(mode.forces)
-        ]
-    forces += [
-        (next(c.symbol for c in model.coordinates if c.name == name), f, f"equation of `{name}`", model.file)
-        for name, f in model.hand_written.items() if name not in model.unchecked
-    ]
-    for coordinate, force, what, location in forces:
-        want = units.combine(energy, table[coordinate.name()], -1)
-        for term in graph.additive_terms(force):
-            _check_unit(term, want, table, what, location)
-    for transition in model.transitions:
-        _check_unit(transition.guard, None, table, f"guard of `{transition.name}`", transition.location)
-        if transition.condition is not None:
-            for condition in ca.vertsplit(transition.condition):
-                _check_unit(condition, None, table, f"condition of `{transition.name}`", transition.location)
-        for symbol, value in transition.reset:
-            _check_unit(value, table.get(symbol.name()), table,
-                        f"transition `{transition.name}`: reset of `{symbol.name()}`", transition.location)
-    for mode in model.modes:
-        for requirement, _, location in mode.requirements:
-            _check_unit(requirement, None, table, "requirement", location)
-    limits.check_units(model, lambda expression, want, what, location: _check_unit(
-        expression, want, table, what, location))
-
-
-def _check_unit(expression, want, table, what, location):
-    try:
-        found = units.dimension_of(ca.SX(expression), table)
-    except units.UnitError as error:
-        raise ModelError(f"{what}: {error}", location) from None
-    if want is not None and found != want and not ca.SX(expression).is_zero():
-        raise ModelError(
-            f"{what}: the term `{units.short(expression)}` has the dimension {units.text(found)},"
-            f" expected {units.text(want)}", location)

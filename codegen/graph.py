@@ -1,6 +1,7 @@
 """Work on CasADi expression graphs: smoothness, shape of the generated code, additive terms."""
 
 import random
+import struct
 
 import casadi as ca
 
@@ -18,6 +19,35 @@ _NON_SMOOTH = {
         ("COPYSIGN", "copysign"), ("REMAINDER", "remainder"),
     )
 }
+
+
+def structure(expression):
+    """What tells expressions apart, to be compared and hashed: their operations on the same symbols, in order, with
+    the bits of their constants. A text would not do: CasADi prints six digits of a number.
+
+    Symbols are known by where they are kept, so they must outlive the answer.
+    """
+    expression = ca.SX(expression)
+    symbols = ca.symvar(expression)
+    function = ca.Function("structure", symbols, [expression])
+    numbers, work, rows, outputs = {}, {}, [], []
+    for k in range(function.n_instructions()):
+        op, source = function.instruction_id(k), function.instruction_input(k)
+        if op == ca.OP_OUTPUT:
+            outputs.append((tuple(function.instruction_output(k)), work[source[0]]))
+            continue
+        if op == ca.OP_CONST:
+            row = op, struct.pack("<d", function.instruction_constant(k))
+        elif op == ca.OP_INPUT:
+            row = op, symbols[source[0]].element_hash()
+        else:
+            row = op, *(work[i] for i in source)
+        # The same operation on the same operands has the same number, however often the graph holds it.
+        if row not in numbers:
+            numbers[row] = len(rows)
+            rows.append(row)
+        work[function.instruction_output(k)[0]] = numbers[row]
+    return expression.shape, tuple(rows), tuple(outputs)
 
 
 def non_smooth_operation(expression, parameters=()):

@@ -7,87 +7,27 @@ Signs: X horizontal to the right, Y up. A reaction is the force that the constra
 system along the frozen coordinate; a base reaction is the force of the ground on the system.
 """
 
-import sys
-from dataclasses import dataclass, field
-
 import casadi as ca
 from casadi import atan2, cos, exp, pi, sin, sqrt, tan  # noqa: F401  (for model files)
 
-from . import drawing, limits, units
+from . import arguments, drawing, limits, units
+from .context import CONTEXT
+from .declarations import Body, Coordinate, Declaration, Discrete, Falls, Transition
 from .errors import ModelError, caller_location
+from .graph import structure  # noqa: F401  (for model files)
 
 HELD = None
 """Value for `freeze`: the coordinate is held wherever it was."""
 
 
-class Named(ca.SX):
-    """A symbol that knows its declaration."""
-
-
-class Coordinate(Named):
-    """A generalized coordinate; `.rate` and `.acceleration` are its derivatives."""
-
-
-class Discrete(Named):
-    """A discrete state."""
-
-
-@dataclass
-class Declaration:
-    """What is common to everything that has a name, a unit and a meaning."""
-
-    name: str
-    unit: str
-    meaning: str
-    symbol: ca.SX
-    extra: dict = field(default_factory=dict)
-
-    def __getattr__(self, key):
-        try:
-            return self.__dict__["extra"][key]
-        except KeyError:
-            raise AttributeError(key) from None
-
-
-@dataclass
-class Body:
-    """A body of the plane: mass, position of its centre, inertia about it, angle."""
-
-    mass: ca.SX
-    position: tuple
-    inertia: ca.SX = None
-    angle: ca.SX = None
-
-
-@dataclass
-class Falls:
-    """A guard: the mode is inadmissible once `expression` falls through zero."""
-
-    expression: ca.SX
-
-
 def falls(expression):
     """Guard that triggers when `expression` falls through zero."""
-    return Falls(ca.SX(expression))
+    return Falls(expression)
 
 
 def rises(expression):
     """Guard that triggers when `expression` rises through zero."""
-    return Falls(-ca.SX(expression))
-
-
-@dataclass
-class Transition:
-    """Guard → next mode; built by `Model.transition`."""
-
-    name: str
-    source: "Mode"
-    target: "Mode"
-    guard: ca.SX
-    condition: ca.SX
-    reset: list
-    impact: bool
-    location: str
+    return Falls(-expression if isinstance(expression, (ca.SX, float, int)) else expression)
 
 
 class Mode:
@@ -96,6 +36,7 @@ class Mode:
     def __init__(self, model, name, meaning, freeze, drift):
         self.model, self.name, self.meaning = model, name, meaning
         self.held, self.drift = freeze, drift
+        self.location = caller_location(model.file)
         self.forces, self.requirements = [], []
 
     def is_free(self, coordinate):
@@ -116,32 +57,34 @@ class Mode:
         `direction` is the sign of the slip rate (coordinate rate − `against`); the power
         normal·coefficient·|slip rate| is dissipated, the rest is work of the moving partner.
         """
-        self._check_free(coordinate)
-        self.model._locate(self.forces)
-        self.forces.append((coordinate, -coefficient * normal * direction, ca.SX(against)))
+        self.force(coordinate, -coefficient * normal * direction, against)
 
     def force(self, coordinate, expression, against=0):
         """A dissipative force on a free coordinate, in this mode only (as `friction`)."""
-        self._check_free(coordinate)
-        self.model._locate(self.forces)
-        self.forces.append((coordinate, ca.SX(expression), ca.SX(against)))
-
-    def _check_free(self, coordinate):
+        model, what = self.model, f"mode `{self.name}`: what the force acts on"
+        coordinate = arguments.coordinate(model, what, coordinate)
         if not self.is_free(coordinate):
-            raise self.model.error(f"mode `{self.name}`: coordinate `{coordinate.name()}` is frozen, no force acts on it")
+            raise model.error(f"mode `{self.name}`: coordinate `{coordinate.name()}` is frozen, no force acts on it")
+        model._locate(self.forces)
+        what = f"force on `{coordinate.name()}` in mode `{self.name}`"
+        self.forces.append((coordinate, *(arguments.expression(model, what, x) for x in (expression, against))))
 
 
 class Model:
     """A model under construction; see the module documentation."""
 
     def __init__(self, title, *, source):
-        context = _CONTEXT[-1]
+        context = CONTEXT[-1]
         self.name, self.file = context.name, context.file
+        if context.model is not None:
+            raise self.error("a model file makes one Model(…), and has made one above")
+        self.location_of_model = caller_location(self.file)
         self.title, self.source = title, source
         self.parameters, self.parameter_sets = [], []
         self.coordinates, self.motions, self.inputs = [], [], []
         self.discretes, self.choices = [], []
         self.bodies, self.kinetic_terms, self.potentials, self.dissipations = [], [], [], []
+        self.relative_terms = set()
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
@@ -149,14 +92,25 @@ class Model:
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
         self.shapes = []
-        self.dimensions = {}
+        self.dimensions, self.symbols = {}, {}
         context.model = self
 
     # ---- declarations -------------------------------------------------------------------------
 
     def parameter(self, name, unit, default, meaning, *, above=None, minimum=None, maximum=None, at_most=None):
         """A parameter; `above` is an exclusive lower bound, `at_most` another parameter."""
-        symbol = self._declare(name, unit, ca.SX.sym(name))
+        symbol = self._declare("parameter", name, unit)
+        limits = dict(above=above, minimum=minimum, maximum=maximum)
+        for limit, value in dict(default=default, **limits).items():
+            if isinstance(value, str) or isinstance(value, ca.SX) or value is None and limit == "default":
+                raise self.error(f"parameter `{name}`: `{limit}` is {arguments.shown(value)}, not a number")
+        if at_most is not None:
+            at_most = arguments.parameter(self, f"parameter `{name}`: `at_most`", at_most).symbol
+            if self.dimensions[at_most.name()] != self.dimensions[name]:
+                raise self.error(f"parameter `{name}`: `at_most` is `{at_most.name()}`, which has another unit")
+        if above is not None and not default > above or minimum is not None and not default >= minimum or (
+                maximum is not None and not default <= maximum):
+            raise self.error(f"parameter `{name}`: its default {default} is not within its own limits")
         self.parameters.append(Declaration(name, unit, meaning, symbol, dict(
             default=float(default), exclusive=above is not None,
             minimum=float(above if above is not None else minimum if minimum is not None else "-inf"),
@@ -180,10 +134,7 @@ class Model:
         `scale` and `rate_scale` (per second) are typical magnitudes: a scene that gives no
         absolute tolerance gets relative tolerance × scale.
         """
-        symbol = Coordinate(self._declare(name, unit, ca.SX.sym(name)))
-        symbol.rate = self._declare(name + ".rate", unit + "/s", ca.SX.sym(name + ".rate"))
-        symbol.acceleration = self._declare(
-            name + ".acceleration", unit + "/s^2", ca.SX.sym(name + ".acceleration"))
+        symbol = self._declare_motion("coordinate", name, unit)
         symbol.jerk = ca.SX.sym(name + ".jerk")
         minimum, maximum = (limits.bound(self, name, b, caller_location(self.file)) for b in (minimum, maximum))
         self.coordinates.append(Declaration(name, unit, meaning, symbol, dict(
@@ -193,27 +144,33 @@ class Model:
 
     def discrete(self, name, values, meaning):
         """A discrete state with its admissible values, the first of which is the default."""
-        symbol = Discrete(self._declare(name, "1", ca.SX.sym(name)))
+        symbol = Discrete(self._declare("discrete state", name, "1"))
+        if isinstance(values, (str, ca.SX)) or not values:
+            raise self.error(f"discrete state `{name}`: its values are {arguments.shown(values)}, not a list of numbers")
         self.discretes.append(Declaration(name, "1", meaning, symbol, dict(values=[float(v) for v in values])))
         return symbol
 
     def input(self, name, unit, meaning):
         """A prescribed function of time, such as a force."""
-        symbol = self._declare(name, unit, ca.SX.sym(name))
+        symbol = self._declare("input", name, unit)
         self.inputs.append(Declaration(name, unit, meaning, symbol, dict(signals=[symbol], motion=None)))
         return symbol
 
-    def ground(self, name, meaning, *, input, axis="x", unit="m"):
+    def ground(self, name, meaning, *, input, axis="x", unit="m", optional=False, available=True):
         """A prescribed motion of the ground along `axis`; a scene gives its acceleration.
 
         Positions of bodies are relative to the ground. Returns the motion, whose `.rate` and
         `.acceleration` are symbols, and whose base reaction is `mode.reaction(motion)`.
+
+        For an `optional` one there is code with and without it, so that scenes that do not give it pay nothing. One that
+        is not `available` under the choices made so far may not be given.
         """
-        symbol = Coordinate(self._declare(name, unit, ca.SX.sym(name)))
-        symbol.rate = self._declare(name + ".rate", unit + "/s", ca.SX.sym(name + ".rate"))
-        symbol.acceleration = self._declare(
-            name + ".acceleration", unit + "/s^2", ca.SX.sym(name + ".acceleration"))
-        self.motions.append(Declaration(name, unit, meaning, symbol, dict(axis="xy".index(axis))))
+        symbol = self._declare_motion("ground motion", name, unit)
+        self._declare("input", input, unit + "/s^2")
+        if axis not in ("x", "y"):
+            raise self.error(f"ground `{name}`: there is no axis {axis!r}, but 'x' (to the right) and 'y' (upwards)")
+        self.motions.append(Declaration(name, unit, meaning, symbol, dict(
+            axis="xy".index(axis), optional=optional, available=available, location=caller_location(self.file))))
         self.inputs.append(Declaration(input, unit + "/s^2", meaning, symbol.acceleration, dict(
             signals=[symbol.acceleration, symbol.rate, symbol], motion=name)))
         return symbol
@@ -224,7 +181,8 @@ class Model:
         The model file is run once for every combination of options. `options` and `default` may
         depend on the choices made before; the first run must see all options.
         """
-        option = _CONTEXT[-1].choose(name, list(options))
+        arguments.name(self, "choice", name)
+        option = CONTEXT[-1].choose(name, list(options))
         self.choices.append((name, list(options), meaning, option, default or options[0]))
         return option
 
@@ -232,37 +190,42 @@ class Model:
 
     def gravity(self, g):
         """Weight of all bodies along −Y."""
-        self.gravity_constant = g
+        self.gravity_constant = arguments.expression(self, "gravity", g)
 
     def point_mass(self, mass, position):
         """A point mass at `position` = (X, Y) relative to the ground."""
         self._locate(self.bodies)
-        self.bodies.append(Body(ca.SX(mass), tuple(ca.SX(p) for p in position)))
+        self.bodies.append(Body(self._expression("mass", mass), self._position(position)))
 
     def rigid_body(self, mass, inertia, position, angle):
         """A rigid body: mass, inertia about its centre, position of the centre, angle."""
         self._locate(self.bodies)
-        self.bodies.append(Body(ca.SX(mass), tuple(ca.SX(p) for p in position), ca.SX(inertia), ca.SX(angle)))
+        self.bodies.append(Body(self._expression("mass", mass), self._position(position),
+                                self._expression("inertia", inertia), self._expression("angle", angle)))
 
-    def kinetic(self, energy):
-        """Kinetic energy that is not a body's, as an expression in coordinates and rates."""
+    def kinetic(self, energy, *, relative=False):
+        """Kinetic energy that is not a body's, as an expression in coordinates and absolute rates: `y.rate + z.rate` on
+        ground that moves by z. `relative`: of a spin or an oscillation relative to the ground, without momentum."""
         self._locate(self.kinetic_terms)
-        self.kinetic_terms.append(ca.SX(energy))
+        if relative:
+            self.relative_terms.add(len(self.kinetic_terms))
+        self.kinetic_terms.append(self._expression("kinetic energy", energy))
 
     def potential(self, energy):
         """Potential energy besides the weight of the bodies."""
         self._locate(self.potentials)
-        self.potentials.append(ca.SX(energy))
+        self.potentials.append(self._expression("potential energy", energy))
 
     def dissipation(self, rayleigh):
         """Rayleigh's function D(q, v): the force −∂D/∂v acts, the power v·∂D/∂v is dissipated."""
         self._locate(self.dissipations)
-        self.dissipations.append(ca.SX(rayleigh))
+        self.dissipations.append(self._expression("dissipation", rayleigh))
 
     def force(self, coordinate, expression):
         """A generalized force on a coordinate; its power counts as input work."""
         self._locate(self.external)
-        self.external.append((coordinate, ca.SX(expression)))
+        coordinate = arguments.coordinate(self, "what the force acts on", coordinate)
+        self.external.append((coordinate, self._expression(f"force on `{coordinate.name()}`", expression)))
 
     def by_hand(self, coordinate, residual, *, check_units=True):
         """Replaces the derived equation of a coordinate by a hand-written one, `residual` = 0.
@@ -270,27 +233,39 @@ class Model:
         For a frozen coordinate the residual is its reaction. Without `check_units` its terms may
         have any dimension: for printed equations that are to be run with their misprints.
         """
-        self.hand_written[coordinate.name()] = ca.SX(residual)
+        coordinate = arguments.coordinate(self, "what the equation is for", coordinate, motions=True)
+        self.locations[id(self.hand_written), coordinate.name()] = caller_location(self.file)
+        self.hand_written[coordinate.name()] = self._expression(f"equation of `{coordinate.name()}`", residual)
         if not check_units:
             self.unchecked.add(coordinate.name())
 
     # ---- hybrid structure ---------------------------------------------------------------------
 
     def mode(self, name, meaning="", *, freeze=(), drift=None):
-        """A mode. `freeze` maps coordinates to the value they are held at (or HELD: wherever they
-        were); `drift` maps frozen coordinates to a constant rate (a belt) instead of rest."""
-        pairs = freeze if isinstance(freeze, (list, tuple)) else [freeze]
-        held = {}
-        for entry in pairs:
-            coordinate, value = entry if isinstance(entry, tuple) else (entry, HELD)
-            held[coordinate.name()] = value
-        drifting = {c.name(): ca.SX(rate) for c, rate in (drift or [])}
-        for name_ in drifting:
-            if held.get(name_, 0) is not HELD:
-                raise self.error(f"mode `{name}`: `{name_}` drifts, so it must be frozen as HELD")
-        mode = Mode(self, name, meaning, held, drifting)
+        """A mode. `freeze` lists coordinates with the value they are held at, a number or what follows from the
+        parameters; without a value (or with HELD) they are held wherever they were. `drift` lists frozen coordinates with
+        a constant rate (a belt) instead of rest."""
+        arguments.name(self, "mode", name)
         if any(m.name == name for m in self.modes):
             raise self.error(f"mode `{name}` is declared twice")
+        if isinstance(freeze, dict):
+            raise self.error(f"mode `{name}`: `freeze` is a list, [(coordinate, value), …], not a dict")
+        held = {}
+        for entry in freeze if isinstance(freeze, (list, tuple)) else [freeze]:
+            pair = entry if isinstance(entry, tuple) and len(entry) == 2 else (entry, HELD)
+            coordinate = arguments.coordinate(self, f"mode `{name}`: what `freeze` names", pair[0])
+            if coordinate.name() in held:
+                raise self.error(f"mode `{name}`: `{coordinate.name()}` is frozen twice")
+            held[coordinate.name()] = pair[1] if pair[1] is HELD else self._constant(
+                f"mode `{name}`: where `{coordinate.name()}` is held", pair[1], coordinate.name())
+        drifting = {}
+        for coordinate, rate in arguments.pairs(self, f"mode `{name}`: `drift`", drift or [], "(coordinate, rate)"):
+            coordinate = arguments.coordinate(self, f"mode `{name}`: what `drift` names", coordinate)
+            if held.get(coordinate.name(), 0) is not HELD:
+                raise self.error(f"mode `{name}`: `{coordinate.name()}` drifts, so it must be frozen as HELD")
+            drifting[coordinate.name()] = self._constant(
+                f"mode `{name}`: the rate of `{coordinate.name()}`", rate, coordinate.name() + ".rate")
+        mode = Mode(self, name, meaning, held, drifting)
         self.modes.append(mode)
         return mode
 
@@ -301,13 +276,20 @@ class Model:
         `provided` (one expression or several) must be ≥ 0 for the transition to be taken; it is
         evaluated in `target` after the reset. Of several transitions with one guard the first whose condition holds is taken.
         """
+        arguments.name(self, "transition", name)
+        what = f"transition `{name}`"
+        arguments.mode(self, f"{what}: its source", source)
+        arguments.mode(self, f"{what}: its target", target)
         if not isinstance(when, Falls):
-            raise self.error(f"transition `{name}`: `when` must be falls(…) or rises(…)")
+            raise self.error(f"{what}: `when` must be falls(…) or rises(…)")
+        conditions = [] if provided is None else provided if isinstance(provided, (list, tuple)) else [provided]
+        conditions = [arguments.expression(self, f"{what}: a condition", c) for c in conditions]
+        resets = arguments.pairs(self, f"{what}: `reset`", reset, "(coordinate, rate or discrete state, value)")
         self.transitions.append(Transition(
-            name, source, target, when.expression,
-            None if provided is None else ca.vertcat(*provided) if isinstance(provided, (list, tuple)) else ca.SX(provided),
-            [(symbol, ca.SX(value)) for symbol, value in reset], impact,
-            caller_location(self.file)))
+            name, source, target, arguments.expression(self, f"{what}: its guard", when.expression),
+            ca.vertcat(*conditions) if conditions else None,
+            [(symbol, arguments.expression(self, f"{what}: what {arguments.shown(symbol)} is reset to", value))
+             for symbol, value in resets], impact, caller_location(self.file)))
 
     def rest(self, source, target):
         """A mode at the limit of infinitely many events in finite time, some of which lead to `source`.
@@ -315,9 +297,8 @@ class Model:
         It is entered where the limit satisfies what `target` holds: values and rates. A source may have
         several; the one that holds the most is taken, the first in the order of the file among equals.
         """
-        for mode in (source, target):
-            if not isinstance(mode, Mode):
-                raise self.error(f"rest: `{mode}` is not a mode; give what model.mode(…) returned")
+        arguments.mode(self, "rest: its source", source)
+        arguments.mode(self, "rest: its target", target)
         freed = [name for name in source.held if name not in target.held]
         if freed or len(target.held) == len(source.held):
             what = f"lets `{freed[0]}` move, which `{source.name}` holds" if freed else f"holds no more than `{source.name}`"
@@ -329,7 +310,10 @@ class Model:
 
     def requires(self, mode, positive, failure):
         """Stops the run with the reason `failure` where `positive` is not > 0."""
-        mode.requirements.append((ca.SX(positive), failure, caller_location(self.file)))
+        arguments.mode(self, "what a requirement is of", mode)
+        if not isinstance(failure, str):
+            raise self.error(f"requirement: what its failure means is a text, not {arguments.shown(failure)}")
+        mode.requirements.append((self._expression("requirement", positive), failure, caller_location(self.file)))
 
     def limit(self, name, message, *, when, ends=True, modes=None):
         """A limit state: reached where the comparison `when`, such as `theta > pi / 2`, first holds.
@@ -370,6 +354,11 @@ class Model:
         ∂T/∂v is the same before and after; all others come to rest relative to the ground.
         """
         from .derive import impact_velocities
+        for group, form in ((before, "(discrete state, value)"), (after, "(discrete state, value)"),
+                            (prescribed, "(coordinate, rate)")):
+            arguments.pairs(self, "impact_velocities: what is passed", group, form)
+        prescribed = [(arguments.coordinate(self, "impact_velocities: what is prescribed", c), rate) for c, rate in prescribed]
+        conserve = [arguments.coordinate(self, "impact_velocities: whose momentum is conserved", c) for c in conserve]
         return impact_velocities(self, before, after, prescribed, conserve)
 
     def location(self, group, index):
@@ -383,25 +372,58 @@ class Model:
         """A ModelError that points at the line of the model file being run."""
         return ModelError(message, caller_location(self.file))
 
-    def _declare(self, name, unit, symbol):
+    def _declare(self, what, name, unit, of=""):
+        if not of:
+            arguments.name(self, what, name)
+        if not isinstance(unit, str):
+            raise self.error(f"`{name}`: its unit is a text such as \"m/s\", not {arguments.shown(unit)}")
         if name in self.dimensions:
             raise self.error(f"`{name}` is declared twice")
-        if not name.replace(".", "_").isidentifier() or "__" in name:
-            raise self.error(f"`{name}` is not a name (letters, digits, single underscores)")
         try:
             self.dimensions[name] = units.parse(unit)
         except units.UnitError as error:
             raise self.error(f"`{name}`: {error}") from None
+        self.symbols[name] = ca.SX.sym(name)
+        return self.symbols[name]
+
+    def _declare_motion(self, what, name, unit):
+        symbol = Coordinate(self._declare(what, name, unit))
+        symbol.rate = self._declare(what, name + ".rate", unit + "/s", of=name)
+        symbol.acceleration = self._declare(what, name + ".acceleration", unit + "/s^2", of=name)
         return symbol
 
+    def _expression(self, what, value):
+        return arguments.expression(self, what, value)
+
+    def _position(self, position):
+        if not isinstance(position, (list, tuple)) or len(position) != 2:
+            raise self.error(f"body {len(self.bodies) + 1}: its position is {arguments.shown(position)}, not a pair (X, Y)")
+        return tuple(self._expression(f"body {len(self.bodies) + 1}: position {a}", p) for a, p in zip("XY", position))
+
+    def _constant(self, what, value, like):
+        """An expression in parameters alone, of the dimension of what is called `like`; a number stays one."""
+        expression = self._expression(what, value)
+        own = {p.symbol.element_hash() for p in self.parameters}
+        for symbol in ca.symvar(expression):
+            if symbol.element_hash() not in own:
+                raise self.error(f"{what}: `{symbol.name()}` is not a parameter; a value that stays the same follows from"
+                                 " numbers and parameters alone")
+        if not expression.is_constant():
+            found = units.dimension_of(expression, self.dimensions)
+            if found != self.dimensions[like]:
+                raise self.error(f"{what}: `{units.short(expression)}` has the dimension {units.text(found)}, expected"
+                                 f" {units.text(self.dimensions[like])}")
+        return expression
+
     def _placeholder(self, mode, coordinate, discrete):
+        coordinate = arguments.coordinate(self, f"mode `{mode.name}`: what a reaction is asked of", coordinate, motions=True)
         name = coordinate.name()
         if mode.is_free(coordinate) and all(m.name != name for m in self.motions):
             raise self.error(f"mode `{mode.name}`: coordinate `{name}` is free, it has no reaction")
         for key in discrete:
             if all(d.name != key for d in self.discretes):
                 raise self.error(f"reaction of `{name}`: there is no discrete state `{key}`")
-        settings = "".join(f", {k}={v:+g}" for k, v in sorted(discrete.items()))
+        settings = "".join(f", {k}={v:+.17g}" for k, v in sorted(discrete.items()))
         key = f"R({name}{settings})@{mode.name}"
         if key not in self.placeholders:
             symbol = ca.SX.sym(key)
@@ -410,47 +432,3 @@ class Model:
             self.dimensions[key] = units.combine(energy, self.dimensions[declaration.name], -1)
             self.placeholders[key] = (symbol, mode, name, dict(discrete))
         return self.placeholders[key][0]
-
-
-class BuildContext:
-    """One run of a model file: its name, and the options of the choices made so far."""
-
-    def __init__(self, name, file, options):
-        self.name, self.file, self.options = name, file, options
-        self.open, self.model = [], None
-
-    def choose(self, name, options):
-        if name not in self.options:
-            self.options[name] = options[0]
-            self.open.append((name, options[1:]))
-        return self.options[name]
-
-
-_CONTEXT = []
-
-
-def build(name, file, source):
-    """Runs a model file (its text) for every combination of choices; returns the models."""
-    code = compile(source, file, "exec")
-    models, pending = [], [{}]
-    while pending:
-        context = BuildContext(name, file, dict(pending.pop(0)))
-        _CONTEXT.append(context)
-        path = list(sys.path)
-        try:
-            exec(code, {"__name__": f"models.{name}", "__file__": file})
-        finally:
-            _CONTEXT.pop()
-            sys.path[:] = path
-        if context.model is None:
-            raise ModelError("no Model(…) is made here", file)
-        models.append(context.model)
-        made = dict(context.options)
-        for choice, others in context.open:
-            prefix = {}
-            for key, value in made.items():
-                if key == choice:
-                    break
-                prefix[key] = value
-            pending += [{**prefix, choice: other} for other in others]
-    return models

@@ -47,8 +47,11 @@ impl<const F: usize> Point<F> {
         }
         for (i, c) in model.coordinates.iter().enumerate() {
             let q = c.scale * random.next();
-            context.held_mut()[i] = mode.held_at[i].unwrap_or(c.minimum.map_or(q, |m| m + q.abs()));
+            context.held_mut()[i] = c.minimum.map_or(q, |m| m + q.abs());
         }
+        let mut held = vec![0.0; model.coordinates.len()];
+        kernel.held_values(&context, &mut held);
+        context.held_mut().copy_from_slice(&held);
         let [signals, rates] = context.signals_mut();
         signals.fill_with(|| random.next());
         rates.fill_with(|| random.next());
@@ -277,7 +280,7 @@ fn generated_functions_agree_with_each_other() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut modes = 0;
     for model in MODELS {
-        for variant in model.variants {
+        for variant in model.automata() {
             for mode in variant.modes {
                 check_mode(model, variant, mode, &mut random);
                 modes += 1;

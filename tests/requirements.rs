@@ -99,3 +99,35 @@ fn requirements_that_fail_for_a_moment_stop_the_run_there() {
         }
     }
 }
+
+/// A model with twelve conditions of one transition and twelve requirements of one mode, at 1 m/s from x = 0.
+fn many(door: f64, method: Method) -> dalembert::record::Run {
+    let mut many = problem("many", &[("l", 0.3), ("door", door)]);
+    many.set_initial("x.rate", 1.0).unwrap();
+    many.method = method;
+    many.end.time = 10.0;
+    simulate(&many, &mut Silent).unwrap()
+}
+
+#[test]
+fn conditions_and_requirements_count_to_the_last() {
+    for method in [Method::Taylor, Method::Radau] {
+        let stopped = many(1.0, method);
+        assert!(stopped.failure.is_none());
+        let [event] = &stopped.events[..] else {
+            panic!("{:?}", stopped.events)
+        };
+        assert!((event.t - 0.3).abs() < 1e-9, "{}", event.t);
+        // Held at a parameter: exactly there.
+        assert_eq!(event.after.q, [0.3]);
+        // The last condition holds it off, and the last requirement fails first.
+        let failure = many(-1.0, method)
+            .failure
+            .expect("nothing stops it but a requirement");
+        assert!(
+            failure.reason.contains("beyond the place 12"),
+            "{failure:?}"
+        );
+        assert!((failure.at.t - 8.0 * 0.3).abs() < 1e-9, "{failure:?}");
+    }
+}

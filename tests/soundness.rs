@@ -14,7 +14,7 @@ type Of = (&'static Model, &'static Mode);
 
 fn modes() -> impl Iterator<Item = Of> {
     MODELS.iter().flat_map(|&model| {
-        let modes = model.variants.iter().flat_map(|variant| variant.modes);
+        let modes = model.automata().flat_map(|variant| variant.modes);
         modes.map(move |mode| (model, mode))
     })
 }

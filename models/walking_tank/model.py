@@ -64,6 +64,9 @@ y = model.coordinate("y", "m", "height of the base; its reaction is the normal f
 side = model.discrete("side", (+1, -1), "pivot: +1 the left edge O, -1 the right edge O'")
 slip = model.discrete("slip", (+1, -1), "direction of slip while sliding")
 z_h = model.ground("z_h", "motion of the ground to the right", input="ground_acceleration")
+z_v = model.ground(  # the paper's conditions and equations know no other weight than that at rest
+    "z_v", "motion of the ground upwards", input="vertical_acceleration", axis="y", optional=True,
+    available=rules == "reactions")
 
 model.gravity(g)
 model.point_mass(  # bulging liquid that rocks with the tank
@@ -76,12 +79,13 @@ model.rigid_body(  # shell and bottom plate
     position=(x + side * R_S * sin(alpha_S - theta), y + R_S * cos(alpha_S - theta)))
 
 # The rest of the liquid rocks without horizontal momentum: inertia, and first moment for weight
-# and vertical momentum.
+# and vertical momentum. It moves with the base, y, and with the ground.
 moment = M_E * R_0 * cos(alpha_0 - theta) - M_rb * R_I * cos(alpha_I - theta)
 moment_rate = (M_E * R_0 * sin(alpha_0 - theta) - M_rb * R_I * sin(alpha_I - theta)) * theta.rate
 rest = M_0 - M_I
-model.kinetic((I_E - M_rb * R_I**2) * theta.rate**2 / 2 + moment_rate * y.rate + rest * y.rate**2 / 2)
-model.potential(g * moment + rest * g * y)
+rise = y.rate + z_v.rate
+model.kinetic((I_E - M_rb * R_I**2) * theta.rate**2 / 2 + moment_rate * rise + rest * rise**2 / 2)
+model.potential(g * moment + rest * g * (y + z_v))
 
 omega = 2 * pi * frequency
 model.potential(M_I * omega**2 * x_I**2 / 2)
@@ -111,7 +115,7 @@ def printed(number, moduli=(), slipped_unit=1):
         signs = {}
         functions = SimpleNamespace(
             sin=sin, cos=cos, sign=lambda _: slip,
-            Abs=lambda term: signs.setdefault(str(term), moduli[min(len(signs), len(moduli) - 1)]) * term)
+            Abs=lambda term: signs.setdefault(structure(term), moduli[min(len(signs), len(moduli) - 1)]) * term)
         return source.equations[number].terms(source.namespace(values, functions), functions)
 
     if equations != "corrected":
@@ -128,8 +132,8 @@ def printed(number, moduli=(), slipped_unit=1):
 
 def difference(some, others):
     """Sum of some terms less that of others, without the terms that both have."""
-    shared = {str(term) for term in some} & {str(term) for term in others}
-    rest = lambda terms: sum((term for term in terms if str(term) not in shared), 0)
+    shared = {structure(term) for term in some} & {structure(term) for term in others}
+    rest = lambda terms: sum((term for term in terms if structure(term) not in shared), 0)
     return rest(some) - rest(others)
 
 
@@ -183,7 +187,7 @@ for stands, rocks, conserved in (
     else:
         # Condition (5), one smooth guard for each sign of its moduli; (6) decides the pivot. The
         # condition overstates the overturning moment, so uplift also needs (1) to lift the edge.
-        onsets = {str(onset): onset for onset in (-printed("5", signs) for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)))}
+        onsets = {structure(onset): onset for onset in (-printed("5", signs) for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)))}
         for onset in onsets.values():
             for edge, rule in ((+1, printed("6a", (), M_E * R_0)), (-1, -printed("6b", (), M_E * R_0))):
                 model.transition(

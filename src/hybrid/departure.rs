@@ -130,7 +130,7 @@ impl Simulation<'_> {
         at: Free<F>,
     ) -> bool {
         let mut conditions = Conditions {
-            variant: self.problem.variant,
+            modes: self.modes,
             plan: &self.plan,
             next: &mut self.next,
         };

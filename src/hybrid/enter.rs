@@ -56,7 +56,7 @@ impl Simulation<'_> {
             let watched = self.plan.watched[self.here.mode][w];
             let guard = &mode.guards[watched.guard];
             let mut conditions = Conditions {
-                variant: self.problem.variant,
+                modes: self.modes,
                 plan: &self.plan,
                 next: &mut self.next,
             };

@@ -6,12 +6,12 @@ use crate::integrate::{Motion, solve};
 use crate::kernel::swap_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
-use crate::model::{Guard, Transition, Variant};
+use crate::model::{Guard, Mode, Transition};
 use nalgebra::SVector;
 
 /// What the conditions of transitions are evaluated with.
 pub(super) struct Conditions<'a> {
-    pub variant: &'static Variant,
+    pub modes: &'static [Mode],
     pub plan: &'a Plan,
     /// Room for a reset: q, v, discrete states.
     pub next: &'a mut [f64],
@@ -32,7 +32,7 @@ impl Conditions<'_> {
         if !transition.conditional {
             return reduce(&[]);
         }
-        let target = &self.variant.modes[transition.target];
+        let target = &self.modes[transition.target];
         self.swap_with(context);
         let n = context.held().len();
         let condition = with_kernel!(&target.kernels, k => {

@@ -35,7 +35,7 @@ pub(super) struct Watched {
 
 impl Plan {
     pub fn new(problem: &Problem) -> Result<Self, Reason> {
-        let modes = problem.variant.modes;
+        let modes = problem.automaton().modes;
         let allowed: Vec<bool> = modes
             .iter()
             .map(|m| problem.freeze.iter().all(|frozen| !m.free.contains(frozen)))

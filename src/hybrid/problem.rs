@@ -200,7 +200,8 @@ impl Problem {
     /// limits another is looked at when a run starts ([`Problem::check`]).
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Invalid> {
         let index = self.model.parameter(name);
-        let index = index.ok_or_else(|| self.unknown("parameter", name))?;
+        let known = || self.model.parameters.iter().map(|p| p.name);
+        let index = index.ok_or_else(|| self.unknown("parameter", name, known()))?;
         let parameter = &self.model.parameters[index];
         within(parameter.bounds(), parameter.unit, value, || {
             format!("parameter `{name}`")
@@ -226,8 +227,10 @@ impl Problem {
         } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
             initial.discrete[i] = value;
         } else {
+            let known = model.coordinates.iter().map(|c| c.name);
+            let known = known.chain(model.discretes.iter().map(|d| d.name));
             return Err(self
-                .unknown("coordinate, rate or discrete state", name)
+                .unknown("coordinate, rate or discrete state", name, known)
                 .into());
         }
         check_initial(model, &initial)?;
@@ -242,7 +245,8 @@ impl Problem {
     pub fn set_input(&mut self, name: &str, function: Function) -> Result<(), Unknown> {
         let inputs = self.model.inputs;
         let found = inputs.iter().position(|i| i.name == name);
-        let index = found.ok_or_else(|| self.unknown("input", name))?;
+        let known = || inputs.iter().map(|i| i.name);
+        let index = found.ok_or_else(|| self.unknown("input", name, known()))?;
         let mut functions: Vec<Function> = self.signals.functions().cloned().collect();
         functions[index] = function;
         self.signals = Signals::new(inputs, functions);
@@ -253,14 +257,15 @@ impl Problem {
     /// choices.
     ///
     /// # Errors
-    /// [`Unknown`] if the model has no such choice or option.
+    /// [`Unknown`] if the model has no such choice or option, or not these together.
     pub fn choose(&mut self, options: &[(&str, &str)]) -> Result<(), Unknown> {
         let choices = self.model.choices;
         for (choice, option) in options {
             let known = choices.iter().find(|c| c.name == *choice);
-            let known = known.ok_or_else(|| self.unknown("choice", choice))?;
+            let all = || choices.iter().map(|c| c.name);
+            let known = known.ok_or_else(|| self.unknown("choice", choice, all()))?;
             if !known.options.contains(option) {
-                return Err(self.unknown("option", option));
+                return Err(self.unknown("option", option, known.options.iter().copied()));
             }
         }
         let wanted = |choice: &str| options.iter().find(|(c, _)| *c == choice).map(|(_, o)| *o);
@@ -270,17 +275,41 @@ impl Problem {
                 None => v.defaults[i],
             })
         };
-        if let Some(variant) = self.model.variants.iter().find(fits) {
-            self.variant = variant;
-        }
+        let Some(variant) = self.model.variants.iter().find(fits) else {
+            let name: Vec<_> = options.iter().map(|(_, option)| *option).collect();
+            let all = self.model.variants.iter().map(|v| v.options.join(" + "));
+            return Err(self.unknown("variant", &name.join(" + "), all));
+        };
+        self.variant = variant;
         Ok(())
     }
 
-    fn unknown(&self, what: &'static str, name: &str) -> Unknown {
+    /// The variant as it runs: without the terms of the optional motions of the ground where none of these acts.
+    pub fn automaton(&self) -> &'static Variant {
+        match self.variant.lean {
+            Some((without, lean)) if without.iter().all(|&i| self.signals.input_is_zero(i)) => lean,
+            _ => self.variant,
+        }
+    }
+
+    /// The first input that is given although the chosen options do not allow it.
+    pub(crate) fn barred_input(&self) -> Option<&'static str> {
+        let barred = self.variant.barred.iter();
+        let given = barred.copied().find(|&i| !self.signals.input_is_zero(i));
+        given.map(|i| self.model.inputs[i].name)
+    }
+
+    fn unknown(
+        &self,
+        what: &'static str,
+        name: &str,
+        known: impl Iterator<Item = impl Into<String>>,
+    ) -> Unknown {
         Unknown {
             model: self.model.name,
             what,
             name: name.into(),
+            known: known.map(Into::into).collect(),
         }
     }
 }

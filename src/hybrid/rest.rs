@@ -144,10 +144,14 @@ impl Simulation<'_> {
     /// Everything that a mode holds: values, and rates.
     fn holds(&self, mode: &'static Mode) -> impl Iterator<Item = Held> + use<> {
         let mut rates = vec![0.0; self.here.v.len()];
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        let mut values = rates.clone();
+        with_kernel!(&mode.kernels, k => {
+            k.held_rates(&self.context, &mut rates);
+            k.held_values(&self.context, &mut values);
+        });
         let held = (0..rates.len()).filter(|i| !mode.free.contains(i));
         held.flat_map(move |i| {
-            let value = mode.held_at[i].map(|value| Held::At(i, value));
+            let value = mode.held_at[i].map(|_| Held::At(i, values[i]));
             value.into_iter().chain([Held::Rate(i, rates[i])])
         })
     }

@@ -221,7 +221,7 @@ impl Simulation<'_> {
         );
         let watched = &self.plan.watched[self.here.mode];
         let mut conditions = Conditions {
-            variant: problem.variant,
+            modes: self.modes,
             plan: &self.plan,
             next: &mut self.next,
         };

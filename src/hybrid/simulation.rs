@@ -159,6 +159,7 @@ impl<'p> Simulation<'p> {
         context.quiet = problem.signals.is_zero();
         let foresees = context.can_foresee(&problem.signals);
         let n = model.coordinates.len();
+        let modes = problem.automaton().modes;
         let layout = Layout::new(model, problem.variant, problem.record.columns);
         let rows = problem
             .record
@@ -173,7 +174,7 @@ impl<'p> Simulation<'p> {
         Ok(Simulation {
             problem,
             initial: &problem.initial,
-            modes: problem.variant.modes,
+            modes,
             plan,
             context,
             here: Here {
@@ -187,7 +188,7 @@ impl<'p> Simulation<'p> {
             at_start: zeros(n),
             drift: zeros(n),
             signs: Signs::default(),
-            doubts: Doubts::new(problem.variant.modes.len()),
+            doubts: Doubts::new(modes.len()),
             margins: Margins::new(problem),
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
@@ -198,12 +199,12 @@ impl<'p> Simulation<'p> {
             jumps: Vec::new(),
             states_at_jumps: Vec::new(),
             solver: Solver::default(),
-            solvers: Solvers::new(problem.variant.modes),
-            stiffness: vec![Stiffness::default(); problem.variant.modes.len()].into(),
+            solvers: Solvers::new(modes),
+            stiffness: vec![Stiffness::default(); modes.len()].into(),
             smooth_until: f64::NEG_INFINITY,
             piece: Piece::UNKNOWN,
             foresees,
-            has_inertia: vec![false; problem.variant.modes.len()].into(),
+            has_inertia: vec![false; modes.len()].into(),
             sizes: sizes(&accuracy.q_absolute),
             rate_sizes: sizes(&accuracy.v_absolute),
             expansion: Expansion::new(n, context_signals, &problem.parameters),
@@ -322,7 +323,11 @@ impl<'p> Simulation<'p> {
     /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
     fn misfit(&mut self, mode: &'static Mode) -> Option<Misfit> {
         let model = self.problem.model;
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut self.drift));
+        let held = &mut self.next[..self.here.q.len()];
+        with_kernel!(&mode.kernels, k => {
+            k.held_rates(&self.context, &mut self.drift);
+            k.held_values(&self.context, held);
+        });
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
             if let Some(minimum) = c.minimum
                 && self.here.q[i] < minimum
@@ -333,7 +338,7 @@ impl<'p> Simulation<'p> {
                 return None;
             }
             match mode.held_at[i] {
-                Some(value) if self.here.q[i] != value => Some(Misfit::HeldAt(i, value)),
+                Some(_) if self.here.q[i] != held[i] => Some(Misfit::HeldAt(i, held[i])),
                 _ if self.here.v[i] != self.drift[i] => Some(Misfit::HeldRate(i, self.drift[i])),
                 _ => None,
             }

@@ -34,13 +34,14 @@ impl Problem {
         context
             .discrete_mut()
             .copy_from_slice(&self.initial.discrete);
-        for (m, mode) in self.variant.modes.iter().enumerate() {
+        for (m, mode) in self.automaton().modes.iter().enumerate() {
             if !plan.allowed[m] {
                 continue;
             }
-            for (i, held) in mode.held_at.iter().enumerate() {
-                context.held_mut()[i] = held.unwrap_or(self.initial.q[i]);
-            }
+            context.held_mut().copy_from_slice(&self.initial.q);
+            let mut held = vec![0.0; self.initial.q.len()];
+            with_kernel!(&mode.kernels, k => k.held_values(&context, &mut held));
+            context.held_mut().copy_from_slice(&held);
             let watched = plan.watched[m].iter().filter(|w| w.condition.is_none());
             let general = watched.map(|w| &mode.guards[w.guard]);
             for guard in general.filter(|g| matches!(g.shape, GuardShape::General { .. })) {

@@ -37,6 +37,12 @@ pub enum Invalid {
         /// The bounds, in words.
         range: String,
     },
+    /// An input is given that the chosen options do not know.
+    #[error("input `{input}` has no effect under these options of the model, and may not be given")]
+    Barred {
+        /// The input.
+        input: &'static str,
+    },
     /// A list has not an entry for each thing that it is about.
     #[error("{what}: {found} values, expected {expected}")]
     Count {
@@ -51,7 +57,7 @@ pub enum Invalid {
 
 /// A name that the model does not have.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("model `{model}` has no {what} `{name}`")]
+#[error("model `{model}` has no {what} `{name}`; it has {}", known.join(", "))]
 pub struct Unknown {
     /// The model.
     pub model: &'static str,
@@ -59,6 +65,8 @@ pub struct Unknown {
     pub what: &'static str,
     /// The name.
     pub name: String,
+    /// What there is.
+    pub known: Vec<String>,
 }
 
 /// A parameter is larger than one that it must not exceed.
@@ -166,6 +174,9 @@ impl Problem {
     pub fn check(&self) -> Result<(), Invalid> {
         check_parameters(self.model, &self.parameters)?;
         check_initial(self.model, &self.initial)?;
+        if let Some(input) = self.barred_input() {
+            return Err(Invalid::Barred { input });
+        }
         self.check_accuracy()?;
         self.check_limits()?;
         let positive = Bounds::POSITIVE;
@@ -216,7 +227,7 @@ impl Problem {
 
     /// The method that was asked for must be there in all modes that may be visited: nothing else stands in for it.
     pub(super) fn check_method(&self, plan: &Plan) -> Result<(), Reason> {
-        let mut visited = self.variant.modes.iter().zip(&plan.allowed);
+        let mut visited = self.automaton().modes.iter().zip(&plan.allowed);
         let without = visited.find_map(|(mode, &allowed)| {
             let why = mode.without_series.filter(|_| allowed)?;
             Some(Reason::NoSeries {

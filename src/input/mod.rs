@@ -65,8 +65,12 @@ impl Signals {
 
     /// Whether no function ever differs from zero.
     pub fn is_zero(&self) -> bool {
-        let zero = Function::zero();
-        self.channels.iter().all(|c| c.function == zero)
+        (0..self.channels.len()).all(|input| self.input_is_zero(input))
+    }
+
+    /// Whether the function of an input, by its index, never differs from zero.
+    pub fn input_is_zero(&self, input: usize) -> bool {
+        self.channels[input].function == Function::zero()
     }
 
     /// Fills `u`, of length [`crate::model::Model::signal_count`], with the signals at time `t`

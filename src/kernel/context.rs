@@ -116,7 +116,7 @@ impl Context {
     /// If the number of parameters is not the model's.
     pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
         let dimensions = model.constants.dimensions;
-        let modes = model.variants.iter().flat_map(|variant| variant.modes);
+        let modes = model.automata().flat_map(|variant| variant.modes);
         let rooms = modes.map(|mode| with_kernel!(&mode.kernels, k => (k.workspace(), k.guards)));
         let (workspace, guards) = rooms.fold((0, 0), |most, room| {
             (most.0.max(room.0), most.1.max(room.1))

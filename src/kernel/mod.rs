@@ -26,10 +26,10 @@ pub(crate) use lanes::{
 };
 pub use lanes::{LANES_OF_LEVELS, processor_level};
 pub use tables::{
-    ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_CONDITIONS, MOST_FREE, ModeKernel,
-    ModeKernels, TransitionKernel, with_kernel,
+    ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_FREE, ModeKernel, ModeKernels,
+    TransitionKernel, with_kernel,
 };
-use tables::{LaneKernel, SeriesKernel};
+use tables::{LaneKernel, SeriesKernel, most};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
 use crate::model::Model;
@@ -1047,7 +1047,24 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// Constant rates of the frozen coordinates (0 where one rests or is free).
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
     pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
+        self.of_held(self.held_rates, x, out);
+    }
+
+    /// Coordinates as the mode holds them; those that it leaves free or holds wherever they were as the context has
+    /// them.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
+    pub fn held_values(&self, x: &Context, out: &mut [f64]) {
+        self.of_held(self.held_values, x, out);
+    }
+
+    /// What a function of the mode gives that has one output a coordinate and does not depend on those that are free.
+    fn of_held(&self, function: Raw, x: &Context, out: &mut [f64]) {
         assert_eq!(out.len(), self.dimensions.coordinates);
         let none = SVector::<f64, F>::zeros();
         let at = Free {
@@ -1056,14 +1073,7 @@ impl<const F: usize> ModeKernel<F> {
             a: &none,
         };
         // SAFETY: the length was checked.
-        unsafe {
-            x.call(
-                self.held_rates,
-                self.dimensions,
-                at.pointers(),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
     }
 
     /// Value of a guard of this mode.

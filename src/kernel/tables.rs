@@ -67,6 +67,7 @@ pub struct ModeKernel<const F: usize> {
     pub(super) inertia_is_fixed: bool,
     pub(super) is_linear: bool,
     pub(super) held_rates: Raw,
+    pub(super) held_values: Raw,
     pub(super) lanes: &'static [LaneKernel],
 }
 
@@ -187,8 +188,16 @@ impl TransitionKernel {
     }
 }
 
-/// Most conditions that one transition may have (codegen rejects more).
-pub const MOST_CONDITIONS: usize = 8;
+/// The largest of some numbers.
+pub(super) const fn most(of: &[usize]) -> usize {
+    match of {
+        [] => 0,
+        [first, others @ ..] => {
+            let largest = most(others);
+            if *first > largest { *first } else { largest }
+        }
+    }
+}
 
 /// A generated guard.
 #[derive(Debug)]

@@ -165,6 +165,8 @@ pub struct Variant {
     pub defaults: &'static [bool],
     /// What pages draw, as `codegen/drawing.py` writes it (JSON); empty where the model draws nothing.
     pub drawing: &'static str,
+    /// Inputs, by index, that may not be given under these options.
+    pub barred: &'static [usize],
     /// The modes; the first is where a scene starts when it names none and several fit.
     pub modes: &'static [Mode],
     /// Where accumulations may come to rest, in the order of the file.
@@ -179,6 +181,9 @@ pub struct Variant {
     pub bounds: &'static [ParametricBound],
     /// Of the parameters: by how much each of the conditions on them holds, then these bounds.
     pub declared: ConstantsKernel,
+    /// The same modes where the motions of the ground that are optional never act, if some are: their inputs, by index,
+    /// and the variant without their terms.
+    pub lean: Option<(&'static [usize], &'static Variant)>,
 }
 
 /// A mode at the limit of infinitely many events in finite time.
@@ -223,6 +228,15 @@ pub struct ParametricBound {
     pub text: &'static str,
 }
 
+/// Where a frozen coordinate is held, in its unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HeldAt {
+    /// At a number.
+    Number(f64),
+    /// At what follows from the parameters, as text: [`crate::kernel::ModeKernel::held_values`] gives the value.
+    Expression(&'static str),
+}
+
 /// A mode: which coordinates are free, and the functions of the reduced system.
 #[derive(Debug)]
 pub struct Mode {
@@ -232,8 +246,8 @@ pub struct Mode {
     pub meaning: &'static str,
     /// Indices of the free coordinates, increasing.
     pub free: &'static [usize],
-    /// Value at which a frozen coordinate is held; `None`: wherever it was. One entry a coordinate.
-    pub held_at: &'static [Option<f64>],
+    /// Where a frozen coordinate is held; `None`: wherever it was. One entry a coordinate.
+    pub held_at: &'static [Option<HeldAt>],
     /// Guards of this mode, in the order of the guards function.
     pub guards: &'static [Guard],
     /// What must stay positive in this mode: the first values of the requirements function.
@@ -334,6 +348,11 @@ impl Model {
     /// Number of signals that the inputs fill.
     pub fn signal_count(&self) -> usize {
         self.inputs.iter().map(|i| i.kind.signals()).sum()
+    }
+    /// All variants, the lean ones among them.
+    pub fn automata(&self) -> impl Iterator<Item = &'static Variant> {
+        let lean = |v: &'static Variant| v.lean.map(|(_, lean)| lean);
+        (self.variants.iter()).flat_map(move |v| [Some(v), lean(v)].into_iter().flatten())
     }
     /// Index of a coordinate by name.
     pub fn coordinate(&self, name: &str) -> Option<usize> {

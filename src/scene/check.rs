@@ -88,6 +88,7 @@ pub(crate) fn check(node: &Node, shape: &Shape, errors: &mut Errors) -> Option<C
         (Shape::Null, Value::Null) => Some(Datum::Null),
         (Shape::Flag, Value::Flag(flag)) => Some(Datum::Flag(*flag)),
         (Shape::Text, Value::Text(text)) => Some(Datum::Text(text.clone())),
+        (Shape::Line, Value::Text(text)) => errors.note(line(node, text)),
         (Shape::Choice(what, names), Value::Text(text)) => {
             errors.note(choice(node, what, names, text))
         }
@@ -132,7 +133,7 @@ fn accepts_type(shape: &Shape, value: &Value) -> bool {
     match shape {
         Shape::Null => matches!(value, Value::Null),
         Shape::Flag => matches!(value, Value::Flag(_)),
-        Shape::Text | Shape::Choice(..) => matches!(value, Value::Text(_)),
+        Shape::Text | Shape::Line | Shape::Choice(..) => matches!(value, Value::Text(_)),
         Shape::Count | Shape::Values(_) => matches!(value, Value::Number(_)),
         Shape::Quantity(_) => matches!(value, Value::Number(_) | Value::Text(_)),
         Shape::List(_) | Shape::Tuple(..) => matches!(value, Value::List(_)),
@@ -180,6 +181,18 @@ pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str], at: &Span) ->
         None => one_of_these(known.iter().copied()),
     };
     SceneError::new(kind, at).help(help)
+}
+
+/// A text without control characters: they would act on a terminal, and no picture may hold them.
+fn line(node: &Node, text: &str) -> Result<Datum, SceneError> {
+    match text.chars().find(|c| c.is_control()) {
+        None => Ok(Datum::Text(text.to_owned())),
+        Some(found) => {
+            let found = format!("U+{:04X}", u32::from(found));
+            let kind = SceneErrorKind::ControlCharacter { found };
+            Err(SceneError::new(kind, &node.place()).help("write one line of printable characters"))
+        }
+    }
 }
 
 fn choice(

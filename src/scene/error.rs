@@ -130,6 +130,20 @@ pub enum SceneErrorKind {
         /// The coordinate.
         coordinate: &'static str,
     },
+    /// A text with a character that is none.
+    #[error("this text holds the control character {found}")]
+    ControlCharacter {
+        /// Its code point, `U+001B`.
+        found: String,
+    },
+    /// An input that the chosen options do not know.
+    #[error("input `{input}` has no effect{under}, and may not be given")]
+    BarredInput {
+        /// The input.
+        input: &'static str,
+        /// The options, ` under …`.
+        under: String,
+    },
     /// The initial state is at odds with its mode, or with what the scene freezes.
     #[error("{message}")]
     State {

@@ -36,7 +36,7 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
             Shape::Text,
         ),
         Key::new("model", "name of the model", name).required(),
-        Key::new("title", "what the scene shows", Shape::Text),
+        Key::new("title", "what the scene shows", Shape::Line),
         Key::new(
             "parameters",
             "parameters that differ from their defaults",
@@ -166,7 +166,12 @@ fn functions(unit: &str) -> Vec<Object> {
             Shape::Text,
         )
         .required(),
-        Key::new("scale", "factor for the values", Quantity::any("1")).default(1.0),
+        Key::new(
+            "scale",
+            "factor for the values, or what a value of 1 stands for (\"1 g_n\")",
+            Quantity::factor(unit),
+        )
+        .default(1.0),
     ];
     table.extend(between_rows());
 

@@ -6,11 +6,12 @@ use std::path::Path;
 use super::check::{Checked, Datum};
 use super::error::{Errors, SceneError, SceneErrorKind};
 use super::files::Files;
+use super::interpret::{options, under};
 use super::source::Span;
 use super::table;
 use super::wording::shown;
 use crate::input::{Function, Interpolation, Outside, Signals, Sine, Table, TableError};
-use crate::model::Model;
+use crate::model::{Model, Variant};
 
 /// Where tables are read from.
 pub(crate) struct Reader<'a> {
@@ -39,6 +40,28 @@ pub(crate) fn signals(
         model.inputs,
         functions.into_iter().collect::<Option<_>>()?,
     ))
+}
+
+/// Refuses what is given for inputs that the chosen options do not know.
+pub(crate) fn refuse_barred(
+    model: &Model,
+    variant: &Variant,
+    scene: &Checked,
+    errors: &mut Errors,
+) {
+    let given = |name: &str| scene.get("inputs").and_then(|inputs| inputs.get(name));
+    for &i in variant.barred {
+        let input = model.inputs[i].name;
+        let Some(described) = given(input).filter(|x| !matches!(x.datum, Datum::Null)) else {
+            continue;
+        };
+        let under = under(model, variant);
+        let kind = SceneErrorKind::BarredInput { input, under };
+        let allowed = model.variants.iter().filter(|v| !v.barred.contains(&i));
+        let allowed = allowed.map(|v| options(model, v)).collect::<Vec<_>>();
+        let help = format!("leave it out, or choose {}", allowed.join("; or "));
+        errors.push(SceneError::new(kind, &described.place).help(help));
+    }
 }
 
 fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Function> {

@@ -41,8 +41,10 @@ pub(crate) fn scene(
         &inputs::Reader { files, folder },
         &mut errors,
     );
+    inputs::refuse_barred(model, variant, &checked, &mut errors);
     let freeze = state::freeze(model, variant, &checked, &mut errors);
-    let initial = state::initial(model, variant, &checked, &freeze, &mut errors);
+    let parts = (&freeze[..], parameters.as_deref());
+    let initial = state::initial(model, variant, &checked, parts, &mut errors);
     let end = errors.note(end(variant, &checked));
     let limits = limits::limits(model, variant, &checked, &mut errors);
     errors.check()?;
@@ -134,15 +136,19 @@ fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, S
 
 /// The variant as text, for errors: ` under rules = paper, landing = velocities`.
 pub(crate) fn under(model: &Model, variant: &Variant) -> String {
+    match options(model, variant) {
+        options if options.is_empty() => options,
+        options => format!(" under {options}"),
+    }
+}
+
+/// The options of a variant as text: `rules = paper, landing = velocities`.
+pub(crate) fn options(model: &Model, variant: &Variant) -> String {
     let pairs = model.choices.iter().zip(variant.options);
     let pairs: Vec<String> = pairs
         .map(|(c, option)| format!("{} = {option}", c.name))
         .collect();
-    if pairs.is_empty() {
-        String::new()
-    } else {
-        format!(" under {}", pairs.join(", "))
-    }
+    pairs.join(", ")
 }
 
 /// Defaults, then the parameter set, then what the scene says.

@@ -80,8 +80,9 @@ impl Scene {
     }
 }
 
-/// The text of a file, which must be UTF-8.
+/// The text of a file, which must be UTF-8. A byte-order mark, which some editors put in front of it, says only that.
 fn decode(bytes: &[u8], path: &Path) -> Result<Arc<Source>, SceneError> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let name = path.display().to_string();
     let text = String::from_utf8_lossy(bytes).into_owned();
     let source = Arc::new(Source { name, text });

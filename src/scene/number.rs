@@ -69,7 +69,15 @@ pub(crate) fn quantity(node: &Node, quantity: &Quantity) -> Result<f64, SceneErr
 
 fn from_text(node: &Node, text: &str, quantity: &Quantity) -> Result<f64, SceneError> {
     let unit = &quantity.unit;
-    unit::convert(text, unit).map_err(|error| match error {
+    let converted = match unit::convert(text, unit) {
+        Err(QuantityError::WrongUnit(_))
+            if quantity.or_factor && unit::convert(text, "1").is_ok() =>
+        {
+            unit::convert(text, "1")
+        }
+        converted => converted,
+    };
+    converted.map_err(|error| match error {
         QuantityError::NotFinite => not_finite(node, text),
         QuantityError::Unreadable(reason) => {
             let kind = SceneErrorKind::NotAQuantity {

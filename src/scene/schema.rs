@@ -29,6 +29,9 @@ fn shape(shape: &Shape) -> Value {
         Shape::Null => json!({ "type": "null" }),
         Shape::Flag => json!({ "type": "boolean" }),
         Shape::Text => json!({ "type": "string" }),
+        Shape::Line => {
+            json!({ "type": "string", "pattern": "^[^\\u0000-\\u001f\\u007f-\\u009f]*$" })
+        }
         Shape::Count => json!({ "type": "integer", "minimum": 1 }),
         Shape::Values(values) => json!({ "enum": values }),
         Shape::Choice(_, names) => json!({ "enum": names }),

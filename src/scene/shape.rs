@@ -15,6 +15,8 @@ pub(crate) enum Shape {
     Flag,
     /// Any text.
     Text,
+    /// A text of printable characters.
+    Line,
     /// A whole number from 1 on.
     Count,
     /// A number in a unit, or a text with a number and a unit.
@@ -41,6 +43,8 @@ pub(crate) struct Quantity {
     /// Unit of a plain number; empty if the model, and with it the unit, is not known.
     pub unit: String,
     pub bounds: Bounds,
+    /// Whether a text may have no unit, too: a factor of numbers that are in the unit themselves.
+    pub or_factor: bool,
 }
 
 /// An object.
@@ -70,12 +74,24 @@ impl Quantity {
     /// A number within bounds.
     pub fn within(bounds: Bounds, unit: impl Into<String>) -> Self {
         let unit = unit.into();
-        Quantity { unit, bounds }
+        Quantity {
+            unit,
+            bounds,
+            or_factor: false,
+        }
     }
 
     /// Any number.
     pub fn any(unit: impl Into<String>) -> Self {
         Quantity::within(Bounds::NONE, unit)
+    }
+
+    /// A factor of numbers: without a unit if these are in `unit`, or in it.
+    pub fn factor(unit: impl Into<String>) -> Self {
+        Quantity {
+            or_factor: true,
+            ..Quantity::any(unit)
+        }
     }
 
     /// A number > 0.
@@ -170,7 +186,7 @@ impl Shape {
         match self {
             Shape::Null => "null".into(),
             Shape::Flag => "true or false".into(),
-            Shape::Text => "a text".into(),
+            Shape::Text | Shape::Line => "a text".into(),
             Shape::Count => "a whole number from 1 on".into(),
             Shape::Quantity(q) if q.unit.is_empty() || q.unit == "1" => "a number".into(),
             Shape::Quantity(q) => format!("a number in {}", q.unit),

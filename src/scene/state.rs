@@ -7,7 +7,8 @@ use super::format;
 use super::interpret::under;
 use super::wording::{listing, shown};
 use crate::hybrid::Initial;
-use crate::model::{Mode, Model, Variant};
+use crate::kernel::{Context, with_kernel};
+use crate::model::{HeldAt, Mode, Model, Variant};
 
 /// The coordinates to freeze, increasing. Each must be held still by some mode, or no equations
 /// without it exist.
@@ -43,12 +44,31 @@ pub(crate) fn freeze(
     frozen
 }
 
+/// A mode, and of each coordinate where the mode holds it; `None`: wherever it was, or it is not known.
+type Holding<'m> = (&'m Mode, Vec<Option<f64>>);
+
+/// Where a mode holds the coordinates under these parameters, if they are known.
+fn holding<'m>(model: &'static Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Holding<'m> {
+    let values = parameters.map(|parameters| {
+        let context = Context::new(model, parameters);
+        let mut values = vec![0.0; model.coordinates.len()];
+        with_kernel!(&mode.kernels, k => k.held_values(&context, &mut values));
+        values
+    });
+    let at = mode.held_at.iter().enumerate().map(|(i, at)| match at {
+        Some(HeldAt::Number(value)) => Some(*value),
+        Some(HeldAt::Expression(_)) => values.as_ref().map(|values| values[i]),
+        None => None,
+    });
+    (mode, at.collect())
+}
+
 /// The initial state. What the scene does not say is zero, or where the modes hold it.
 pub(crate) fn initial(
-    model: &Model,
+    model: &'static Model,
     variant: &Variant,
     scene: &Checked,
-    freeze: &[usize],
+    (freeze, parameters): (&[usize], Option<&[f64]>),
     errors: &mut Errors,
 ) -> Option<Initial> {
     let object = scene.get("initial");
@@ -63,6 +83,9 @@ pub(crate) fn initial(
         Some(i) => vec![&variant.modes[i]],
         None => variant.modes.iter().filter(|m| keeps_frozen(m)).collect(),
     };
+    let modes: Vec<Holding> = (modes.into_iter())
+        .map(|mode| holding(model, mode, parameters))
+        .collect();
     if let (Some(i), Some(at)) = (mode, entry("mode")) {
         let mode = &variant.modes[i];
         if let Some(&i) = freeze.iter().find(|i| mode.free.contains(i)) {
@@ -92,8 +115,8 @@ pub(crate) fn initial(
         })
         .collect();
     let fits =
-        |mode: &&&Mode| (0..states.len()).all(|i| states[i].objection(model, i, mode).is_none());
-    if !modes.iter().any(|mode| fits(&mode)) {
+        |mode: &Holding| (0..states.len()).all(|i| states[i].objection(model, i, mode).is_none());
+    if !modes.iter().any(fits) {
         let place = object.map_or(&scene.place, |o| &o.place);
         errors.push(misfit(model, &states, &modes, place));
         return None;
@@ -136,8 +159,8 @@ fn named_mode(model: &Model, variant: &Variant, name: &Checked) -> Result<usize,
 }
 
 /// The value at which the modes that hold a coordinate hold it, if there is one and they agree.
-fn held_by_all(modes: &[&Mode], i: usize) -> Option<f64> {
-    let mut held = modes.iter().filter_map(|m| m.held_at[i]);
+fn held_by_all(modes: &[Holding], i: usize) -> Option<f64> {
+    let mut held = modes.iter().filter_map(|(_, at)| at[i]);
     let first = held.next()?;
     held.all(|other| other == first).then_some(first)
 }
@@ -150,12 +173,17 @@ struct Given<'s> {
 
 impl<'s> Given<'s> {
     /// Why coordinate `i` cannot start like this in a mode, and the value at fault.
-    fn objection(&self, model: &Model, i: usize, mode: &Mode) -> Option<(String, &'s Checked)> {
+    fn objection(
+        &self,
+        model: &Model,
+        i: usize,
+        (mode, at): &Holding,
+    ) -> Option<(String, &'s Checked)> {
         if mode.free.contains(&i) {
             return None;
         }
         let (name, unit) = (model.coordinates[i].name, model.coordinates[i].unit);
-        if let Some(held) = mode.held_at[i] {
+        if let Some(held) = at[i] {
             let elsewhere = self.position.filter(|position| position.number() != held);
             if let Some(position) = elsewhere {
                 let held = shown(held);
@@ -176,7 +204,7 @@ impl<'s> Given<'s> {
 fn misfit(
     model: &Model,
     states: &[Given],
-    modes: &[&Mode],
+    modes: &[Holding],
     place: &super::source::Span,
 ) -> SceneError {
     let objections = |i: usize| -> Option<Vec<_>> {
@@ -186,7 +214,7 @@ fn misfit(
             .collect()
     };
     let error = |message, at| SceneError::new(SceneErrorKind::State { message }, at);
-    let names = |modes: &[&Mode]| listing(modes.iter().map(|m| m.name));
+    let names = |modes: &[Holding]| listing(modes.iter().map(|(m, _)| m.name));
     match (0..states.len()).find_map(objections).as_deref() {
         Some([(message, at), others @ ..]) => {
             let message = match others {

@@ -30,6 +30,8 @@ pub struct Motion {
     pub x_rate: f64,
     pub side: f64,
     pub ground_velocity: f64,
+    /// Of the ground, upwards.
+    pub rise: f64,
 }
 
 impl Tank {
@@ -68,23 +70,29 @@ impl Tank {
         self.m_rb * rocking + (self.m_i - self.m_rb) * (u + m.x_i_rate) + self.m_s * shell
     }
 
-    /// Vertical momentum.
+    /// Vertical momentum in the inertial frame.
     pub fn vertical_momentum(&self, m: &Motion) -> f64 {
         let arm = |r: f64, alpha: f64| r * (alpha - m.theta).sin() * m.theta_rate;
         let bulging = m.side * (m.x_i_rate * m.theta.sin() + m.x_i * m.theta.cos() * m.theta_rate);
         self.m_e * arm(self.r_0, self.alpha_0)
             + self.m_rb * bulging
             + self.m_s * arm(self.r_s, self.alpha_s)
+            + self.mass() * m.rise
     }
 
-    /// Moment that holds θ = 0 on the pivot's edge, from the bulging and the ground's accelerations.
-    pub fn holding_moment(&self, m: &Motion, x_i_acceleration: f64, u_acceleration: f64) -> f64 {
+    /// Moment that holds θ = 0 on the pivot's edge, from the accelerations of the bulging, of the base, and of the ground
+    /// upwards.
+    pub fn holding_moment(
+        &self,
+        m: &Motion,
+        [x_i_acceleration, u_acceleration, rising]: [f64; 3],
+    ) -> f64 {
         let weight = self.m_e * self.r_0 * self.alpha_0.sin()
             + self.m_rb * m.side * m.x_i
             + self.m_s * self.r_s * self.alpha_s.sin();
         let rocking = self.m_rb * self.r_i * self.alpha_i.cos();
         let shell = self.m_s * self.r_s * self.alpha_s.cos();
-        self.g * weight
+        (self.g + rising) * weight
             - m.side * (rocking * (x_i_acceleration + u_acceleration) + shell * u_acceleration)
     }
 }

@@ -38,7 +38,7 @@ fn in_a_mirror(problem: &Problem, shaken: bool) -> Problem {
 fn the_mirror_image_of_a_scene_gives_the_mirrored_result() {
     for name in SCENES {
         let problem = scene(name, &[]);
-        let mut signals = [0.0; 3];
+        let mut signals = vec![0.0; problem.model.signal_count()];
         problem.signals.rate(0.0, &mut signals);
         let shaken = signals[0] != 0.0;
         let [run, image] = [run(&problem), run(&in_a_mirror(&problem, shaken))];

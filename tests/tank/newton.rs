@@ -5,14 +5,27 @@ use crate::common::*;
 use crate::scenes::{SCENES, scene};
 use dalembert::hybrid::Problem;
 use dalembert::record::{Run, Snapshot};
+use std::collections::BTreeSet;
 
 /// Interval of the samples, s: a fortieth of a radian of bulging, so that differences over four of
 /// them are good to 1e-8 of the largest force.
 const EVERY: f64 = 1e-4;
 
+/// Motions of the ground upwards, beside those of the scenes: none, and one that lifts and drops the tank while it rocks.
+const RISES: [Option<&str>; 2] = [
+    None,
+    Some(
+        r#"inputs.vertical_acceleration={"sum": [{"constant": 1.5}, {"sine": {"amplitude": 4, "frequency": 7.3, "phase": 0.4}}]}"#,
+    ),
+];
+
 /// A scene with fine samples of everything, long enough to rock and to slide.
-fn sampled(name: &str) -> (Problem, Run) {
-    let mut problem = scene(name, &["accuracy.relative=1e-12"]);
+fn sampled(name: &str, rise: Option<&str>) -> (Problem, Run) {
+    let overrides: Vec<&str> = ["accuracy.relative=1e-12"]
+        .into_iter()
+        .chain(rise)
+        .collect();
+    let mut problem = scene(name, &overrides);
     problem.end.time = problem.end.time.min(0.5);
     problem.record.every = Some(EVERY);
     problem.record.columns.reactions = true;
@@ -41,6 +54,7 @@ impl Rows<'_> {
             x_rate: self.value(row, "x.rate"),
             side: self.value(row, "side"),
             ground_velocity: self.value(row, "ground_acceleration.velocity"),
+            rise: self.value(row, "vertical_acceleration.velocity"),
         }
     }
 
@@ -65,20 +79,26 @@ impl Rows<'_> {
 
 #[test]
 fn reactions_are_the_rates_of_the_momenta() {
-    for name in SCENES {
-        let (problem, run) = sampled(name);
+    let mut visited = BTreeSet::new();
+    for (name, rise) in SCENES
+        .into_iter()
+        .flat_map(|name| RISES.map(|rise| (name, rise)))
+    {
+        let (problem, run) = sampled(name, rise);
         let tank = Tank::of(&problem);
         let rows = Rows { run: &run };
         let weight = tank.mass() * tank.g;
         let smooth = rows.smooth();
         assert!(smooth.len() > 500, "{name}: {} rows", smooth.len());
-        let mut worst = [0.0f64; 3];
+        let mut worst = [0.0f64; 4];
         for row in smooth {
+            visited.insert((rise, run.trajectory.mode[row]));
             let horizontal = rows.rate(row, |r| tank.horizontal_momentum(&rows.motion(r)));
             let vertical = rows.rate(row, |r| tank.vertical_momentum(&rows.motion(r))) + weight;
             let error = [
                 horizontal - rows.value(row, "reaction.z_h"),
                 vertical - rows.value(row, "reaction.y"),
+                vertical - rows.value(row, "reaction.z_v"),
             ];
             for (worst, error) in worst.iter_mut().zip(error) {
                 *worst = worst.max(error.abs() / weight);
@@ -89,12 +109,68 @@ fn reactions_are_the_rates_of_the_momenta() {
                 let u = rows.rate(row, |r| {
                     rows.value(r, "x.rate") + rows.value(r, "ground_acceleration.velocity")
                 });
-                let error =
-                    tank.holding_moment(&motion, x_i, u) - rows.value(row, "reaction.theta");
-                worst[2] = worst[2].max(error.abs() / (weight * tank.r_0));
+                let rising = rows.value(row, "vertical_acceleration");
+                let moment = tank.holding_moment(&motion, [x_i, u, rising]);
+                let error = moment - rows.value(row, "reaction.theta");
+                worst[3] = worst[3].max(error.abs() / (weight * tank.r_0));
             }
         }
-        assert!(worst.iter().all(|&w| w < 1e-7), "{name}: {worst:?}");
+        assert!(
+            worst.iter().all(|&w| w < 1e-7),
+            "{name}, {rise:?}: {worst:?}"
+        );
+    }
+    // All four modes, with and without the ground rising.
+    assert_eq!(visited.len(), 2 * 4, "{visited:?}");
+}
+
+#[test]
+fn the_ground_carries_what_it_lifts() {
+    let mut problem = scene(
+        "tank_full_plate",
+        &[
+            "inputs={\"vertical_acceleration\": {\"constant\": 2}}",
+            "end=0.1",
+        ],
+    );
+    problem.record.every = Some(0.01);
+    problem.record.columns.reactions = true;
+    let tank = Tank::of(&problem);
+    let run = run(&problem);
+    let rows = Rows { run: &run };
+    let force = tank.mass() * (tank.g + 2.0);
+    assert!((force - 682.3).abs() < 0.1, "{force}");
+    for row in 0..run.trajectory.len() {
+        for name in ["reaction.y", "reaction.z_v"] {
+            let error = rows.value(row, name) - force;
+            assert!(error.abs() < 1e-12 * force, "{name}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn ground_that_rises_steadily_is_stronger_gravity() {
+    // With (g + a) in place of g, the shaking the same: the tank cannot tell them apart.
+    for name in ["tank_free_release", "tank_rocks_and_slides"] {
+        let lifted = r#"inputs.vertical_acceleration={"constant": 2.5}"#;
+        let heavier = "parameters.g=12.31";
+        let runs = [lifted, heavier].map(|change| {
+            let mut problem = scene(name, &["accuracy.relative=1e-12", change]);
+            problem.end.time = problem.end.time.min(0.5);
+            run(&problem)
+        });
+        let [lifted, heavier] = &runs;
+        assert_eq!(transitions(lifted), transitions(heavier), "{name}");
+        assert!(!lifted.events.is_empty(), "{name}");
+        for (a, b) in lifted.events.iter().zip(&heavier.events) {
+            assert!(
+                (a.t - b.t).abs() < 1e-8,
+                "{name}: {} at {} and {}",
+                a.transition,
+                a.t,
+                b.t
+            );
+        }
     }
 }
 
@@ -108,6 +184,7 @@ fn motion_of(snapshot: &Snapshot, ground_velocity: f64) -> Motion {
         x_rate: v[2],
         side: snapshot.discrete[0],
         ground_velocity,
+        rise: 0.0,
     }
 }
 

@@ -115,10 +115,18 @@ pub struct Mode {
 #[derive(Debug, Serialize)]
 pub struct Held {
     pub coordinate: &'static str,
-    /// Where; `None`: wherever it was.
-    pub at: Option<f64>,
+    /// Where, a number or an expression in the parameters; `None`: wherever it was.
+    pub at: Option<At>,
     /// Whether it moves at a given rate.
     pub drifts: bool,
+}
+
+/// Where a coordinate is held.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[serde(untagged)]
+pub enum At {
+    Number(f64),
+    Expression(&'static str),
 }
 
 /// What makes the mode inadmissible where it falls through zero.
@@ -304,7 +312,10 @@ impl Mode {
         };
         let held = |i: usize| Held {
             coordinate: name(i),
-            at: mode.held_at[i],
+            at: mode.held_at[i].map(|at| match at {
+                model::HeldAt::Number(value) => At::Number(value),
+                model::HeldAt::Expression(text) => At::Expression(text),
+            }),
             drifts: mode.drifts[i],
         };
         Mode {

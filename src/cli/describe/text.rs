@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use super::description::{Coordinate, Description, Guard, Held, Mode, Parameter};
+use super::description::{At, Coordinate, Description, Guard, Held, Mode, Parameter};
 use crate::cli::table::Table;
 use crate::record::rounded;
 
@@ -215,7 +215,8 @@ fn mode(f: &mut Formatter, mode: &Mode) -> fmt::Result {
 fn held(held: &Held) -> String {
     match (held.drifts, held.at) {
         (true, _) => format!("{} moving at its rate", held.coordinate),
-        (false, Some(value)) => format!("{} at {value}", held.coordinate),
+        (false, Some(At::Number(value))) => format!("{} at {value}", held.coordinate),
+        (false, Some(At::Expression(text))) => format!("{} at {text}", held.coordinate),
         (false, None) => format!("{} where it is", held.coordinate),
     }
 }

@@ -73,7 +73,7 @@ impl Ensemble {
         problem.record.event_states = false;
         problem.record.columns = Recorded::default();
         problem.record.every = Some(problem.end.time);
-        let modes = problem.variant.modes;
+        let modes = problem.automaton().modes;
         let mut pilot = Simulation::new(&problem)?;
         pilot.begin()?;
         let stiff = match problem.method {

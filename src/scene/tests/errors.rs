@@ -376,3 +376,31 @@ fn columns_count_characters() {
         "{error}"
     );
 }
+
+#[test]
+fn a_title_is_of_printable_characters() {
+    let error = tank(r#""end": 2,"#, r#""end": 2, "title": "two\u001b[31m red","#);
+    let message = "this text holds the control character U+001B";
+    expect(&error, message, "7:22", "one line of printable characters");
+    let scene = parse(r#"{ "model": "bouncing_ball", "title": "Größe µ — 30 °", "end": 1 }"#);
+    assert_eq!(
+        scene.unwrap().problem.title.as_deref(),
+        Some("Größe µ — 30 °")
+    );
+}
+
+#[test]
+fn an_input_that_the_options_do_not_know() {
+    let error = tank(
+        r#""inputs": { "#,
+        r#""rules": "paper", "inputs": { "vertical_acceleration": { "constant": 1 }, "#,
+    );
+    let message = "input `vertical_acceleration` has no effect under equations = derived, rules = paper, \
+                   landing = velocities, and may not be given";
+    expect(
+        &error,
+        message,
+        "4:58",
+        "or choose equations = derived, rules = reactions",
+    );
+}

@@ -42,7 +42,7 @@ fn values_replace_and_add() {
     );
     assert_eq!(scene.accuracy.v_absolute[theta], 1e-9);
     assert!(scene.freeze.is_empty());
-    let mut u = [0.0; 3];
+    let mut u = [0.0; 6];
     scene.signals.evaluate(1.0 / 28.0, &mut u);
     assert!((u[0] - 10.0).abs() < 1e-13);
 }

@@ -58,9 +58,9 @@ fn smallest_scene_takes_every_default() {
             event_states: true,
         }
     );
-    let mut u = [f64::NAN; 3];
+    let mut u = [f64::NAN; 6];
     scene.signals.evaluate(0.3, &mut u);
-    assert_eq!(u, [0.0; 3]);
+    assert_eq!(u, [0.0; 6]);
     assert_eq!(scene.signals.next_breakpoint(0.0), f64::INFINITY);
 }
 
@@ -114,7 +114,7 @@ fn every_key_is_read() {
 #[test]
 fn inputs_add_up() {
     let scene = full();
-    let mut u = [0.0; 3];
+    let mut u = [0.0; 6];
     // Before the sine: parabola 6 t (1 − t) with its top 1.5 at 0.5, record 2 × 1, constant.
     scene.signals.evaluate(0.1, &mut u);
     assert!(
@@ -265,4 +265,40 @@ fn documentation_names_every_key() {
             "docs/scene.md does not name `{key}`"
         );
     }
+}
+
+#[test]
+fn a_byte_order_mark_says_only_that_the_text_is_utf_8() {
+    let text = "{ \"model\": \"bouncing_ball\", \"end\": 1 }";
+    let marked = format!("\u{feff}{text}");
+    parse(&marked).unwrap();
+    // Columns are those of the text behind it.
+    let wrong = only_error(parse(&marked.replace("end", "ent").replace('1', "one")));
+    let plain = only_error(parse(&text.replace("end", "ent").replace('1', "one")));
+    assert_eq!(wrong.to_string(), plain.to_string());
+    let table = "\u{feff}t,a\n0,0\n1,2\n2,0\n";
+    let scene = r#"{ "model": "walking_tank", "end": 1,
+        "inputs": { "ground_acceleration": { "table": { "file": "a.csv" } } } }"#;
+    parse_with(scene.as_bytes(), &[], &[("a.csv", table.as_bytes())]).unwrap();
+}
+
+#[test]
+fn a_scale_is_a_factor_or_what_one_in_the_file_stands_for() {
+    let value = |scale: &str| {
+        let scene = format!(
+            r#"{{ "model": "walking_tank", "end": 1, "inputs": {{
+                "ground_acceleration": {{ "table": {{ "file": "a.csv", "scale": {scale} }} }} }} }}"#
+        );
+        let table: &[u8] = b"t,a\n0,0\n1,2\n2,0\n";
+        let scene =
+            parse_with(scene.as_bytes(), &[], &[("a.csv", table)]).map_err(|e| e.to_string())?;
+        let mut u = [0.0; 6];
+        scene.problem.signals.evaluate(1.0, &mut u);
+        Ok::<_, String>(u[0])
+    };
+    assert_eq!(value("\"1 g_n\""), Ok(2.0 * 9.80665));
+    assert_eq!(value("\"1 cm/s^2\""), Ok(0.02));
+    assert_eq!(value("\"50 %\""), Ok(1.0));
+    assert_eq!(value("3"), Ok(6.0));
+    assert!(value("\"1 m\"").unwrap_err().contains("unit"));
 }

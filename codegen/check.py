@@ -1,0 +1,227 @@
+"""Checks of a finished model: what its parts say of each other. `arguments.py` looks at each call by itself."""
+
+import itertools
+import random
+
+import casadi as ca
+
+from . import graph, units
+from .arguments import shown
+from .errors import ModelError
+
+MOST_FREE = 6
+"""Most free coordinates a mode may have; `ModeKernels` in src/kernel/tables.rs has one case for each."""
+
+
+def check(model):
+    """Refuses a model whose parts contradict each other."""
+    if not model.modes:
+        raise ModelError("the model has no mode: add model.mode(name, meaning, freeze=[…]), without `freeze` if all of its"
+                         " coordinates are free", model.location_of_model)
+    _check_symbols(model)
+    _check_energies_know_no_accelerations(model)
+    _check_masses(model)
+    for transition in model.transitions:
+        _check_guard(model, transition)
+        _check_reset(model, transition)
+
+
+def check_equations(model, modes):
+    """Refuses modes whose equations do not determine the accelerations."""
+    for equations in modes:
+        mode = equations.mode
+        if len(equations.free) > MOST_FREE:
+            raise ModelError(f"mode `{mode.name}` has {len(equations.free)} free coordinates; at most {MOST_FREE} are supported",
+                             mode.location)
+        _check_inertia(model, equations)
+
+
+# ---- symbols ------------------------------------------------------------------------------------
+
+
+def _expressions(model):
+    """All expressions of a model: what they are for, and where they were written."""
+    for group, what in ((model.kinetic_terms, "kinetic energy"), (model.potentials, "potential energy"),
+                        (model.dissipations, "dissipation")):
+        for k, expression in enumerate(group):
+            yield expression, what, model.location(group, k)
+    for k, body in enumerate(model.bodies):
+        for part in (body.mass, *body.position, body.inertia, body.angle):
+            if part is not None:
+                yield part, f"body {k + 1}", model.location(model.bodies, k)
+    for k, (coordinate, force) in enumerate(model.external):
+        yield force, f"force on `{coordinate.name()}`", model.location(model.external, k)
+    for name, residual in model.hand_written.items():
+        yield residual, f"equation of `{name}`", model.location(model.hand_written, name)
+    for mode in model.modes:
+        for k, (coordinate, *parts) in enumerate(mode.forces):
+            for part in parts:
+                yield part, f"force on `{coordinate.name()}` in mode `{mode.name}`", model.location(mode.forces, k)
+        for requirement, _, location in mode.requirements:
+            yield requirement, "requirement", location
+    for t in model.transitions:
+        yield t.guard, f"guard of `{t.name}`", t.location
+        if t.condition is not None:
+            yield t.condition, f"condition of `{t.name}`", t.location
+        for _, value in t.reset:
+            yield value, f"transition `{t.name}`: reset", t.location
+
+
+def _check_symbols(model):
+    """Symbols are those that the model declared: one made elsewhere may have the name of one of them."""
+    own = {s.element_hash() for s in [*model.symbols.values(), *(entry[0] for entry in model.placeholders.values())]}
+    for expression, what, location in _expressions(model):
+        for symbol in ca.symvar(expression):
+            if symbol.element_hash() not in own:
+                raise ModelError(f"{what}: symbol `{symbol.name()}` was not declared by this model: use what"
+                                 " model.coordinate(…), model.parameter(…) and the like return", location)
+
+
+def _check_energies_know_no_accelerations(model):
+    accelerations = ca.vertcat(*[c.symbol.acceleration for c in model.coordinates + model.motions])
+    for group, what in ((model.kinetic_terms, "kinetic energy"), (model.potentials, "potential energy"),
+                        (model.dissipations, "dissipation")):
+        for k, expression in enumerate(group):
+            if ca.depends_on(expression, accelerations):
+                raise ModelError(f"{what}: `{units.short(expression)}` depends on an acceleration; energies depend on coordinates"
+                                 " and rates", model.location(group, k))
+
+
+# ---- masses -------------------------------------------------------------------------------------
+
+
+def _check_masses(model):
+    """Masses and inertias of bodies are positive or zero for the defaults and for every parameter set."""
+    symbols = [p.symbol for p in model.parameters]
+    defaults = {p.name: p.default for p in model.parameters}
+    sets = [("the default parameters", {})] + [(f"the parameter set `{name}`", values) for name, _, values in model.parameter_sets]
+    for k, body in enumerate(model.bodies):
+        for part, what in ((body.mass, "mass"), (body.inertia, "inertia")):
+            if part is None or ca.depends_on(part, ca.vertcat(*_variables(model))):
+                continue
+            value = ca.Function("mass", symbols, [part])
+            for name, values in sets:
+                numbers = {**defaults, **values}
+                number = float(value.call([ca.DM(numbers[p.name]) for p in model.parameters])[0])
+                if not number >= 0:
+                    raise ModelError(f"body {k + 1}: its {what} `{units.short(part)}` is {number:g} with {name}; a {what} is not"
+                                     " negative", model.location(model.bodies, k))
+
+
+def _variables(model):
+    """All symbols but the parameters."""
+    parameters = {p.symbol.element_hash() for p in model.parameters}
+    return [s for s in model.symbols.values() if s.element_hash() not in parameters] or [ca.SX.sym("none")]
+
+
+def _check_inertia(model, equations):
+    """No motion of the free coordinates is without mass, whatever the parameters."""
+    inertia = equations.inertia()
+    names = [model.coordinates[i].name for i in equations.free]
+    bare = [name for i, name in enumerate(names) if inertia[i, :].is_zero() and inertia[:, i].is_zero()]
+    if bare:
+        raise ModelError(
+            f"mode `{equations.mode.name}`: no mass moves with coordinate `{bare[0]}`, so its acceleration is not determined: give"
+            " it a body or a kinetic energy, or freeze it in this mode", equations.mode.location)
+    if names and ca.sprank(inertia) < len(names) or names and _is_singular(inertia):
+        raise ModelError(
+            f"mode `{equations.mode.name}`: the mass matrix of its free coordinates ({', '.join(names)}) is singular: some of them"
+            " move the same bodies in the same way, or a mass is missing; leave one out, or give it a mass", equations.mode.location)
+
+
+def _is_singular(matrix):
+    """Whether the determinant vanishes identically. One value that is not zero beyond rounding shows that it does not."""
+    draw = random.Random(0)
+    symbols = ca.symvar(matrix)
+    value = ca.Function("matrix", symbols, [matrix])
+    for _ in range(32):
+        at = value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in symbols])[0]
+        rows = [sum(float(x) ** 2 for x in at[i, :].nz) ** 0.5 for i in range(at.shape[0])]
+        size = 1.0
+        for row in rows:
+            size *= row
+        if abs(float(ca.det(at))) > 1e-9 * size or size != size:
+            return False
+    return True
+
+
+# ---- transitions --------------------------------------------------------------------------------
+
+
+def _check_guard(model, transition):
+    """A guard depends on something that may change in its mode."""
+    held = {name for name, value in transition.source.held.items() if value is not None}
+    fixed = {p.symbol.element_hash() for p in model.parameters}
+    for c in model.coordinates:
+        if c.name in held:
+            fixed.add(c.symbol.element_hash())
+        if c.name in transition.source.held:
+            fixed |= {c.symbol.rate.element_hash(), c.symbol.acceleration.element_hash()}
+    if all(s.element_hash() in fixed for s in ca.symvar(transition.guard)):
+        raise ModelError(f"guard of `{transition.name}`: `{units.short(transition.guard)}` never changes in mode"
+                         f" `{transition.source.name}`, so it never falls through zero: a guard depends on what moves there, on"
+                         " inputs or on reactions", transition.location)
+
+
+def _check_reset(model, transition):
+    names, rates = {}, {}
+    for c in model.coordinates:
+        names[c.symbol.element_hash()] = c.name
+        names[c.symbol.rate.element_hash()] = c.name + ".rate"
+        rates[c.name], rates[c.name + ".rate"] = (c, False), (c, True)
+    discretes = {d.name: d for d in model.discretes}
+    names.update({d.symbol.element_hash(): d.name for d in model.discretes})
+    what, target, seen = f"transition `{transition.name}`", transition.target, set()
+    for symbol, value in transition.reset:
+        name = names.get(symbol.element_hash()) if isinstance(symbol, ca.SX) and symbol.is_scalar() else None
+        if name is None:
+            raise ModelError(f"{what}: a reset can set a coordinate, its rate or a discrete state, not {shown(symbol)}: give what"
+                             " model.coordinate(…) or model.discrete(…) returned, or its `.rate`", transition.location)
+        if name in seen:
+            raise ModelError(f"{what}: the reset sets `{name}` twice", transition.location)
+        seen.add(name)
+        if name in rates:
+            coordinate, is_rate = rates[name]
+            holds = target.drift.get(coordinate.name, ca.SX(0)) if is_rate else target.held.get(coordinate.name)
+            if coordinate.name in target.held and holds is not None and graph.structure(value) != graph.structure(holds):
+                raise ModelError(
+                    f"{what}: the reset sets `{name}` to `{units.short(value)}`, but mode `{target.name}` holds it at"
+                    f" `{units.short(holds)}`: what a mode holds is set as it is entered; leave it out", transition.location)
+        else:
+            _check_discrete(discretes[name], value, model, what, transition.location)
+
+
+def _check_discrete(discrete, value, model, what, location):
+    """A discrete state is set to one of its values: judged by all values of what the new one is calculated from."""
+    others = {d.symbol.element_hash(): d.values for d in model.discretes}
+    symbols = ca.symvar(value)
+    function = ca.Function("values", symbols, [value])
+    choices, inputs, work = [], [], {}
+    # What is compared is true or false, and from there on known.
+    for k in range(function.n_instructions()):
+        op, into, source = function.instruction_id(k), function.instruction_output(k), function.instruction_input(k)
+        if op == ca.OP_OUTPUT:
+            result = work[source[0]]
+            continue
+        if op == ca.OP_CONST:
+            work[into[0]] = ca.SX(function.instruction_constant(k))
+        elif op == ca.OP_INPUT or op in (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE):
+            symbol = symbols[source[0]] if op == ca.OP_INPUT else None
+            work[into[0]] = ca.SX.sym("choice")
+            inputs.append(work[into[0]])
+            choices.append((0.0, 1.0) if symbol is None else others.get(symbol.element_hash()))
+        else:
+            given = [work[i] for i in source]
+            work[into[0]] = ca.SX.binary(op, *given) if len(given) == 2 else ca.SX.unary(op, *given)
+    used = {s.element_hash() for s in ca.symvar(result)}
+    kept = [(i, c) for i, c in zip(inputs, choices) if i.element_hash() in used]
+    allowed = ", ".join(f"{v:g}" for v in discrete.values)
+    if any(c is None for _, c in kept):
+        raise ModelError(f"{what}: `{discrete.name}` is one of {allowed}, but is set to `{units.short(value)}`, which may be anything:"
+                         " calculate it from discrete states, numbers and comparisons", location)
+    at = ca.Function("value", [i for i, _ in kept], [result])
+    for values in itertools.islice(itertools.product(*[c for _, c in kept]), 4096):
+        number = float(at.call([ca.DM(v) for v in values])[0])
+        if number not in discrete.values:
+            raise ModelError(f"{what}: `{discrete.name}` is one of {allowed}, but `{units.short(value)}` may set it to {number:g}",
+                             location)

@@ -1,0 +1,49 @@
+"""Runs of a model file, one for each combination of its choices."""
+
+import sys
+
+from .errors import ModelError
+
+
+class BuildContext:
+    """One run of a model file: its name, and the options of the choices made so far."""
+
+    def __init__(self, name, file, options):
+        self.name, self.file, self.options = name, file, options
+        self.open, self.model = [], None
+
+    def choose(self, name, options):
+        if name not in self.options:
+            self.options[name] = options[0]
+            self.open.append((name, options[1:]))
+        return self.options[name]
+
+
+CONTEXT = []
+
+
+def build(name, file, source):
+    """Runs a model file (its text) for every combination of choices; returns the models."""
+    code = compile(source, file, "exec")
+    models, pending = [], [{}]
+    while pending:
+        context = BuildContext(name, file, dict(pending.pop(0)))
+        CONTEXT.append(context)
+        path = list(sys.path)
+        try:
+            exec(code, {"__name__": f"models.{name}", "__file__": file})
+        finally:
+            CONTEXT.pop()
+            sys.path[:] = path
+        if context.model is None:
+            raise ModelError("no Model(…) is made here", file)
+        models.append(context.model)
+        made = dict(context.options)
+        for choice, others in context.open:
+            prefix = {}
+            for key, value in made.items():
+                if key == choice:
+                    break
+                prefix[key] = value
+            pending += [{**prefix, choice: other} for other in others]
+    return models

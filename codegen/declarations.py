@@ -1,0 +1,65 @@
+"""What a model consists of, as `model.py` collects it."""
+
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+
+class Named(ca.SX):
+    """A symbol that knows its declaration."""
+
+
+class Coordinate(Named):
+    """A generalized coordinate; `.rate` and `.acceleration` are its derivatives."""
+
+
+class Discrete(Named):
+    """A discrete state."""
+
+
+@dataclass
+class Declaration:
+    """What is common to everything that has a name, a unit and a meaning."""
+
+    name: str
+    unit: str
+    meaning: str
+    symbol: ca.SX
+    extra: dict = field(default_factory=dict)
+
+    def __getattr__(self, key):
+        try:
+            return self.__dict__["extra"][key]
+        except KeyError:
+            raise AttributeError(key) from None
+
+
+@dataclass
+class Body:
+    """A body of the plane: mass, position of its centre, inertia about it, angle."""
+
+    mass: ca.SX
+    position: tuple
+    inertia: ca.SX = None
+    angle: ca.SX = None
+
+
+@dataclass
+class Falls:
+    """A guard: the mode is inadmissible once `expression` falls through zero."""
+
+    expression: ca.SX
+
+
+@dataclass
+class Transition:
+    """Guard → next mode; built by `Model.transition`."""
+
+    name: str
+    source: "Mode"
+    target: "Mode"
+    guard: ca.SX
+    condition: ca.SX
+    reset: list
+    impact: bool
+    location: str
