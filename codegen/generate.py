@@ -404,7 +404,7 @@ def _extract_constants(variants):
     """Replaces sub-expressions of parameters alone, over all functions of all variants."""
     canonical = ca.vertcat(*[p.symbol for p in variants[0].model.parameters])
     columns, functions = [], []
-    for variant in chosen:
+    for variant in variants:
         own = ca.vertcat(*[p.symbol for p in variant.model.parameters])
         for function in variant.functions.values():
             column = function.output
