@@ -185,6 +185,7 @@ impl Problem {
                 model: self.model.name,
                 what: "limit state",
                 name: name.into(),
+                known: limits.map(|limit| limit.name.into()).collect(),
             });
         };
         self.limits.of_model.retain(|(known, _)| *known != name);

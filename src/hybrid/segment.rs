@@ -303,7 +303,9 @@ impl Simulation<'_> {
                         return Err(Box::new(reason));
                     }
                     let mode = mode.name;
-                    unmet = Some(Box::new(Reason::DeterminantChangesSign { mode }));
+                    ended = Some(Ended::Unmet(Box::new(Reason::DeterminantChangesSign {
+                        mode,
+                    })));
                 }
             }
 
