@@ -30,3 +30,45 @@ fn the_scene_it_shows_is_one() {
         panic!("{errors}");
     }
 }
+
+/// Times depend on the machine and on the state of the code: the README names the commands that measure them.
+#[test]
+fn it_quotes_no_times_that_nothing_renews() {
+    let words: Vec<_> = include_str!("../README.md").split_whitespace().collect();
+    let is_time =
+        |word: &str| ["µs", "ms", "ns"].contains(&word.trim_matches([',', '.', ';', ')']));
+    for pair in words.windows(2) {
+        let follows = pair[0] == "/" || pair[0].ends_with(|c: char| c.is_ascii_digit());
+        assert!(
+            !(follows && is_time(pair[1])),
+            "README.md quotes a time: {pair:?}"
+        );
+    }
+}
+
+/// What it says of the comparison is what the table says that `benches/peers/run.py` writes.
+#[test]
+fn the_comparison_is_as_in_its_table() {
+    let rows = include_str!("../docs/peers.md").lines().filter_map(|line| {
+        let cells: Vec<_> = line.trim_matches('|').split('|').map(str::trim).collect();
+        match cells[..] {
+            [problem, error, .., ratio] if error.starts_with("1e-") => {
+                Some((problem, ratio, ratio.parse::<f64>().expect("a ratio")))
+            }
+            _ => None,
+        }
+    });
+    let (free, others): (Vec<_>, Vec<_>) = rows.partition(|&(problem, ..)| problem == "free");
+    assert!(
+        others.iter().all(|&(_, _, ratio)| ratio <= 0.5),
+        "{others:?}"
+    );
+    let by_ratio = |a: &&(_, _, f64), b: &&(_, _, f64)| a.2.total_cmp(&b.2);
+    let least = free.iter().min_by(by_ratio).expect("it is in the table").1;
+    let most = free.iter().max_by(by_ratio).expect("it is in the table").1;
+    let said = format!("on the tank's free release it is {least} to {most}.");
+    assert!(
+        include_str!("../README.md").contains(&said),
+        "README.md lacks: {said}"
+    );
+}

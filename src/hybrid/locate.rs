@@ -138,10 +138,6 @@ fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 false => Landing::Short,
             });
         }
-        if end.t + correction <= start {
-            // The time does not go back: what the step begins with is not across.
-            return Ok(Landing::Short);
-        }
         let step = (start, window);
         if correction.abs() <= TAYLOR * (window - start) {
             let place = (end, correction);
@@ -149,7 +145,7 @@ fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 equations, conditions, guard, place, step, landed,
             ));
         }
-        if correction.abs() >= correction_before {
+        if correction.abs() >= correction_before || end.t + correction <= start {
             return Ok(Landing::Short);
         }
         correction_before = correction.abs();
