@@ -51,7 +51,8 @@ def model_text(name, variants, constants_symbol, constants_count, for_tests):
     functions = [(slot, f) for v in variants for slot, f in v.functions.items()]
     externs = sorted({f.symbol for slot, f in functions if slot[1] not in SERIES} | {constants_symbol})
     series = [f.symbol for slot, f in functions if slot[1] in SERIES and f.symbol]
-    lines = ["use crate::model::*;", "", 'unsafe extern "C" {']
+    lines = ["use crate::model::*;", "#[allow(unused_imports)]", "use crate::jets::{Instruction as I, Name, Pick, Tape};",
+             "", 'unsafe extern "C" {']
     lines += [
         f"    fn {e}(q: *const f64, v: *const f64, a: *const f64, x: *const RawContext, out: *mut f64);"
         for e in externs
@@ -211,7 +212,7 @@ def _mode(variant, i, equations):
             target_free = len(variant.modes[target].free)
             yield (f"{pad}                Transition {{ name: {_text(transition.name)}, target: {target}, "
                    f"conditional: {_bool(condition)}, changes: &[{', '.join(map(_text, transition.changes))}], "
-                   f"impact: {_bool(transition.impact)}, kernel: TransitionKernel {{ dimensions: &DIMENSIONS, source_free: {free}, "
+                   f"impact: {_bool(transition.impact)}, conditions: {variant.tapes[i, 'conditions', g, t]}, kernel: TransitionKernel {{ dimensions: &DIMENSIONS, source_free: {free}, "
                    f"reset: {functions['reset', g, t].symbol}, "
                    f"condition: {_option(condition, lambda c: f'({c.symbol}, {target_free}, {c.output.numel()})')} }} }},")
         yield f"{pad}            ],"
@@ -224,6 +225,7 @@ def _mode(variant, i, equations):
     yield f"{pad}    ],"
     without = functions[("series",)].without or None
     yield f"{pad}    without_series: {_option(without, _text)},"
+    yield f"{pad}    system: {variant.tapes[i, 'system']}, guard_values: {variant.tapes[i, 'guards']},"
     yield f"{pad}    kernels: ModeKernels::F{free}(ModeKernel {{"
     yield f"{pad}        dimensions: &DIMENSIONS,"
     for what in _MODE_FUNCTIONS:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import bounds, derive, emit_rust, emit_series, graph, units
+from . import bounds, derive, emit_rust, emit_series, graph, tape, units
 from .emit_c import Source
 from .errors import ModelError, error_location
 from .model import build
@@ -37,6 +37,8 @@ class Variant:
     model: object
     modes: list
     functions: dict = field(default_factory=dict)
+    tapes: dict = field(default_factory=dict)
+    """Rust text of what the program expands itself, by slot as the functions."""
 
 
 def load(folder):
@@ -207,6 +209,7 @@ def _variant(model):
                     condition = target.place(transition.condition)
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
                     _add(variant, prefix + f"guard{g}_condition{t}", condition, target, (i, "condition", g, t))
+        _tapes(variant, i, index)
         rates = _drift_rates(model, equations)
         _add(variant, prefix + "guard_series", ca.vertcat(*values, rates), equations, (i, "guard_series"))
     return variant
@@ -217,6 +220,21 @@ def _add(variant, name, output, equations, slot):
     arranged = graph.arrange(ca.densify(ca.vec(ca.SX(output))), parameters)
     function = variant.functions[slot] = Function(name, arranged, equations, slot)
     return function
+
+
+def _tapes(variant, i, index):
+    """Adds the tapes of a mode: its system, its guards, and the conditions of its transitions in their targets."""
+    model, equations = variant.model, variant.modes[i]
+    places = lambda of: tape.places(model, of, _signals(model))
+    mass, load = equations.system()
+    variant.tapes[i, "system"] = tape.of(ca.vertcat(ca.vec(mass), load), places(equations))
+    guards = ca.vertcat(*[equations.place(expression) for expression, _ in equations.guards])
+    variant.tapes[i, "guards"] = tape.of(guards, places(equations))
+    for g, (_, transitions) in enumerate(equations.guards):
+        for t, transition in enumerate(transitions):
+            target = variant.modes[index[transition.target.name]]
+            conditions = ca.SX(0, 1) if transition.condition is None else target.place(transition.condition)
+            variant.tapes[i, "conditions", g, t] = tape.of(conditions, places(target))
 
 
 def _mode_functions(variant, equations, slot, prefix):

@@ -33,6 +33,7 @@ pub mod cli;
 pub mod hybrid;
 pub mod input;
 pub mod integrate;
+pub mod jets;
 // The calls into the generated C.
 #[allow(unsafe_code)]
 pub mod kernel;

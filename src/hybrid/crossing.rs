@@ -22,6 +22,10 @@ pub(super) struct Signs {
     found: Vec<Search>,
     /// Local time from which each is searched, where that is after the start of the step.
     from: Vec<f64>,
+    /// Local time until which each that was zero at the start of the segment is known to be positive; else 0.
+    away: Vec<f64>,
+    /// Whether that of one of them is not 0.
+    waits: bool,
 }
 
 /// Result of [`cut`].
@@ -43,6 +47,33 @@ impl Signs {
     /// No signs yet.
     pub fn clear(&mut self) {
         self.watches.clear();
+        self.away.clear();
+        self.waits = false;
+    }
+
+    /// Adds the sign of the next at the start of a segment, and the local time until which it is known to be positive.
+    #[inline(always)]
+    pub fn remember(&mut self, watch: Watch, away: f64) {
+        self.watches.push(watch);
+        self.away.push(away);
+        self.waits |= away > 0.0;
+    }
+
+    /// Whether one of them is searched only from some time on.
+    pub fn waits(&self) -> bool {
+        self.waits
+    }
+
+    /// Searches each from the start of a step, or from the time until which it is positive.
+    #[inline(always)]
+    fn search_from(&mut self, start: f64) {
+        let count = self.watches.len();
+        self.from[..count].fill(start);
+        if self.waits {
+            for (from, away) in self.from.iter_mut().zip(&self.away) {
+                *from = from.max(*away);
+            }
+        }
     }
 
     /// Makes room for the search of as many as there are signs.
@@ -89,7 +120,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     (signs, landed): (&mut Signs, &mut State<F>),
 ) -> Stoppable<Cut> {
     let start = method.start().t;
-    signs.parts().2.fill(start);
+    signs.search_from(start);
     let mut hides = false;
     loop {
         let dense = method.dense().expect("a step was made");

@@ -1,7 +1,8 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
+use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
-use super::guards::{Conditions, slope, value, watched_value};
+use super::guards::{Conditions, slope, watched_value};
 use super::inertia::pivots;
 use super::requirements::check_requirements;
 use super::roots::Watch;
@@ -49,54 +50,71 @@ impl Simulation<'_> {
             at: [&q, &v],
         };
 
+        let is_explicit = self.is_explicit(kernel);
         self.signs.clear();
         let mut violation = None;
-        for &watched in &self.plan.watched[self.here.mode] {
+        for w in 0..self.plan.watched[self.here.mode].len() {
+            let watched = self.plan.watched[self.here.mode][w];
             let guard = &mode.guards[watched.guard];
             let mut conditions = Conditions {
                 variant: self.problem.variant,
                 plan: &self.plan,
                 next: &mut self.next,
             };
-            let conditional = watched.conditional;
             let at = Free {
                 q: &q,
                 v: &v,
                 a: &a,
             };
-            let own = watched_value(
-                kernel,
-                &mut self.context,
-                &mut conditions,
-                guard,
-                watched,
-                at,
-            );
-            let mut watch = Watch::of(own);
-            let violated = match watched.condition {
-                None if conditional => {
-                    let of = (guard, watched);
-                    value(kernel, &mut self.context, &mut conditions, of, at) < 0.0
-                }
-                None => watch == Watch::Violated,
-                // The guard's own entry has decided about its conditions, too.
-                Some(_) => false,
+            let context = &mut self.context;
+            let own = watched_value(kernel, context, &mut conditions, guard, watched, at);
+            let sign = Watch::of(own);
+            // The guard's own entry decides about its conditions, too.
+            if sign == Watch::Armed || watched.condition.is_some() {
+                self.signs.remember(sign, 0.0);
+                continue;
+            }
+            let plain = (sign == Watch::Dormant && !watched.conditional)
+                .then(|| start.departure(&self.context, guard, (&a, is_explicit)));
+            let departure = match plain.flatten() {
+                Some(departure) => departure,
+                None => self.departure(watched.guard),
             };
-            let mut at_once = false;
-            if watch == Watch::Dormant && !conditional {
-                at_once = start.departure(&self.context, guard, &mut a) < 0.0;
+            let (watch, away) = match departure {
+                // Its dense output shows it.
+                Departure::Up { until: 0.0, .. } => (sign, 0.0),
+                Departure::Up { until, .. } => (Watch::Armed, until),
+                Departure::Down { .. } => (Watch::Violated, 0.0),
+                Departure::Stays | Departure::Unknown => (sign, 0.0),
+            };
+            self.signs.remember(watch, away);
+            if let Some(index) = idle_acceleration(guard, departure) {
+                a[index] = 0.0;
             }
-            if at_once {
-                watch = Watch::Violated;
+            let falls = match departure {
+                Departure::Down { .. } => true,
+                Departure::Unknown => sign == Watch::Violated,
+                Departure::Up { .. } | Departure::Stays => false,
+            };
+            if falls && violation.is_none() {
+                let at = Free {
+                    q: &q,
+                    v: &v,
+                    a: &a,
+                };
+                let acts = !watched.conditional
+                    || guard.transitions.iter().any(|transition| {
+                        self.plan.allowed[transition.target]
+                            && self.may_take(kernel, transition, at)
+                    });
+                let from_zero = matches!(departure, Departure::Down { order: 1.. });
+                if acts {
+                    violation = Some(Violation {
+                        guard: watched.guard,
+                        rests: from_zero && is_at_rest(guard, &v),
+                    });
+                }
             }
-            if (violated || at_once) && violation.is_none() {
-                let rests = at_once && is_at_rest(guard, &v);
-                violation = Some(Violation {
-                    guard: watched.guard,
-                    rests,
-                });
-            }
-            self.signs.watches.push(watch);
         }
         self.signs.start();
         if violation.is_none() {
@@ -153,7 +171,7 @@ impl Simulation<'_> {
             {
                 return Ok(false);
             }
-            self.signs.watches.push(Watch::of(value));
+            self.signs.remember(Watch::of(value), 0.0);
         }
         self.signs.start();
         if needs_accelerations || self.has_sample_left() {
@@ -199,46 +217,60 @@ struct Start<'a, const F: usize> {
 }
 
 impl<const F: usize> Start<'_, F> {
-    /// Sign with which a guard that is exactly zero leaves zero: that of its first derivative that is
-    /// not zero; 0 where that is not decided here and the motion must tell.
+    /// How a guard that is exactly zero leaves zero, where that takes no expansion: a coordinate by its rate, and what is
+    /// linear by accelerations that are more than their rounding.
     ///
-    /// An acceleration below its own rounding error is no evidence: at a smooth lift-off θ = θ̇ = θ̈ = 0
-    /// and the jerk decides. It is then set to zero, so that the motion starts with the sign of the
-    /// jerk.
-    fn departure(&self, context: &Context, guard: &Guard, a: &mut SVector<f64, F>) -> f64 {
+    /// Where the dense output shows a rise as it is, it need not be known how long that lasts: 0. It does where it begins
+    /// with the rate, and on a step of the Taylor method (`is_explicit`), which begins with the acceleration, too.
+    fn departure(
+        &self,
+        context: &Context,
+        guard: &Guard,
+        (a, is_explicit): (&SVector<f64, F>, bool),
+    ) -> Option<Departure> {
         let [q, v] = self.at;
-        match guard.shape {
-            GuardShape::Linear {
-                index,
-                rate,
-                factor,
-                discrete,
-                ..
-            } => {
-                let factor = slope((factor, discrete), context);
-                if !rate && v[index] != 0.0 {
-                    return factor * v[index];
-                }
-                let inverse = inverse(self.mass, self.scale);
-                let at = Free { q, v, a: &*a };
-                let size = self.kernel.magnitude(context, at);
-                let noise: f64 = (0..F)
-                    .map(|j| inverse[(index, j)].abs() * size[j] * ROUNDOFF)
-                    .sum();
-                if a[index].abs() > noise {
-                    return factor * a[index];
-                }
-                let jerk = -inverse * self.kernel.jerk_load(context, at);
-                a[index] = 0.0;
-                factor * jerk[index]
-            }
-            GuardShape::General { .. } => {
-                let at = Free { q, v, a: &*a };
-                let jerk = -inverse(self.mass, self.scale) * self.kernel.jerk_load(context, at);
-                self.kernel.guard_rate(context, &guard.kernel, at, &jerk)
-            }
+        let GuardShape::Linear {
+            index,
+            rate,
+            factor,
+            discrete,
+            ..
+        } = guard.shape
+        else {
+            return None;
+        };
+        let factor = slope((factor, discrete), context);
+        let leaves = |derivative: f64, order: usize| match factor * derivative > 0.0 {
+            true => Departure::Up { order, until: 0.0 },
+            false => Departure::Down { order },
+        };
+        if !rate && v[index] != 0.0 {
+            return Some(leaves(v[index], 1));
         }
+        let inverse = inverse(self.mass, self.scale);
+        let size = self.kernel.magnitude(context, Free { q, v, a });
+        let noise: f64 = (0..F)
+            .map(|j| inverse[(index, j)].abs() * size[j] * ROUNDOFF)
+            .sum();
+        let departure = leaves(a[index], if rate { 1 } else { 2 });
+        let shows = is_explicit || matches!(departure, Departure::Down { .. });
+        (a[index].abs() > noise && factor != 0.0 && shows).then_some(departure)
     }
+}
+
+/// The coordinate of a guard whose acceleration is no evidence of how it departs: it is zero, and the motion starts
+/// without it.
+fn idle_acceleration(guard: &Guard, departure: Departure) -> Option<usize> {
+    let GuardShape::Linear { index, rate, .. } = guard.shape else {
+        return None;
+    };
+    let of_acceleration = if rate { 1 } else { 2 };
+    let is_idle = match departure {
+        Departure::Up { order, .. } | Departure::Down { order } => order > of_acceleration,
+        Departure::Stays => true,
+        Departure::Unknown => false,
+    };
+    is_idle.then_some(index)
 }
 
 /// Whether a guard that leaves zero at once does so from rest: a coordinate without speed. Any other

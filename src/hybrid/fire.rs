@@ -2,7 +2,6 @@
 
 use super::accumulation::Signature;
 use super::failure::{Reason, Stoppable};
-use super::guards::Conditions;
 use super::simulation::Simulation;
 use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
@@ -86,15 +85,10 @@ impl Simulation<'_> {
             v: &v,
             a: &a,
         };
-        let mut conditions = Conditions {
-            variant: self.problem.variant,
-            plan: &self.plan,
-            next: &mut self.next,
-        };
         let transitions = mode.guards[guard].transitions;
-        (0..transitions.len())
-            .filter(|&t| self.plan.allowed[transitions[t].target])
-            .find(|&t| conditions.least(kernel, &mut self.context, &transitions[t], at) >= 0.0)
+        (0..transitions.len()).find(|&t| {
+            self.plan.allowed[transitions[t].target] && self.may_take(kernel, &transitions[t], at)
+        })
     }
 
     /// Makes `next` the present state, in mode `target`, and records the event.

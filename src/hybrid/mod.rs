@@ -7,6 +7,7 @@
 
 mod accumulation;
 mod crossing;
+mod departure;
 mod doubt;
 mod ensemble;
 mod enter;

@@ -47,13 +47,8 @@ impl Simulation<'_> {
         Solvers: SlotsOf<F>,
     {
         let (problem, mode) = (self.problem, self.mode());
-        let explicit = match problem.method {
-            Method::Taylor => true,
-            Method::Radau => false,
-            Method::Auto => !self.stiffness[self.here.mode].prefers_implicit(),
-        };
         match stages(problem.accuracy.relative) {
-            _ if explicit && kernel.is_analytic() => {
+            _ if self.is_explicit(kernel) => {
                 let make =
                     |x: &Context| Taylor::new(&tolerances(problem, mode), kernel.series_kind(x));
                 self.integrate(kernel, |slots| &mut slots.taylor, make, stays, progress)
@@ -79,6 +74,16 @@ impl Simulation<'_> {
                 )
             }
         }
+    }
+
+    /// Whether the present mode is followed by the Taylor method.
+    pub fn is_explicit<const F: usize>(&self, kernel: &ModeKernel<F>) -> bool {
+        kernel.is_analytic()
+            && match self.problem.method {
+                Method::Taylor => true,
+                Method::Radau => false,
+                Method::Auto => !self.stiffness[self.here.mode].prefers_implicit(),
+            }
     }
 
     /// Takes the method of the present mode out of its slot, or makes it; follows the motion, and puts it back.

@@ -16,6 +16,7 @@ use super::stiffness::Stiffness;
 use super::validate::{check_initial, check_parameters};
 use super::visited::Visited;
 use crate::input::Side;
+use crate::jets::Expansion;
 use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
@@ -131,6 +132,10 @@ pub(super) struct Simulation<'p> {
     pub has_inertia: Box<[bool]>,
     /// Typical sizes of all coordinates: absolute ÷ relative tolerance.
     pub sizes: Box<[f64]>,
+    /// The same of their rates.
+    pub rate_sizes: Box<[f64]>,
+    /// Room for expansions in time.
+    pub expansion: Expansion,
     /// Name and order of every method that was used.
     pub methods: Vec<(&'static str, usize)>,
     pub samples: Samples,
@@ -161,6 +166,8 @@ impl<'p> Simulation<'p> {
         let accuracy = &problem.accuracy;
         let absolute = [&accuracy.q_absolute[..], &accuracy.v_absolute].concat();
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
+        let sizes = |absolute: &[f64]| absolute.iter().map(|a| a / accuracy.relative).collect();
+        let context_signals = context.signals().len();
         Ok(Simulation {
             problem,
             initial: &problem.initial,
@@ -194,9 +201,9 @@ impl<'p> Simulation<'p> {
             piece: Piece::UNKNOWN,
             foresees,
             has_inertia: vec![false; problem.variant.modes.len()].into(),
-            sizes: (accuracy.q_absolute.iter())
-                .map(|absolute| absolute / accuracy.relative)
-                .collect(),
+            sizes: sizes(&accuracy.q_absolute),
+            rate_sizes: sizes(&accuracy.v_absolute),
+            expansion: Expansion::new(n, context_signals, &problem.parameters),
             methods: Vec::new(),
             samples: Samples::from(record.every, 0),
             counted: 0,
@@ -221,6 +228,7 @@ impl<'p> Simulation<'p> {
         check_initial(model, member.initial)?;
         self.initial = member.initial;
         self.context.set_parameters(model, member.parameters);
+        self.expansion.set_parameters(member.parameters);
         self.rewind(0);
         self.choose_initial_mode()?;
         self.set_context();

@@ -182,6 +182,11 @@ impl Context {
         &self.arrays.signals
     }
 
+    /// Time derivatives of the signals.
+    pub fn signal_rates(&self) -> &[f64] {
+        &self.arrays.signal_rates
+    }
+
     /// Signals and their rates, for values of one's own.
     pub fn signals_mut(&mut self) -> [&mut [f64]; 2] {
         self.signals_at.0 = f64::NAN;

@@ -7,6 +7,7 @@ mod bounds;
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
 
+use crate::jets::Tape;
 use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
 
 /// A model: one folder under `models/`.
@@ -195,6 +196,10 @@ pub struct Mode {
     pub drifts: &'static [bool],
     /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
     pub without_series: Option<&'static str>,
+    /// Mass matrix, column by column, and load.
+    pub system: Tape,
+    /// The guards.
+    pub guard_values: Tape,
     /// Generated functions, typed by the number of free coordinates.
     pub kernels: ModeKernels,
     /// Operation counts of the generated functions, by name.
@@ -259,6 +264,8 @@ pub struct Transition {
     pub changes: &'static [&'static str],
     /// Whether it is an impact: velocities may jump and energy may be lost.
     pub impact: bool,
+    /// Its conditions, in the target mode; none if it is unconditional.
+    pub conditions: Tape,
     /// The generated reset.
     pub kernel: TransitionKernel,
 }

@@ -222,7 +222,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
 
     /// Whether the guards of a simulation that has just entered the mode can be followed in a lane.
     pub fn takes(signs: &Signs) -> bool {
-        signs.watches.iter().all(|watch| *watch != Watch::Violated)
+        !signs.waits() && signs.watches.iter().all(|watch| *watch != Watch::Violated)
     }
 
     /// Puts a trajectory, which has just entered the mode, into a lane.

@@ -1,0 +1,169 @@
+//! With which sign a number that is zero leaves zero: a guard at the start of a segment, a condition where its
+//! transition is to be taken.
+//!
+//! That is a question about the exact motion. The number is zero if rounding may have made it what it is; then the
+//! first derivative along the motion decides that is more than its own rounding. A derivative below its rounding is no
+//! evidence and is skipped: at a smooth lift-off height, rate and acceleration vanish, and what is computed of them is
+//! noise. The derivatives come from [`crate::jets`], whatever the method, so nothing depends on the first coefficients
+//! of a dense output, which are noise as well.
+
+use super::guards::Conditions;
+use super::simulation::Simulation;
+use crate::jets::{Expansion, ORDERS, Point};
+use crate::kernel::{Free, ModeKernel};
+use crate::model::{Mode, Transition};
+
+/// How a number goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Departure {
+    /// It is positive, or becomes so at once with the derivative of this `order`, and stays so for a time, s.
+    Up { order: usize, until: f64 },
+    /// It is negative, or becomes so at once with the derivative of this order.
+    Down { order: usize },
+    /// It is zero, and all derivatives are, as far as rounding tells.
+    Stays,
+    /// Rounding errors are not known: an operation has no rule, or is singular.
+    Unknown,
+}
+
+/// What is asked for: results of a tape along the motion of a mode from a state.
+struct Question<'a> {
+    mode: &'static Mode,
+    tape: &'static crate::jets::Tape,
+    index: usize,
+    at: Point<'a>,
+    /// Typical sizes of coordinates and rates.
+    sizes: [&'a [f64]; 2],
+    /// For how long an answer is of interest, s.
+    within: f64,
+}
+
+impl Question<'_> {
+    /// Expands the motion as far as it takes.
+    fn answer(&self, expansion: &mut Expansion) -> Departure {
+        let Question {
+            mode, tape, index, ..
+        } = *self;
+        // The value is not known better than the state is: to a rounding of what is typical of it.
+        expansion.begin(mode, self.at, Some(self.sizes));
+        expansion.expand(mode, tape, 0);
+        let value = expansion.result(tape, index)[0];
+        if !value.error.is_finite() {
+            return Departure::Unknown;
+        }
+        let decisive = match value.sign() {
+            Some(_) => Some(0),
+            None => {
+                // It is zero, and leaves zero as the motion from the state that is given does.
+                expansion.begin(mode, self.at, None);
+                expansion.expand(mode, tape, 0);
+                (1..ORDERS).find(|&k| {
+                    expansion.expand(mode, tape, k);
+                    expansion.result(tape, index)[k].sign().is_some()
+                })
+            }
+        };
+        let Some(order) = decisive else {
+            return Departure::Stays;
+        };
+        if expansion.result(tape, index)[order].sign() == Some(false) {
+            return Departure::Down { order };
+        }
+        for k in order + 1..ORDERS {
+            expansion.expand(mode, tape, k);
+        }
+        let until = self.lasts(order, &expansion.result(tape, index)[order..]);
+        Departure::Up { order, until }
+    }
+
+    /// For how long the first of some coefficients outweighs the others twice, s: till then the sign is its own.
+    fn lasts(&self, order: usize, coefficients: &[crate::jets::Bounded]) -> f64 {
+        let (first, others) = coefficients.split_first().expect("it was found");
+        let least = 0.5 * (first.value - first.error);
+        let outweighs = |time: f64| {
+            let of = |sum: f64, c: &crate::jets::Bounded| {
+                let size = c.value.abs() + c.error;
+                // Where nothing is known of an order its neighbours tell.
+                time * (sum + if size.is_finite() { size } else { 0.0 })
+            };
+            others.iter().rev().fold(0.0, of) <= least
+        };
+        if order == 0 {
+            return 0.0;
+        }
+        let mut time = self.within;
+        while time > 0.0 && !outweighs(time) {
+            time *= 0.5;
+        }
+        time
+    }
+}
+
+impl Simulation<'_> {
+    /// How a guard of the present mode goes on from here; the context is set for it.
+    #[cold]
+    pub fn departure(&mut self, guard: usize) -> Departure {
+        self.expand_signals();
+        let mode = self.mode();
+        let question = Question {
+            mode,
+            tape: &mode.guard_values,
+            index: guard,
+            at: Point {
+                q: &self.here.q,
+                v: &self.here.v,
+                discrete: self.context.discrete(),
+            },
+            sizes: [&self.sizes, &self.rate_sizes],
+            within: self.problem.end.time - self.here.now.seconds(),
+        };
+        question.answer(&mut self.expansion)
+    }
+
+    /// Whether a transition of a guard may be taken: none of its conditions is negative just after it, in the motion of
+    /// its target. Leaves the reset in `next`.
+    #[inline(always)]
+    pub fn may_take<const F: usize>(
+        &mut self,
+        kernel: &'static ModeKernel<F>,
+        transition: &'static Transition,
+        at: Free<F>,
+    ) -> bool {
+        let mut conditions = Conditions {
+            variant: self.problem.variant,
+            plan: &self.plan,
+            next: &mut self.next,
+        };
+        let least = conditions.least(kernel, &mut self.context, transition, at);
+        least >= 0.0 || (!least.is_nan() && self.holds_just_after(transition))
+    }
+
+    /// Whether the conditions of a transition, whose reset is in `next`, hold just after it although one of them is
+    /// negative.
+    #[cold]
+    fn holds_just_after(&mut self, transition: &'static Transition) -> bool {
+        self.expand_signals();
+        let n = self.here.q.len();
+        let (q, rest) = self.next.split_at(n);
+        let (v, discrete) = rest.split_at(n);
+        (0..transition.kernel.conditions()).all(|index| {
+            let question = Question {
+                mode: &self.modes[transition.target],
+                tape: &transition.conditions,
+                index,
+                at: Point { q, v, discrete },
+                sizes: [&self.sizes, &self.rate_sizes],
+                within: 0.0,
+            };
+            let departure = question.answer(&mut self.expansion);
+            matches!(departure, Departure::Up { .. } | Departure::Stays)
+        })
+    }
+
+    /// The inputs as they go on from here.
+    fn expand_signals(&mut self) {
+        let (context, signals) = (&self.context, &self.problem.signals);
+        let t = self.here.now.seconds();
+        self.expansion.set_signals(context, signals, t);
+    }
+}

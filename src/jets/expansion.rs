@@ -1,0 +1,211 @@
+//! The motion of a mode from a state, and what depends on it, order by order.
+
+use super::tape::{Operands, Row};
+use super::{Bounded, ORDERS, Tape};
+use crate::input::Signals;
+use crate::kernel::{Context, MOST_FREE};
+use crate::model::Mode;
+
+/// Where an expansion starts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Point<'a> {
+    /// All coordinates.
+    pub q: &'a [f64],
+    /// All velocities; of a coordinate that the mode holds, that of its drift.
+    pub v: &'a [f64],
+    /// Discrete states.
+    pub discrete: &'a [f64],
+}
+
+/// Room for the Taylor coefficients of a motion.
+#[derive(Debug)]
+pub(crate) struct Expansion {
+    given: Operands,
+    /// Coefficients of the signals, a row an order and one more.
+    signal_rows: Box<[f64]>,
+    /// Of each signal: it is wanted.
+    wanted: Box<[bool]>,
+    /// Coefficients of the instructions of the system of a mode.
+    system: Vec<Row>,
+    /// Of what depends on the motion.
+    others: Vec<Row>,
+    /// Inverse of the mass matrix at the start.
+    inverse: [[f64; MOST_FREE]; MOST_FREE],
+}
+
+impl Expansion {
+    /// Room for a model with so many coordinates and signals, at some parameters.
+    pub fn new(coordinates: usize, signals: usize, parameters: &[f64]) -> Self {
+        let rows = |count: usize| vec![Row::default(); count];
+        Expansion {
+            given: Operands {
+                q: rows(coordinates),
+                v: rows(coordinates),
+                a: rows(coordinates),
+                signals: rows(signals),
+                discrete: Vec::new(),
+                parameters: parameters.into(),
+            },
+            signal_rows: vec![0.0; (ORDERS + 1) * signals].into(),
+            wanted: vec![true; signals].into(),
+            system: Vec::new(),
+            others: Vec::new(),
+            inverse: [[0.0; MOST_FREE]; MOST_FREE],
+        }
+    }
+
+    /// Goes over to other parameters.
+    pub fn set_parameters(&mut self, parameters: &[f64]) {
+        self.given.parameters.copy_from_slice(parameters);
+    }
+
+    /// Sets the inputs to those just after time `t` (s), for which the context is set.
+    pub fn set_signals(&mut self, context: &Context, signals: &Signals, t: f64) {
+        let width = self.given.signals.len();
+        self.signal_rows.fill(0.0);
+        if width == 0 || context.quiet {
+            self.given.signals.fill(Row::default());
+            return;
+        }
+        let known = [context.signals(), context.signal_rates()];
+        signals.series(t, known, &self.wanted, &mut self.signal_rows);
+        for k in 0..ORDERS {
+            let [row, next] = [k, k + 1].map(|k| &self.signal_rows[k * width..][..width]);
+            for (signal, (&value, &next)) in self.given.signals.iter_mut().zip(row.iter().zip(next)) {
+                // The time is rounded, and an order of a recurrence adds a product.
+                let slope = (k + 1) as f64 * next;
+                let of_time = Bounded::rounded(slope * t, 1.0, 0.0).error;
+                signal[k] = Bounded::rounded(value, (k + 1) as f64, of_time);
+            }
+        }
+    }
+
+    /// Begins at a state whose numbers are known to a rounding of themselves, or of these `sizes` of coordinates and
+    /// rates where they are less. What the mode holds is exact.
+    pub fn begin(&mut self, mode: &Mode, at: Point, sizes: Option<[&[f64]; 2]>) {
+        let given = &mut self.given;
+        given.discrete.clear();
+        given.discrete.extend_from_slice(at.discrete);
+        for i in 0..at.q.len() {
+            let known = |value: f64, of: usize| match mode.free.contains(&i) {
+                true => Bounded::of_size(value, sizes.map_or(0.0, |sizes| sizes[of][i])),
+                false => Bounded::exact(value),
+            };
+            given.q[i] = Row::default();
+            given.v[i] = Row::default();
+            given.a[i] = Row::default();
+            given.q[i][0] = known(at.q[i], 0);
+            given.v[i][0] = known(at.v[i], 1);
+            given.q[i][1] = given.v[i][0];
+        }
+        for (rows, tape) in [
+            (&mut self.system, &mode.system),
+            (&mut self.others, &mode.guard_values),
+        ] {
+            let count = tape.instructions.len();
+            if rows.len() < count {
+                rows.resize(count, Row::default());
+            }
+        }
+    }
+
+    /// Goes on with the coefficients of order `k` of the motion's accelerations and of what a tape gives.
+    pub fn expand(&mut self, mode: &Mode, tape: &Tape, k: usize) {
+        self.move_on(mode, k);
+        if self.others.len() < tape.instructions.len() {
+            self.others.resize(tape.instructions.len(), Row::default());
+        }
+        tape.expand(k, &self.given, &mut self.others);
+    }
+
+    /// What the last tape gives, by the index of the result.
+    pub fn result(&self, tape: &Tape, index: usize) -> &Row {
+        &self.others[tape.results[index]]
+    }
+
+    /// The accelerations of order `k`, and rates and coordinates that follow from them.
+    fn move_on(&mut self, mode: &Mode, k: usize) {
+        let free = mode.free;
+        let count = free.len();
+        mode.system.expand(k, &self.given, &mut self.system);
+        let entry = |place: usize| &self.system[mode.system.results[place]];
+        if k == 0 {
+            let mass = |i: usize, j: usize| entry(count * j + i)[0].value;
+            invert(count, mass, &mut self.inverse);
+        }
+        // M₀ a_k + rest = 0.
+        let mut rest = [Bounded::default(); MOST_FREE];
+        for (i, rest) in rest.iter_mut().enumerate().take(count) {
+            *rest = entry(count * count + i)[k];
+            for (j, &coordinate) in free.iter().enumerate() {
+                let (mass, a) = (entry(count * j + i), &self.given.a[coordinate]);
+                *rest = (1..=k).fold(*rest, |sum, n| sum + mass[n] * a[k - n]);
+            }
+        }
+        let mut a = [0.0; MOST_FREE];
+        for (i, a) in a.iter_mut().enumerate().take(count) {
+            *a = -(0..count)
+                .map(|j| self.inverse[i][j] * rest[j].value)
+                .sum::<f64>();
+        }
+        // What these leave of the equations, times the inverse, is their error.
+        let mut left = [0.0; MOST_FREE];
+        for (i, left) in left.iter_mut().enumerate().take(count) {
+            let residual = (0..count).fold(rest[i], |sum, j| {
+                sum + entry(count * j + i)[0] * Bounded::exact(a[j])
+            });
+            *left = residual.value.abs() + residual.error;
+        }
+        let given = &mut self.given;
+        for (i, &coordinate) in free.iter().enumerate() {
+            let error = (0..count)
+                .map(|j| self.inverse[i][j].abs() * left[j])
+                .sum::<f64>();
+            let acceleration = Bounded { value: a[i], error };
+            given.a[coordinate][k] = acceleration;
+            if k + 1 < ORDERS {
+                let rate = acceleration / Bounded::exact((k + 1) as f64);
+                given.v[coordinate][k + 1] = rate;
+                if k + 2 < ORDERS {
+                    given.q[coordinate][k + 2] = rate / Bounded::exact((k + 2) as f64);
+                }
+            }
+        }
+    }
+}
+
+/// Writes the inverse of a matrix, by Gauss and Jordan with the largest pivot of each column. What is not a number, of a
+/// singular one, becomes an error without bound.
+fn invert(
+    count: usize,
+    entry: impl Fn(usize, usize) -> f64,
+    inverse: &mut [[f64; MOST_FREE]; MOST_FREE],
+) {
+    let mut rows = [[0.0; MOST_FREE]; MOST_FREE];
+    for i in 0..count {
+        for j in 0..count {
+            rows[i][j] = entry(i, j);
+            inverse[i][j] = f64::from(u8::from(i == j));
+        }
+    }
+    for column in 0..count {
+        let size = |row: &usize| rows[*row][column].abs();
+        let pivot = (column..count)
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+            .expect("a column has a row");
+        rows.swap(column, pivot);
+        inverse.swap(column, pivot);
+        let reciprocal = 1.0 / rows[column][column];
+        for j in 0..count {
+            rows[column][j] *= reciprocal;
+            inverse[column][j] *= reciprocal;
+        }
+        for i in (0..count).filter(|&i| i != column) {
+            let factor = rows[i][column];
+            for j in 0..count {
+                rows[i][j] -= factor * rows[column][j];
+                inverse[i][j] -= factor * inverse[column][j];
+            }
+        }
+    }
+}
