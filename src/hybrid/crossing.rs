@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::failure::Stoppable;
 use super::guards::{self, Conditions};
-use super::locate::{Landing, land, land_later};
+use super::locate::{Landing, land, land_later, rate_at, value_at};
 use super::plan::Watched;
 use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
@@ -121,6 +121,9 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 ) -> Stoppable<Cut> {
     let start = method.start().t;
     signs.search_from(start);
+    if signs.waits {
+        wake(method, equations, (mode, watched), signs);
+    }
     let mut hides = false;
     loop {
         let dense = method.dense().expect("a step was made");
@@ -155,7 +158,10 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         }
         let Some(first) = time.and_then(|_| found.iter().position(|f| f.crossing.is_some())) else {
             *landed = *method.state();
-            return Ok(Cut::Nothing);
+            return Ok(match signs.waits {
+                true => fallen(equations, conditions, (mode, watched), signs, landed),
+                false => Cut::Nothing,
+            });
         };
         let crossing = found[first].crossing.expect("it was found by it");
         let index = watched[first].guard;
@@ -166,9 +172,9 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         }
         let is_event = crossing.kind != Kind::Pole
             && (!watched[first].conditional
-                || both_violated(equations, conditions, dense, guard, crossing));
+                || acts_together(equations, conditions, dense, guard, crossing));
         if !is_event {
-            // The sign changes, but not through zero, or guard and condition are not both violated.
+            // The sign changes, but not through zero, or the other part of a conditional guard does not agree.
             watches[first] = Watch::Violated;
             from[first] = crossing.outside;
             continue;
@@ -196,6 +202,60 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             }
         }
     }
+}
+
+/// Guards that were zero at the start of the segment and are not searched before some time of the last step: one that its
+/// dense output does not show to be positive there, by its error, must show it before its fall counts.
+#[cold]
+fn wake<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
+    equations: &mut Equations<'a, F>,
+    (mode, watched): (&'static Mode, &[Watched]),
+    signs: &mut Signs,
+) {
+    let dense = method.dense().expect("a step was made");
+    for (i, watch) in signs.watches.iter_mut().enumerate() {
+        let away = signs.away[i];
+        if *watch == Watch::Armed && away > method.start().t && away < method.end() {
+            let [q, v, a] = guards::motion(equations, dense, away, true);
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            let kernel = equations.kernel;
+            let guard = &mode.guards[watched[i].guard];
+            if kernel.guard(equations.context, &guard.kernel, at) <= 0.0 {
+                *watch = Watch::Violated;
+            }
+        }
+    }
+}
+
+/// The event of a guard that was zero at the start of the segment and rose from it by less than the dense output shows,
+/// so that it never was seen to be positive: it is negative at the end of the step, and falls.
+#[cold]
+fn fallen<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    (mode, watched): (&'static Mode, &[Watched]),
+    signs: &Signs,
+    end: &State<F>,
+) -> Cut {
+    for (i, &watched) in watched.iter().enumerate() {
+        let guard = (&mode.guards[watched.guard], watched);
+        if signs.away[i] > 0.0
+            && signs.found[i].watch == Watch::Violated
+            && value_at(equations, conditions, guard, end) < 0.0
+            && rate_at(equations, guard.0, end) < 0.0
+        {
+            return Cut::Event {
+                guard: watched.guard,
+                beyond: 0.0,
+            };
+        }
+    }
+    Cut::Nothing
 }
 
 /// Searches a guard, unless the window from which it is searched is empty.
@@ -266,12 +326,14 @@ fn search_all<const F: usize>(
     earliest(dense.start(), to, watches, found, search).time
 }
 
-/// Whether a conditional guard and one of its conditions are violated at a crossing.
-fn both_violated<const F: usize>(
+/// Whether the other part of a conditional guard agrees where one part falls through zero: where the guard does, that
+/// the conditions of some transition hold; where a condition comes to hold, that the guard is violated and the others of
+/// its transition hold. The part that falls is not asked for its value, which rounding may keep at zero there.
+fn acts_together<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
-    guard: (&Guard, Watched),
+    (guard, watched): (&Guard, Watched),
     crossing: Crossing,
 ) -> bool {
     let [q, v, a] = guards::motion(equations, dense, crossing.outside, true);
@@ -280,5 +342,17 @@ fn both_violated<const F: usize>(
         v: &v,
         a: &a,
     };
-    guards::value(equations.kernel, equations.context, conditions, guard, at) <= 0.0
+    let (kernel, context) = (equations.kernel, &mut *equations.context);
+    match watched.condition {
+        None => {
+            let plan = conditions.plan;
+            let mut allowed = guard.transitions.iter().filter(|t| plan.allowed[t.target]);
+            allowed.any(|t| conditions.least(kernel, context, t, at) >= 0.0)
+        }
+        Some((t, component)) => {
+            let transition = &guard.transitions[t];
+            kernel.guard(context, &guard.kernel, at) <= 0.0
+                && conditions.least_but(kernel, context, (transition, component), at) >= 0.0
+        }
+    }
 }

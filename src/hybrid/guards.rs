@@ -61,6 +61,21 @@ impl Conditions<'_> {
         let least = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);
         self.reduced(kernel, context, transition, at, least)
     }
+
+    /// The same of all but one of its conditions.
+    pub fn least_but<const F: usize>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        context: &mut Context,
+        (transition, component): (&Transition, usize),
+        at: Free<F>,
+    ) -> f64 {
+        let least = |all: &[f64]| {
+            let others = all.iter().enumerate().filter(|(i, _)| *i != component);
+            others.fold(f64::INFINITY, |least, (_, c)| least.min(*c))
+        };
+        self.reduced(kernel, context, transition, at, least)
+    }
 }
 
 /// The conditions in their target mode, whose coordinates and discrete states the context holds. NaN

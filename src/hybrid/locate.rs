@@ -239,8 +239,9 @@ fn accelerate<const F: usize>(equations: &mut Equations<F>, state: &mut State<F>
     }
 }
 
+/// Value of a guard at a state, with its conditions.
 #[inline(always)]
-fn value_at<const F: usize>(
+pub(super) fn value_at<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),

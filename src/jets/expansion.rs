@@ -71,7 +71,8 @@ impl Expansion {
         signals.series(t, known, &self.wanted, &mut self.signal_rows);
         for k in 0..ORDERS {
             let [row, next] = [k, k + 1].map(|k| &self.signal_rows[k * width..][..width]);
-            for (signal, (&value, &next)) in self.given.signals.iter_mut().zip(row.iter().zip(next)) {
+            for (signal, (&value, &next)) in self.given.signals.iter_mut().zip(row.iter().zip(next))
+            {
                 // The time is rounded, and an order of a recurrence adds a product.
                 let slope = (k + 1) as f64 * next;
                 let of_time = Bounded::rounded(slope * t, 1.0, 0.0).error;

@@ -122,8 +122,7 @@ impl Tape {
                     (0..=k).fold(Bounded::default(), |z, j| z + rows[x][j] * rows[y][k - j])
                 }
                 Instruction::Quotient(x, y) => {
-                    let rest =
-                        (1..=k).fold(rows[x][k], |z, j| z - rows[y][j] * rows[place][k - j]);
+                    let rest = (1..=k).fold(rows[x][k], |z, j| z - rows[y][j] * rows[place][k - j]);
                     rest / rows[y][0]
                 }
                 Instruction::Function(name, x, _) if k == 0 => name.of(rows[x][0]),
