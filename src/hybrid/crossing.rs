@@ -26,6 +26,8 @@ pub(super) struct Signs {
     away: Vec<f64>,
     /// Whether that of one of them is not 0.
     waits: bool,
+    /// Those that turned within rounding in the step and are not positive at its end.
+    below: Vec<usize>,
 }
 
 /// Result of [`cut`].
@@ -107,6 +109,10 @@ impl Signs {
         for (watch, found) in self.watches.iter_mut().zip(&self.found) {
             *watch = found.watch;
         }
+        self.waits |= !self.below.is_empty();
+        for i in self.below.drain(..) {
+            (self.watches[i], self.away[i]) = (Watch::Violated, f64::MIN_POSITIVE);
+        }
     }
 }
 
@@ -158,6 +164,9 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         }
         let Some(first) = time.and_then(|_| found.iter().position(|f| f.crossing.is_some())) else {
             *landed = *method.state();
+            if hides {
+                signs.below = below(equations, conditions, (mode, watched), signs, landed);
+            }
             return Ok(match signs.waits {
                 true => fallen(equations, conditions, (mode, watched), signs, landed),
                 false => Cut::Nothing,
@@ -232,8 +241,27 @@ fn wake<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     }
 }
 
-/// The event of a guard that was zero at the start of the segment and rose from it by less than the dense output shows,
-/// so that it never was seen to be positive: it is negative at the end of the step, and falls.
+/// Those of the guards that came to zero within rounding which are not positive at the end of the step.
+#[cold]
+fn below<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    (mode, watched): (&'static Mode, &[Watched]),
+    signs: &Signs,
+    end: &State<F>,
+) -> Vec<usize> {
+    let is_below = |&i: &usize| {
+        let guard = (&mode.guards[watched[i].guard], watched[i]);
+        signs.found[i].turn <= 0.0
+            && signs.found[i].crossing.is_none()
+            && value_at(equations, conditions, guard, end) <= 0.0
+    };
+    (0..watched.len()).filter(is_below).collect()
+}
+
+/// The event of a guard that was zero at the start of the segment, or came to zero within rounding, and rose from it by
+/// less than the dense output shows, so that it never was seen to be positive: it is negative at the end of the step, and
+/// falls.
 #[cold]
 fn fallen<const F: usize>(
     equations: &mut Equations<F>,

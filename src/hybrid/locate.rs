@@ -10,7 +10,7 @@ use super::failure::Stoppable;
 use super::guards::{self, Conditions};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind};
-use crate::integrate::{OneStep, State, System};
+use crate::integrate::{ORDERS, OneStep, State, System};
 use crate::model::{Guard, GuardShape};
 use nalgebra::SVector;
 
@@ -33,7 +33,55 @@ pub(super) enum Landing {
 const TAYLOR: f64 = 3.8e-6;
 
 /// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
+///
+/// A guard that is no more negative there than rounding makes it, and rises, has turned: it does not fall.
 pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
+    equations: &mut Equations<'a, F>,
+    conditions: &mut Conditions,
+    guard: (&Guard, Watched),
+    crossing: Crossing,
+    landed: &mut State<F>,
+) -> Stoppable<Landing> {
+    let landing = land_on(method, equations, conditions, guard, crossing, landed)?;
+    let rises = matches!(landing, Landing::On { .. })
+        && guard.1.condition.is_none()
+        && crossing.kind != Kind::Jump
+        && rate_at(equations, guard.0, landed) >= 0.0;
+    Ok(
+        match rises && is_rounding(equations, conditions, guard, (method.start(), landed)) {
+            true => Landing::Hidden,
+            false => landing,
+        },
+    )
+}
+
+/// Whether the value of a guard is no more than what rounding in a step's polynomials makes of it at its end.
+#[cold]
+fn is_rounding<const F: usize>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: (&Guard, Watched),
+    (start, end): (&State<F>, &State<F>),
+) -> bool {
+    // Horner's rule (Higham 2002, §5.1).
+    let rounding = |from: f64, to: f64| ORDERS as f64 * f64::EPSILON * from.abs().max(to.abs());
+    let value = value_at(equations, conditions, guard, end);
+    let mut change = |moved: &mut State<F>| {
+        accelerate(equations, moved);
+        (value_at(equations, conditions, guard, moved) - value).abs()
+    };
+    let mut sum = change(&mut end.clone());
+    for i in 0..F {
+        let (mut moved, mut faster) = (*end, *end);
+        moved.q[i] += rounding(start.q[i], end.q[i]);
+        faster.v[i] += rounding(start.v[i], end.v[i]);
+        sum += change(&mut moved) + change(&mut faster);
+    }
+    value.abs() <= sum
+}
+
+fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,

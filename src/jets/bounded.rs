@@ -30,9 +30,10 @@ impl Bounded {
         Bounded { value, error }
     }
 
-    /// A number known to a rounding of itself, or of `size` where that is more.
-    pub fn of_size(value: f64, size: f64) -> Self {
-        let error = ROUNDOFF * value.abs().max(size);
+    /// The value at the end of a step of a polynomial with so many coefficients whose terms add up to `size`, or to the
+    /// value where that is more: Horner's rule (Higham 2002, §5.1).
+    pub fn of_polynomial(value: f64, coefficients: usize, size: f64) -> Self {
+        let error = 2.0 * coefficients as f64 * ROUNDOFF * value.abs().max(size);
         Bounded { value, error }
     }
 

@@ -3,6 +3,7 @@
 use super::tape::{Operands, Row};
 use super::{Bounded, ORDERS, Tape};
 use crate::input::Signals;
+use crate::integrate;
 use crate::kernel::{Context, MOST_FREE};
 use crate::model::Mode;
 
@@ -81,16 +82,17 @@ impl Expansion {
         }
     }
 
-    /// Begins at a state whose numbers are known to a rounding of themselves, or of these `sizes` of coordinates and
-    /// rates where they are less. What the mode holds is exact.
+    /// Begins at a state whose numbers are known to a rounding of themselves; or, given typical sizes of coordinates and
+    /// rates, as a step of the motion leaves them. What the mode holds is exact.
     pub fn begin(&mut self, mode: &Mode, at: Point, sizes: Option<[&[f64]; 2]>) {
         let given = &mut self.given;
         given.discrete.clear();
         given.discrete.extend_from_slice(at.discrete);
         for i in 0..at.q.len() {
-            let known = |value: f64, of: usize| match mode.free.contains(&i) {
-                true => Bounded::of_size(value, sizes.map_or(0.0, |sizes| sizes[of][i])),
-                false => Bounded::exact(value),
+            let known = |value: f64, of: usize| match sizes {
+                _ if !mode.free.contains(&i) => Bounded::exact(value),
+                None => Bounded::rounded(value, 1.0, 0.0),
+                Some(sizes) => Bounded::of_polynomial(value, integrate::ORDERS, sizes[of][i]),
             };
             given.q[i] = Row::default();
             given.v[i] = Row::default();

@@ -1,0 +1,255 @@
+//! Random scenes of the walking tank, the rocking block and the sliding oscillator, each by both methods: none stops but
+//! for what its model requires, no coordinate is below its minimum, what a mode holds is held, and both methods give
+//! the same events.
+//!
+//! The suite runs a share; `DALEMBERT_RANDOM_SCENES=10000 cargo test --release --test random_scenes` runs ten thousand,
+//! `DALEMBERT_RANDOM_SCENE=17` one of them and shows its events.
+
+mod common;
+use common::*;
+use dalembert::hybrid::{Method, Problem, simulate};
+use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
+use dalembert::record::{Run, Silent};
+use std::f64::consts::TAU;
+
+/// Scenes in the suite.
+const SHARE: u64 = 200;
+
+/// Numbers that look random (Steele, Lea and Flood 2014: SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 * 2f64.powi(-53)
+    }
+
+    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.next() as usize % all.len()]
+    }
+}
+
+/// A shaking of the ground: a sine, or a table with steps, straight lines or a spline.
+fn shaking(random: &mut Random, amplitude: f64, end: f64) -> Function {
+    let kinds = [
+        None,
+        Some(Interpolation::Previous),
+        Some(Interpolation::Linear),
+        Some(Interpolation::Cubic),
+    ];
+    match random.one_of(&kinds) {
+        None => {
+            let frequency = random.within(0.5, 9.0);
+            let phase = random.one_of(&[0.0, random.within(0.0, TAU)]);
+            Sine::new(amplitude, TAU * frequency, phase).into()
+        }
+        Some(interpolation) => {
+            let count = 8 + (random.next() % 9) as usize;
+            let times: Vec<f64> = (0..count)
+                .map(|k| 1.01 * end * k as f64 / (count - 1) as f64)
+                .collect();
+            let mut values: Vec<f64> = (0..count)
+                .map(|_| random.within(-amplitude, amplitude))
+                .collect();
+            (values[0], values[count - 1]) = (0.0, 0.0);
+            Table::new(&times, &values, interpolation, Outside::Zero)
+                .unwrap()
+                .into()
+        }
+    }
+}
+
+/// Scene by number.
+fn scene(number: u64) -> Problem {
+    let mut random = Random(number.wrapping_mul(0x2545_f491_4f6c_dd1d));
+    let random = &mut random;
+    let mu = random.within(0.1, 1.2);
+    let kinetic = random.one_of(&[1.0, random.within(0.5, 1.0)]) * mu;
+    let e = random.one_of(&[0.0, random.within(0.0, 0.9)]);
+    let damping = random.one_of(&[0.0, random.within(0.0, 0.5)]);
+    let model = random.one_of(&[
+        "walking_tank",
+        "walking_tank",
+        "rocking_block",
+        "sliding_oscillator",
+    ]);
+    let (mut problem, end, strongest) = match model {
+        "walking_tank" => {
+            let parameters = [
+                ("mu_s", mu),
+                ("mu_k", kinetic),
+                ("e", e),
+                ("damping", damping),
+            ];
+            let mut tank = problem(model, &parameters);
+            let set = random.one_of(tank.model.parameter_sets);
+            for (name, value) in set.values {
+                if !parameters.iter().any(|(own, _)| own == name) {
+                    tank.set_parameter(name, *value).unwrap();
+                }
+            }
+            let landing = random.one_of(&["momenta", "velocities"]);
+            tank.choose(&[("landing", landing)]).unwrap();
+            (tank, random.within(0.3, 1.2), 15.0)
+        }
+        "rocking_block" => {
+            let alpha = random.within(0.1, 0.4);
+            let parameters = [("alpha", alpha), ("e", e), ("R", random.within(0.3, 3.0))];
+            (problem(model, &parameters), random.within(0.5, 2.0), 8.0)
+        }
+        _ => {
+            let k = 10f64.powf(random.within(3.0, 6.0));
+            let c = 2.0 * damping * (40.0 * k).sqrt();
+            let parameters = [("mu_s", mu), ("mu_k", kinetic), ("k", k), ("c", c)];
+            (problem(model, &parameters), random.within(0.3, 1.0), 20.0)
+        }
+    };
+    let amplitude = random.within(0.2, strongest);
+    let ground = shaking(random, amplitude, end);
+    problem.set_input("ground_acceleration", ground).unwrap();
+    problem.set_tolerance(random.one_of(&[1e-8, 1e-10, 1e-11]));
+    problem.end.time = end;
+    problem.record.every = Some(end / 200.0);
+    problem.record.columns.reactions = false;
+    problem.record.columns.energies = false;
+    problem
+}
+
+/// What is wrong with a run, if anything.
+fn fault(problem: &Problem, run: &Run) -> Option<String> {
+    if let Some(failure) = &run.failure {
+        let modes = problem.variant.modes.iter();
+        let mut required = modes.flat_map(|mode| mode.requirements);
+        if !required.any(|requirement| failure.reason.contains(requirement.failure)) {
+            return Some(format!("stops at {}: {}", failure.at.t, failure.reason));
+        }
+    }
+    let column = |name: &str| run.trajectory.column(name).unwrap();
+    for (i, coordinate) in problem.model.coordinates.iter().enumerate() {
+        let [place, rate] = [coordinate.name, &format!("{}.rate", coordinate.name)].map(column);
+        for row in 0..run.trajectory.len() {
+            let mode = &problem.variant.modes[usize::from(run.trajectory.mode[row])];
+            let (t, row) = (run.trajectory.t[row], run.trajectory.row(row));
+            let name = coordinate.name;
+            if coordinate
+                .minimum
+                .is_some_and(|minimum| row[place] < minimum)
+            {
+                return Some(format!("{name} = {:e} at {t}", row[place]));
+            }
+            let held = !mode.free.contains(&i) && !mode.drifts[i];
+            if held && (row[rate] != 0.0 || mode.held_at[i].is_some_and(|at| row[place] != at)) {
+                return Some(format!("{name} is held in {} and moves at {t}", mode.name));
+            }
+        }
+        for event in &run.events {
+            if coordinate
+                .minimum
+                .is_some_and(|minimum| event.after.q[i] < minimum)
+            {
+                return Some(format!("{} after {}", coordinate.name, event.transition));
+            }
+        }
+    }
+    None
+}
+
+/// The first event in which two runs differ, where neither says that it cannot tell, and no accumulation leaves it to the
+/// tolerance how many of its impacts are recorded.
+fn difference(problem: &Problem, a: &Run, b: &Run) -> Option<String> {
+    let doubt = [a, b]
+        .iter()
+        .flat_map(|run| run.uncertain.first.iter().map(|doubt| doubt.t))
+        .fold(f64::INFINITY, f64::min);
+    // Ends of the runs may cut the last one.
+    let end = a.end.t.min(b.end.t);
+    let late = |t: f64| t >= doubt.min(end) - 1e3 * problem.accuracy.relative;
+    // The impacts before a rest: how many there are follows from the tolerance.
+    let plain = |run: &Run| -> Vec<(f64, &'static str)> {
+        let mut kept: Vec<(f64, &'static str)> = Vec::new();
+        for event in &run.events {
+            if event.transition == "rest" {
+                while kept
+                    .last()
+                    .is_some_and(|(_, name)| *name == "landing" || *name == "impact")
+                {
+                    kept.pop();
+                }
+            }
+            kept.push((event.t, event.transition));
+        }
+        kept
+    };
+    let (a, b) = (plain(a), plain(b));
+    for k in 0..a.len().max(b.len()) {
+        match (a.get(k), b.get(k)) {
+            (Some((t, one)), Some((other, two))) => {
+                if one != two {
+                    return (!late(t.min(*other)))
+                        .then(|| format!("{one} at {t}, {two} at {other}"));
+                }
+            }
+            (Some((t, name)), None) | (None, Some((t, name))) => {
+                return (!late(*t)).then(|| format!("{name} at {t} in one run only"));
+            }
+            (None, None) => {}
+        }
+    }
+    None
+}
+
+#[test]
+fn random_scenes_run_through_and_both_methods_agree() {
+    let asked = |name: &str| std::env::var(name).ok().map(|text| text.parse().unwrap());
+    let only: Option<u64> = asked("DALEMBERT_RANDOM_SCENE");
+    let count = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
+    let numbers = only.map_or(0..count, |only| only..only + 1);
+    let (mut faults, mut required, mut events) = (Vec::new(), 0, 0);
+    for number in numbers {
+        let problem = scene(number);
+        let runs = [Method::Taylor, Method::Radau].map(|method| {
+            let mut problem = problem.clone();
+            problem.method = method;
+            let run = simulate(&problem, &mut Silent).expect("the problem can be started");
+            if only.is_some() {
+                println!(
+                    "{} {:?} at {:?}",
+                    problem.model.name, method, problem.parameters
+                );
+                for event in &run.events {
+                    println!(
+                        "{:.17} {} {} → {}",
+                        event.t, event.transition, event.from, event.to
+                    );
+                }
+                println!(
+                    "{:?} {:?}",
+                    run.failure.as_ref().map(|f| &f.reason),
+                    run.uncertain
+                );
+            }
+            faults
+                .extend(fault(&problem, &run).map(|fault| format!("{number} {method:?}: {fault}")));
+            required += usize::from(run.failure.is_some());
+            events += run.events.len();
+            run
+        });
+        let [taylor, radau] = &runs;
+        let differ = difference(&problem, taylor, radau);
+        faults.extend(differ.map(|what| format!("{number}: {what}")));
+    }
+    println!("{events} events, {required} runs end where the model says");
+    assert!(
+        faults.is_empty(),
+        "{} faults:\n{}",
+        faults.len(),
+        faults.join("\n")
+    );
+}
