@@ -19,7 +19,7 @@ fn a_contact_that_opens_does_not_collide() {
     for method in METHODS {
         for e in [0.1, 0.3, 0.5, 0.7, 0.9, 1.0] {
             for places in [[-1.0, 0.0, 1.0], [-0.7, 0.1, 0.9], [2.0, 3.3, 4.6]] {
-                let mut balls = problem("balls_that_meet", &[("e", e)]);
+                let mut balls = problem("meeting_balls", &[("e", e)]);
                 balls.method = method;
                 for (name, value) in ["p", "q", "r"].iter().zip(places) {
                     balls.set_initial(name, value).unwrap();

@@ -2,7 +2,7 @@
 
 from codegen.model import *
 
-model = Model("Balls that meet", source="test model: contacts that close at the same instant")
+model = Model("Meeting balls", source="test model: contacts that close at the same instant")
 
 m = model.parameter("m", "kg", 1.0, "mass of each ball", above=0)
 e = model.parameter("e", "1", 0.5, "restitution", minimum=0, maximum=1)
