@@ -31,8 +31,14 @@ impl Random {
         low + (high - low) * (self.next() >> 11) as f64 * 2f64.powi(-53)
     }
 
-    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.next() as usize % all.len()]
+    fn one_of<'t, T>(&mut self, all: &'t [T]) -> &'t T {
+        &all[self.next() as usize % all.len()]
+    }
+
+    /// A number, or one within a range.
+    fn either(&mut self, one: f64, (low, high): (f64, f64)) -> f64 {
+        let other = self.within(low, high);
+        *self.one_of(&[one, other])
     }
 }
 
@@ -44,10 +50,10 @@ fn shaking(random: &mut Random, amplitude: f64, end: f64) -> Function {
         Some(Interpolation::Linear),
         Some(Interpolation::Cubic),
     ];
-    match random.one_of(&kinds) {
+    match *random.one_of(&kinds) {
         None => {
             let frequency = random.within(0.5, 9.0);
-            let phase = random.one_of(&[0.0, random.within(0.0, TAU)]);
+            let phase = random.either(0.0, (0.0, TAU));
             Sine::new(amplitude, TAU * frequency, phase).into()
         }
         Some(interpolation) => {
@@ -71,10 +77,10 @@ fn scene(number: u64) -> Problem {
     let mut random = Random(number.wrapping_mul(0x2545_f491_4f6c_dd1d));
     let random = &mut random;
     let mu = random.within(0.1, 1.2);
-    let kinetic = random.one_of(&[1.0, random.within(0.5, 1.0)]) * mu;
-    let e = random.one_of(&[0.0, random.within(0.0, 0.9)]);
-    let damping = random.one_of(&[0.0, random.within(0.0, 0.5)]);
-    let model = random.one_of(&[
+    let kinetic = random.either(1.0, (0.5, 1.0)) * mu;
+    let e = random.either(0.0, (0.0, 0.9));
+    let damping = random.either(0.0, (0.0, 0.5));
+    let model = *random.one_of(&[
         "walking_tank",
         "walking_tank",
         "rocking_block",
@@ -95,7 +101,7 @@ fn scene(number: u64) -> Problem {
                     tank.set_parameter(name, *value).unwrap();
                 }
             }
-            let landing = random.one_of(&["momenta", "velocities"]);
+            let landing = *random.one_of(&["momenta", "velocities"]);
             tank.choose(&[("landing", landing)]).unwrap();
             (tank, random.within(0.3, 1.2), 15.0)
         }
@@ -114,7 +120,7 @@ fn scene(number: u64) -> Problem {
     let amplitude = random.within(0.2, strongest);
     let ground = shaking(random, amplitude, end);
     problem.set_input("ground_acceleration", ground).unwrap();
-    problem.set_tolerance(random.one_of(&[1e-8, 1e-10, 1e-11]));
+    problem.set_tolerance(*random.one_of(&[1e-8, 1e-10, 1e-11]));
     problem.end.time = end;
     problem.record.every = Some(end / 200.0);
     problem.record.columns.reactions = false;
@@ -207,7 +213,10 @@ fn difference(problem: &Problem, a: &Run, b: &Run) -> Option<String> {
 
 #[test]
 fn random_scenes_run_through_and_both_methods_agree() {
-    let asked = |name: &str| std::env::var(name).ok().map(|text| text.parse().unwrap());
+    let asked = |name: &str| -> Option<u64> {
+        let text = std::env::var(name).ok()?;
+        Some(text.parse().unwrap())
+    };
     let only: Option<u64> = asked("DALEMBERT_RANDOM_SCENE");
     let count = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
     let numbers = only.map_or(0..count, |only| only..only + 1);

@@ -34,7 +34,7 @@ struct Question<'a> {
     at: Point<'a>,
     /// Typical sizes of coordinates and rates.
     sizes: [&'a [f64]; 2],
-    /// For how long an answer is of interest, s.
+    /// For how long the series holds, s.
     within: f64,
 }
 
@@ -105,6 +105,9 @@ impl Simulation<'_> {
     pub fn departure(&mut self, guard: usize) -> Departure {
         self.expand_signals();
         let mode = self.mode();
+        let now = self.here.now.seconds();
+        // The series of an input ends at its next knot, also where it goes on smoothly.
+        let knot = self.problem.signals.next_knot(now);
         let question = Question {
             mode,
             tape: &mode.guard_values,
@@ -115,7 +118,7 @@ impl Simulation<'_> {
                 discrete: self.context.discrete(),
             },
             sizes: [&self.sizes, &self.rate_sizes],
-            within: self.problem.end.time - self.here.now.seconds(),
+            within: knot.min(self.problem.end.time) - now,
         };
         question.answer(&mut self.expansion)
     }
