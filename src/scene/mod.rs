@@ -11,6 +11,7 @@ mod format;
 mod inputs;
 mod interpret;
 mod number;
+mod record;
 mod schema;
 mod set;
 mod shape;
@@ -28,6 +29,7 @@ pub(crate) use format::METHODS;
 
 pub use error::{SceneError, SceneErrorKind, SceneErrors};
 pub use files::{Disk, Files};
+pub(crate) use record::Record;
 pub use schema::schema;
 pub use source::Position;
 pub(crate) use wording::nearest;

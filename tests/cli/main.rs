@@ -4,6 +4,7 @@ mod compare;
 mod describe;
 mod input;
 mod interrupt;
+mod motion;
 mod output;
 mod page;
 mod precision;
