@@ -13,6 +13,7 @@ mod compare;
 mod describe;
 mod interrupt;
 mod models;
+mod motion;
 mod outcome;
 mod precision;
 mod print;
@@ -45,6 +46,8 @@ enum Command {
     Compare(compare::CompareArguments),
     /// Run a scene by every method at every tolerance; show time against error
     Precision(precision::PrecisionArguments),
+    /// Show what ground-motion records hold: peaks, intensity, spectra
+    Motion(motion::MotionArguments),
     /// List the models
     Models(models::ModelsArguments),
     /// Show what a model offers: parameters, modes, guards, transitions, reactions, cost
@@ -61,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Precision(arguments) => precision::precision(&arguments),
+        Command::Motion(arguments) => motion::motion(&arguments),
         Command::Models(arguments) => models::models(&arguments),
         Command::Describe(arguments) => describe::describe(&arguments),
         Command::Schema(arguments) => schema::schema(&arguments),

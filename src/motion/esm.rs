@@ -119,7 +119,7 @@ pub(super) fn read(page: &Page, given: &Given) -> Result<Motion, Fault> {
         length: find("DURATION_S").map(|(_, v)| v),
         place: peak.map_or(line.range(), |(line, _)| line.range()),
     };
-    let in_cm: Vec<f64> = values.iter().map(|a| a * unit.factor * 100.0).collect();
+    let in_cm: Vec<f64> = values.iter().map(|a| a * (unit.factor / 0.01)).collect();
     stated.check(&in_cm, dt, &mut notes);
 
     let detail = |name, key| Some((name, find(key)?.1.to_owned())).filter(|(_, v)| !v.is_empty());

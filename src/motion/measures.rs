@@ -50,7 +50,7 @@ impl Measures {
                 t: samples.time(i),
             }
         };
-        let [velocity, displacement] = integrals(samples);
+        let [velocity, displacement] = samples.integrals();
         let squares = squares(samples);
         let last = a.len() - 1;
         Measures {
@@ -70,19 +70,21 @@ impl Measures {
     }
 }
 
-/// Velocity (m/s) and displacement (m) at the samples.
-pub(super) fn integrals(samples: &Samples) -> [Vec<f64>; 2] {
-    let a = &samples.values;
-    let (mut v, mut u) = (0.0, 0.0);
-    let mut rows = [vec![v], vec![u]];
-    for i in 0..a.len() - 1 {
-        let h = samples.step(i);
-        u += h * (v + h * (2.0 * a[i] + a[i + 1]) / 6.0);
-        v += h * (a[i] + a[i + 1]) / 2.0;
-        rows[0].push(v);
-        rows[1].push(u);
+impl Samples {
+    /// Velocity (m/s) and displacement (m) at the samples.
+    pub fn integrals(&self) -> [Vec<f64>; 2] {
+        let a = &self.values;
+        let (mut v, mut u) = (0.0, 0.0);
+        let mut rows = [vec![v], vec![u]];
+        for i in 0..a.len() - 1 {
+            let h = self.step(i);
+            u += h * (v + h * (2.0 * a[i] + a[i + 1]) / 6.0);
+            v += h * (a[i] + a[i + 1]) / 2.0;
+            rows[0].push(v);
+            rows[1].push(u);
+        }
+        rows
     }
-    rows
 }
 
 /// ∫ a² dt up to each sample, m²/s³.

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use super::measures::integrals;
 use super::oscillator::Oscillator;
 use super::{Samples, Times, ordinate};
 
@@ -247,7 +246,7 @@ fn subtract_polynomial(samples: &mut Samples, degree: usize) -> Result<(), Refus
         })
         .collect();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let [velocity, _] = integrals(samples);
+    let [velocity, _] = samples.integrals();
     let mut rest: Vec<f64> = velocity.iter().zip(&weight).map(|(v, w)| v * w).collect();
     // Columns x, x², …, made orthogonal one after the other.
     let mut columns: Vec<Vec<f64>> = Vec::new();

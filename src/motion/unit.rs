@@ -41,7 +41,9 @@ const ACCELERATIONS: [(&[&str], Unit); 7] = [
         },
     ),
     (
-        &["m/s2", "m/s/s", "m_s2", "ms2", "ms-2", "m_s-2", "m/(s2)"],
+        &[
+            "m/s2", "m/s/s", "m_s2", "ms2", "ms-2", "mps2", "mpss", "m_s-2", "m/(s2)",
+        ],
         Unit {
             name: "m/s^2",
             factor: 1.0,
@@ -49,7 +51,8 @@ const ACCELERATIONS: [(&[&str], Unit); 7] = [
     ),
     (
         &[
-            "cm/s2", "cm/s/s", "cm_s2", "cms2", "cms-2", "cm_s-2", "cm/(s2)", "gal", "gals",
+            "cm/s2", "cm/s/s", "cm_s2", "cms2", "cms-2", "cmps2", "cm_s-2", "cm/(s2)", "gal",
+            "gals",
         ],
         Unit {
             name: "cm/s^2",

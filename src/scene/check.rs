@@ -50,6 +50,18 @@ impl Checked {
         }
     }
 
+    /// The text, if it is one.
+    pub fn as_text(&self) -> Option<&str> {
+        match &self.datum {
+            Datum::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    pub fn is_list(&self) -> bool {
+        matches!(self.datum, Datum::List(_))
+    }
+
     pub fn list(&self) -> &[Checked] {
         match &self.datum {
             Datum::List(items) => items,

@@ -153,6 +153,12 @@ pub enum SceneErrorKind {
     /// The rows of a table do not make a function.
     #[error(transparent)]
     Table(#[from] TableError),
+    /// A ground-motion record that cannot be read, or not be used as asked.
+    #[error("{message}")]
+    Record {
+        /// What is wrong with it.
+        message: String,
+    },
     /// A line of a table that is not two numbers.
     #[error("{message}")]
     Row {

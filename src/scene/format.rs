@@ -3,6 +3,7 @@
 //! Reading a scene and `dalembert schema` both follow these tables.
 
 use super::limits;
+use super::record;
 use super::shape::{Key, Object, Quantity, Shape};
 use crate::hybrid::Method;
 use crate::integrate::Tolerances;
@@ -208,6 +209,7 @@ fn functions(unit: &str) -> Vec<Object> {
             ],
         ),
         Object::new("key beside knots", knots),
+        record::shape(),
         Object::new(
             "key beside a constant",
             vec![Key::new("constant", "the same at all times", constant).required()],

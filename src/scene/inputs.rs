@@ -7,6 +7,7 @@ use super::check::{Checked, Datum};
 use super::error::{Errors, SceneError, SceneErrorKind};
 use super::files::Files;
 use super::interpret::{options, under};
+use super::record;
 use super::source::Span;
 use super::table;
 use super::wording::shown;
@@ -32,7 +33,7 @@ pub(crate) fn signals(
         .inputs
         .iter()
         .map(|input| match inputs.and_then(|o| o.get(input.name)) {
-            Some(described) => function(described, reader, errors),
+            Some(described) => function(described, input.unit, reader, errors),
             None => Some(Function::zero()),
         })
         .collect();
@@ -64,7 +65,7 @@ pub(crate) fn refuse_barred(
     }
 }
 
-fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Function> {
+fn function(input: &Checked, unit: &str, reader: &Reader, errors: &mut Errors) -> Option<Function> {
     if matches!(input.datum, Datum::Null) {
         return Some(Function::zero());
     }
@@ -72,7 +73,7 @@ fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Fun
         let terms: Vec<_> = terms
             .list()
             .iter()
-            .map(|t| function(t, reader, errors))
+            .map(|t| function(t, unit, reader, errors))
             .collect();
         return terms
             .into_iter()
@@ -88,6 +89,11 @@ fn function(input: &Checked, reader: &Reader, errors: &mut Errors) -> Option<Fun
     if let Some(described) = input.get("table") {
         return errors
             .note(table_from_file(described, reader))
+            .map(Function::from);
+    }
+    if input.get("record").is_some() {
+        return errors
+            .note(record::table(input, unit, reader))
             .map(Function::from);
     }
     let Some(rows) = input.get("knots") else {

@@ -12,6 +12,7 @@ mod inputs;
 mod interpret;
 mod limits;
 mod number;
+mod record;
 mod schema;
 mod set;
 mod shape;
@@ -29,6 +30,7 @@ pub(crate) use format::METHODS;
 
 pub use error::{SceneError, SceneErrorKind, SceneErrors};
 pub use files::{Disk, Files};
+pub(crate) use record::Record;
 pub use schema::schema;
 pub use source::Position;
 pub(crate) use wording::nearest;

@@ -5,6 +5,7 @@ mod describe;
 mod input;
 mod interrupt;
 mod limits;
+mod motion;
 mod output;
 mod page;
 mod precision;

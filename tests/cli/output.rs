@@ -26,7 +26,9 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
 fn help_names_every_command_and_status() {
     let output = ends_with(0, &project(), &["--help"]);
     let text = stdout(&output);
-    for command in ["run", "compare", "models", "describe", "schema", "verify"] {
+    for command in [
+        "run", "compare", "motion", "models", "describe", "schema", "verify",
+    ] {
         assert!(text.contains(&format!("\n  {command} ")), "{command}");
     }
     assert!(text.contains("Exit status: 0 done;"));

@@ -188,7 +188,7 @@ pub(super) fn read(page: &Page, given: &Given) -> Result<Motion, Fault> {
             name.label.clone()
         };
         let unit: Option<Unit> = match (&name.unknown, name.measure) {
-            (Some(unknown), _) => {
+            (Some(unknown), _) if !some_state => {
                 let known: Vec<_> = Unit::names().collect();
                 let help = format!("known: {}", known.join(", "));
                 return Err(Fault::new(
@@ -197,8 +197,14 @@ pub(super) fn read(page: &Page, given: &Given) -> Result<Motion, Fault> {
                     help,
                 ));
             }
-            (None, Some(Measure::Acceleration(unit))) => Some(unit),
-            (None, None) if !some_state => comment_unit,
+            (_, Some(Measure::Acceleration(unit))) => {
+                if comment_unit.is_some_and(|other| other != unit) {
+                    let message = format!("the comments state another unit than {}", unit.name);
+                    motion.notes.push(Note::doubt(message, place.clone()));
+                }
+                Some(unit)
+            }
+            (_, None) if !some_state => comment_unit,
             _ => {
                 let message = format!(
                     "the column `{label}` is not read: its unit is not one of acceleration"

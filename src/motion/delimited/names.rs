@@ -79,16 +79,20 @@ fn after<'a>(comment: &'a str, word: &str) -> impl Iterator<Item = &'a str> {
         .map(move |at| &comment[at + length..])
 }
 
-/// The step that a comment states, s: `dt = 0.005 s`, `sampling rate: 200 Hz`.
+/// The step that a comment states, s: `dt = 0.005 s`, `time step 5 ms`, `sampling rate: 200 Hz`.
 pub(super) fn step(comment: &str) -> Option<f64> {
+    // A number and the word behind it; the sign between may be left out.
     let value = |text: &str| {
-        let text = text.trim_start().strip_prefix(['=', ':'])?;
+        let text = text.trim_start();
+        let openings = ["=", ":", "of ", "is "];
+        let text = openings
+            .iter()
+            .find_map(|o| text.strip_prefix(o))
+            .unwrap_or(text);
         let (number, rest) = first_number(text)?;
-        let end = rest
-            .trim_start()
-            .find([',', ';', ' ', ')'])
-            .unwrap_or(rest.trim_start().len());
-        Some((number, rest.trim_start()[..end].to_ascii_lowercase()))
+        let rest = rest.trim_start();
+        let end = rest.find([',', ';', ' ', ')']).unwrap_or(rest.len());
+        Some((number, rest[..end].to_ascii_lowercase()))
     };
     let steps = [
         "dt",
@@ -99,22 +103,21 @@ pub(super) fn step(comment: &str) -> Option<f64> {
         "sampling interval",
         "step",
     ];
-    for rest in steps.iter().flat_map(|word| after(comment, word)) {
-        match value(rest) {
-            Some((dt, unit)) if unit.is_empty() => return Some(dt),
-            Some((dt, unit)) => {
-                if let Some(Measure::Time(factor)) = measure(&unit) {
-                    return Some(dt * factor);
-                }
+    for word in steps {
+        for (dt, unit) in after(comment, word).filter_map(value) {
+            match measure(&unit) {
+                Some(Measure::Time(factor)) => return Some(dt * factor),
+                // Many things are steps.
+                _ if unit.is_empty() && word != "step" => return Some(dt),
+                _ => {}
             }
-            None => {}
         }
     }
     let rates = [
         "sampling rate",
         "sampling frequency",
         "sample rate",
-        "frequency",
+        "sampling freq",
         "fs",
     ];
     rates
@@ -136,14 +139,15 @@ pub(super) fn quantity(comment: &str) -> Option<Measure> {
         "unit",
         "data",
     ];
-    let stated = |rest: &str| {
+    let stated = |word: &str, rest: &str| {
         let rest = rest.trim_start();
         let openings = ["in units of ", "in ", "of ", "are ", "=", ":", "[", "("];
-        let text = openings.iter().find_map(|opening| {
+        let opened = openings.iter().find_map(|opening| {
             let head = rest.get(..opening.len())?;
             head.eq_ignore_ascii_case(opening)
                 .then(|| &rest[opening.len()..])
-        })?;
+        });
+        let text = opened.or(word.starts_with("unit").then_some(rest))?;
         let text = text.trim_start().trim_start_matches(['(', '[', '=']);
         text.split([',', ';', ')', ']']).find_map(|part| {
             let part = part.trim().trim_end_matches('.');
@@ -152,9 +156,8 @@ pub(super) fn quantity(comment: &str) -> Option<Measure> {
         })
     };
     words
-        .iter()
-        .flat_map(|word| after(comment, word))
-        .find_map(stated)
+        .into_iter()
+        .find_map(|word| after(comment, word).find_map(|rest| stated(word, rest)))
 }
 
 /// The names that a comment lists: `columns: time_s, acc_m_s2; …`.

@@ -308,6 +308,9 @@ fn units_and_steps_are_found_where_they_are_stated() {
         "% units: m/s2\n% sampling rate = 2 Hz\n1\n2\n3\n",
         "# time step: 500 ms\nacc [m/s2]\n1\n2\n3\n",
         "# acceleration in cm/s2, dt = 0.5\n100\n200\n300\n",
+        "# units m/s2, dt 0.5 s; low-cut frequency = 0.1 Hz, peak acceleration = 0.3 g\n1\n2\n3\n",
+        "# step = 500 ms, filter step 7\nacc_mps2\n1\n2\n3\n",
+        "time_s acc_m_s2 quality[flag]\n0.0 1 9\n0.5 2 9\n1.0 3 9\n",
         "# dt=0.5\nacceleration_gal\n100\n200\n300\n",
         "# dt = 0.5 s\na [m/s2]\n1,0\n2,0\n3,0\n",
         "t_ms;a_mm_s2\n0;1000\n500;2000\n1000;3000\n",
@@ -361,6 +364,9 @@ fn what_is_not_stated_is_asked_for() {
     };
     let motion = open(b"time,acc\n0.0,1\n0.5,2\n1.0,3\n", &given).expect("a record");
     assert!(motion.notes[0].doubt && motion.notes[0].message.contains("seconds"));
+    let contrary = b"# acceleration in g\ntime_s,acc_m_s2\n0.0,1\n0.5,2\n";
+    let motion = open(contrary, &Given::default()).expect("a record");
+    assert!(motion.notes[0].doubt && motion.notes[0].message.contains("another unit"));
     let given = Given {
         unit: Unit::parse("m/s^2"),
         dt: Some(0.25),

@@ -4,6 +4,7 @@ mod errors;
 mod inputs;
 mod mutation;
 mod overrides;
+mod records;
 mod states;
 mod units;
 mod values;
