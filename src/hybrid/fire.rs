@@ -103,7 +103,7 @@ impl Simulation<'_> {
         let from = self.here.mode;
         let states = self.problem.record.event_states;
         let before = states.then(|| self.snapshot());
-        let energies_before = (self.ledger.is_some() || states)
+        let energies_before = (self.observers.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
         let left = [&*self.here.q, &self.here.v, self.context.discrete()];
         self.visited.leave(left);
@@ -112,7 +112,7 @@ impl Simulation<'_> {
         copy_few(&self.next[2 * n..], self.context.discrete_mut());
         self.here.mode = target;
         self.here.j += 1;
-        if states || self.ledger.is_some() {
+        if states || self.observers.ledger.is_some() {
             self.set_context();
         }
         if states {
@@ -121,7 +121,7 @@ impl Simulation<'_> {
         }
 
         let energy = energies_before.map(|before| self.energy_jump(before));
-        if let (Some(ledger), Some(jump)) = (&mut self.ledger, energy) {
+        if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, energy) {
             ledger.add_jump(jump);
         }
         self.jumps.push(Jump {
@@ -133,7 +133,13 @@ impl Simulation<'_> {
             energy: energy.filter(|_| impact),
         });
         if let Some(before) = before {
-            self.states_at_jumps.push([before, self.snapshot()]);
+            let after = self.snapshot();
+            if self.observers.watch_extremes() {
+                let stored = self.stored_energy();
+                self.observers
+                    .jump(&self.here, &after.reactions, Some(stored));
+            }
+            self.states_at_jumps.push([before, after]);
         }
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let modes = self.modes;

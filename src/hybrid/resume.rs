@@ -2,9 +2,8 @@
 
 use super::failure::Reason;
 use super::instant::Instant;
-use super::ledger::RunningLedger;
+use super::observe::{Samples, sample_time};
 use super::problem::Problem;
-use super::samples::{Samples, sample_time};
 use super::simulation::Simulation;
 use crate::record::{Event, Progress, Recorder, Run};
 use std::time::Instant as WallClock;
@@ -67,6 +66,7 @@ impl Simulation<'_> {
             end,
             solver,
             energy,
+            peaks,
             uncertain,
             ..
         } = run;
@@ -78,7 +78,7 @@ impl Simulation<'_> {
         self.context
             .discrete_mut()
             .copy_from_slice(&end.state.discrete);
-        self.ledger = energy.as_ref().map(RunningLedger::continuing);
+        self.observers.go_on(energy.as_ref(), &peaks);
         self.doubts.go_on(solver.steps, uncertain);
         self.solver = solver;
         if let Some((name, _)) = self.problem.end.after {
@@ -96,10 +96,10 @@ impl Simulation<'_> {
         {
             trajectory.truncate(last);
         }
-        self.samples = Samples::from(every, trajectory.len() as u64);
+        self.observers.samples = Samples::from(every, trajectory.len() as u64);
         let to_come = every.map_or(0, |every| {
             Recorder::grid_rows(self.problem.end.time - end.t, every)
         });
-        self.recorder = Recorder::continuing(trajectory, to_come);
+        self.observers.recorder = Recorder::continuing(trajectory, to_come);
     }
 }

@@ -39,7 +39,7 @@ pub use folder::{FolderError, OutputFolder};
 pub use layout::{Layout, Quantity, Recorded};
 pub(crate) use looks::Looks;
 pub(crate) use number::{exact, rounded};
-pub use peaks::{Peak, peaks};
+pub use peaks::Peak;
 pub use progress::{Progress, ProgressLine, Silent};
 pub use read::ReadError;
 pub use recorder::Recorder;

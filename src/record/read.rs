@@ -11,6 +11,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::layout::{Layout, Quantity, Recorded};
+use super::peaks::Peak;
 use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
 use super::summary::SUMMARY;
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
@@ -36,6 +37,7 @@ struct Written {
     choices: BTreeMap<String, String>,
     parameters: BTreeMap<String, f64>,
     end: End,
+    peaks: BTreeMap<String, Peak>,
     impacts: BTreeMap<String, IgnoredAny>,
     energy: Option<Energy>,
     #[serde(default)]
@@ -86,10 +88,15 @@ impl Run {
             .map_err(|e| error(format!("not the summary of a run: {e}")))?;
         let subject = subject(&written, model, variant).map_err(error)?;
         let end = end(&written.end, &layout).map_err(error)?;
+        let columns = layout.columns();
+        let columns = columns.iter().enumerate();
+        let peaks = columns.filter_map(|(i, c)| Some((i, *written.peaks.get(&c.name)?)));
+        let peaks = peaks.collect();
         Ok(Run {
             subject,
             trajectory: trajectory(&folder.join(TRAJECTORY), &layout)?,
             events: events(&folder.join(EVENTS), &layout, variant, &written.impacts)?,
+            peaks,
             layout,
             end,
             solver: written.solver,

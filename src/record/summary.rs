@@ -8,7 +8,6 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 
 use super::layout::Quantity;
 use super::number::push_exact;
-use super::peaks::peaks;
 use super::run::{Place, Run};
 
 /// File name of the summary.
@@ -31,7 +30,7 @@ pub struct Summary {
     pub end: Point,
     /// Why and where the run stopped early; `null` when it reached its end.
     pub failure: Option<Stopped>,
-    /// Extremes of every coordinate, velocity and reaction.
+    /// Extremes of every coordinate, velocity, reaction and energy.
     pub peaks: Named<Extremes>,
     /// The transitions.
     pub events: Events,
@@ -80,7 +79,7 @@ pub struct Stopped {
     pub at: Point,
 }
 
-/// Extremes of a quantity over the samples and both sides of every transition.
+/// Extremes of a quantity over the motion and both sides of every transition.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Extremes {
     /// Largest value.
@@ -187,7 +186,7 @@ impl Summary {
         for event in &run.events {
             *by_transition.entry(event.transition).or_default() += 1;
         }
-        let extremes = peaks(run).into_iter().map(|(i, peak)| {
+        let extremes = run.peaks.iter().map(|&(i, peak)| {
             let column = &run.trajectory.columns[i];
             let extremes = Extremes {
                 max: peak.max,

@@ -259,6 +259,7 @@ fn record(scene: &Checked) -> Record {
         },
         ledger: flag("energies"),
         event_states: true,
+        extremes: true,
     }
 }
 

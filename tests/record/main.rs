@@ -10,7 +10,6 @@ use dalembert::record::plot::{Chart, Curve, Dimension, overview, phase_portraits
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
 use dalembert::record::{
     Event, Failure, Group, OutputFolder, Place, Quantity, Recorder, Report, Run, Snapshot, Summary,
-    peaks,
 };
 use proptest::prelude::*;
 use synthetic::{bouncing_ball, tank_like};
@@ -125,41 +124,6 @@ fn rows_go_in_without_allocation() {
         rows * trajectory.columns.len()
     );
     assert_eq!(trajectory.row(2000)[..2], [1.0, 0.0]);
-}
-
-#[test]
-fn peaks_are_found_between_samples() {
-    // The fastest moment is the first impact, which no sample hits.
-    let run = bouncing_ball(1.0, 3, 7);
-    let peaks = peaks(&run);
-    let (_, speed) = peaks
-        .iter()
-        .find(|(i, _)| run.trajectory.columns[*i].name == "y.rate")
-        .unwrap();
-    let fall = (2.0f64 / 9.81).sqrt();
-    assert!((speed.min + 9.81 * fall).abs() < 1e-14);
-    assert!((speed.t_min - fall).abs() < 1e-15);
-    assert!((speed.max - 0.8 * 9.81 * fall).abs() < 1e-14);
-}
-
-#[test]
-fn a_peak_is_reported_at_its_first_time_and_nan_has_none() {
-    let mut run = bouncing_ball(1.0, 1, 0);
-    run.events.clear();
-    let mut recorder = Recorder::new(&run.layout, 3);
-    for (t, y) in [(0.0, f64::NAN), (1.0, 2.0), (2.0, 2.0)] {
-        recorder.push_row(t, 0, |row| {
-            row.copy_from_slice(&[y, f64::NAN, 0.0, 1.0, 0.0])
-        });
-    }
-    run.trajectory = recorder.finish();
-    let peaks = peaks(&run);
-    assert_eq!(
-        peaks.iter().map(|p| p.0).collect::<Vec<_>>(),
-        [0, 2],
-        "y.rate has no peak"
-    );
-    assert_eq!((peaks[0].1.t_max, peaks[0].1.t_min), (1.0, 1.0));
 }
 
 #[test]
