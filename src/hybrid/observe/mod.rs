@@ -402,26 +402,34 @@ impl Observers {
         (columns, powers): (usize, bool),
     ) -> [f64; 2] {
         let length = part.to - part.from;
-        let work = powers
-            .then(|| [0, 1].map(|i| self.interpolants.polynomial(columns + i).integral(length)));
+        let integral = |i: usize| self.interpolants.polynomial(columns + i).integral(length);
+        // Inside of the part the work is asked for by samples alone, and where a power changes its sign.
+        let inside = powers
+            && (self.due(step.equations, part.to).is_some()
+                || self.functions.stored
+                    && (0..2).any(|i| self.interpolants.changes_sign(columns + i)));
+        let work = inside.then(|| [0, 1].map(integral));
+        let whole = match powers {
+            true => [0, 1].map(|i| self.interpolants.whole_integral(columns + i) * length),
+            false => [0.0; 2],
+        };
         if let Some(mut extremes) = self.extremes.take() {
             self.look_for_extremes(&mut extremes, step, part, columns);
-            if let Some(work) = &work {
+            if powers && self.functions.stored {
+                let work = (work.as_ref(), whole);
                 self.look_for_extremes_of_work(&mut extremes, step, part, (columns, work));
             }
             self.extremes = Some(extremes);
         }
         self.sample(step, part, work.as_ref());
-        let (Some(work), Some(ledger)) = (work, &mut self.ledger) else {
-            return [0.0; 2];
-        };
-        let work = work.map(|work| work.value(1.0));
-        ledger.add_work(work);
-        if part.is_last && step.beyond != 0.0 && step.work.is_none() {
-            let of = &self.interpolants;
-            ledger.add_work([0, 1].map(|i| of.value_at(MOST, columns + i) * step.beyond));
+        if let (Some(ledger), true) = (&mut self.ledger, powers) {
+            ledger.add_work(whole);
+            if part.is_last && step.beyond != 0.0 && step.work.is_none() {
+                let of = &self.interpolants;
+                ledger.add_work([0, 1].map(|i| of.value_at(MOST, columns + i) * step.beyond));
+            }
         }
-        work
+        whole
     }
 
     /// Looks for extremes of all that is represented in a part of a step.
@@ -454,21 +462,27 @@ impl Observers {
         extremes: &mut Extremes,
         step: &Step<F, M>,
         part: Part,
-        (columns, work): (usize, &[Polynomial; 2]),
+        (columns, (work, whole)): (usize, (Option<&[Polynomial; 2]>, [f64; 2])),
     ) {
-        let (Some(ledger), true) = (&self.ledger, self.functions.stored) else {
+        let Some(ledger) = &self.ledger else {
             return;
         };
         let energies = extremes.energies.start;
         let [_, input, dissipated, _] = ledger.row(0.0, [0.0; 2]);
         let of = [(dissipated, energies + 2), (input, energies + 1)];
+        let clock = step.equations.clock;
         for (i, (so_far, column)) in of.into_iter().enumerate() {
-            let mut note = |place: f64| {
-                let t = step.equations.clock.start.plus(part.time(place)).seconds();
-                extremes.note(column, t, so_far + work[i].value(place));
+            let mut note = |place: f64, work: f64| {
+                let t = clock.start.plus(part.time(place)).seconds();
+                extremes.note(column, t, so_far + work);
             };
-            self.interpolants.sign_changes(columns + i, &mut note);
-            note(1.0);
+            if let Some(work) = work
+                && self.interpolants.changes_sign(columns + i)
+            {
+                let mut found = |place: f64| note(place, work[i].value(place));
+                self.interpolants.sign_changes(columns + i, &mut found);
+            }
+            note(1.0, whole[i]);
         }
     }
 
