@@ -16,6 +16,7 @@ mod models;
 mod outcome;
 mod precision;
 mod print;
+mod room;
 mod run;
 mod schema;
 mod table;

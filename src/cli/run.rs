@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
-use super::print;
+use super::{print, room};
 use crate::hybrid::{Problem, Reason, resume, simulate};
 use crate::kernel::MODELS;
 use crate::page::{Told, run_page};
@@ -19,9 +19,9 @@ Ctrl-C ends the simulation at its next step; what was computed is written, with 
 Ctrl-C ends it at once, and nothing is written.
 
 --resume continues the run in DIR, whether it was interrupted or reached its end, to the end of \
-the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, columns \
-and the grid of the samples must be those of the run; inputs, accuracy and frozen coordinates are \
-taken from the scene as it is now and are expected to be the same. The integrator starts anew at \
+the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, inputs, \
+initial state, accuracy, method, frozen coordinates, columns and the grid of the samples must be those of the \
+run, and its files as they were written; what does not fit is named. The integrator starts anew at \
 the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.
 
 --error-estimate runs the scene a second time, by another method at a tolerance ten thousand \
@@ -74,6 +74,7 @@ pub fn run(arguments: &RunArguments) -> Result {
     // Before the simulation, so that a folder that cannot be written costs no time.
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
+    room::check(&scene, out.map(PathBuf::as_path))?;
 
     interrupt::listen()?;
     let mut progress = Interruptible(ProgressLine::new(problem.end.time));

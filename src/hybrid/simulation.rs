@@ -516,6 +516,7 @@ impl<'p> Simulation<'p> {
             .as_ref()
             .map(|l| l.close(self.stored_energy()));
         self.name_methods();
+        let wall = clock.elapsed();
         Run {
             subject: Subject {
                 model: problem.model.name.into(),
@@ -526,6 +527,7 @@ impl<'p> Simulation<'p> {
                 parameters: (problem.model.parameters.iter().zip(&problem.parameters))
                     .map(|(p, &value)| (p.name.into(), value))
                     .collect(),
+                digests: super::resume::digests(problem),
             },
             peaks: self.observers.peaks(),
             layout: self.observers.layout,
@@ -547,7 +549,7 @@ impl<'p> Simulation<'p> {
             energy,
             error: None,
             uncertain: self.doubts.uncertain,
-            wall: clock.elapsed(),
+            wall,
         }
     }
 }

@@ -18,6 +18,7 @@
 //! Numbers have 17 significant digits, so they are read back bit for bit. The same run gives the
 //! same bytes, but for `wall_seconds` in the summary.
 
+pub(crate) mod digest;
 mod files;
 pub mod folder;
 mod layout;

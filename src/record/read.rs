@@ -10,6 +10,7 @@ use std::time::Duration;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
+use super::folder::check;
 use super::layout::{Layout, Quantity, Recorded};
 use super::peaks::Peak;
 use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
@@ -36,6 +37,7 @@ struct Written {
     title: String,
     choices: BTreeMap<String, String>,
     parameters: BTreeMap<String, f64>,
+    digests: BTreeMap<String, String>,
     end: End,
     peaks: BTreeMap<String, Peak>,
     impacts: BTreeMap<String, IgnoredAny>,
@@ -84,6 +86,12 @@ impl Run {
             reason,
         };
         let file = File::open(&path).map_err(|e| error(format!("cannot read the run: {e}")))?;
+        for name in [SUMMARY, TRAJECTORY, EVENTS] {
+            check(folder, name).map_err(|reason| ReadError {
+                path: folder.join(name),
+                reason,
+            })?;
+        }
         let written: Written = serde_json::from_reader(BufReader::new(file))
             .map_err(|e| error(format!("not the summary of a run: {e}")))?;
         let subject = subject(&written, model, variant).map_err(error)?;
@@ -142,6 +150,9 @@ fn subject(written: &Written, model: &Model, variant: &Variant) -> Result<Subjec
         choices,
         parameters: parameters
             .map(|(name, value)| (name.into(), value))
+            .collect(),
+        digests: (written.digests.iter())
+            .map(|(part, digest)| (part.clone(), digest.clone()))
             .collect(),
     })
 }

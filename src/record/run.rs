@@ -70,6 +70,8 @@ pub struct Subject {
     pub choices: Vec<(String, String)>,
     /// Value of each parameter, in the model's order and units.
     pub parameters: Vec<(String, f64)>,
+    /// Digests of the model and of the parts of the scene that decide the motion, as (part, digest).
+    pub digests: Vec<(String, String)>,
 }
 
 /// Samples of the columns over time.

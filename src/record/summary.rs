@@ -26,6 +26,8 @@ pub struct Summary {
     pub choices: Named<String>,
     /// Value of each parameter.
     pub parameters: Named<f64>,
+    /// Digests of the model and of the parts of the scene that decide the motion: a run is continued with the same.
+    pub digests: Named<String>,
     /// Where the run ended.
     pub end: Point,
     /// Why and where the run stopped early; `null` when it reached its end.
@@ -202,6 +204,7 @@ impl Summary {
             title: run.subject.title.clone(),
             choices: Named(run.subject.choices.clone()),
             parameters: Named(run.subject.parameters.clone()),
+            digests: Named(run.subject.digests.clone()),
             end: point(run, &run.end),
             failure: (run.failure.as_ref()).map(|f| Stopped {
                 reason: f.reason.clone(),

@@ -217,6 +217,7 @@ fn a_run_is_written_into_a_folder_with_the_same_bytes_each_time() {
     assert_eq!(
         names,
         [
+            ".dalembert-digests",
             ".dalembert-output",
             "csv-metadata.json",
             "events.csv",

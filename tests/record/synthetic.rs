@@ -105,6 +105,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             title: "A ball".into(),
             choices: vec![("rules".into(), "reactions".into())],
             parameters: vec![("m".into(), 1.0), ("e".into(), restitution)],
+            digests: vec![],
         },
         trajectory: recorder.finish(),
         end: Place {
@@ -322,6 +323,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
                 ("landing".into(), "momenta".into()),
             ],
             parameters: vec![("mu_s".into(), 0.2)],
+            digests: vec![],
         },
         layout,
         trajectory: recorder.finish(),
