@@ -88,8 +88,10 @@ fn extremes_of_a_driven_motion_and_its_energies_are_those_of_the_formula() {
             within(at, theta.t_min, turn / omega, 1.0, "its time");
             let rate = peak(&run, "theta.rate");
             close(rate.max, 1.5 / omega, 1.0, "fastest");
-            // At a zero of the acceleration, which Radau's dense output has at a lower order still.
-            within(1e5 * at, rate.t_max, PI / omega, 1.0, "its time");
+            // At a zero of the acceleration, which Radau's dense output has at a lower order still; the second crest is
+            // as high as the first.
+            let since = rate.t_max % (2.0 * PI / omega);
+            within(1e5 * at, since, PI / omega, 1.0, "its time");
             let stored = peak(&run, "energy.stored");
             close(stored.max, 1.125 / (omega * omega), 1.0, "kinetic energy");
             close(stored.min, 0.0, 1.0, "kinetic energy at the turn");

@@ -98,13 +98,13 @@ pub fn run(arguments: &RunArguments) -> Result {
             Err(reason) => no_estimate = Some(reason),
         }
     }
-    if let Some(folder) = &folder {
-        run.write(folder)?;
-    }
-    if let Some(page) = &arguments.html {
-        write_page(page, &run, &arguments.scene, problem)?;
-    }
+    // The report is shown also where files cannot be written.
+    let written = folder.as_ref().map(|folder| run.write(folder));
+    let page =
+        (arguments.html.as_ref()).map(|page| write_page(page, &run, &arguments.scene, problem));
     print::output(Report::new(&run))?;
+    written.transpose()?;
+    page.transpose()?;
     if let Some(reason) = &no_estimate {
         print::error(format!("no estimate of the error: {reason}"));
     }
