@@ -432,8 +432,8 @@ impl<'p> Simulation<'p> {
 
     /// Where energies are kept they are finite.
     fn check_energy(&self) -> Stoppable<()> {
-        match &self.ledger {
-            Some(ledger) if !are_finite(&ledger.row(self.stored_energy())) => {
+        match &self.observers.ledger {
+            Some(ledger) if !are_finite(&ledger.row(self.stored_energy(), [0.0; 2])) => {
                 let what = "an energy";
                 Err(Box::new(Reason::NotFinite { what }))
             }

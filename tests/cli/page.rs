@@ -75,10 +75,7 @@ fn runs_that_cannot_be_drawn_have_a_page_that_says_so() {
     for (sets, words) in [
         (["end=1e-9", "initial.h=1"], "Reached t = 1e"),
         (["initial.h=1e-300", "end=1e-160"], "Reached t = "),
-        (
-            ["initial.h.rate=1e153", "end=1e150"],
-            "not drawn: h, ",
-        ),
+        (["initial.h.rate=1e153", "end=1e150"], "not drawn: h, "),
     ] {
         let more = ["--set", sets[0], "--set", sets[1], "--set", "record={}"];
         let page = page(0, home.path(), &scene("bouncing_ball"), &more);
