@@ -48,6 +48,8 @@ pub struct Generated {
     pub fragment: String,
     /// Name of the `static` in the fragment.
     pub item: String,
+    /// Digest of what it was generated from.
+    pub digest: String,
 }
 
 /// The models under `models/` and, if asked for, `tests/models/`: every folder with a `model.py`.
@@ -113,7 +115,7 @@ pub fn generate(
         let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
             run(project, model, environment, folder)
         })?;
-        read(model, &entry.join(&model.name))
+        read(model, &entry.join(&model.name), hash)
     });
     let mut generated = Vec::new();
     let mut failures = Vec::new();
@@ -161,7 +163,7 @@ fn run(
 }
 
 /// Reads what the generator wrote for a model.
-fn read(model: &Model, folder: &Path) -> Result<Generated, Error> {
+fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error> {
     let wrong = |problem: &str| Error::Manifest {
         folder: model.folder.clone(),
         problem: problem.to_owned(),
@@ -193,6 +195,7 @@ fn read(model: &Model, folder: &Path) -> Result<Generated, Error> {
         lanes,
         fragment: text("model.rs")?,
         item: item.to_owned(),
+        digest,
     })
 }
 

@@ -53,6 +53,13 @@ pub fn run() -> Result<(), Error> {
     let models = generate::discover(&project, with_tests)?;
     let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
     compile::compile(&project, &generated, &out_dir)?;
+    let digests: Vec<String> = (generated.iter())
+        .map(|model| format!("{}={}", model.name, model.digest))
+        .collect();
+    println!(
+        "cargo::rustc-env=DALEMBERT_MODEL_DIGESTS={}",
+        digests.join(" ")
+    );
     registry::write(&generated, &out_dir.join("models.rs"))
 }
 

@@ -17,6 +17,7 @@ mod motion;
 mod outcome;
 mod precision;
 mod print;
+mod room;
 mod run;
 mod schema;
 mod table;

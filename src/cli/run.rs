@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
-use super::{print, warnings};
+use super::{print, room, warnings};
 use crate::hybrid::{Invalid, Problem, Reason, resume, simulate};
 use crate::kernel::MODELS;
 use crate::page::{Told, run_page};
@@ -19,9 +19,9 @@ Ctrl-C ends the simulation at its next step; what was computed is written, with 
 Ctrl-C ends it at once, and nothing is written.
 
 --resume continues the run in DIR, whether it was interrupted or reached its end, to the end of \
-the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, columns \
-and the grid of the samples must be those of the run; inputs, accuracy and frozen coordinates are \
-taken from the scene as it is now and are expected to be the same. The integrator starts anew at \
+the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, inputs, \
+initial state, accuracy, method, frozen coordinates, columns and the grid of the samples must be those of the \
+run, and its files as they were written; what does not fit is named. The integrator starts anew at \
 the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.
 
 --error-estimate runs the scene a second time, by another method at a tolerance ten thousand \
@@ -74,6 +74,7 @@ pub fn run(arguments: &RunArguments) -> Result {
     // Before the simulation, so that a folder that cannot be written costs no time.
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
+    room::check(&scene, out.map(PathBuf::as_path))?;
 
     warnings::before(problem);
     interrupt::listen()?;
@@ -98,15 +99,15 @@ pub fn run(arguments: &RunArguments) -> Result {
             Err(reason) => no_estimate = Some(reason),
         }
     }
-    if let Some(folder) = &folder {
-        run.write(folder)?;
-    }
-    if let Some(page) = &arguments.html {
-        write_page(page, &run, &arguments.scene, problem)?;
-    }
+    // The report is shown also where files cannot be written.
+    let written = folder.as_ref().map(|folder| run.write(folder));
+    let page =
+        (arguments.html.as_ref()).map(|page| write_page(page, &run, &arguments.scene, problem));
     let report = Report::new(&run);
     print::output(&report)?;
     warnings::after(report.summary());
+    written.transpose()?;
+    page.transpose()?;
     if let Some(reason) = &no_estimate {
         print::error(format!("no estimate of the error: {reason}"));
     }

@@ -97,7 +97,7 @@ impl Simulation<'_> {
         let from = self.here.mode;
         let states = self.problem.record.event_states;
         let before = states.then(|| self.snapshot());
-        let energies_before = (self.ledger.is_some() || states)
+        let energies_before = (self.observers.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
         let left = [&*self.here.q, &self.here.v, self.context.discrete()];
         self.visited.leave(left);
@@ -106,7 +106,7 @@ impl Simulation<'_> {
         copy_few(&self.next[2 * n..], self.context.discrete_mut());
         self.here.mode = target;
         self.here.j += 1;
-        if states || self.ledger.is_some() {
+        if states || self.observers.ledger.is_some() {
             self.set_context();
         }
         if states {
@@ -115,7 +115,7 @@ impl Simulation<'_> {
         }
 
         let energy = energies_before.map(|before| self.energy_jump(before));
-        if let (Some(ledger), Some(jump)) = (&mut self.ledger, energy) {
+        if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, energy) {
             ledger.add_jump(jump);
         }
         self.jumps.push(Jump {
@@ -127,7 +127,13 @@ impl Simulation<'_> {
             energy: energy.filter(|_| impact),
         });
         if let Some(before) = before {
-            self.states_at_jumps.push([before, self.snapshot()]);
+            let after = self.snapshot();
+            if self.observers.watch_extremes() {
+                let stored = self.stored_energy();
+                self.observers
+                    .jump(&self.here, &after.reactions, Some(stored));
+            }
+            self.states_at_jumps.push([before, after]);
         }
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let modes = self.modes;

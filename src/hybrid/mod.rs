@@ -2,7 +2,7 @@
 //!
 //! [`simulate`] runs a [`Problem`]. `simulation` holds the loop; `enter` starts a segment, `segment`
 //! integrates it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
-//! the transition; `accumulation` recognises where infinitely many of them end. [`resume`] goes on with
+//! the transition; `accumulation` recognises where infinitely many of them end; `observe` records. [`resume`] goes on with
 //! a run that was interrupted.
 
 mod accumulation;
@@ -17,16 +17,15 @@ mod fire;
 mod guards;
 mod inertia;
 mod instant;
-mod ledger;
 mod limits;
 mod locate;
 mod margins;
+mod observe;
 mod plan;
 mod problem;
 mod rest;
 mod resume;
 pub mod roots;
-mod samples;
 mod search;
 mod segment;
 mod sensitivity;
@@ -38,7 +37,6 @@ mod stiffness;
 mod typical;
 mod validate;
 mod visited;
-mod work;
 
 pub(crate) use accumulation::LONGEST_PATTERN;
 pub use ensemble::{Ensemble, Finished, Member};

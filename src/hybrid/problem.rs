@@ -131,11 +131,14 @@ pub struct Record {
     pub ledger: bool,
     /// Whether the states before and after an event are kept, and not its time alone.
     pub event_states: bool,
+    /// Whether the extremes of coordinates and velocities are looked for, and those of the reactions and energies that
+    /// are columns.
+    pub extremes: bool,
 }
 
 impl Problem {
     /// A model with its default parameters and choices, at rest at zero without inputs, for 1 s at
-    /// a relative tolerance of 1e-8, recording the events, the ledger and the end.
+    /// a relative tolerance of 1e-8, recording the events, the ledger, the extremes and the end.
     pub fn new(model: &'static Model) -> Self {
         let variant = model
             .variants
@@ -174,6 +177,7 @@ impl Problem {
                 },
                 ledger: true,
                 event_states: true,
+                extremes: true,
             },
         };
         problem.set_tolerance(1e-8);

@@ -2,10 +2,10 @@
 
 use super::failure::Reason;
 use super::instant::Instant;
-use super::ledger::RunningLedger;
+use super::observe::{Samples, sample_time};
 use super::problem::Problem;
-use super::samples::{Samples, sample_time};
 use super::simulation::Simulation;
+use crate::record::digest::digest;
 use crate::record::{Event, Progress, Recorder, Run};
 use std::time::Instant as WallClock;
 
@@ -41,6 +41,17 @@ fn check(problem: &Problem, run: &Run) -> Result<(), Reason> {
             return Err(Reason::OtherRun { why });
         }
     }
+    let now = digests(problem);
+    for (part, digest) in &now {
+        let then = run.subject.digests.iter().find(|(name, _)| name == part);
+        if then.is_none_or(|(_, then)| then != digest) {
+            let why = match part.as_str() {
+                "model" => "the model, or what makes code of it, was changed since".into(),
+                part => format!("`{part}` is not what it was"),
+            };
+            return Err(Reason::OtherRun { why });
+        }
+    }
     // The last row may be off the grid: it is where the run ended.
     let rows = run.trajectory.t.iter().enumerate();
     let grid = rows.take(run.trajectory.len().saturating_sub(1));
@@ -58,6 +69,22 @@ fn check(problem: &Problem, run: &Run) -> Result<(), Reason> {
     Ok(())
 }
 
+/// Digests of the model and of what a run is simulated with, but for its end and what is recorded: as (part, digest),
+/// by the keys of a scene.
+pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
+    // Numbers are printed with all their digits.
+    let text = |part: &dyn std::fmt::Debug| digest(format!("{part:?}"));
+    let parts = [
+        ("accuracy", text(&problem.accuracy)),
+        ("freeze", text(&problem.freeze)),
+        ("initial", text(&problem.initial)),
+        ("inputs", text(&problem.signals)),
+        ("method", text(&problem.method)),
+        ("model", problem.model.digest().to_owned()),
+    ];
+    parts.map(|(part, digest)| (part.to_owned(), digest)).into()
+}
+
 impl Simulation<'_> {
     /// Goes to the end of a run, and takes over what it has recorded.
     fn restore(&mut self, run: Run) {
@@ -67,6 +94,7 @@ impl Simulation<'_> {
             end,
             solver,
             energy,
+            peaks,
             uncertain,
             reached,
             ..
@@ -80,7 +108,7 @@ impl Simulation<'_> {
         self.context
             .discrete_mut()
             .copy_from_slice(&end.state.discrete);
-        self.ledger = energy.as_ref().map(RunningLedger::continuing);
+        self.observers.go_on(energy.as_ref(), &peaks);
         self.doubts.go_on(solver.steps, uncertain);
         self.solver = solver;
         if let Some((name, _)) = self.problem.end.after {
@@ -98,10 +126,10 @@ impl Simulation<'_> {
         {
             trajectory.truncate(last);
         }
-        self.samples = Samples::from(every, trajectory.len() as u64);
+        self.observers.samples = Samples::from(every, trajectory.len() as u64);
         let to_come = every.map_or(0, |every| {
             Recorder::grid_rows(self.problem.end.time - end.t, every)
         });
-        self.recorder = Recorder::continuing(trajectory, to_come);
+        self.observers.recorder = Recorder::continuing(trajectory, to_come);
     }
 }

@@ -1,20 +1,19 @@
-//! From one event to the next: steps, crossings on their dense output, samples and ledger.
+//! From one event to the next: steps and crossings on their dense output, which observers look at.
 
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, Piece, free_of};
 use super::failure::{Reason, Stoppable};
-use super::guards::{self, Conditions};
+use super::guards::Conditions;
 use super::inertia::vanished;
 use super::instant::Instant;
 use super::margins::Ended;
+use super::observe::{Step, copy_drifting};
 use super::problem::{Method, Problem};
-use super::samples::{Row, Samples, row_of};
-use super::simulation::{Here, Simulation, Stop, Violation};
+use super::simulation::{Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
-use super::work::work;
 use crate::integrate::{Node, OneStep, Radau, State, Taylor, Tolerances, determinant_sign, stages};
-use crate::kernel::{Context, Free, ModeKernel, copy_few};
+use crate::kernel::{Context, ModeKernel, copy_few};
 use crate::model::Mode;
 use crate::record::Progress;
 use nalgebra::SVector;
@@ -149,7 +148,7 @@ impl Simulation<'_> {
                 || !mode.requirements.is_empty()
                 || !kernel.mass_is_constant()
                 || problem.record.every.is_none()
-                || self.ledger.is_some(),
+                || self.observers.watch_steps(),
         };
         let needs_accelerations =
             <M as OneStep<F, Equations<F>>>::NEEDS_ACCELERATIONS || !kernel.inertia_is_fixed();
@@ -240,10 +239,9 @@ impl Simulation<'_> {
         if chooses {
             stiffness.begin();
         }
-        let mut ledger_from = 0.0;
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin();
-        let relative = problem.accuracy.relative;
+        self.observers.enter(mode, &self.here);
 
         loop {
             if let Err(error) = method.step(&mut equations, until) {
@@ -312,70 +310,39 @@ impl Simulation<'_> {
             let end = method.end();
             let dense = method.dense().expect("a step was made");
 
-            // Samples before the ledger moves on to the end of the step.
-            let due = |samples: &Samples| {
-                let tau = Instant::new(samples.next()).since(start);
-                (tau <= end + beyond).then_some(tau)
-            };
-            if due(&self.samples).is_some() {
-                let energies = problem.record.columns.energies;
-                let mut ledger = if energies { self.ledger.clone() } else { None };
-                let mut recorded = ledger_from;
-                let mut row_at = |t: f64, tau: f64| {
-                    if let Some(ledger) = &mut ledger {
-                        let part = (recorded, tau);
-                        ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
-                        recorded = tau;
-                    }
-                    let needed = energies || problem.record.columns.reactions;
-                    let [q, v, a] = guards::motion(&mut equations, dense, tau, needed);
-                    let here = &mut self.here;
-                    here.set_free(mode.free, [&q, &v, &a]);
-                    if drifts {
-                        copy_drifting(&mut here.q, mode.drifts, equations.context.held());
-                    }
-                    let row = Row {
-                        layout: &self.layout,
-                        q: &here.q,
-                        v: &here.v,
-                        ledger: row_of(ledger.as_ref()),
-                    };
-                    let at = Free {
-                        q: &q,
-                        v: &v,
-                        a: &a,
-                    };
-                    self.recorder.push_row(t, here.mode, |values| {
-                        row.fill(kernel, equations.context, at, values)
-                    });
+            let mut work = None;
+            if <M as OneStep<F, Equations<F>>>::HAS_QUADRATURE
+                && F > 0
+                && self.observers.ledger.is_some()
+            {
+                let mut sum = [0.0; 2];
+                let mut add = |powers: [f64; 2], weight: f64| {
+                    sum = [0, 1].map(|i| sum[i] + powers[i] * weight);
                 };
-                while let Some(tau) = due(&self.samples) {
-                    row_at(self.samples.next(), tau);
-                    self.samples.pass();
+                for Node { weight, state } in method.nodes() {
+                    equations.at(state.t);
+                    add(kernel.powers(equations.context, free_of(&state)), weight);
                 }
+                if beyond != 0.0 {
+                    equations.at(state.t);
+                    add(kernel.powers(equations.context, free_of(&state)), beyond);
+                }
+                work = Some(sum);
             }
+            self.observers.step(Step {
+                equations: &mut equations,
+                motion: dense,
+                mode,
+                here: &mut self.here,
+                end,
+                beyond,
+                work,
+            });
 
             if looks_at_ends {
                 equations.at(state.t);
             }
             let at = free_of(&state);
-            if let Some(ledger) = &mut self.ledger {
-                if F == 0 {
-                    let part = (ledger_from, end);
-                    ledger.add_powers(work(&mut equations, dense, part, relative), 1.0);
-                } else {
-                    for Node { weight, state } in method.nodes() {
-                        equations.at(state.t);
-                        let powers = kernel.powers(equations.context, free_of(&state));
-                        ledger.add_powers(powers, weight);
-                    }
-                }
-                equations.at(state.t);
-                if beyond != 0.0 {
-                    ledger.add_powers(kernel.powers(equations.context, at), beyond);
-                }
-                ledger_from = end;
-            }
 
             self.here.now = start.plus(state.t);
             self.here
@@ -385,17 +352,10 @@ impl Simulation<'_> {
             }
 
             if problem.record.every.is_none() {
-                let Here { q, v, .. } = &self.here;
-                let row = Row {
-                    layout: &self.layout,
-                    q,
-                    v,
-                    ledger: row_of(self.ledger.as_ref()),
-                };
-                self.recorder
-                    .push_row(self.here.now.seconds(), self.here.mode, |values| {
-                        row.fill(kernel, equations.context, at, values)
-                    });
+                self.observers.sample_end(&equations, &self.here, at);
+            }
+            if event.is_some() {
+                self.observers.jump(&self.here, &[], None);
             }
             match ended {
                 Some(Ended::Unmet(reason)) => return Err(reason),
@@ -448,13 +408,4 @@ pub(super) fn tolerances<const F: usize>(problem: &Problem, mode: &Mode) -> Tole
         pick(&accuracy.v_absolute),
     )
     .expect("a problem's tolerances are positive")
-}
-
-/// Drifting coordinates move although they are frozen.
-fn copy_drifting(q: &mut [f64], drifts: &[bool], held: &[f64]) {
-    for ((q, &drifts), &held) in q.iter_mut().zip(drifts).zip(held) {
-        if drifts {
-            *q = held;
-        }
-    }
 }

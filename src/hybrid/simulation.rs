@@ -7,11 +7,10 @@ use super::ensemble::Member;
 use super::equations::Piece;
 use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
-use super::ledger::RunningLedger;
 use super::limits::Margins;
+use super::observe::Observers;
 use super::plan::Plan;
 use super::problem::{Initial, Problem};
-use super::samples::Samples;
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
 use super::validate::{check_initial, check_parameters};
@@ -22,9 +21,7 @@ use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
-use crate::record::{
-    Event, Failure, Jump, Layout, Place, Progress, Recorder, Run, Snapshot, Solver, Subject,
-};
+use crate::record::{Event, Failure, Jump, Place, Progress, Run, Snapshot, Solver, Subject};
 use nalgebra::SVector;
 use std::time::Instant as WallClock;
 
@@ -113,10 +110,8 @@ pub(super) struct Simulation<'p> {
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
     pub visited: Visited,
-    /// The energy ledger, where it is kept.
-    pub ledger: Option<RunningLedger>,
-    pub recorder: Recorder,
-    pub layout: Layout,
+    /// What the run is watched for.
+    pub observers: Observers,
     pub jumps: Vec<Jump>,
     /// States before and after each of them, where they are kept.
     pub states_at_jumps: Vec<[Snapshot; 2]>,
@@ -140,7 +135,6 @@ pub(super) struct Simulation<'p> {
     pub expansion: Expansion,
     /// Name and order of every method that was used.
     pub methods: Vec<(&'static str, usize)>,
-    pub samples: Samples,
     /// How often the transition that ends the run has happened.
     pub counted: u64,
 }
@@ -160,12 +154,6 @@ impl<'p> Simulation<'p> {
         let foresees = context.can_foresee(&problem.signals);
         let n = model.coordinates.len();
         let modes = problem.automaton().modes;
-        let layout = Layout::new(model, problem.variant, problem.record.columns);
-        let rows = problem
-            .record
-            .every
-            .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
-        let record = &problem.record;
         let accuracy = &problem.accuracy;
         let absolute = [&accuracy.q_absolute[..], &accuracy.v_absolute].concat();
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
@@ -193,9 +181,7 @@ impl<'p> Simulation<'p> {
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
             visited: Visited::default(),
-            ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
-            recorder: Recorder::new(&layout, rows + 1),
-            layout,
+            observers: Observers::new(problem),
             jumps: Vec::new(),
             states_at_jumps: Vec::new(),
             solver: Solver::default(),
@@ -209,7 +195,6 @@ impl<'p> Simulation<'p> {
             rate_sizes: sizes(&accuracy.v_absolute),
             expansion: Expansion::new(n, context_signals, &problem.parameters),
             methods: Vec::new(),
-            samples: Samples::from(record.every, 0),
             counted: 0,
         })
     }
@@ -220,10 +205,17 @@ impl<'p> Simulation<'p> {
         self.choose_initial_mode()?;
         self.set_context();
         self.check_start(&problem.parameters)?;
-        if self.ledger.is_some() {
-            self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
-        }
+        self.observe_start();
         Ok(())
+    }
+
+    /// The observers see the state that the run starts from.
+    fn observe_start(&mut self) {
+        if self.observers.watch_steps() {
+            let stored = self.stored_energy();
+            self.observers.begin(stored);
+            self.observers.jump(&self.here, &[], Some(stored));
+        }
     }
 
     /// Takes the place of a member of an ensemble, at its start.
@@ -262,16 +254,13 @@ impl<'p> Simulation<'p> {
         self.visited.clear();
         self.doubts.clear();
         self.margins.clear();
-        self.recorder.clear();
         self.jumps.clear();
         self.states_at_jumps.clear();
         self.solver = Solver::default();
-        self.samples.rewind();
         self.counted = 0;
         self.set_context();
-        if self.ledger.is_some() {
-            self.ledger = Some(RunningLedger::starting_with(self.stored_energy()));
-        }
+        self.observers.rewind();
+        self.observe_start();
     }
 
     pub fn mode(&self) -> &'static Mode {
@@ -462,8 +451,8 @@ impl<'p> Simulation<'p> {
 
     /// Where energies are kept they are finite.
     fn check_energy(&self) -> Stoppable<()> {
-        match &self.ledger {
-            Some(ledger) if !are_finite(&ledger.row(self.stored_energy())) => {
+        match &self.observers.ledger {
+            Some(ledger) if !are_finite(&ledger.row(self.stored_energy(), [0.0; 2])) => {
                 let what = "an energy";
                 Err(Box::new(Reason::NotFinite { what }))
             }
@@ -483,7 +472,7 @@ impl<'p> Simulation<'p> {
 
     /// The state here, with reactions where they are recorded.
     pub fn snapshot(&self) -> Snapshot {
-        let mut reactions = vec![0.0; self.layout.reactions.len()];
+        let mut reactions = vec![0.0; self.observers.layout.reactions.len()];
         let mode = self.mode();
         if !reactions.is_empty() {
             with_kernel!(&mode.kernels, k => {
@@ -524,7 +513,7 @@ impl<'p> Simulation<'p> {
     /// Everything that was recorded, as far as it came.
     pub fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
         self.set_context();
-        let last = self.recorder.last_time();
+        let last = self.observers.recorder.last_time();
         if last.is_none_or(|t| t < self.here.now.seconds()) {
             self.sample_here();
         }
@@ -536,8 +525,17 @@ impl<'p> Simulation<'p> {
         }
         let problem = self.problem;
         let end = self.place();
-        let energy = self.ledger.as_ref().map(|l| l.close(self.stored_energy()));
+        if self.observers.watch_steps() {
+            let stored = self.stored_energy();
+            self.observers.jump(&self.here, &[], Some(stored));
+        }
+        let energy = self
+            .observers
+            .ledger
+            .as_ref()
+            .map(|l| l.close(self.stored_energy()));
         self.name_methods();
+        let wall = clock.elapsed();
         Run {
             subject: Subject {
                 model: problem.model.name.into(),
@@ -548,9 +546,11 @@ impl<'p> Simulation<'p> {
                 parameters: (problem.model.parameters.iter().zip(&problem.parameters))
                     .map(|(p, &value)| (p.name.into(), value))
                     .collect(),
+                digests: super::resume::digests(problem),
             },
-            layout: self.layout,
-            trajectory: self.recorder.finish(),
+            peaks: self.observers.peaks(),
+            layout: self.observers.layout,
+            trajectory: self.observers.recorder.finish(),
             events: {
                 let given = self.states_at_jumps.into_iter();
                 let states = given.chain(std::iter::repeat_with(Default::default));
@@ -573,7 +573,7 @@ impl<'p> Simulation<'p> {
                 reached.validity.splice(..0, problem.invalid_parameters());
                 reached
             },
-            wall: clock.elapsed(),
+            wall,
         }
     }
 }

@@ -8,8 +8,8 @@ use crate::record::{Jump, Progress, Reached, Solver};
 /// A problem made ready to run: tables, room and the initial mode. Runs after the first allocate
 /// nothing, as long as the record does not grow.
 ///
-/// What it gives is what [`super::simulate`] gives, without the trajectory and the names of a
-/// [`crate::record::Run`].
+/// What it gives is what [`super::simulate`] gives, without the trajectory, the extremes and the names of
+/// a [`crate::record::Run`].
 pub struct Simulator<'p> {
     simulation: Simulation<'p>,
     initial_mode: usize,
@@ -22,6 +22,7 @@ impl<'p> Simulator<'p> {
     /// As [`super::simulate`].
     pub fn new(problem: &'p Problem) -> Result<Self, Reason> {
         let mut simulation = Simulation::new(problem)?;
+        simulation.observers.leave_out_extremes();
         simulation.begin()?;
         let initial_mode = simulation.here.mode;
         Ok(Simulator {

@@ -54,7 +54,10 @@ pub trait OneStep<const F: usize, Y> {
     /// The motion within the last step.
     fn dense(&self) -> Option<&Self::Motion>;
 
-    /// Nodes of a quadrature over the last step, as accurate as the step.
+    /// Whether [`Self::nodes`] are those of a quadrature that is more accurate than the dense output.
+    const HAS_QUADRATURE: bool;
+
+    /// Nodes of a quadrature over the last step, as accurate as the step; none where the dense output is that.
     fn nodes(&self) -> impl Iterator<Item = Node<F>>;
 
     /// Whether the accelerations of [`Self::state`] satisfy the equations to rounding, and not to the
@@ -130,6 +133,8 @@ where
 
     const EXPLICIT: bool = false;
 
+    const HAS_QUADRATURE: bool = true;
+
     fn name(&self) -> (&'static str, usize) {
         ("Radau IIA", 2 * S - 1)
     }
@@ -194,6 +199,8 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     const EXPLICIT: bool = true;
 
+    const HAS_QUADRATURE: bool = false;
+
     fn lag(&self, system: &Y, least: f64) -> f64 {
         self.lag(system, least)
     }
@@ -243,7 +250,7 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     }
 
     fn nodes(&self) -> impl Iterator<Item = Node<F>> {
-        self.nodes()
+        std::iter::empty()
     }
 
     fn take_counters(&mut self) -> Counters {

@@ -344,7 +344,17 @@ pub struct Requirement {
     pub unit: &'static str,
 }
 
+/// Names of the models with the digests of what their code was generated from, as the build has found them.
+const DIGESTS: &str = env!("DALEMBERT_MODEL_DIGESTS");
+
 impl Model {
+    /// Digest of what the code of the model was generated from: its folder, the generator, the pinned packages.
+    pub fn digest(&self) -> &'static str {
+        let pairs = DIGESTS.split(' ').filter_map(|pair| pair.split_once('='));
+        let mut named = pairs.filter(|(name, _)| *name == self.name);
+        named.next().map_or("", |(_, digest)| digest)
+    }
+
     /// Number of signals that the inputs fill.
     pub fn signal_count(&self) -> usize {
         self.inputs.iter().map(|i| i.kind.signals()).sum()

@@ -43,6 +43,7 @@ fn variation(problem: &Problem, method: Method, tolerance: f64) -> Problem {
     other.record.every = Some(f64::INFINITY);
     other.record.columns = Recorded::default();
     other.record.event_states = false;
+    other.record.extremes = false;
     other
 }
 

@@ -211,6 +211,7 @@ fn measure(
         return Ok(Verdict::Stopped { at, reason });
     }
     problem.record.ledger = false;
+    problem.record.extremes = false;
     let Some(seconds) = fastest(&problem, progress)? else {
         return Ok(Verdict::Interrupted);
     };

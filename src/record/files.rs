@@ -1,7 +1,5 @@
 //! All the files of a run.
 
-use std::io::Write;
-
 use super::plot::{overview, phase_portraits};
 use super::summary::SUMMARY;
 use super::table::{EVENTS, METADATA, TRAJECTORY, write_events, write_metadata, write_trajectory};

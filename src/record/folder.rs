@@ -6,7 +6,11 @@
 //! the temporary folder, `.NAME.XXXXXX`, which is safe to delete.
 //!
 //! A folder written here holds a marker, a list of the files written. Those may be replaced by a
-//! later run; any other file is somebody else's and stays.
+//! later run; any other file is somebody else's and stays. Beside it are digests of the lines of these files, so that
+//! a run that is continued is the one that was written.
+//!
+//! Files are on the disk before they are put in place. What a killed program has left beside the target is removed
+//! by the next run into it: its lock is gone.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -16,8 +20,14 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+use super::digest::{Digesting, Lines};
+
 /// Name of the marker.
 const MARKER: &str = ".dalembert-output";
+/// Name of the file with the digests of the others.
+const DIGESTS: &str = ".dalembert-digests";
+/// A file that is locked as long as a folder is being written: the lock goes with its process.
+const LOCK: &str = ".dalembert-writing";
 /// First line of the marker.
 const MARKER_TITLE: &str =
     "# dalembert wrote the files listed here; a later run into this folder replaces them.";
@@ -89,6 +99,10 @@ pub struct OutputFolder {
 pub struct Staging {
     folder: TempDir,
     files: BTreeSet<String>,
+    /// A line of digests for each file.
+    digests: String,
+    /// Locked until the files are in place.
+    _lock: File,
 }
 
 impl OutputFolder {
@@ -123,19 +137,26 @@ impl OutputFolder {
             .file_name()
             .unwrap_or(OsStr::new("out"))
             .to_string_lossy();
+        remove_left(&name, parent);
+        let folder =
+            temporary_folder(&name, parent).map_err(io_error("create a folder inside", parent))?;
+        let lock = lock(folder.path()).map_err(io_error("lock a folder inside", parent))?;
         let mut staging = Staging {
-            folder: temporary_folder(&name, parent)
-                .map_err(io_error("create a folder inside", parent))?,
+            folder,
             files: BTreeSet::new(),
+            digests: String::new(),
+            _lock: lock,
         };
         write(&mut staging)?;
         staging.mark()?;
         let new = staging.folder.path();
+        sync(new).map_err(io_error("write", new))?;
         if fs::symlink_metadata(&target).is_err() {
             fs::rename(new, &target).map_err(io_error("create the folder", &target))?;
             // The folder has moved: there is nothing left to clean up at its old path.
             let _ = staging.folder.keep();
-            return Ok(());
+            let _ = fs::remove_file(target.join(LOCK));
+            return sync(parent).map_err(io_error("write", parent));
         }
         let ours = ours(&target)?;
         if let Some(file) = staging
@@ -154,6 +175,8 @@ impl OutputFolder {
         fs::set_permissions(new, permissions).map_err(io_error("set the permissions of", new))?;
         keep_foreign(&target, new, &ours).map_err(io_error("copy other files of", &target))?;
         exchange(new, &target).map_err(io_error("replace the folder", &target))?;
+        let _ = fs::remove_file(target.join(LOCK));
+        sync(parent).map_err(io_error("write", parent))?;
         // `new` is now the path of the old folder. Foreign files that appeared there meanwhile:
         keep_foreign(new, &target, &ours).map_err(io_error("copy other files of", new))?;
         staging
@@ -204,21 +227,28 @@ impl Staging {
     pub fn file(
         &mut self,
         name: &str,
-        write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), FolderError> {
         let path = self.folder.path().join(name);
         let filled = File::create_new(&path).and_then(|file| {
-            let mut out = BufWriter::new(file);
+            let mut out = BufWriter::new(Digesting::new(&file));
             write(&mut out)?;
-            out.flush()
+            let digesting = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+            let lines = digesting.finish();
+            file.sync_all()?;
+            Ok(lines)
         });
-        filled.map_err(io_error("write", Path::new(name)))?;
+        let lines = filled.map_err(io_error("write", Path::new(name)))?;
+        self.digests
+            .push_str(&format!("{name}: {}\n", lines.text()));
         self.files.insert(name.to_owned());
         Ok(())
     }
 
-    /// Writes the marker.
+    /// Writes the digests and the marker.
     fn mark(&mut self) -> Result<(), FolderError> {
+        let digests = std::mem::take(&mut self.digests);
+        self.file(DIGESTS, |out| out.write_all(digests.as_bytes()))?;
         let lines: Vec<String> = self.files.iter().map(|file| format!("{file}\n")).collect();
         self.file(MARKER, |out| {
             writeln!(out, "{MARKER_TITLE}")?;
@@ -247,14 +277,76 @@ fn ours(folder: &Path) -> Result<BTreeSet<String>, FolderError> {
         Err(error) => return Err(io_error("read", &path)(error)),
     };
     let files = marker.lines().skip(1).map(str::to_owned);
-    Ok(files.chain([MARKER.to_owned()]).collect())
+    let own = [MARKER, LOCK].map(str::to_owned);
+    Ok(files.chain(own).collect())
 }
+
+/// Compares a file of a folder with the digests that were written with it; an error says what differs.
+pub(super) fn check(folder: &Path, name: &str) -> Result<(), String> {
+    let digests = fs::read_to_string(folder.join(DIGESTS))
+        .map_err(|e| format!("cannot be told to be what was written, without {DIGESTS}: {e}"))?;
+    let of_file = digests.lines().find_map(|line| {
+        let (file, text) = line.split_once(": ")?;
+        (file == name).then(|| Lines::read(text))?
+    });
+    let written = of_file.ok_or_else(|| format!("{DIGESTS} does not list it"))?;
+    let found = Lines::of(&folder.join(name)).map_err(|e| format!("cannot be read: {e}"))?;
+    match written.difference(&found) {
+        None => Ok(()),
+        Some(difference) => Err(difference),
+    }
+}
+
+/// Brings the entries of a folder to the disk.
+fn sync(folder: &Path) -> io::Result<()> {
+    match cfg!(unix) {
+        true => File::open(folder)?.sync_all(),
+        false => Ok(()),
+    }
+}
+
+/// Locks a new temporary folder. The file has content only once it is locked.
+fn lock(folder: &Path) -> io::Result<File> {
+    let mut file = File::create_new(folder.join(LOCK))?;
+    file.lock()?;
+    file.write_all(b"This folder is being written.\n")?;
+    Ok(file)
+}
+
+/// Removes the temporary folders beside the target that killed programs have left. What cannot be removed stays.
+fn remove_left(name: &str, parent: &Path) {
+    let prefix = format!(".{name}.");
+    let entries = fs::read_dir(parent).into_iter().flatten().flatten();
+    for entry in entries.filter(|e| e.file_type().is_ok_and(|kind| kind.is_dir())) {
+        let is_temporary = entry.file_name().to_str().is_some_and(|found| {
+            let rest = found.strip_prefix(&prefix).unwrap_or_default();
+            rest.len() == RANDOM && rest.chars().all(|c| c.is_ascii_alphanumeric())
+        });
+        if is_temporary && is_left(&entry.path()) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+/// Whether nobody writes a temporary folder any more: its lock is free, or it is the old output, which nobody needs.
+fn is_left(folder: &Path) -> bool {
+    match File::open(folder.join(LOCK)) {
+        Ok(file) => {
+            let is_locked_for_good = file.metadata().is_ok_and(|m| m.len() > 0);
+            is_locked_for_good && file.try_lock().is_ok()
+        }
+        Err(_) => folder.join(MARKER).is_file(),
+    }
+}
+
+/// Letters and digits at the end of the name of a temporary folder.
+const RANDOM: usize = 6;
 
 /// A new folder beside the target, with the permissions of any new folder.
 fn temporary_folder(name: &str, parent: &Path) -> io::Result<TempDir> {
     let prefix = format!(".{name}.");
     let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix);
+    builder.prefix(&prefix).rand_bytes(RANDOM);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -346,7 +438,7 @@ mod tests {
         fs::write(out.join("notes/deep/own.txt"), "mine").unwrap();
         fs::write(out.join("own.txt"), "mine").unwrap();
         folder(&out, &[("a.csv", "2")]).unwrap();
-        assert_eq!(names(&out), [MARKER, "a.csv", "notes", "own.txt"]);
+        assert_eq!(names(&out), [DIGESTS, MARKER, "a.csv", "notes", "own.txt"]);
         assert_eq!(fs::read_to_string(out.join("a.csv")).unwrap(), "2");
         assert_eq!(fs::read_to_string(out.join("own.txt")).unwrap(), "mine");
         assert_eq!(
@@ -358,6 +450,35 @@ mod tests {
             ["out"],
             "nothing is left beside the folder"
         );
+    }
+
+    #[test]
+    fn what_killed_runs_have_left_is_removed_and_nothing_else() {
+        let home = tempfile::tempdir().unwrap();
+        let at = |name: &str| home.path().join(name);
+        for name in [
+            ".out.aB3dE6",
+            ".out.old123",
+            ".out.living",
+            ".out.mine",
+            ".other.aB3dE6",
+        ] {
+            fs::create_dir(at(name)).unwrap();
+        }
+        for name in [".out.aB3dE6", ".other.aB3dE6"] {
+            drop(lock(&at(name)).unwrap());
+        }
+        fs::write(at(".out.old123").join(MARKER), "").unwrap();
+        let living = lock(&at(".out.living")).unwrap();
+        folder(&at("out"), &[("a.csv", "1")]).unwrap();
+        assert_eq!(
+            names(home.path()),
+            [".other.aB3dE6", ".out.living", ".out.mine", "out"]
+        );
+        drop(living);
+        folder(&at("out"), &[("a.csv", "1")]).unwrap();
+        assert_eq!(names(home.path()), [".other.aB3dE6", ".out.mine", "out"]);
+        assert_eq!(names(&at("out")), [DIGESTS, MARKER, "a.csv"]);
     }
 
     #[test]

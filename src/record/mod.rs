@@ -18,6 +18,7 @@
 //! Numbers have 17 significant digits, so they are read back bit for bit. The same run gives the
 //! same bytes, but for `wall_seconds` in the summary.
 
+pub(crate) mod digest;
 mod files;
 pub mod folder;
 mod gains;
@@ -42,7 +43,7 @@ pub use gains::Gain;
 pub use layout::{Layout, Quantity, Recorded};
 pub(crate) use looks::Looks;
 pub(crate) use number::{exact, rounded};
-pub use peaks::{Peak, peaks};
+pub use peaks::Peak;
 pub use progress::{Progress, ProgressLine, Silent};
 pub use reached::{Left, LimitState, Reached};
 pub use read::ReadError;

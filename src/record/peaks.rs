@@ -1,9 +1,9 @@
-//! Extremes over the samples and the states on both sides of every transition.
+//! Extremes of a quantity, and its curve as far as it is recorded.
 
-use super::run::{Group, Run};
+use super::run::Run;
 
 /// Smallest and largest value of a quantity, and when it first took them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
 pub struct Peak {
     /// Largest value.
     pub max: f64,
@@ -13,37 +13,6 @@ pub struct Peak {
     pub min: f64,
     /// First time of the smallest value (s).
     pub t_min: f64,
-}
-
-/// The peaks of every coordinate, velocity and reaction, as `(column, peak)`. Values that are not
-/// numbers are passed over; a column without any number has no peak.
-pub fn peaks(run: &Run) -> Vec<(usize, Peak)> {
-    let has_peak = |group| matches!(group, Group::Coordinate | Group::Velocity | Group::Reaction);
-    let columns = run.trajectory.columns.iter().enumerate();
-    let columns = columns.filter(|(_, column)| has_peak(column.group));
-    columns
-        .filter_map(|(i, _)| Some((i, peak(run.curve(i))?)))
-        .collect()
-}
-
-/// The peak of a curve in order of time.
-fn peak(curve: impl Iterator<Item = (f64, f64)>) -> Option<Peak> {
-    let mut peak: Option<Peak> = None;
-    for (t, x) in curve.filter(|(_, x)| !x.is_nan()) {
-        let peak = peak.get_or_insert(Peak {
-            max: x,
-            t_max: t,
-            min: x,
-            t_min: t,
-        });
-        if x > peak.max {
-            (peak.max, peak.t_max) = (x, t);
-        }
-        if x < peak.min {
-            (peak.min, peak.t_min) = (x, t);
-        }
-    }
-    peak
 }
 
 impl Run {

@@ -10,7 +10,9 @@ use std::time::Duration;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
+use super::folder::check;
 use super::layout::{Layout, Quantity, Recorded};
+use super::peaks::Peak;
 use super::reached::Reached;
 use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
 use super::summary::SUMMARY;
@@ -36,7 +38,9 @@ struct Written {
     title: String,
     choices: BTreeMap<String, String>,
     parameters: BTreeMap<String, f64>,
+    digests: BTreeMap<String, String>,
     end: End,
+    peaks: BTreeMap<String, Peak>,
     impacts: BTreeMap<String, IgnoredAny>,
     energy: Option<Energy>,
     #[serde(default)]
@@ -85,14 +89,25 @@ impl Run {
             reason,
         };
         let file = File::open(&path).map_err(|e| error(format!("cannot read the run: {e}")))?;
+        for name in [SUMMARY, TRAJECTORY, EVENTS] {
+            check(folder, name).map_err(|reason| ReadError {
+                path: folder.join(name),
+                reason,
+            })?;
+        }
         let written: Written = serde_json::from_reader(BufReader::new(file))
             .map_err(|e| error(format!("not the summary of a run: {e}")))?;
         let subject = subject(&written, model, variant).map_err(error)?;
         let end = end(&written.end, &layout).map_err(error)?;
+        let columns = layout.columns();
+        let columns = columns.iter().enumerate();
+        let peaks = columns.filter_map(|(i, c)| Some((i, *written.peaks.get(&c.name)?)));
+        let peaks = peaks.collect();
         Ok(Run {
             subject,
             trajectory: trajectory(&folder.join(TRAJECTORY), &layout)?,
             events: events(&folder.join(EVENTS), &layout, variant, &written.impacts)?,
+            peaks,
             layout,
             end,
             solver: written.solver,
@@ -139,6 +154,9 @@ fn subject(written: &Written, model: &Model, variant: &Variant) -> Result<Subjec
         choices,
         parameters: parameters
             .map(|(name, value)| (name.into(), value))
+            .collect(),
+        digests: (written.digests.iter())
+            .map(|(part, digest)| (part.clone(), digest.clone()))
             .collect(),
     })
 }

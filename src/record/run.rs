@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Layout, Reached, Uncertain};
+use super::{Layout, Peak, Reached, Uncertain};
 
 /// The result of a simulation, complete or stopped early.
 #[derive(Debug, Clone)]
@@ -15,6 +15,9 @@ pub struct Run {
     pub trajectory: Trajectory,
     /// The transitions, in hybrid time.
     pub events: Vec<Event>,
+    /// Extremes of the motion, as (index of the column, peak), whether or not a row hits them; none where they were
+    /// not looked for.
+    pub peaks: Vec<(usize, Peak)>,
     /// Where the run ended; of a run that stopped early, the last admissible point.
     pub end: Place,
     /// Work done by the integrator.
@@ -69,6 +72,8 @@ pub struct Subject {
     pub choices: Vec<(String, String)>,
     /// Value of each parameter, in the model's order and units.
     pub parameters: Vec<(String, f64)>,
+    /// Digests of the model and of the parts of the scene that decide the motion, as (part, digest).
+    pub digests: Vec<(String, String)>,
 }
 
 /// Samples of the columns over time.

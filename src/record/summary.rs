@@ -9,7 +9,6 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 use super::gains::{Gain, gains};
 use super::layout::Quantity;
 use super::number::push_exact;
-use super::peaks::peaks;
 use super::run::{Place, Run};
 
 /// File name of the summary.
@@ -28,11 +27,13 @@ pub struct Summary {
     pub choices: Named<String>,
     /// Value of each parameter.
     pub parameters: Named<f64>,
+    /// Digests of the model and of the parts of the scene that decide the motion: a run is continued with the same.
+    pub digests: Named<String>,
     /// Where the run ended.
     pub end: Point,
     /// Why and where the run stopped early; `null` when it reached its end.
     pub failure: Option<Stopped>,
-    /// Extremes of every coordinate, velocity and reaction.
+    /// Extremes of every coordinate, velocity, reaction and energy.
     pub peaks: Named<Extremes>,
     /// The transitions.
     pub events: Events,
@@ -84,7 +85,7 @@ pub struct Stopped {
     pub at: Point,
 }
 
-/// Extremes of a quantity over the samples and both sides of every transition.
+/// Extremes of a quantity over the motion and both sides of every transition.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Extremes {
     /// Largest value.
@@ -201,7 +202,7 @@ impl Summary {
         for event in &run.events {
             *by_transition.entry(event.transition).or_default() += 1;
         }
-        let extremes = peaks(run).into_iter().map(|(i, peak)| {
+        let extremes = run.peaks.iter().map(|&(i, peak)| {
             let column = &run.trajectory.columns[i];
             let extremes = Extremes {
                 max: peak.max,
@@ -217,6 +218,7 @@ impl Summary {
             title: run.subject.title.clone(),
             choices: Named(run.subject.choices.clone()),
             parameters: Named(run.subject.parameters.clone()),
+            digests: Named(run.subject.digests.clone()),
             end: point(run, &run.end),
             failure: (run.failure.as_ref()).map(|f| Stopped {
                 reason: f.reason.clone(),

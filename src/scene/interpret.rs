@@ -267,6 +267,7 @@ fn record(scene: &Checked) -> Record {
         },
         ledger: flag("energies"),
         event_states: true,
+        extremes: true,
     }
 }
 

@@ -104,6 +104,72 @@ fn a_run_is_not_continued_with_another_scene() {
     assert!(stderr(&output).contains("cannot read the run"));
 }
 
+#[test]
+fn a_folder_that_was_changed_is_not_continued() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    let run = ["run", &ball, "--set", "end=0.5", "--out", "out"];
+    ends_with(0, home.path(), &run);
+    let refused = |file: &str, change: &dyn Fn(&str) -> String, words: &str| {
+        let path = home.path().join("out").join(file);
+        let before = fs::read_to_string(&path).unwrap();
+        let changed = change(&before);
+        assert_ne!(before, changed);
+        fs::write(&path, changed).unwrap();
+        let output = ends_with(2, home.path(), &["run", &ball, "--resume", "out"]);
+        let said = stderr(&output);
+        assert!(said.contains(file) && said.contains(words), "{said}");
+        fs::write(&path, before).unwrap();
+    };
+    let without = |text: &str, line: usize| -> String {
+        let lines = text.split_inclusive('\n').enumerate();
+        lines
+            .filter(|(i, _)| i + 1 != line)
+            .map(|(_, l)| l)
+            .collect()
+    };
+    let rows = |text: &str| text.lines().count();
+    // Cut off at the end of a line, as no parser sees it.
+    let cut = |text: &str| without(text, rows(text));
+    refused("trajectory.csv", &cut, "it has 101 lines, and had 102");
+    refused("events.csv", &|text| without(text, 2), "lines 1 to");
+    let digit = |text: &str| text.replacen("0.25,", "0.26,", 1);
+    refused(
+        "trajectory.csv",
+        &digit,
+        "lines 33 to 64 are not what the run has written",
+    );
+    let work = |text: &str| text.replacen("\"initial\": ", "\"initial\": 1", 1);
+    refused("summary.json", &work, "are not what the run has written");
+    // As it was it goes on.
+    ends_with(0, home.path(), &["run", &ball, "--resume", "out"]);
+}
+
+#[test]
+fn a_run_is_not_continued_with_other_inputs_or_another_accuracy() {
+    let home = tempfile::tempdir().unwrap();
+    let tank = scene("tank_full_plate");
+    let first = ["run", &tank, "--set", "end=0.1", "--out", "out"];
+    ends_with(0, home.path(), &first);
+    for (setting, part) in [
+        (
+            "inputs.ground_acceleration.sine.amplitude=19",
+            "`inputs` is not what it was",
+        ),
+        ("accuracy.relative=1e-9", "`accuracy` is not what it was"),
+        ("initial.theta=0.01", "`initial` is not what it was"),
+        ("method=radau", "`method` is not what it was"),
+    ] {
+        let arguments = ["run", &tank, "--resume", "out", "--set", setting];
+        let output = ends_with(2, home.path(), &arguments);
+        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+    }
+    // Another model, as one that was changed since is.
+    let path = home.path().join("out");
+    let digests = json(&path.join("summary.json"))["digests"].clone();
+    assert_eq!(digests["model"].as_str().map(str::len), Some(16));
+}
+
 /// A signal needs a process that listens to it, which Linux tells.
 #[cfg(target_os = "linux")]
 mod signals {

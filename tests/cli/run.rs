@@ -3,7 +3,8 @@
 use super::*;
 
 /// What every run leaves; `phase.svg` is there where something moves.
-const FILES: [&str; 6] = [
+const FILES: [&str; 7] = [
+    ".dalembert-digests",
     ".dalembert-output",
     "csv-metadata.json",
     "events.csv",
@@ -236,5 +237,96 @@ fn ordinary_scenes_leave_nothing_uncertain() {
                 "{name} at {tolerance}"
             );
         }
+    }
+}
+
+#[test]
+fn more_rows_than_there_is_room_for_are_refused_before_the_run() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    for every in ["1e-12", "1e-30"] {
+        let setting = format!("record.every={every}");
+        let run = ["run", &ball, "--set", &setting, "--out", "out"];
+        let output = ends_with(2, home.path(), &run);
+        let said = stderr(&output);
+        assert!(
+            said.contains("rows of the trajectory") && said.contains("bytes of memory"),
+            "{said}"
+        );
+        assert!(!home.path().join("out").exists());
+    }
+}
+
+#[test]
+fn the_report_is_shown_where_files_cannot_be_written() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    // A file of somebody else in the way, which only the writing finds.
+    ends_with(
+        0,
+        home.path(),
+        &[
+            "run",
+            &ball,
+            "--out",
+            "out",
+            "--set",
+            "end=0.1",
+            "--set",
+            "record={}",
+        ],
+    );
+    let out = home.path().join("out");
+    let marker = fs::read_to_string(out.join(".dalembert-output")).unwrap();
+    fs::write(
+        out.join(".dalembert-output"),
+        marker.replace("events.csv\n", ""),
+    )
+    .unwrap();
+    let output = dalembert(home.path())
+        .args(["run", &ball, "--out", "out"])
+        .output()
+        .unwrap();
+    assert_ne!(output.status.code(), Some(0));
+    assert!(
+        stderr(&output).contains("events.csv"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(
+        stdout(&output).contains("reached t ="),
+        "{}",
+        stdout(&output)
+    );
+}
+
+#[test]
+fn plots_survive_the_largest_and_the_smallest_numbers() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    for settings in [
+        ["initial.h=1e-308", "end=1e-160"],
+        ["parameters.g=1e307", "end=1e-154"],
+    ] {
+        let [one, two] = settings;
+        let run = [
+            "run",
+            &ball,
+            "--set",
+            one,
+            "--set",
+            two,
+            "--set",
+            "record={}",
+            "--out",
+            "out",
+        ];
+        let output = dalembert(home.path()).args(run).output().unwrap();
+        let code = output.status.code();
+        assert!(
+            matches!(code, Some(0 | 2 | 3)),
+            "{settings:?}: {code:?} {}",
+            stderr(&output)
+        );
     }
 }

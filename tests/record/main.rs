@@ -10,7 +10,6 @@ use dalembert::record::plot::{Chart, Curve, Dimension, overview, phase_portraits
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
 use dalembert::record::{
     Event, Failure, Group, OutputFolder, Place, Quantity, Recorder, Report, Run, Snapshot, Summary,
-    peaks,
 };
 use proptest::prelude::*;
 use synthetic::{bouncing_ball, tank_like};
@@ -128,41 +127,6 @@ fn rows_go_in_without_allocation() {
 }
 
 #[test]
-fn peaks_are_found_between_samples() {
-    // The fastest moment is the first impact, which no sample hits.
-    let run = bouncing_ball(1.0, 3, 7);
-    let peaks = peaks(&run);
-    let (_, speed) = peaks
-        .iter()
-        .find(|(i, _)| run.trajectory.columns[*i].name == "y.rate")
-        .unwrap();
-    let fall = (2.0f64 / 9.81).sqrt();
-    assert!((speed.min + 9.81 * fall).abs() < 1e-14);
-    assert!((speed.t_min - fall).abs() < 1e-15);
-    assert!((speed.max - 0.8 * 9.81 * fall).abs() < 1e-14);
-}
-
-#[test]
-fn a_peak_is_reported_at_its_first_time_and_nan_has_none() {
-    let mut run = bouncing_ball(1.0, 1, 0);
-    run.events.clear();
-    let mut recorder = Recorder::new(&run.layout, 3);
-    for (t, y) in [(0.0, f64::NAN), (1.0, 2.0), (2.0, 2.0)] {
-        recorder.push_row(t, 0, |row| {
-            row.copy_from_slice(&[y, f64::NAN, 0.0, 1.0, 0.0])
-        });
-    }
-    run.trajectory = recorder.finish();
-    let peaks = peaks(&run);
-    assert_eq!(
-        peaks.iter().map(|p| p.0).collect::<Vec<_>>(),
-        [0, 2],
-        "y.rate has no peak"
-    );
-    assert_eq!((peaks[0].1.t_max, peaks[0].1.t_min), (1.0, 1.0));
-}
-
-#[test]
 fn a_curve_has_both_sides_of_every_transition_in_order() {
     let run = bouncing_ball(1.0, 3, 50);
     let times: Vec<f64> = run.curve(1).map(|p| p.0).collect();
@@ -253,6 +217,7 @@ fn a_run_is_written_into_a_folder_with_the_same_bytes_each_time() {
     assert_eq!(
         names,
         [
+            ".dalembert-digests",
             ".dalembert-output",
             "csv-metadata.json",
             "events.csv",

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use dalembert::record::{
-    EnergyJump, Event, Group, Layout, Ledger, Place, Quantity, Reached, Recorder, Run, Snapshot,
+    EnergyJump, Event, Group, Layout, Ledger, Peak, Place, Quantity, Reached, Recorder, Run, Snapshot,
     Solver, Subject, Uncertain,
 };
 
@@ -98,12 +98,14 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             row[layout.range(Group::Energy)][0] = G * y + v * v / 2.0;
         });
     }
-    Run {
+    with_peaks(Run {
+        peaks: Vec::new(),
         subject: Subject {
             model: "bouncing_ball".into(),
             title: "A ball".into(),
             choices: vec![("rules".into(), "reactions".into())],
             parameters: vec![("m".into(), 1.0), ("e".into(), restitution)],
+            digests: vec![],
         },
         trajectory: recorder.finish(),
         end: Place {
@@ -129,7 +131,37 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         reached: Reached::default(),
         wall: Duration::ZERO,
         failure: None,
-    }
+    })
+}
+
+/// The run with the extremes of its rows and events as its peaks.
+pub fn with_peaks(mut run: Run) -> Run {
+    let has_peak = |group| matches!(group, Group::Coordinate | Group::Velocity | Group::Reaction);
+    let columns = run.trajectory.columns.iter().enumerate();
+    let peaks = columns
+        .filter(|(_, c)| has_peak(c.group))
+        .filter_map(|(i, _)| {
+            let mut curve = run.curve(i).filter(|(_, x)| !x.is_nan());
+            let (t, x) = curve.next()?;
+            let first = Peak {
+                max: x,
+                t_max: t,
+                min: x,
+                t_min: t,
+            };
+            let peak = curve.fold(first, |mut peak, (t, x)| {
+                if x > peak.max {
+                    (peak.max, peak.t_max) = (x, t);
+                }
+                if x < peak.min {
+                    (peak.min, peak.t_min) = (x, t);
+                }
+                peak
+            });
+            Some((i, peak))
+        });
+    run.peaks = peaks.collect();
+    run
 }
 
 /// Something with the quantities, the units and the magnitudes of a tank: it slips by millimetres,
@@ -282,7 +314,8 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             row[layout.range(Group::Input)][0] = 20.0 * (2.0 * PI * 7.0 * t).sin();
         });
     }
-    Run {
+    with_peaks(Run {
+        peaks: Vec::new(),
         subject: Subject {
             model: "walking_tank".into(),
             title: "Something like a tank".into(),
@@ -291,6 +324,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
                 ("landing".into(), "momenta".into()),
             ],
             parameters: vec![("mu_s".into(), 0.2)],
+            digests: vec![],
         },
         layout,
         trajectory: recorder.finish(),
@@ -325,5 +359,5 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         reached: Reached::default(),
         wall: Duration::from_millis(123),
         failure: None,
-    }
+    })
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Case, Comparison};
-use crate::record::{Group, Ledger, Run, peaks};
+use crate::record::{Group, Ledger, Run};
 
 /// A number of each case.
 #[derive(Debug)]
@@ -89,6 +89,6 @@ impl Comparison {
 /// Smallest and largest value of a coordinate.
 fn extremes(run: &Run, coordinate: usize) -> Option<(f64, f64)> {
     let column = run.layout.range(Group::Coordinate).start + coordinate;
-    let peak = peaks(run).into_iter().find(|(i, _)| *i == column);
+    let peak = run.peaks.iter().find(|(i, _)| *i == column);
     peak.map(|(_, peak)| (peak.min, peak.max))
 }

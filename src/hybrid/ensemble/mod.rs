@@ -71,6 +71,7 @@ impl Ensemble {
         let mut problem = problem.clone();
         problem.record.ledger = false;
         problem.record.event_states = false;
+        problem.record.extremes = false;
         problem.record.columns = Recorded::default();
         problem.record.every = Some(problem.end.time);
         let modes = problem.automaton().modes;

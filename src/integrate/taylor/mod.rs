@@ -11,7 +11,6 @@
 mod dense;
 mod lanes;
 mod length;
-mod quadrature;
 mod series;
 
 use length::Terms;
@@ -24,7 +23,7 @@ pub use series::{Analytic, ORDERS, Series, SeriesKind};
 use super::linear::Lu;
 use super::logarithm::root;
 use super::report::{Counters, StepError, StepReport};
-use super::state::{Lost, Node, State, add, fit};
+use super::state::{Lost, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances};
 use nalgebra::{SMatrix, SVector};
@@ -77,8 +76,6 @@ pub struct Taylor<const F: usize> {
     order: usize,
     /// The lower order where there are many steps.
     lower: Option<(usize, Terms)>,
-    /// Parts of a step in its quadrature.
-    panels: usize,
     terms: Terms,
     start: State<F>,
     end: State<F>,
@@ -119,7 +116,6 @@ impl<const F: usize> Taylor<F> {
             tolerances: *tolerances,
             order,
             lower: length::half_period(relative, kind).map(|p| (p, Terms::new(relative, p, kind))),
-            panels: quadrature::panels(kind),
             terms: Terms::new(relative, order, kind),
             start: origin,
             end: origin,
@@ -450,30 +446,6 @@ impl<const F: usize> Taylor<F> {
             (self.end.v[i], self.lost.v[i]) = add(start.v[i], dv[i], lost.v[i]);
         }
         self.end.a = self.dense.acceleration(h);
-    }
-
-    /// Nodes of Gauss's quadrature over the last step; none after a restart.
-    pub fn nodes(&self) -> impl Iterator<Item = Node<F>> {
-        let rule = match self.last.is_step() {
-            true => quadrature::gauss(quadrature::nodes(self.order)),
-            false => &[],
-        };
-        let (t, h) = (self.start.t, self.end.t - self.start.t);
-        let h_part = h / self.panels as f64;
-        let all = (0..self.panels).flat_map(|part| rule.iter().map(move |node| (part, node)));
-        all.map(move |(part, &(place, weight))| {
-            let tau = (part as f64 + place) * h_part;
-            let (q, v, a) = self.dense.at_offset(tau);
-            Node {
-                weight: weight * h_part,
-                state: State {
-                    t: t + tau,
-                    q,
-                    v,
-                    a,
-                },
-            }
-        })
     }
 
     /// The last terms have set the length: there is no other estimate of the error.

@@ -28,6 +28,9 @@ pub(super) struct Axis {
     /// Lower and upper end, in the units of the labels.
     low: f64,
     high: f64,
+    /// Values are multiplied by these two first: a power of ten where they are so small or large that their
+    /// differences or quotients are no doubles. It may be none itself, and is the product of two.
+    powers: [f64; 2],
     /// Values are shown as their difference to this, in the model's unit.
     offset: f64,
     /// The model's unit, as it is printed.
@@ -38,6 +41,9 @@ pub(super) struct Axis {
 /// Differences below this part of the values are shown on their own, beside an offset: the labels
 /// would need more digits than anybody reads.
 const OFFSET_BELOW: f64 = 1e-4;
+
+/// Magnitudes whose sums, ranges and steps are doubles with all their digits.
+const PLAIN: std::ops::Range<f64> = 1e-280..1e280;
 
 impl Axis {
     /// The axis of values between `low` and `high`, in `unit`, with `margin` times their
@@ -57,6 +63,7 @@ impl Axis {
                     scale,
                     low: low - room,
                     high: high + room,
+                    powers: [1.0; 2],
                     offset: 0.0,
                     unit: printed(unit),
                     display,
@@ -67,15 +74,31 @@ impl Axis {
 
     fn linear(unit: &str, low: f64, high: f64, margin: f64) -> Axis {
         let largest = low.abs().max(high.abs());
+        let exponent = match largest {
+            0.0 => 0,
+            _ if PLAIN.contains(&largest) => 0,
+            _ => largest.log10().floor() as i32,
+        };
+        let half = exponent / 2;
+        let powers = [half, exponent - half].map(|e| 10f64.powi(-e));
+        let scaled = |x: f64| x * powers[0] * powers[1];
+        let (low, high, largest) = (scaled(low), scaled(high), scaled(largest));
         let range = high - low;
-        let offset = if range > 0.0 && range < OFFSET_BELOW * largest {
+        let offset = if exponent == 0 && range > 0.0 && range < OFFSET_BELOW * largest {
             let place = 10f64.powf(range.log10().ceil());
             ((low + range / 2.0) / place).round() * place
         } else {
             0.0
         };
         let largest = (low - offset).abs().max((high - offset).abs());
-        let display = display(unit, largest);
+        let mut display = display(unit, largest);
+        if exponent != 0 {
+            let unit = format!("10{} {}", superscript(exponent), printed(unit));
+            display = Display {
+                unit: unit.trim_end().to_owned(),
+                factor: 1.0,
+            };
+        }
         let (low, high) = (
             (low - offset) * display.factor,
             (high - offset) * display.factor,
@@ -89,6 +112,7 @@ impl Axis {
             scale: Scale::Linear,
             low: low - room,
             high: high + room,
+            powers,
             offset,
             unit: printed(unit),
             display,
@@ -98,7 +122,10 @@ impl Axis {
     /// Position of a value, 0 at the lower end and 1 at the upper; NaN where the scale has none.
     pub fn position(&self, value: f64) -> f64 {
         let shown = match self.scale {
-            Scale::Linear => (value - self.offset) * self.display.factor,
+            Scale::Linear => {
+                let value = value * self.powers[0] * self.powers[1];
+                (value - self.offset) * self.display.factor
+            }
             Scale::Log if value > 0.0 => value.log10(),
             Scale::Log => f64::NAN,
         };
@@ -191,6 +218,32 @@ mod tests {
         let axis = Axis::new(Scale::Linear, "m", (1.234_560_9, 1.234_563_1), 0.0);
         assert_eq!(axis.title("y"), "y − 1.23456 m (µm)");
         assert_eq!(labels(&axis, 3), ["1", "2", "3"]);
+    }
+
+    #[test]
+    fn the_smallest_and_the_largest_doubles_have_an_axis() {
+        let (least, most) = (f64::from_bits(1), f64::MAX);
+        for (low, high) in [
+            (0.0, least),
+            (-least, 3.0 * least),
+            (1e-308, 1.1e-308),
+            (-most, most),
+            (0.0, most),
+            (-1e-300, 1e-310),
+            (most.next_down(), most),
+            (1e280, 1e281),
+        ] {
+            let axis = Axis::new(Scale::Linear, "m", (low, high), 0.05);
+            let [left, right] = [low, high].map(|x| axis.position(x));
+            assert!(
+                -1e-9 <= left && left <= right && right <= 1.0 + 1e-9,
+                "{left} {right}"
+            );
+            assert!(axis.ticks(8).len() <= 9, "{low} {high}");
+        }
+        let axis = Axis::new(Scale::Linear, "m", (0.0, 4.5e-310), 0.0);
+        assert_eq!(axis.title("x"), "x (10⁻³¹⁰ m)");
+        assert_eq!(labels(&axis, 5), ["0", "1", "2", "3", "4"]);
     }
 
     #[test]

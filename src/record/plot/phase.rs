@@ -63,7 +63,10 @@ fn portrait(run: &Run, q: usize, v: usize) -> Option<Chart> {
         return None;
     }
     let cell = |p: (f64, f64)| {
-        let part = |x: f64, from: f64, to: f64| ((x - from) / (to - from) * CELLS) as i32;
+        // Halves: a difference of the largest doubles is none.
+        let part = |x: f64, from: f64, to: f64| {
+            ((0.5 * x - 0.5 * from) / (0.5 * to - 0.5 * from) * CELLS) as i32
+        };
         (part(p.0, low, high), part(p.1, slow, fast))
     };
     let (pieces, from) = distinct(&points, cell);

@@ -56,6 +56,7 @@ fn smallest_scene_takes_every_default() {
             },
             ledger: true,
             event_states: true,
+            extremes: true,
         }
     );
     let mut u = [f64::NAN; 6];
@@ -107,6 +108,7 @@ fn every_key_is_read() {
             },
             ledger: false,
             event_states: true,
+            extremes: true,
         }
     );
 }

@@ -32,7 +32,7 @@ impl Sum {
 
 /// Energies since the start of the run, J.
 #[derive(Debug, Clone, Default)]
-pub(super) struct RunningLedger {
+pub(in crate::hybrid) struct RunningLedger {
     initial: f64,
     input_work: Sum,
     dissipated: Sum,
@@ -58,11 +58,11 @@ impl RunningLedger {
         }
     }
 
-    /// Adds powers [dissipated, input], W, over a time `weight`, s.
+    /// Adds [dissipated, input] energy, J.
     #[inline]
-    pub fn add_powers(&mut self, [dissipated, input]: [f64; 2], weight: f64) {
-        self.dissipated.add(dissipated * weight);
-        self.input_work.add(input * weight);
+    pub fn add_work(&mut self, [dissipated, input]: [f64; 2]) {
+        self.dissipated.add(dissipated);
+        self.input_work.add(input);
     }
 
     pub fn add_jump(&mut self, jump: EnergyJump) {
@@ -70,12 +70,13 @@ impl RunningLedger {
         self.input_work.add(jump.ground_work);
     }
 
-    /// The entries of a row: stored, input work, dissipated, lost at impacts.
-    pub fn row(&self, stored: f64) -> [f64; 4] {
+    /// The entries of a row: stored, input work, dissipated, lost at impacts; with [dissipated, input] energy
+    /// since the ledger was brought up to date.
+    pub fn row(&self, stored: f64, [dissipated, input]: [f64; 2]) -> [f64; 4] {
         [
             stored,
-            self.input_work.value(),
-            self.dissipated.value(),
+            self.input_work.value() + input,
+            self.dissipated.value() + dissipated,
             self.lost_at_impacts.value(),
         ]
     }

@@ -1,7 +1,7 @@
 //! Samples of the trajectory.
 
+use super::super::simulation::Simulation;
 use super::ledger::RunningLedger;
-use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::record::{Group, Layout};
@@ -45,13 +45,13 @@ impl Row<'_> {
     }
 }
 
-/// The ledger's entries of a row, without the stored energy; zero where no ledger is kept.
-pub(super) fn row_of(ledger: Option<&RunningLedger>) -> [f64; 4] {
-    ledger.map_or([0.0; 4], |ledger| ledger.row(0.0))
+/// The ledger's entries of a row, with the work since it was brought up to date and without the stored energy; zero where no ledger is kept.
+pub(super) fn row_of(ledger: Option<&RunningLedger>, work: [f64; 2]) -> [f64; 4] {
+    ledger.map_or([0.0; 4], |ledger| ledger.row(0.0, work))
 }
 
 /// Time of a sample of the grid, s; infinite without a grid.
-pub(super) fn sample_time(every: Option<f64>, index: u64) -> f64 {
+pub(in crate::hybrid) fn sample_time(every: Option<f64>, index: u64) -> f64 {
     match every {
         Some(_) if index == 0 => 0.0,
         Some(every) => index as f64 * every,
@@ -61,7 +61,7 @@ pub(super) fn sample_time(every: Option<f64>, index: u64) -> f64 {
 
 /// When samples are due.
 #[derive(Debug)]
-pub(super) struct Samples {
+pub(in crate::hybrid) struct Samples {
     every: Option<f64>,
     /// Index of the next one.
     index: u64,
@@ -100,7 +100,7 @@ impl Simulation<'_> {
     /// Whether a sample up to the present instant is not recorded yet.
     #[inline(always)]
     pub fn has_sample_left(&self) -> bool {
-        self.samples.next() <= self.here.now.seconds().min(self.problem.end.time)
+        self.observers.samples.next() <= self.here.now.seconds().min(self.problem.end.time)
     }
 
     /// Records the samples up to the present instant that no segment has covered: the first one,
@@ -110,9 +110,9 @@ impl Simulation<'_> {
         while self.has_sample_left() {
             match self.problem.record.every {
                 None => self.sample_here(),
-                Some(_) => self.sample_at(self.samples.next()),
+                Some(_) => self.sample_at(self.observers.samples.next()),
             }
-            self.samples.pass();
+            self.observers.samples.pass();
         }
     }
 
@@ -124,22 +124,20 @@ impl Simulation<'_> {
     fn sample_at(&mut self, t: f64) {
         let mode = self.mode();
         let Simulation {
-            recorder,
+            observers,
             here,
             context,
-            layout,
-            ledger,
             ..
         } = self;
         let row = Row {
-            layout,
+            layout: &observers.layout,
             q: &here.q,
             v: &here.v,
-            ledger: row_of(ledger.as_ref()),
+            ledger: row_of(observers.ledger.as_ref(), [0.0; 2]),
         };
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = here.free(mode.free);
-            recorder.push_row(t, here.mode, |values| {
+            observers.recorder.push_row(t, here.mode, |values| {
                 row.fill(k, context, Free { q: &q, v: &v, a: &a }, values)
             })
         });

@@ -1,0 +1,65 @@
+//! Whether there is room for what a scene asks to record.
+
+use std::fs;
+use std::path::Path;
+
+use super::outcome::Failure;
+use crate::record::Layout;
+use crate::scene::Scene;
+
+/// Most bytes of a number in a table: sign, 17 digits, point, exponent and separator.
+const DIGITS: f64 = 25.0;
+
+/// Refuses a scene whose rows exceed the memory, or the disk on which `out` is to be.
+pub fn check(scene: &Scene, out: Option<&Path>) -> Result<(), Failure> {
+    let problem = &scene.problem;
+    let Some(every) = problem.record.every else {
+        return Ok(());
+    };
+    let layout = Layout::new(problem.model, problem.variant, problem.record.columns);
+    // With the time and the mode.
+    let columns = (layout.columns().len() + 2) as f64;
+    let rows = (problem.end.time / every).floor() + 1.0;
+    let needed = [
+        ("memory", rows * columns * 8.0, free_memory()),
+        ("disk", rows * columns * DIGITS, out.and_then(free_disk)),
+    ];
+    for (what, bytes, free) in needed {
+        let Some(free) = free.filter(|&free| bytes > free) else {
+            continue;
+        };
+        let message = format!(
+            "{rows:.4e} rows of the trajectory would take up to {bytes:.3e} bytes of {what}, of which {free:.3e} are free"
+        );
+        let help = "raise `record.every`, or leave out columns";
+        let source = &scene.source;
+        return Err(source.error_at("record.every", message, Some(help)).into());
+    }
+    Ok(())
+}
+
+/// Memory that programs can still have, in bytes, where the system tells.
+fn free_memory() -> Option<f64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024.0)
+}
+
+/// Free bytes of the disk of a folder, or of the first one above it that exists.
+fn free_disk(folder: &Path) -> Option<f64> {
+    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
+    {
+        let folder = std::path::absolute(folder).ok()?;
+        let existing = folder.ancestors().find(|path| path.is_dir())?;
+        let disk = rustix::fs::statvfs(existing).ok()?;
+        Some(disk.f_bavail as f64 * disk.f_frsize as f64)
+    }
+    #[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
+    {
+        let _ = folder;
+        None
+    }
+}

@@ -1,0 +1,195 @@
+//! Extremes and energies against closed forms: they are those of the motion, not of the rows.
+
+mod common;
+use common::*;
+use dalembert::hybrid::{Method, Problem};
+use dalembert::input::{Function, Sine};
+use dalembert::record::{Peak, Recorded, Run};
+use dalembert::scene::Scene;
+use std::f64::consts::PI;
+
+/// The peak of a column by name.
+fn peak(run: &Run, name: &str) -> Peak {
+    let column = run.trajectory.column(name).expect("it is recorded");
+    let found = run.peaks.iter().find(|(i, _)| *i == column);
+    found.expect("it has a peak").1
+}
+
+fn record_all(problem: &mut Problem, every: Option<f64>) {
+    problem.record.every = every;
+    problem.record.columns = Recorded {
+        reactions: true,
+        energies: true,
+        inputs: true,
+    };
+}
+
+/// Intervals of the samples: the steps, some, none.
+const INTERVALS: [Option<f64>; 3] = [None, Some(0.3), Some(f64::INFINITY)];
+
+fn close(found: f64, exact: f64, size: f64, what: &str) {
+    within(1e-12, found, exact, size, what);
+}
+
+fn within(tolerance: f64, found: f64, exact: f64, size: f64, what: &str) {
+    let error = (found - exact).abs();
+    assert!(error <= tolerance * size, "{what}: {found:.17} {exact:.17}");
+}
+
+#[test]
+fn the_top_of_a_flight_is_found_between_rows() {
+    with_each_method(|| {
+        for every in INTERVALS {
+            let mut problem = problem("bouncing_ball", &[("e", 0.8)]);
+            problem.set_initial("h.rate", 5.0).unwrap();
+            problem.end.time = 2.0;
+            record_all(&mut problem, every);
+            let run = run(&problem);
+            let h = peak(&run, "h");
+            close(h.max, 25.0 / (2.0 * 9.81), 1.0, "height");
+            close(h.t_max, 5.0 / 9.81, 1.0, "time");
+            // Both sides of the first impact.
+            let rate = peak(&run, "h.rate");
+            close(rate.min, -5.0, 5.0, "before the impact");
+            close(rate.max, 5.0, 5.0, "at the start");
+        }
+    });
+}
+
+/// A moment M sin ωt on a rod without gravity, from the rate −M/2ω: θ′ = (M/ω) (1/2 − cos ωt).
+fn driven_rod(omega: f64) -> Problem {
+    let mut problem = problem("forced_pendulum", &[("g", 0.0)]);
+    problem.set_initial("theta.rate", -0.5 / omega).unwrap();
+    let moment = Sine::new(1.0, omega, 0.0);
+    problem.set_input("moment", Function::from(moment)).unwrap();
+    problem.end.time = 4.0 * PI / omega;
+    problem.set_tolerance(1e-13);
+    problem
+}
+
+#[test]
+fn extremes_of_a_driven_motion_and_its_energies_are_those_of_the_formula() {
+    with_each_method(|| {
+        for every in INTERVALS {
+            let omega = 2.5;
+            let mut problem = driven_rod(omega);
+            record_all(&mut problem, every);
+            let run = run(&problem);
+            // It turns back where cos ωt = 1/2.
+            let turn = PI / 3.0;
+            let theta = peak(&run, "theta");
+            let least = (0.5 * turn - turn.sin()) / (omega * omega);
+            close(theta.min, least, 0.1, "first turn");
+            // The dense output of Radau has a lower order, which a place shows before a value does.
+            let at = match problem.method {
+                Method::Taylor => 1e-12,
+                _ => 1e-10,
+            };
+            within(at, theta.t_min, turn / omega, 1.0, "its time");
+            let rate = peak(&run, "theta.rate");
+            close(rate.max, 1.5 / omega, 1.0, "fastest");
+            // At a zero of the acceleration, which Radau's dense output has at a lower order still; the second crest is
+            // as high as the first.
+            let since = rate.t_max % (2.0 * PI / omega);
+            within(1e5 * at, since, PI / omega, 1.0, "its time");
+            let stored = peak(&run, "energy.stored");
+            close(stored.max, 1.125 / (omega * omega), 1.0, "kinetic energy");
+            close(stored.min, 0.0, 1.0, "kinetic energy at the turn");
+            let work = peak(&run, "energy.input_work");
+            close(work.max, 1.0 / (omega * omega), 1.0, "largest work");
+            close(work.min, -0.125 / (omega * omega), 1.0, "least work");
+            within(at, work.t_min, turn / omega, 1.0, "time of the least work");
+            let ledger = run.energy.as_ref().unwrap();
+            close(ledger.imbalance(), 0.0, 1.0, "imbalance");
+        }
+    });
+}
+
+#[test]
+fn the_reaction_of_a_shaken_table_has_its_peaks_between_rows() {
+    with_each_method(|| {
+        for every in INTERVALS {
+            let mut problem = problem("vibrating_table_ball", &[("m", 2.0)]);
+            let shake = Sine::new(7.0, 11.0, 0.4);
+            problem
+                .set_input("table_acceleration", Function::from(shake))
+                .unwrap();
+            problem.end.time = 1.5;
+            record_all(&mut problem, every);
+            let run = run(&problem);
+            assert_eq!(run.layout.modes[run.end.mode], "sticks");
+            let reaction = peak(&run, "reaction.gap");
+            close(reaction.max, 2.0 * (9.81 + 7.0), 30.0, "largest reaction");
+            close(reaction.min, 2.0 * (9.81 - 7.0), 30.0, "least reaction");
+        }
+    });
+}
+
+#[test]
+fn energies_of_rows_are_those_of_the_formula() {
+    // By Taylor, whose dense output is as exact as its steps.
+    let omega = 2.5;
+    let mut problem = driven_rod(omega);
+    problem.method = Method::Taylor;
+    record_all(&mut problem, Some(0.01));
+    let run = run(&problem);
+    let work = run.trajectory.column("energy.input_work").unwrap();
+    for (i, t) in run.trajectory.t.iter().enumerate() {
+        let rate = (0.5 - (omega * t).cos()) / omega;
+        let exact = 0.5 * rate * rate - 0.125 / (omega * omega);
+        close(run.trajectory.row(i)[work], exact, 1.0, "work");
+    }
+}
+
+#[test]
+fn energies_balance_as_well_as_the_motion_is_computed() {
+    for (name, most) in [
+        ("tank_full_plate", 1e-10),
+        ("tank_rocks_and_slides", 1e-10),
+        ("tank_doughnut", 1e-10),
+        ("tank_free_release", 1e-10),
+        // A rest leaves out what moves the state by less than the tolerance, 1e-10.
+        ("vibrating_table_ball", 1e-9),
+        ("sliding_oscillator", 1e-10),
+    ] {
+        let path = format!("{}/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let models = dalembert::kernel::MODELS;
+        let scene = Scene::load(path.as_ref(), &[], models).expect("the scene is in order");
+        let run = run(&scene.problem);
+        let ledger = run.energy.as_ref().unwrap();
+        let flown = ledger.initial.abs() + ledger.input_work.abs() + ledger.dissipated.abs();
+        let imbalance = ledger.imbalance().abs();
+        assert!(
+            imbalance <= most * flown,
+            "{name}: {imbalance:e} of {flown} J"
+        );
+    }
+}
+
+#[test]
+fn extremes_do_not_depend_on_the_rows() {
+    for name in ["tank_doughnut", "coulomb_oscillator", "rocking_block"] {
+        let path = format!("{}/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let peaks = ["", "record.every=0.07", "record={}"].map(|setting| {
+            let settings: Vec<String> = match setting {
+                "" => vec![],
+                setting => vec![setting.to_owned()],
+            };
+            let models = dalembert::kernel::MODELS;
+            let scene = Scene::load(path.as_ref(), &settings, models).unwrap();
+            let run = run(&scene.problem);
+            // No row exceeds them by more than rounding.
+            for (column, peak) in &run.peaks {
+                let size = peak.max.abs().max(peak.min.abs());
+                let room = 1e-12 * size;
+                for (t, x) in run.curve(*column) {
+                    let fits = peak.min - room <= x && x <= peak.max + room;
+                    assert!(fits, "{name} {column} {t}: {x} not in {peak:?}");
+                }
+            }
+            run.peaks
+        });
+        assert_eq!(peaks[0], peaks[1], "{name}");
+        assert_eq!(peaks[0], peaks[2], "{name}");
+    }
+}
