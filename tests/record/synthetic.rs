@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use dalembert::record::{
-    EnergyJump, Event, Group, Layout, Ledger, Peak, Place, Quantity, Reached, Recorder, Run, Snapshot,
-    Solver, Subject, Uncertain,
+    EnergyJump, Event, Group, Layout, Ledger, Peak, Place, Quantity, Reached, Recorder, Run,
+    Snapshot, Solver, Subject, Uncertain,
 };
 
 const G: f64 = 9.81;
