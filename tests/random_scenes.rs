@@ -205,6 +205,10 @@ fn difference(problem: &Problem, a: &Run, b: &Run) -> Option<String> {
                     return (!late(t.min(*other)))
                         .then(|| format!("{one} at {t}, {two} at {other}"));
                 }
+                if (t - other).abs() > PARTED {
+                    let early = k < 10 && !late(t.min(*other));
+                    return early.then(|| format!("{one} at {t} and {other}"));
+                }
             }
             (Some((t, name)), None) | (None, Some((t, name))) => {
                 return (!late(*t)).then(|| format!("{name} at {t} in one run only"));
