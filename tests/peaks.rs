@@ -98,7 +98,14 @@ fn extremes_of_a_driven_motion_and_its_energies_are_those_of_the_formula() {
             let work = peak(&run, "energy.input_work");
             close(work.max, 1.0 / (omega * omega), 1.0, "largest work");
             close(work.min, -0.125 / (omega * omega), 1.0, "least work");
-            within(at, work.t_min, turn / omega, 1.0, "time of the least work");
+            // It is as low wherever the rod stands still.
+            within(
+                at,
+                (omega * work.t_min).cos(),
+                0.5,
+                3.0,
+                "time of the least work",
+            );
             let ledger = run.energy.as_ref().unwrap();
             close(ledger.imbalance(), 0.0, 1.0, "imbalance");
         }
