@@ -9,6 +9,7 @@ mod common;
 use common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
+use dalembert::model::HeldAt;
 use dalembert::record::{Run, Silent};
 use std::f64::consts::TAU;
 
@@ -151,7 +152,10 @@ fn fault(problem: &Problem, run: &Run) -> Option<String> {
                 return Some(format!("{name} = {:e} at {t}", row[place]));
             }
             let held = !mode.free.contains(&i) && !mode.drifts[i];
-            if held && (row[rate] != 0.0 || mode.held_at[i].is_some_and(|at| row[place] != at)) {
+            if held
+                && (row[rate] != 0.0
+                    || mode.held_at[i].is_some_and(|at| HeldAt::Number(row[place]) != at))
+            {
                 return Some(format!("{name} is held in {} and moves at {t}", mode.name));
             }
         }
