@@ -9,6 +9,9 @@ use super::fingerprint::Fingerprint;
 use super::generate::Generated;
 use super::parallel;
 
+/// Variable that has the C compiled with sanitizers of addresses and undefined behaviour: `.ci/sanitize`.
+pub const SANITIZE: &str = "DALEMBERT_SANITIZE";
+
 /// Kind of the entries that hold libraries, in the package's own output folder.
 const KIND: Kind = Kind {
     name: "libraries",
@@ -152,6 +155,11 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         })?;
         Ok((key, folder))
     });
+    if sanitizes() {
+        for library in ["-lasan", "-lubsan"] {
+            println!("cargo::rustc-link-arg={library}");
+        }
+    }
     let mut keys = Vec::new();
     for (library, result) in all.iter().zip(compiled) {
         let (key, folder) = result?;
@@ -176,7 +184,19 @@ fn compiler() -> cc::Build {
         .flag_if_supported("-ffp-contract=off")
         // Generated functions have one signature, whether or not they use every argument.
         .flag_if_supported("-Wno-unused-parameter");
+    if sanitizes() {
+        build
+            .opt_level(1)
+            .flag("-fsanitize=address,undefined")
+            .flag("-fno-sanitize-recover=all")
+            .flag("-fno-omit-frame-pointer");
+    }
     build
+}
+
+/// Whether [`SANITIZE`] is set.
+fn sanitizes() -> bool {
+    std::env::var_os(SANITIZE).is_some_and(|value| !value.is_empty())
 }
 
 /// The command line of the compiler, once it is known to exist: otherwise the `cc` crate would

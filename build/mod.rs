@@ -17,6 +17,7 @@
 //! | `DALEMBERT_PYTHON` | an interpreter that already has the CasADi of the lock file |
 //! | `DALEMBERT_CACHE` | folder for installed packages and generated code |
 //! | `PIP_INDEX_URL`, `PIP_FIND_LINKS`, … | how pip reaches a registry |
+//! | `DALEMBERT_SANITIZE` | if set, the C checks its addresses and for undefined behaviour: `.ci/sanitize` |
 //! | `CC`, `CFLAGS`, … | the C compiler, as the `cc` crate understands them |
 
 mod cache;
@@ -79,7 +80,7 @@ fn watch(project: &Path, with_tests: bool) -> Result<(), Error> {
     for path in paths.iter().filter(|path| project.join(path).exists()) {
         println!("cargo::rerun-if-changed={}", path.display());
     }
-    for variable in [python::SETTING, cache::SETTING] {
+    for variable in [python::SETTING, cache::SETTING, compile::SANITIZE] {
         println!("cargo::rerun-if-env-changed={variable}");
     }
     Ok(())

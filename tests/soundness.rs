@@ -3,10 +3,11 @@
 
 #![forbid(unsafe_code)]
 
+use dalembert::integrate::{ORDERS, Series};
 use dalembert::kernel::{Context, Free, MODELS, ModeKernel};
-use dalembert::model::{Guard, Mode, Model};
+use dalembert::model::{Guard, Mode, Model, Variant};
 use dalembert::with_kernel;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A mode with the model that it is of.
@@ -128,4 +129,122 @@ fn a_kernel_takes_what_is_of_its_own_model() {
             }
         });
     }
+}
+
+/// What is written before a call: not a number, with bits that no calculation gives.
+const UNWRITTEN: u64 = 0x7ff8_5eed_5eed_5eed;
+
+/// Room of exactly so many numbers.
+fn unwritten(count: usize) -> Vec<f64> {
+    vec![f64::from_bits(UNWRITTEN); count]
+}
+
+fn is_written<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> bool {
+    numbers.into_iter().all(|x| x.to_bits() != UNWRITTEN)
+}
+
+/// Calls all functions of a mode with arrays of exactly their sizes, each in memory of its own where a
+/// sanitizer sees who leaves it; names those that leave an output as it was.
+fn call_all<const F: usize>(
+    kernel: &ModeKernel<F>,
+    (model, mode): Of,
+    variant: &Variant,
+) -> Vec<String> {
+    let mut unfinished = Vec::new();
+    let mut expect = |what: &str, written: bool| {
+        if !written {
+            unfinished.push(format!("{}: {}: {what}", model.name, mode.name));
+        }
+    };
+    let mut x = context(model);
+    // Somewhere near the beginning, moving a little.
+    let numbers = |scale: f64| {
+        let number = |i: usize, _| scale * (1.0 + i as f64);
+        Box::new(SVector::<f64, F>::from_fn(number))
+    };
+    let (q, v, a) = (numbers(0.01), numbers(0.1), numbers(1.0));
+    let at = Free {
+        q: &*q,
+        v: &*v,
+        a: &*a,
+    };
+    let coordinates = model.coordinates.len();
+    let forces = coordinates + model.motions.len();
+
+    let mut r = Box::new(SVector::from_element(f64::from_bits(UNWRITTEN)));
+    kernel.residual(&x, at, &mut r);
+    expect("residual", is_written(r.iter()));
+    let square = SMatrix::<f64, F, F>::from_element(f64::from_bits(UNWRITTEN));
+    let mut matrices = Box::new([square; 3]);
+    kernel.jacobian(&x, at, &mut matrices);
+    expect("jacobian", is_written(matrices.iter().flatten()));
+    let system = kernel.system(&x, at.q, at.v);
+    let _ = kernel.inertia(&x, at.q, at.v);
+    let _ = kernel.jerk_load(&x, at);
+    let _ = kernel.magnitude(&x, at);
+    let _ = kernel.energies(&x, at);
+    let _ = kernel.powers(&x, at);
+    let mut out = unwritten(forces);
+    kernel.reactions(&x, at, &mut out);
+    expect("reactions", is_written(&out));
+    let mut out = unwritten(forces);
+    kernel.momenta(&x, at, &mut out);
+    expect("momenta", is_written(&out));
+    let mut out = unwritten(mode.requirements.len());
+    kernel.requirements(&x, at, &mut out);
+    expect("requirements", is_written(&out));
+    let mut out = unwritten(coordinates);
+    kernel.held_rates(&x, &mut out);
+    expect("held_rates", is_written(&out));
+
+    for guard in mode.guards {
+        let _ = kernel.guard(&x, &guard.kernel, at);
+        let _ = kernel.guard_magnitude(&x, &guard.kernel, at);
+        let _ = kernel.guard_rate(&x, &guard.kernel, at, &a);
+        for transition in guard.transitions {
+            let mut out = unwritten(room(model).len());
+            kernel.reset(&x, &transition.kernel, at, &mut out);
+            expect(transition.name, is_written(&out));
+            let target = &variant.modes[transition.target];
+            with_kernel!(&target.kernels, target => {
+                let rest = SVector::zeros();
+                let at = Free { q: &rest, v: &rest, a: &rest };
+                let _ = target.conditions(&x, &transition.kernel, at, &mut Default::default());
+            });
+        }
+    }
+
+    if kernel.is_analytic() {
+        let mut series = Box::new(Series::<F>::zero());
+        (series.q[0], series.v[0], series.a[0]) = (*q, *v, *a);
+        (series.q[1], series.v[1], series.q[2]) = (*v, *a, *a / 2.0);
+        let inverse = system.mass.try_inverse().unwrap_or_else(SMatrix::identity);
+        for quiet in [false, true] {
+            x.quiet = quiet;
+            for orders in 1..=ORDERS - 2 {
+                let mut series = series.clone();
+                let _ = kernel.series_start(&mut x, &series);
+                kernel.series_run(&mut x, orders, &inverse, &mut series);
+                let _ = kernel.guard_series(&mut x, orders, &series);
+                let mut out = unwritten(mode.requirements.len());
+                kernel.requirement_bounds(&mut x, (&series, orders), 1e-3, &mut out);
+                expect("requirement_bounds", is_written(&out));
+            }
+        }
+    }
+    unfinished
+}
+
+#[test]
+fn every_function_writes_all_its_outputs() {
+    let mut unfinished = Vec::new();
+    for &model in MODELS {
+        for variant in model.variants {
+            for mode in variant.modes {
+                unfinished
+                    .extend(with_kernel!(&mode.kernels, k => call_all(k, (model, mode), variant)));
+            }
+        }
+    }
+    assert!(unfinished.is_empty(), "{unfinished:#?}");
 }
