@@ -171,6 +171,7 @@ fn several_files_are_shown_side_by_side_and_written() {
     }
     let written = names(&folder.path().join("out"));
     let expected = [
+        ".dalembert-digests",
         ".dalembert-output",
         "acceleration.svg",
         "displacement.svg",
