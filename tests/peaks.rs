@@ -200,3 +200,21 @@ fn extremes_do_not_depend_on_the_rows() {
         assert_eq!(peaks[0], peaks[2], "{name}");
     }
 }
+
+#[test]
+fn energies_of_rows_do_not_depend_on_whether_extremes_are_looked_for() {
+    with_each_method(|| {
+        let rows = [true, false].map(|extremes| {
+            let mut problem = driven_rod(2.5);
+            problem.set_tolerance(1e-9);
+            record_all(&mut problem, Some(0.37));
+            problem.record.extremes = extremes;
+            run(&problem)
+        });
+        let work = rows[0].trajectory.column("energy.input_work").unwrap();
+        for i in 0..rows[0].trajectory.len() {
+            let [one, other] = [0, 1].map(|k| rows[k].trajectory.row(i)[work]);
+            within(1e-9, one, other, 1.0, "work");
+        }
+    });
+}

@@ -114,7 +114,7 @@ impl<W: Write> Digesting<W> {
         if self.open {
             self.count += 1;
             self.close_block();
-        } else if self.count % BLOCK != 0 {
+        } else if !self.count.is_multiple_of(BLOCK) {
             self.close_block();
         }
         Lines {
@@ -132,7 +132,7 @@ impl<W: Write> Write for Digesting<W> {
             self.open = !line.ends_with(b"\n");
             if !self.open {
                 self.count += 1;
-                if self.count % BLOCK == 0 {
+                if self.count.is_multiple_of(BLOCK) {
                     self.close_block();
                 }
             }

@@ -106,10 +106,12 @@ impl Interpolants {
         }
     }
 
-    /// Sets the number of functions; values of before are lost if it changes.
-    pub fn set_count(&mut self, count: usize) {
+    /// Sets the number of functions; false where it changes, and values of before are lost.
+    pub fn set_count(&mut self, count: usize) -> bool {
+        let stays = self.count == count;
         self.count = count;
         self.fours = count.div_ceil(4);
+        stays
     }
 
     /// The values of all functions at a node of the highest degree.

@@ -175,7 +175,7 @@ impl Observers {
         // What the mode holds moves along a straight line at most.
         let t = here.now.seconds();
         extremes.note_state(t, [&here.q, &here.v]);
-        if extremes.reactions.len() > 0 {
+        if !extremes.reactions.is_empty() {
             for &i in mode.free {
                 extremes.note(extremes.reactions.start + i, t, 0.0);
             }
@@ -240,6 +240,8 @@ impl Observers {
         let powers = self.ledger.is_some() && (step.work.is_none() || inside);
         if due || powers || self.extremes.is_some() {
             self.look(&mut step, powers);
+        } else {
+            self.joined = false;
         }
         if let (Some(ledger), Some(work), false) = (&mut self.ledger, step.work, powers) {
             ledger.add_work(work);
@@ -258,10 +260,15 @@ impl Observers {
             to: end,
             is_last: true,
         };
-        self.interpolants.set_count(count);
+        self.joined &= self.interpolants.set_count(count);
         let mut flown = [0.0; 2];
         let (mut index, mut parts) = (0, 1_u32);
-        while count > 0 {
+        if count == 0 {
+            self.joined = false;
+            self.sample(step, part, None);
+            return;
+        }
+        loop {
             let resolved = self.represent(step, part, (columns, powers));
             if !resolved && parts < 1 << MOST_HALVINGS {
                 (index, parts) = (2 * index, 2 * parts);
@@ -283,9 +290,6 @@ impl Observers {
                 true => end,
                 false => start + (end - start) * f64::from(index + 1) / f64::from(parts),
             };
-        }
-        if count == 0 {
-            self.sample(step, part, None);
         }
         if let (Some(ledger), Some(work)) = (&mut self.ledger, step.work)
             && powers
