@@ -24,7 +24,7 @@ class Limits(ScratchTest):
 
     def test_a_reaction_of_another_mode(self):
         line = 'held = model.mode("held", freeze=[x])\nmodel.limit("torn", "torn", when=held.reaction(x) > 0)\n'
-        self.assertIn("reactions of another mode", self.refusal(WHOLE + line, 9))
+        self.assertIn("of mode `held` is used in mode `moves`", self.refusal(WHOLE + line, 9))
 
     def test_a_reaction_in_its_mode(self):
         line = ('held = model.mode("held", freeze=[x])\n'
