@@ -72,7 +72,8 @@ fn initial_states_outside_their_bounds_are_refused() {
 #[test]
 fn ends_tolerances_and_samples_that_are_no_lengths_are_refused() {
     let ball = problem("bouncing_ball", &[]);
-    let changes: [(&str, fn(&mut Problem)); 5] = [
+    type Change = fn(&mut Problem);
+    let changes: [(&str, Change); 5] = [
         ("the end", |p| p.end.time = f64::NAN),
         ("the end", |p| p.end.time = -1.0),
         ("the relative tolerance", |p| p.accuracy.relative = 0.0),
