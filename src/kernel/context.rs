@@ -33,7 +33,7 @@ pub(crate) struct Dimensions {
 }
 
 /// What a generated function needs besides the free coordinates. Its arrays keep the lengths that
-/// [`Dimensions`] state, which the calls rely on: nothing outside of `kernel` can replace them.
+/// `Dimensions` state, which the calls rely on: nothing outside of `kernel` can replace them.
 #[derive(Debug)]
 pub struct Context {
     pub(super) dimensions: &'static Dimensions,
