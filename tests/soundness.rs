@@ -190,7 +190,9 @@ fn call_all<const F: usize>(
     let mut out = unwritten(forces);
     kernel.momenta(&x, at, &mut out);
     expect("momenta", is_written(&out));
-    let mut out = unwritten(mode.requirements.len());
+    // The margins of limit states and of validity follow the requirements.
+    let watched = mode.requirements.len() + mode.margins.len();
+    let mut out = unwritten(watched);
     kernel.requirements(&x, at, &mut out);
     expect("requirements", is_written(&out));
     let mut out = unwritten(coordinates);
@@ -226,7 +228,7 @@ fn call_all<const F: usize>(
                 let _ = kernel.series_start(&mut x, &series);
                 kernel.series_run(&mut x, orders, &inverse, &mut series);
                 let _ = kernel.guard_series(&mut x, orders, &series);
-                let mut out = unwritten(mode.requirements.len());
+                let mut out = unwritten(watched);
                 kernel.requirement_bounds(&mut x, (&series, orders), 1e-3, &mut out);
                 expect("requirement_bounds", is_written(&out));
             }
