@@ -109,7 +109,7 @@ fn fastest<T>(work: impl Fn() -> T) -> (f64, T) {
 
 /// Number of guards of the mode at the start that lead to a mode the scene may visit.
 fn guards(problem: &Problem) -> usize {
-    let modes = problem.variant.modes;
+    let modes = problem.variant().modes;
     let allowed = |m: usize| problem.freeze.iter().all(|i| !modes[m].free.contains(i));
     let leads_on = |g: &&dalembert::model::Guard| g.transitions.iter().any(|t| allowed(t.target));
     modes[0].guards.iter().filter(leads_on).count()
@@ -281,14 +281,14 @@ fn integrate<const F: usize, Y: System<F>>(
 }
 
 fn integrate_free(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
-    let mode = &problem.variant.modes[stretch.mode];
+    let mode = &problem.variant().modes[stretch.mode];
     with_kernel!(&mode.kernels, kernel => {
         integrate(problem, stretch, mode.free, &mut Reduced::new(problem, stretch, kernel))
     })
 }
 
 fn integrate_all(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
-    let modes = problem.variant.modes;
+    let modes = problem.variant().modes;
     let kernels = modes.iter().map(|m| &m.kernels);
     let mut all = kernels.filter_map(|k| {
         if let ModeKernels::F3(k) = k {

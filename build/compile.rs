@@ -7,7 +7,7 @@ use super::cache::{Cache, Compares, Kind};
 use super::error::Error;
 use super::fingerprint::Fingerprint;
 use super::generate::Generated;
-use super::parallel;
+use super::{parallel, registry};
 
 /// Variable that has the C compiled with sanitizers of addresses and undefined behaviour: `.ci/sanitize`.
 pub const SANITIZE: &str = "DALEMBERT_SANITIZE";
@@ -21,7 +21,8 @@ const KIND: Kind = Kind {
 /// C that generated code and the crate call, relative to the project, and for lanes; what they include.
 const ELEMENTARY: [&str; 3] = ["codegen/elementary.c", "codegen/ranges.c", "codegen/sums.c"];
 const LANES: &str = "codegen/lanes.c";
-const INCLUDED: [&str; 3] = [
+const INCLUDED: [&str; 4] = [
+    "codegen/contract.h",
     "codegen/elementary.h",
     "codegen/lanes.h",
     "codegen/vectors.h",
@@ -34,7 +35,7 @@ struct Level {
     flags: &'static [&'static str],
 }
 
-/// Levels of any processor, and of x86-64 alone; `LEVELS` in `codegen/emit_rust.py` has their names.
+/// Levels of any processor, and of x86-64 alone; `LEVELS` in `codegen/emit_model.py` has their names.
 const ANY: Level = Level {
     name: "v1",
     lanes: 2,
@@ -56,6 +57,8 @@ const X86_64: [Level; 2] = [
 /// What becomes a library.
 struct Library {
     name: String,
+    /// What the preprocessor is told.
+    defines: Vec<(&'static str, String)>,
     /// Level of the processor, where it matters.
     level: Option<&'static Level>,
     /// Where its C comes from, relative to the project.
@@ -71,14 +74,40 @@ struct Library {
 pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(), Error> {
     let of_model = |model: &Generated| Library {
         name: model.name.clone(),
+        defines: Vec::new(),
         level: None,
         origin: model.folder.clone(),
         directory: model.directory.clone(),
         sources: model.sources.clone(),
     };
+    // Apart from the functions, which may be the same for another digest.
+    let tables = models.iter().map(|model| {
+        let mut defines = vec![
+            ("DALEMBERT_DIGEST", format!("\"{}\"", model.digest)),
+            ("DALEMBERT_SYMBOL", registry::symbol(&model.name)),
+        ];
+        if !model.lanes.is_empty() {
+            defines.push(("DALEMBERT_WITH_LANES", "1".to_owned()));
+        }
+        Library {
+            name: format!("{}_model", model.name),
+            sources: vec![model.tables.clone()],
+            defines,
+            ..of_model(model)
+        }
+    });
+    let list = Library {
+        name: "_models".to_owned(),
+        defines: Vec::new(),
+        level: None,
+        origin: "the list of the models".to_owned(),
+        directory: out_dir.to_owned(),
+        sources: vec![registry::write(models, out_dir)?],
+    };
     let elementary = Library {
         // No model has this name: a model's begins with a letter.
         name: "_elementary".to_owned(),
+        defines: Vec::new(),
         level: None,
         origin: ELEMENTARY.join(", "),
         directory: project.join("codegen"),
@@ -94,6 +123,7 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
     });
     let elementary_lanes = Library {
         name: "_lanes".to_owned(),
+        defines: Vec::new(),
         level: None,
         origin: LANES.to_owned(),
         directory: project.join("codegen"),
@@ -102,6 +132,7 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
     let lanes = lanes.chain([elementary_lanes]).flat_map(|library| {
         levels().map(move |level| Library {
             name: format!("{}_{}", library.name, level.name),
+            defines: Vec::new(),
             level: Some(level),
             origin: library.origin.clone(),
             directory: library.directory.clone(),
@@ -109,7 +140,8 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         })
     });
     // What others call comes after them on the command line of a linker.
-    let all: Vec<_> = (models.iter().map(of_model))
+    let all: Vec<_> = (std::iter::once(list).chain(tables))
+        .chain(models.iter().map(of_model))
         .chain(lanes)
         .chain([elementary])
         .collect();
@@ -129,6 +161,7 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         let hash = command
             .clone()
             .with(flags.join(" "))
+            .with(format!("{:?}", library.defines))
             .with_files(
                 &library.directory,
                 library.sources.iter().map(PathBuf::as_path),
@@ -139,6 +172,9 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
             let mut build = build.clone();
             if let Some(level) = library.level {
                 level.set(&mut build);
+            }
+            for (name, value) in &library.defines {
+                build.define(name, value.as_str());
             }
             build
                 // Linked below, whether it was compiled now or before.

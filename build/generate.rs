@@ -1,4 +1,4 @@
-//! From model folders to generated C and Rust, each model on its own and only when it changed.
+//! From model folders to generated C, each model on its own and only when it changed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,10 +44,8 @@ pub struct Generated {
     pub sources: Vec<PathBuf>,
     /// The C files in it that are compiled once for each level of the processor; may be none.
     pub lanes: Vec<PathBuf>,
-    /// The Rust fragment that describes the model.
-    pub fragment: String,
-    /// Name of the `static` in the fragment.
-    pub item: String,
+    /// The C file in it with the tables of the model.
+    pub tables: PathBuf,
     /// Digest of what it was generated from.
     pub digest: String,
 }
@@ -174,9 +172,9 @@ fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error
     };
     let manifest: Value = serde_json::from_str(&text("manifest.json")?)
         .map_err(|error| wrong(&format!("a manifest.json that is not JSON: {error}")))?;
-    let item = manifest["static"]
+    let tables = manifest["tables"]
         .as_str()
-        .ok_or_else(|| wrong("a manifest.json without the string `static`"))?;
+        .ok_or_else(|| wrong("a manifest.json without the file name `tables`"))?;
     let files = |list: &str| {
         let names = manifest[list].as_array();
         let names = names.and_then(|all| all.iter().map(Value::as_str).collect::<Option<Vec<_>>>());
@@ -193,8 +191,7 @@ fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error
         directory: folder.to_owned(),
         sources,
         lanes,
-        fragment: text("model.rs")?,
-        item: item.to_owned(),
+        tables: folder.join(tables),
         digest,
     })
 }

@@ -4,9 +4,9 @@
 //! |---|---|
 //! | `python` | which interpreter, and how it is run |
 //! | `install` | the locked packages, from the cache or a registry |
-//! | `generate` | from model folders to C and Rust |
+//! | `generate` | from model folders to C |
 //! | `compile` | from C to static libraries |
-//! | `registry` | the Rust file that lists the models |
+//! | `registry` | the C file that lists the models |
 //! | `cache`, `fingerprint`, `parallel` | folders under content keys; hashes; threads |
 //! | `error` | every failure, with what to do |
 //!
@@ -53,15 +53,7 @@ pub fn run() -> Result<(), Error> {
 
     let models = generate::discover(&project, with_tests)?;
     let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
-    compile::compile(&project, &generated, &out_dir)?;
-    let digests: Vec<String> = (generated.iter())
-        .map(|model| format!("{}={}", model.name, model.digest))
-        .collect();
-    println!(
-        "cargo::rustc-env=DALEMBERT_MODEL_DIGESTS={}",
-        digests.join(" ")
-    );
-    registry::write(&generated, &out_dir.join("models.rs"))
+    compile::compile(&project, &generated, &out_dir)
 }
 
 /// Tells cargo when to run the build script again.

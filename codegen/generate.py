@@ -1,4 +1,4 @@
-"""One model folder → C, a Rust fragment with its tables, and a manifest."""
+"""One model folder → C, and a manifest."""
 
 import hashlib
 import json
@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import bounds, check, derive, dimensions, emit_rust, emit_series, graph, limits, momentum, tape
+from . import (analysis, bounds, check, derive, description, dimensions, emit_model, emit_series, graph, limits,
+               momentum, tape)
 from .arguments import NOT_FOLDERS
 from .context import build
 from .emit_c import Source
@@ -39,7 +40,7 @@ class Variant:
     modes: list
     functions: dict = field(default_factory=dict)
     tapes: dict = field(default_factory=dict)
-    """Rust text of what the program expands itself, by slot as the functions."""
+    """What the program expands itself, by slot as the functions."""
     declared: str = ""
     """The C function of what follows from parameters alone: see `limits.of_parameters`."""
     lean: object = None
@@ -87,7 +88,7 @@ def generate(folder, for_tests=False):
     for variant in variants:
         for slot, function in variant.functions.items():
             equations = function.equations
-            if slot[1] in emit_rust.SERIES:
+            if slot[1] in analysis.SERIES:
                 _emit_series(source, prefix, variant, slot[1], function, constants)
                 continue
             is_bound = slot[1] == "requirement_bounds"
@@ -106,21 +107,26 @@ def generate(folder, for_tests=False):
         if variant.lean is not None:
             variant.lean.declared = variant.declared
     c_text = source.text(name)
-    lanes_text = source.lanes_text(name, _lane_functions(variants))
-    rust_text = emit_rust.model_text(name, chosen, constants_symbol, constants.values.numel(), for_tests)
+    described, tables = description.describe(name, chosen, (constants_symbol, constants.values.numel()), for_tests)
+    for_lanes = _lane_functions(variants)
+    lanes_text = source.lanes_text(name, for_lanes, emit_model.lanes_text(name, tables, for_lanes))
+    model_text = emit_model.model_text(name, described, tables, bool(lanes_text))
     manifest = {
         "name": name,
-        "static": name.upper(),
         "sources": [f"{name}.c"],
+        "tables": f"{name}_model.c",
         "lanes": [f"{name}_lanes.c"] if lanes_text else [],
         "casadi": ca.__version__,
-        "content": hashlib.sha256((c_text + (lanes_text or "") + rust_text).encode()).hexdigest(),
+        "content": hashlib.sha256((c_text + (lanes_text or "") + model_text).encode()).hexdigest(),
         "operations": {
             f"{'/'.join(c[3] for c in v.model.choices)}:{f.name}" if v.model.choices else f.name: f.operations
             for v in variants for f in v.functions.values()
         },
     }
-    files = {f"{name}.c": c_text, "model.rs": rust_text, "manifest.json": json.dumps(manifest, indent=1) + "\n"}
+    files = {
+        f"{name}.c": c_text, f"{name}_model.c": model_text,
+        "description.json": json.dumps(described, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
+        "manifest.json": json.dumps(manifest, indent=1) + "\n"}
     return files | ({f"{name}_lanes.c": lanes_text} if lanes_text else {})
 
 
@@ -129,7 +135,7 @@ def _lane_functions(variants):
     names = set()
     for variant in variants:
         for slot, function in variant.functions.items():
-            if emit_rust.is_for_lanes(variant, slot, function):
+            if analysis.is_for_lanes(variant, slot, function):
                 names.update([function.symbol] if isinstance(function.symbol, str) else function.symbol)
     return names
 
@@ -229,7 +235,7 @@ def _variant(model, absent, kind=""):
             _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
             _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
             # A linear guard is as good a polynomial as the motion itself.
-            linear = emit_rust.linear_shape(model, equations, placed)
+            linear = analysis.linear_shape(model, equations, placed)
             values.append(placed if linear is None else ca.SX(0))
             rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
             _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
@@ -382,7 +388,7 @@ def _stays(model, equations, reset):
     held = [(i, c) for i, c in enumerate(model.coordinates) if i not in equations.free]
     before = [(k, equations.place(x)) for i, c in held for k, x in ((i, c.symbol), (n + i, c.symbol.rate))]
     return (all(_is_same(reset[k], x) for k, x in before)
-            and not emit_rust.present(ca.symvar(reset), _signals(model), _signal_rates(model), equations.j))
+            and not analysis.present(ca.symvar(reset), _signals(model), _signal_rates(model), equations.j))
 
 
 def _is_same(one, other):

@@ -29,27 +29,23 @@ class Tape:
     def __init__(self):
         self.instructions, self.pairs = [], {}
 
-    def add(self, text):
+    def add(self, name, *operands):
         """Appends an instruction; gives its place."""
-        self.instructions.append(text)
+        self.instructions.append({name: operands[0] if len(operands) == 1 else list(operands)})
         return len(self.instructions) - 1
 
     def constant(self, value):
         value = float(value)
-        if value in (float("inf"), -float("inf")):
-            text = "f64::INFINITY" if value > 0 else "f64::NEG_INFINITY"
-        else:
-            text = "f64::NAN" if value != value else repr(value)
-        return self.add(f"Constant({text})")
+        finite = value == value and abs(value) != float("inf")
+        return self.add("Constant", value if finite else repr(value))
 
     def binary(self, name, x, y):
-        return self.add(f"{name}({x}, {y})")
+        return self.add(name, x, y)
 
     def function(self, name, x, slope):
         """z with dz/dt = w dx/dt: `slope` appends w, given the place of z, and gives its place."""
-        z = self.add("")
-        w = slope(z)
-        self.instructions[z] = f"Function(Name::{name}, {x}, {w})"
+        z = self.add("Function", name, x, None)
+        self.instructions[z] = {"Function": [name, x, slope(z)]}
         return z
 
     def pair(self, names, x, sign):
@@ -58,10 +54,10 @@ class Tape:
         if key not in self.pairs:
             first = len(self.instructions)
             slope = first + 2 if sign < 0 else first
-            self.add(f"Function(Name::{names[0]}, {x}, {first + 1})")
-            self.add(f"Function(Name::{names[1]}, {x}, {slope})")
+            self.add("Function", names[0], x, first + 1)
+            self.add("Function", names[1], x, slope)
             if sign < 0:
-                self.add(f"Negative({first})")
+                self.add("Negative", first)
             self.pairs[key] = first
         return self.pairs[key]
 
@@ -102,14 +98,14 @@ class Tape:
         if op in _SIMPLE:
             return _SIMPLE[op](self, x)
         if op in _FIXED:
-            return self.add(f"Fixed(Pick::{_FIXED[op]}, {x}, {places[-1]})")
+            return self.add("Fixed", _FIXED[op], x, places[-1])
         # No rule: nothing is known about its sign.
         return self.constant(float("nan"))
 
 
 _SIMPLE = {
     ca.OP_ASSIGN: lambda t, x: x,
-    ca.OP_NEG: lambda t, x: t.add(f"Negative({x})"),
+    ca.OP_NEG: lambda t, x: t.add("Negative", x),
     ca.OP_SQ: lambda t, x: t.square(x),
     ca.OP_TWICE: lambda t, x: t.binary("Sum", x, x),
     ca.OP_INV: lambda t, x: t.reciprocal(x),
@@ -132,7 +128,7 @@ _SIMPLE = {
 
 
 def of(column, places):
-    """The tape of a column of expressions, as Rust text. `places`: an instruction for each symbol, by its hash."""
+    """The tape of a column of expressions, as data. `places`: an instruction for each symbol, by its hash."""
     column = ca.densify(ca.vec(ca.SX(column)))
     symbols = ca.symvar(column)
     function = ca.Function("tape", symbols, [ca.cse(column)])
@@ -150,11 +146,10 @@ def of(column, places):
             numbers = [values.get(i) for i in source] if op != ca.OP_INPUT else []
             values.pop(into[0], None)
             if op == ca.OP_INPUT:
-                work[into[0]] = tape.add(places[symbols[source[0]].element_hash()])
+                work[into[0]] = tape.add(*places[symbols[source[0]].element_hash()])
             else:
                 work[into[0]] = tape.operation(op, [work[i] for i in source], numbers)
-    instructions = ", ".join(f"I::{text}" for text in tape.instructions)
-    return f"Tape {{ instructions: &[{instructions}], results: &{results} }}"
+    return {"instructions": tape.instructions, "results": results}
 
 
 def places(model, equations, signals):
@@ -163,10 +158,10 @@ def places(model, equations, signals):
     for i, c in enumerate(model.coordinates):
         for kind, symbol in (("Coordinate", c.symbol), ("Rate", c.symbol.rate),
                              ("Acceleration", c.symbol.acceleration), ("Coordinate", equations.held[i])):
-            found[symbol.element_hash()] = f"{kind}({i})"
+            found[symbol.element_hash()] = (kind, i)
     for kind, symbols in (
         ("Signal", ca.vertsplit(signals)), ("Discrete", [d.symbol for d in model.discretes]),
         ("Parameter", [p.symbol for p in model.parameters]),
     ):
-        found.update((symbol.element_hash(), f"{kind}({i})") for i, symbol in enumerate(symbols))
+        found.update((symbol.element_hash(), (kind, i)) for i, symbol in enumerate(symbols))
     return found

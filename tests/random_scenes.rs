@@ -132,7 +132,7 @@ fn scene(number: u64) -> Problem {
 /// What is wrong with a run, if anything.
 fn fault(problem: &Problem, run: &Run) -> Option<String> {
     if let Some(failure) = &run.failure {
-        let modes = problem.variant.modes.iter();
+        let modes = problem.variant().modes.iter();
         let mut required = modes.flat_map(|mode| mode.requirements);
         if !required.any(|requirement| failure.reason.contains(requirement.failure)) {
             return Some(format!("stops at {}: {}", failure.at.t, failure.reason));
@@ -142,7 +142,7 @@ fn fault(problem: &Problem, run: &Run) -> Option<String> {
     for (i, coordinate) in problem.model.coordinates.iter().enumerate() {
         let [place, rate] = [coordinate.name, &format!("{}.rate", coordinate.name)].map(column);
         for row in 0..run.trajectory.len() {
-            let mode = &problem.variant.modes[usize::from(run.trajectory.mode[row])];
+            let mode = &problem.variant().modes[usize::from(run.trajectory.mode[row])];
             let (t, row) = (run.trajectory.t[row], run.trajectory.row(row));
             let name = coordinate.name;
             if coordinate

@@ -34,7 +34,7 @@ fn limit(height: f64) -> f64 {
 /// Times and modes of the rests.
 fn rests(run: &Run, problem: &Problem) -> Vec<(f64, &'static str)> {
     let rests = run.events.iter().filter(|e| e.transition == "rest");
-    let name = |mode: usize| problem.variant.modes[mode].name;
+    let name = |mode: usize| problem.variant().modes[mode].name;
     rests.map(|e| (e.t, name(e.to))).collect()
 }
 
@@ -154,7 +154,7 @@ fn switches_without_a_rest_stop_and_say_what_is_missing() {
             let mut problem = problem("fuller", &[]);
             problem.choose(&[("limit", limit)]).unwrap();
             problem.set_initial("x", 1.0).unwrap();
-            let left = problem.variant.modes.iter().position(|m| m.name == "left");
+            let left = problem.variant().modes.iter().position(|m| m.name == "left");
             problem.initial.mode = left;
             problem.end.time = 10.0;
             let run = simulate(&problem, &mut Silent).unwrap();

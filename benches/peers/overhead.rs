@@ -48,7 +48,7 @@ fn row(name: &str, method: Method, tolerance: f64) {
     // Of residuals and Jacobians the sum over all modes is known: they are shared out by steps.
     let [residuals, jacobians] =
         [solver.residual_evaluations, solver.jacobian_evaluations].map(|n| n as f64 / all as f64);
-    let own: f64 = (problem.variant.modes.iter().zip(&steps))
+    let own: f64 = (problem.variant().modes.iter().zip(&steps))
         .filter(|&(_, &steps)| steps > 0)
         .map(|(mode, &steps)| {
             let cost = with_kernel!(&mode.kernels, k => functions(k, &problem, mode));
@@ -85,7 +85,7 @@ impl Progress for Steps {
 fn steps_by_mode(problem: &Problem, simulator: &mut Simulator) -> Vec<u64> {
     let mut steps = Steps(Vec::new());
     simulator.run(&mut steps).expect("the run succeeds");
-    let mut by_mode = vec![0; problem.variant.modes.len()];
+    let mut by_mode = vec![0; problem.variant().modes.len()];
     let events = simulator.events();
     for (before, &count) in steps.0.iter().enumerate() {
         // The mode is the one that the last event entered, or the next one leaves.

@@ -3,9 +3,9 @@
 use super::outcome::{Failure, Outcome, Result};
 use super::print;
 use super::table::Table;
-use crate::kernel::MODELS;
-use crate::model::Model;
+use crate::model::{self, Model};
 use crate::scene::nearest;
+use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
 pub struct ModelsArguments {
@@ -15,8 +15,8 @@ pub struct ModelsArguments {
 }
 
 /// The models that ship: those of the test suite are known by name, but not listed.
-fn listed() -> impl Iterator<Item = &'static Model> {
-    MODELS.iter().copied().filter(|m| !m.for_tests)
+fn listed() -> impl Iterator<Item = Arc<Model>> {
+    model::models().iter().filter(|m| !m.for_tests)
 }
 
 pub fn models(arguments: &ModelsArguments) -> Result {
@@ -36,8 +36,8 @@ pub fn models(arguments: &ModelsArguments) -> Result {
 }
 
 /// A model by name.
-pub fn find(name: &str) -> std::result::Result<&'static Model, Failure> {
-    if let Some(model) = MODELS.iter().find(|m| m.name == name) {
+pub fn find(name: &str) -> std::result::Result<Arc<Model>, Failure> {
+    if let Some(model) = model::models().find(name) {
         return Ok(model);
     }
     let names: Vec<&str> = listed().map(|m| m.name).collect();

@@ -16,7 +16,7 @@ pub fn check(scene: &Scene, out: Option<&Path>) -> Result<(), Failure> {
     let Some(every) = problem.record.every else {
         return Ok(());
     };
-    let layout = Layout::new(problem.model, problem.variant, problem.record.columns);
+    let layout = Layout::new(&problem.model, problem.variant(), problem.record.columns);
     // With the time and the mode.
     let columns = (layout.columns().len() + 2) as f64;
     let rows = (problem.end.time / every).floor() + 1.0;

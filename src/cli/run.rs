@@ -7,7 +7,7 @@ use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::{print, room, warnings};
 use crate::hybrid::{Invalid, Problem, Reason, resume, simulate};
-use crate::kernel::MODELS;
+use crate::model::models;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
 use crate::record::{OutputFolder, ProgressLine, Report, Run};
@@ -57,14 +57,14 @@ pub fn run(arguments: &RunArguments) -> Result {
              its start, without --resume",
         ));
     }
-    let scene = Scene::load(&arguments.scene, &arguments.overrides, MODELS)?;
+    let scene = Scene::load(&arguments.scene, &arguments.overrides, models())?;
     let problem = &scene.problem;
     let earlier = match &arguments.resume {
         Some(folder) => Some(
             Run::read(
                 folder,
-                problem.model,
-                problem.variant,
+                &problem.model,
+                problem.variant(),
                 problem.record.columns,
             )
             .map_err(Failure::wrong_input)?,
@@ -142,7 +142,7 @@ fn write_page(
     let page = run_page(
         run,
         Told {
-            drawing: problem.variant.drawing,
+            drawing: problem.variant().drawing,
             scene: &text,
             command: &format!("dalembert {}", arguments.join(" ")),
         },

@@ -12,6 +12,6 @@ pub struct SchemaArguments {
 
 pub fn schema(arguments: &SchemaArguments) -> Result {
     let model = arguments.model.as_deref().map(models::find).transpose()?;
-    print::output(format_args!("{:#}", scene::schema(model)))?;
+    print::output(format_args!("{:#}", scene::schema(model.as_deref())))?;
     Ok(Outcome::Done)
 }

@@ -122,7 +122,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
-    (mode, watched): (&'static Mode, &[Watched]),
+    (mode, watched): (&Mode, &[Watched]),
     (signs, landed): (&mut Signs, &mut State<F>),
 ) -> Stoppable<Cut> {
     let start = method.start().t;
@@ -219,7 +219,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 fn wake<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
-    (mode, watched): (&'static Mode, &[Watched]),
+    (mode, watched): (&Mode, &[Watched]),
     signs: &mut Signs,
 ) {
     let dense = method.dense().expect("a step was made");
@@ -246,7 +246,7 @@ fn wake<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 fn below<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
-    (mode, watched): (&'static Mode, &[Watched]),
+    (mode, watched): (&Mode, &[Watched]),
     signs: &Signs,
     end: &State<F>,
 ) -> Vec<usize> {
@@ -266,7 +266,7 @@ fn below<const F: usize>(
 fn fallen<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
-    (mode, watched): (&'static Mode, &[Watched]),
+    (mode, watched): (&Mode, &[Watched]),
     signs: &Signs,
     end: &State<F>,
 ) -> Cut {
@@ -311,7 +311,7 @@ fn put_in_order<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
-    (mode, watched): (&'static Mode, &[Watched]),
+    (mode, watched): (&Mode, &[Watched]),
     to: f64,
     signs: &mut Signs,
 ) -> Option<f64> {
@@ -341,7 +341,7 @@ fn search_all<const F: usize>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
-    (mode, watched): (&'static Mode, &[Watched]),
+    (mode, watched): (&Mode, &[Watched]),
     to: f64,
     signs: &mut Signs,
 ) -> Option<f64> {

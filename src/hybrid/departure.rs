@@ -28,8 +28,8 @@ pub(super) enum Departure {
 
 /// What is asked for: results of a tape along the motion of a mode from a state.
 struct Question<'a> {
-    mode: &'static Mode,
-    tape: &'static crate::jets::Tape,
+    mode: &'a Mode,
+    tape: &'a crate::jets::Tape,
     index: usize,
     at: Point<'a>,
     /// Typical sizes of coordinates and rates.
@@ -99,7 +99,7 @@ impl Question<'_> {
     }
 }
 
-impl Simulation<'_> {
+impl<'p> Simulation<'p> {
     /// How a guard of the present mode goes on from here; the context is set for it.
     #[cold]
     pub fn departure(&mut self, guard: usize) -> Departure {
@@ -128,8 +128,8 @@ impl Simulation<'_> {
     #[inline(always)]
     pub fn may_take<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
-        transition: &'static Transition,
+        kernel: &'p ModeKernel<F>,
+        transition: &'p Transition,
         at: Free<F>,
     ) -> bool {
         let mut conditions = Conditions {
@@ -144,7 +144,7 @@ impl Simulation<'_> {
     /// Whether the conditions of a transition, whose reset is in `next`, hold just after it although one of them is
     /// negative.
     #[cold]
-    fn holds_just_after(&mut self, transition: &'static Transition) -> bool {
+    fn holds_just_after(&mut self, transition: &'p Transition) -> bool {
         self.expand_signals();
         let n = self.here.q.len();
         let (q, rest) = self.next.split_at(n);

@@ -29,9 +29,9 @@ pub(super) struct Doubts {
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
     errors: Vec<Vec<f64>>,
-    /// Guards that were near zero at the end of the last step; with a doubt if they fell so steeply that
+    /// Names of guards that were near zero at the end of the last step; with a doubt if they fell so steeply that
     /// it is one only if they do not fall through zero right after it.
-    left: Vec<(&'static Guard, Option<Doubt>)>,
+    left: Vec<(&'static str, Option<Doubt>)>,
     /// The doubts.
     pub uncertain: Uncertain,
 }
@@ -40,7 +40,7 @@ pub(super) struct Doubts {
 pub(super) struct Searched<'s> {
     /// Index of the mode.
     pub index: usize,
-    pub mode: &'static Mode,
+    pub mode: &'s Mode,
     pub watched: &'s [Watched],
     /// Signs at the start of the step.
     pub watches: &'s [Watch],
@@ -158,10 +158,10 @@ impl Doubts {
             let turns = !at_end || guard.would_turn(method, found).abs() <= error;
             if at_end {
                 let unless_it_falls = (!turns).then(|| doubt.clone());
-                self.left.push((guard.guard, unless_it_falls));
+                self.left.push((guard.guard.name, unless_it_falls));
             }
             // It may turn in the next step, where it was near zero at the end of this one.
-            if turns && !left.iter().any(|(other, _)| other.name == guard.guard.name) {
+            if turns && !left.iter().any(|(other, _)| *other == guard.guard.name) {
                 self.uncertain.add(doubt);
             }
         }
@@ -169,9 +169,9 @@ impl Doubts {
         for (guard, doubt) in left {
             let falls = |(found, watched): (&Search, &Watched)| {
                 let other = &step.mode.guards[watched.guard];
-                found.crossing.is_some() && other.name == guard.name
+                found.crossing.is_some() && other.name == guard
             };
-            let again = self.left.iter().any(|(other, _)| other.name == guard.name);
+            let again = self.left.iter().any(|(other, _)| *other == guard);
             if let Some(doubt) = doubt
                 && !again
                 && !step.found.iter().zip(step.watched).any(falls)
@@ -183,9 +183,9 @@ impl Doubts {
 
     /// Takes note of a transition: what its guard fell to has happened.
     #[inline(always)]
-    pub fn happened(&mut self, guard: &'static Guard) {
+    pub fn happened(&mut self, guard: &Guard) {
         if !self.left.is_empty() {
-            self.left.retain(|(other, _)| other.name != guard.name);
+            self.left.retain(|(other, _)| *other != guard.name);
         }
     }
 }

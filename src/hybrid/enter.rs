@@ -14,10 +14,10 @@ use nalgebra::{SMatrix, SVector};
 /// Unit roundoff of a double.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-impl Simulation<'_> {
+impl<'p> Simulation<'p> {
     /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.
     pub fn scale<const F: usize>(&self) -> SVector<f64, F> {
-        let free = self.mode().free;
+        let free = &self.mode().free;
         SVector::from_fn(|i, _| self.sizes[free[i]])
     }
 
@@ -25,14 +25,14 @@ impl Simulation<'_> {
     /// that is not respected.
     pub fn enter<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
     ) -> Stoppable<Option<Violation>> {
         self.set_context();
         let mode = self.mode();
         if self.plan.drifts[self.here.mode] {
             kernel.held_rates(&self.context, &mut self.drift);
         }
-        let [q, v, _] = self.here.free::<F>(mode.free);
+        let [q, v, _] = self.here.free::<F>(&mode.free);
         self.check_inertia(kernel, [&q, &v])?;
         let system = kernel.system(&self.context, &q, &v);
         if determinant_sign(&system.mass) < 0 {
@@ -40,7 +40,7 @@ impl Simulation<'_> {
         }
         let scale = self.scale::<F>();
         let mut a = solve(&system.mass, &-system.load, &scale)
-            .map_err(|s| Reason::singular(mode, self.problem.model, s))?;
+            .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
 
         let start = Start {
             kernel,
@@ -126,7 +126,7 @@ impl Simulation<'_> {
             (self.margins).look_at_start(kernel, &self.context, (mode, at), t)?;
         }
         self.here.a.fill(0.0);
-        self.here.set_free(mode.free, [&q, &v, &a]);
+        self.here.set_free(&mode.free, [&q, &v, &a]);
         Ok(violation)
     }
 
@@ -136,7 +136,7 @@ impl Simulation<'_> {
     /// is looked at in the first step.
     pub fn enter_again<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         q: SVector<f64, F>,
         v: SVector<f64, F>,
         needs_accelerations: bool,
@@ -180,7 +180,7 @@ impl Simulation<'_> {
             let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
                 return Ok(false);
             };
-            self.here.set_free(mode.free, [&q, &v, &a]);
+            self.here.set_free(&mode.free, [&q, &v, &a]);
             self.flush_samples();
         }
         Ok(true)
@@ -191,7 +191,7 @@ impl Simulation<'_> {
     #[inline(always)]
     fn check_inertia<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         [q, v]: [&SVector<f64, F>; 2],
     ) -> Stoppable<()> {
         if !(kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]) {
@@ -209,7 +209,7 @@ impl Simulation<'_> {
 
 /// The state at the start of a segment, for guards that are exactly zero there.
 struct Start<'a, const F: usize> {
-    kernel: &'static ModeKernel<F>,
+    kernel: &'a ModeKernel<F>,
     mass: &'a SMatrix<f64, F, F>,
     scale: &'a SVector<f64, F>,
     /// Free coordinates and velocities.

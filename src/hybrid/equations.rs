@@ -110,7 +110,7 @@ impl Piece {
 
 /// The reduced system of a mode.
 pub(super) struct Equations<'a, const F: usize> {
-    pub kernel: &'static ModeKernel<F>,
+    pub kernel: &'a ModeKernel<F>,
     pub context: &'a mut Context,
     pub clock: Clock<'a>,
     /// Relative tolerance of the run.
@@ -135,7 +135,7 @@ pub(super) struct Equations<'a, const F: usize> {
 
 impl<'a, const F: usize> Equations<'a, F> {
     pub fn new(
-        kernel: &'static ModeKernel<F>,
+        kernel: &'a ModeKernel<F>,
         context: &'a mut Context,
         clock: Clock<'a>,
         tolerance: f64,

@@ -162,8 +162,8 @@ pub enum Reason {
 impl Reason {
     /// The reason for a singular matrix met in `mode` with the given free coordinates' names.
     pub(super) fn singular(
-        mode: &'static crate::model::Mode,
-        model: &'static crate::model::Model,
+        mode: &crate::model::Mode,
+        model: &crate::model::Model,
         singular: Singular,
     ) -> Self {
         let coordinate = model.coordinates[mode.free[singular.coordinate]].name;

@@ -12,7 +12,7 @@ use nalgebra::SVector;
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-impl Simulation<'_> {
+impl<'p> Simulation<'p> {
     /// Takes the first transition of a guard whose condition holds.
     pub fn fire(&mut self, guard: usize) -> Stoppable<()> {
         let mode = self.mode();
@@ -21,7 +21,7 @@ impl Simulation<'_> {
 
     fn fire_by<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         guard: usize,
     ) -> Stoppable<()> {
         let chosen = self.choose(kernel, guard);
@@ -50,7 +50,7 @@ impl Simulation<'_> {
     /// accelerations where they are needed.
     pub fn fire_and_stay<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         guard: usize,
         needs_accelerations: bool,
     ) -> Stoppable<bool> {
@@ -61,7 +61,7 @@ impl Simulation<'_> {
             true => {
                 self.set_context();
                 // From what the reset has written: the copy of it waits for its way to memory.
-                let (n, free) = (self.here.q.len(), self.mode().free);
+                let (n, free) = (self.here.q.len(), &self.mode().free);
                 let gather = |from: usize| SVector::from_fn(|i, _| self.next[from + free[i]]);
                 let (q, v) = (gather(0), gather(n));
                 self.enter_again(kernel, q, v, needs_accelerations)
@@ -74,18 +74,18 @@ impl Simulation<'_> {
     #[inline(always)]
     pub fn choose<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         guard: usize,
     ) -> Option<usize> {
         self.set_context();
         let mode = self.mode();
-        let [q, v, a] = self.here.free::<F>(mode.free);
+        let [q, v, a] = self.here.free::<F>(&mode.free);
         let at = Free {
             q: &q,
             v: &v,
             a: &a,
         };
-        let transitions = mode.guards[guard].transitions;
+        let transitions = &mode.guards[guard].transitions;
         (0..transitions.len()).find(|&t| {
             self.plan.allowed[transitions[t].target] && self.may_take(kernel, &transitions[t], at)
         })
@@ -163,26 +163,26 @@ impl Simulation<'_> {
     /// Sets the accelerations to those of the equations.
     pub fn set_accelerations<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
     ) -> Stoppable<()> {
         let mode = self.mode();
-        let [q, v, _] = self.here.free::<F>(mode.free);
+        let [q, v, _] = self.here.free::<F>(&mode.free);
         let system = kernel.system(&self.context, &q, &v);
         let a = crate::integrate::solve(&system.mass, &-system.load, &self.scale())
-            .map_err(|s| Reason::singular(mode, self.problem.model, s))?;
+            .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
         self.here.a.fill(0.0);
-        self.here.set_free(mode.free, [&q, &v, &a]);
+        self.here.set_free(&mode.free, [&q, &v, &a]);
         Ok(())
     }
 
     /// Momentum along each motion of the ground, with the velocity of that motion.
     fn ground_momenta(&self) -> Vec<(f64, f64)> {
-        let model = self.problem.model;
+        let model = &self.problem.model;
         let n = model.coordinates.len();
         let mut momenta = vec![0.0; n + model.motions.len()];
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = self.here.free(mode.free);
+            let [q, v, a] = self.here.free(&mode.free);
             k.momenta(&self.context, Free { q: &q, v: &v, a: &a }, &mut momenta);
         });
         let rates = model.inputs.iter().filter(|i| i.kind.signals() == 3);

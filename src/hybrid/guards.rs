@@ -5,13 +5,13 @@ use super::plan::{Plan, Watched};
 use crate::integrate::{Motion, solve};
 use crate::kernel::swap_few;
 use crate::kernel::with_kernel;
-use crate::kernel::{Context, Free, MOST_CONDITIONS, ModeKernel};
+use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, Mode, Transition};
 use nalgebra::SVector;
 
 /// What the conditions of transitions are evaluated with.
 pub(super) struct Conditions<'a> {
-    pub modes: &'static [Mode],
+    pub modes: &'a [Mode],
     pub plan: &'a Plan,
     /// Room for a reset: q, v, discrete states.
     pub next: &'a mut [f64],
@@ -36,7 +36,7 @@ impl Conditions<'_> {
         self.swap_with(context);
         let n = context.held().len();
         let condition = with_kernel!(&target.kernels, k => {
-            conditions_in(k, context, transition, target.free, &self.next[n..2 * n], reduce)
+            conditions_in(k, context, transition, &target.free, &self.next[n..2 * n], reduce)
         });
         self.swap_with(context);
         condition
@@ -82,7 +82,7 @@ impl Conditions<'_> {
 /// where the accelerations are not determined.
 fn conditions_in<const F: usize>(
     kernel: &ModeKernel<F>,
-    context: &Context,
+    context: &mut Context,
     transition: &Transition,
     free: &[usize],
     rates: &[f64],
@@ -99,8 +99,7 @@ fn conditions_in<const F: usize>(
         v: &v,
         a: &a,
     };
-    let mut room = [0.0; MOST_CONDITIONS];
-    reduce(kernel.conditions(context, &transition.kernel, at, &mut room))
+    reduce(kernel.conditions(context, &transition.kernel, at))
 }
 
 /// Value of what is watched, in the present mode.

@@ -54,7 +54,7 @@ pub(super) fn pivots<const F: usize>(
 pub(super) fn vanished<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &Context,
-    (problem, mode): (&Problem, &'static Mode),
+    (problem, mode): (&Problem, &Mode),
     [from, to]: [[&SVector<f64, F>; 2]; 2],
 ) -> Option<Reason> {
     let at = |[q, v]: [&SVector<f64, F>; 2]| pivots(&kernel.inertia(context, q, v));

@@ -10,8 +10,8 @@ use crate::record::{Left, LimitState, Reached};
 
 /// What is watched in a run, and when it was reached.
 #[derive(Debug)]
-pub(super) struct Margins {
-    variant: &'static Variant,
+pub(super) struct Margins<'p> {
+    variant: &'p Variant,
     /// The limits of the problem.
     pub own: Box<[OwnLimit]>,
     /// Whether the run ends there: limits of the model, its validity in motion, limits of the problem.
@@ -29,9 +29,9 @@ pub(super) struct Margins {
     pub rates: Box<[f64]>,
 }
 
-impl Margins {
-    pub fn new(problem: &Problem) -> Self {
-        let (model, variant) = (problem.model, problem.variant);
+impl<'p> Margins<'p> {
+    pub fn new(problem: &'p Problem) -> Self {
+        let (model, variant) = (&*problem.model, problem.variant());
         let of_model = variant.limits.iter().map(|limit| {
             let said = problem
                 .limits
@@ -179,8 +179,9 @@ impl Problem {
     /// # Errors
     /// [`Unknown`] if the model has no such limit under its present choices.
     pub fn set_limit(&mut self, name: &str, ends: bool) -> Result<(), Unknown> {
-        let limits = self.variant.limits.iter();
-        let Some(limit) = limits.clone().find(|limit| limit.name == name) else {
+        let limits = self.variant().limits.iter();
+        let known = limits.clone().find(|limit| limit.name == name);
+        let Some(name) = known.map(|limit| limit.name) else {
             return Err(Unknown {
                 model: self.model.name,
                 what: "limit state",
@@ -189,14 +190,14 @@ impl Problem {
             });
         };
         self.limits.of_model.retain(|(known, _)| *known != name);
-        self.limits.of_model.push((limit.name, ends));
+        self.limits.of_model.push((name, ends));
         Ok(())
     }
 
     /// The conditions on parameters, under which the model is meant, that do not hold.
     pub fn invalid_parameters(&self) -> Vec<Left> {
-        let margins = declared(self.variant, &self.parameters);
-        let margins = self.variant.valid_parameters.iter().zip(margins);
+        let margins = declared(self.variant(), &self.parameters);
+        let margins = self.variant().valid_parameters.iter().zip(margins);
         let left = margins.filter(|(_, margin)| margin.is_nan() || *margin < 0.0);
         left.map(|(validity, _)| Left {
             condition: validity.condition.into(),
@@ -209,9 +210,9 @@ impl Problem {
     /// Bounds of a coordinate of every admissible state, with the parameters as they are.
     pub fn bounds(&self, coordinate: usize) -> Bounds {
         let mut bounds = self.model.coordinates[coordinate].bounds();
-        let values = declared(self.variant, &self.parameters);
-        let values = &values[self.variant.valid_parameters.len()..];
-        let all = self.variant.bounds.iter().zip(values);
+        let values = declared(self.variant(), &self.parameters);
+        let values = &values[self.variant().valid_parameters.len()..];
+        let all = self.variant().bounds.iter().zip(values);
         for (bound, &value) in all.filter(|(bound, _)| bound.coordinate == coordinate) {
             match bound.upper {
                 true => bounds.maximum = value,

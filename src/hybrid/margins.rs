@@ -45,7 +45,7 @@ fn unmet(mode: &Mode, index: usize, value: f64) -> Box<Reason> {
     })
 }
 
-impl Margins {
+impl Margins<'_> {
     /// Number of values of a mode: of its requirements, then of all margins.
     fn count(&self, mode: &Mode) -> usize {
         mode.requirements.len() + self.ends.len()
@@ -178,7 +178,7 @@ impl Margins {
         method: &mut impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
-        (mode, watched, origin): (&'static Mode, &[Watched], Instant),
+        (mode, watched, origin): (&Mode, &[Watched], Instant),
         (signs, end): (&mut Signs, &mut State<F>),
         mut found: Cut,
     ) -> Stoppable<(Cut, Option<Ended>)> {

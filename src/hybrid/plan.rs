@@ -35,7 +35,7 @@ pub(super) struct Watched {
 
 impl Plan {
     pub fn new(problem: &Problem) -> Result<Self, Reason> {
-        let modes = problem.automaton().modes;
+        let modes = &problem.automaton().modes;
         let allowed: Vec<bool> = modes
             .iter()
             .map(|m| problem.freeze.iter().all(|frozen| !m.free.contains(frozen)))
@@ -55,7 +55,7 @@ impl Plan {
                     .collect()
             })
             .collect();
-        let rests = (problem.variant.rests.iter().copied())
+        let rests = (problem.variant().rests.iter().copied())
             .filter(|rest| allowed[rest.target])
             .collect();
         Ok(Plan {
@@ -117,7 +117,7 @@ mod tests {
             .map(|c| model.coordinate(c).unwrap())
             .collect();
         let plan = Plan::new(&problem).unwrap();
-        let modes = problem.variant.modes.iter().zip(&plan.watched);
+        let modes = problem.variant().modes.iter().zip(&plan.watched);
         let visited = modes.zip(&plan.allowed).filter(|(_, allowed)| **allowed);
         visited
             .map(|((mode, watched), _)| {

@@ -4,14 +4,15 @@ use super::validate::{Invalid, Unknown, check_initial, within};
 use crate::input::{Function, Signals};
 use crate::model::{Model, Variant};
 use crate::record::Recorded;
+use std::sync::Arc;
 
 /// A complete initial-value problem of a model.
 #[derive(Debug, Clone)]
 pub struct Problem {
     /// The model.
-    pub model: &'static Model,
-    /// The variant with the chosen options.
-    pub variant: &'static Variant,
+    pub model: Arc<Model>,
+    /// Index of the variant with the chosen options: [`Problem::variant`].
+    pub chosen: usize,
     /// Title of the scene, if it has one.
     pub title: Option<String>,
     /// Parameters in the order and the units of the model.
@@ -139,19 +140,17 @@ pub struct Record {
 impl Problem {
     /// A model with its default parameters and choices, at rest at zero without inputs, for 1 s at
     /// a relative tolerance of 1e-8, recording the events, the ledger, the extremes and the end.
-    pub fn new(model: &'static Model) -> Self {
-        let variant = model
-            .variants
-            .iter()
-            .find(|v| v.defaults.iter().all(|&d| d));
+    pub fn new(model: &Arc<Model>) -> Self {
+        let mut variants = model.variants.iter();
+        let variant = variants.position(|v| v.defaults.iter().all(|&d| d));
         let n = model.coordinates.len();
         let mut problem = Problem {
-            model,
-            variant: variant.expect("codegen makes a variant of the defaults"),
+            model: model.clone(),
+            chosen: variant.expect("codegen makes a variant of the defaults"),
             title: None,
             parameters: model.parameters.iter().map(|p| p.default).collect(),
             signals: Signals::new(
-                model.inputs,
+                &model.inputs,
                 model.inputs.iter().map(|_| Function::zero()).collect(),
             ),
             initial: Initial {
@@ -219,7 +218,7 @@ impl Problem {
     /// # Errors
     /// [`Invalid`] if the model has none of that name, or it must not have this value.
     pub fn set_initial(&mut self, name: &str, value: f64) -> Result<(), Invalid> {
-        let model = self.model;
+        let model = &self.model;
         let mut initial = self.initial.clone();
         let rate = name
             .strip_suffix(".rate")
@@ -237,7 +236,7 @@ impl Problem {
                 .unknown("coordinate, rate or discrete state", name, known)
                 .into());
         }
-        check_initial(model, &initial)?;
+        check_initial(&model, &initial)?;
         self.initial = initial;
         Ok(())
     }
@@ -247,13 +246,13 @@ impl Problem {
     /// # Errors
     /// [`Unknown`] if the model has no such input.
     pub fn set_input(&mut self, name: &str, function: Function) -> Result<(), Unknown> {
-        let inputs = self.model.inputs;
+        let inputs = &self.model.inputs;
         let found = inputs.iter().position(|i| i.name == name);
         let known = || inputs.iter().map(|i| i.name);
         let index = found.ok_or_else(|| self.unknown("input", name, known()))?;
         let mut functions: Vec<Function> = self.signals.functions().cloned().collect();
         functions[index] = function;
-        self.signals = Signals::new(inputs, functions);
+        self.signals = Signals::new(&inputs, functions);
         Ok(())
     }
 
@@ -263,7 +262,7 @@ impl Problem {
     /// # Errors
     /// [`Unknown`] if the model has no such choice or option, or not these together.
     pub fn choose(&mut self, options: &[(&str, &str)]) -> Result<(), Unknown> {
-        let choices = self.model.choices;
+        let choices = &self.model.choices;
         for (choice, option) in options {
             let known = choices.iter().find(|c| c.name == *choice);
             let all = || choices.iter().map(|c| c.name);
@@ -279,26 +278,32 @@ impl Problem {
                 None => v.defaults[i],
             })
         };
-        let Some(variant) = self.model.variants.iter().find(fits) else {
+        let Some(chosen) = self.model.variants.iter().position(|v| fits(&v)) else {
             let name: Vec<_> = options.iter().map(|(_, option)| *option).collect();
             let all = self.model.variants.iter().map(|v| v.options.join(" + "));
             return Err(self.unknown("variant", &name.join(" + "), all));
         };
-        self.variant = variant;
+        self.chosen = chosen;
         Ok(())
     }
 
+    /// The variant with the chosen options.
+    pub fn variant(&self) -> &Variant {
+        &self.model.variants[self.chosen]
+    }
+
     /// The variant as it runs: without the terms of the optional motions of the ground where none of these acts.
-    pub fn automaton(&self) -> &'static Variant {
-        match self.variant.lean {
+    pub fn automaton(&self) -> &Variant {
+        let variant = self.variant();
+        match &variant.lean {
             Some((without, lean)) if without.iter().all(|&i| self.signals.input_is_zero(i)) => lean,
-            _ => self.variant,
+            _ => variant,
         }
     }
 
     /// The first input that is given although the chosen options do not allow it.
     pub(crate) fn barred_input(&self) -> Option<&'static str> {
-        let barred = self.variant.barred.iter();
+        let barred = self.variant().barred.iter();
         let given = barred.copied().find(|&i| !self.signals.input_is_zero(i));
         given.map(|i| self.model.inputs[i].name)
     }

@@ -120,7 +120,7 @@ impl Simulation<'_> {
     ///
     /// # Errors
     /// The first component that differs from what the mode holds by more than its tolerance.
-    fn told_apart(&self, mode: &'static Mode, limit: &Limit) -> Result<usize, Held> {
+    fn told_apart(&self, mode: &Mode, limit: &Limit) -> Result<usize, Held> {
         let accuracy = &self.problem.accuracy;
         let n = self.here.q.len();
         let mut told = 0;
@@ -142,7 +142,7 @@ impl Simulation<'_> {
     }
 
     /// Everything that a mode holds: values, and rates.
-    fn holds(&self, mode: &'static Mode) -> impl Iterator<Item = Held> + use<> {
+    fn holds<'m>(&self, mode: &'m Mode) -> impl Iterator<Item = Held> + use<'m> {
         let mut rates = vec![0.0; self.here.v.len()];
         let mut values = rates.clone();
         with_kernel!(&mode.kernels, k => {
@@ -196,7 +196,7 @@ impl Simulation<'_> {
 
     /// What a mode holds that a limit does not satisfy, in words.
     fn unfit(&self, held: Held, limit: &Limit) -> String {
-        let coordinates = self.problem.model.coordinates;
+        let coordinates = &self.problem.model.coordinates;
         let (place, value) = held.place(coordinates.len());
         let there = limit.state[place];
         match held {

@@ -80,7 +80,7 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
         ("initial", text(&problem.initial)),
         ("inputs", text(&problem.signals)),
         ("method", text(&problem.method)),
-        ("model", problem.model.digest().to_owned()),
+        ("model", problem.model.digest.to_owned()),
     ];
     parts.map(|(part, digest)| (part.to_owned(), digest)).into()
 }

@@ -19,9 +19,9 @@ use crate::record::Progress;
 use nalgebra::SVector;
 
 /// What does not change while a mode is followed.
-struct Stay<const F: usize> {
-    kernel: &'static ModeKernel<F>,
-    mode: &'static Mode,
+struct Stay<'p, const F: usize> {
+    kernel: &'p ModeKernel<F>,
+    mode: &'p Mode,
     /// Typical sizes of the free coordinates.
     scale: SVector<f64, F>,
     /// Whether some frozen coordinate drifts.
@@ -33,12 +33,12 @@ struct Stay<const F: usize> {
     looks_at_ends: bool,
 }
 
-impl Simulation<'_> {
+impl<'p> Simulation<'p> {
     /// Integrates the present mode until something happens; `stays`: not an event that leads to the same
     /// mode again.
     pub fn advance<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         stays: bool,
         progress: &mut dyn Progress,
     ) -> Stoppable<Stop>
@@ -89,7 +89,7 @@ impl Simulation<'_> {
     #[inline(always)]
     fn integrate<const F: usize, M>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         slots: impl Fn(&mut Slots<F>) -> &mut [Option<Box<M>>],
         make: impl Fn(&Context) -> M,
         stays: bool,
@@ -126,7 +126,7 @@ impl Simulation<'_> {
     /// there.
     fn stay<const F: usize, M>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         method: &mut M,
         stays: bool,
         progress: &mut dyn Progress,
@@ -154,7 +154,7 @@ impl Simulation<'_> {
             <M as OneStep<F, Equations<F>>>::NEEDS_ACCELERATIONS || !kernel.inertia_is_fixed();
         let mut has_accelerations = true;
         loop {
-            let [q, v, a] = self.here.free::<F>(mode.free);
+            let [q, v, a] = self.here.free::<F>(&mode.free);
             method.restart(0.0, &q, &v, has_accelerations.then_some(&a));
             let now = self.here.now.seconds();
             if now >= self.smooth_until {
@@ -346,9 +346,9 @@ impl Simulation<'_> {
 
             self.here.now = start.plus(state.t);
             self.here
-                .set_free(mode.free, [&state.q, &state.v, &state.a]);
+                .set_free(&mode.free, [&state.q, &state.v, &state.a]);
             if drifts {
-                copy_drifting(&mut self.here.q, mode.drifts, equations.context.held());
+                copy_drifting(&mut self.here.q, &mode.drifts, equations.context.held());
             }
 
             if problem.record.every.is_none() {

@@ -23,9 +23,9 @@ fn dense_of<'m, 'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 
 /// What is watched, with what it is evaluated by.
 pub(super) struct WatchedGuard<'e, 'a, 'c, const F: usize> {
-    pub mode: &'static Mode,
+    pub mode: &'e Mode,
     pub accuracy: &'e Accuracy,
-    pub guard: &'static Guard,
+    pub guard: &'e Guard,
     pub watched: Watched,
     pub equations: &'e mut Equations<'a, F>,
     pub conditions: &'e mut Conditions<'c>,

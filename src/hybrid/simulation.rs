@@ -94,7 +94,7 @@ pub(super) struct Simulation<'p> {
     /// Its initial state, or that of the member of an ensemble.
     pub initial: &'p Initial,
     /// The modes of the problem's variant.
-    pub modes: &'static [Mode],
+    pub modes: &'p [Mode],
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
@@ -105,7 +105,7 @@ pub(super) struct Simulation<'p> {
     /// Remembered signs of what is watched in the present mode.
     pub signs: Signs,
     pub doubts: Doubts,
-    pub margins: Margins,
+    pub margins: Margins<'p>,
     /// Room for a reset: q, v, discrete states.
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
@@ -142,18 +142,18 @@ pub(super) struct Simulation<'p> {
 impl<'p> Simulation<'p> {
     /// A simulation before its first instant.
     pub fn new(problem: &'p Problem) -> Result<Self, Reason> {
-        let model = problem.model;
+        let model = &problem.model;
         problem.check()?;
         let plan = Plan::new(problem)?;
         problem.check_method(&plan)?;
-        let mut context = Context::new(model, &problem.parameters);
+        let mut context = Context::new(&model, &problem.parameters);
         context
             .discrete_mut()
             .copy_from_slice(&problem.initial.discrete);
         context.quiet = problem.signals.is_zero();
         let foresees = context.can_foresee(&problem.signals);
         let n = model.coordinates.len();
-        let modes = problem.automaton().modes;
+        let modes = &problem.automaton().modes;
         let accuracy = &problem.accuracy;
         let absolute = [&accuracy.q_absolute[..], &accuracy.v_absolute].concat();
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
@@ -220,11 +220,11 @@ impl<'p> Simulation<'p> {
 
     /// Takes the place of a member of an ensemble, at its start.
     pub fn become_member(&mut self, member: &Member<'p>) -> Result<(), Reason> {
-        let model = self.problem.model;
-        check_parameters(model, member.parameters)?;
-        check_initial(model, member.initial)?;
+        let model = &self.problem.model;
+        check_parameters(&model, member.parameters)?;
+        check_initial(&model, member.initial)?;
         self.initial = member.initial;
-        self.context.set_parameters(model, member.parameters);
+        self.context.set_parameters(&model, member.parameters);
         self.expansion.set_parameters(member.parameters);
         self.rewind(0);
         self.choose_initial_mode()?;
@@ -263,7 +263,7 @@ impl<'p> Simulation<'p> {
         self.observe_start();
     }
 
-    pub fn mode(&self) -> &'static Mode {
+    pub fn mode(&self) -> &'p Mode {
         &self.modes[self.here.mode]
     }
 
@@ -310,8 +310,8 @@ impl<'p> Simulation<'p> {
     }
 
     /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
-    fn misfit(&mut self, mode: &'static Mode) -> Option<Misfit> {
-        let model = self.problem.model;
+    fn misfit(&mut self, mode: &Mode) -> Option<Misfit> {
+        let model = &self.problem.model;
         let held = &mut self.next[..self.here.q.len()];
         with_kernel!(&mode.kernels, k => {
             k.held_rates(&self.context, &mut self.drift);
@@ -336,7 +336,7 @@ impl<'p> Simulation<'p> {
 
     /// A misfit in words.
     fn in_words(&self, misfit: Misfit) -> String {
-        let coordinates = self.problem.model.coordinates;
+        let coordinates = &self.problem.model.coordinates;
         let (Misfit::Below(i, value) | Misfit::HeldAt(i, value) | Misfit::HeldRate(i, value)) =
             misfit;
         let (name, unit) = (coordinates[i].name, coordinates[i].unit);
@@ -464,7 +464,7 @@ impl<'p> Simulation<'p> {
     pub fn stored_energy(&self) -> f64 {
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = self.here.free(mode.free);
+            let [q, v, a] = self.here.free(&mode.free);
             let [kinetic, potential] = k.energies(&self.context, Free { q: &q, v: &v, a: &a });
             kinetic + potential
         })
@@ -476,7 +476,7 @@ impl<'p> Simulation<'p> {
         let mode = self.mode();
         if !reactions.is_empty() {
             with_kernel!(&mode.kernels, k => {
-                let [q, v, a] = self.here.free(mode.free);
+                let [q, v, a] = self.here.free(&mode.free);
                 k.reactions(&self.context, Free { q: &q, v: &v, a: &a }, &mut reactions)
             });
         }
@@ -540,7 +540,7 @@ impl<'p> Simulation<'p> {
             subject: Subject {
                 model: problem.model.name.into(),
                 title: problem.title.clone().unwrap_or_default(),
-                choices: (problem.model.choices.iter().zip(problem.variant.options))
+                choices: (problem.model.choices.iter().zip(&problem.variant().options))
                     .map(|(choice, option)| (choice.name.into(), (*option).into()))
                     .collect(),
                 parameters: (problem.model.parameters.iter().zip(&problem.parameters))

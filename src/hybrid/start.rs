@@ -10,7 +10,7 @@ use crate::model::GuardShape;
 /// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-impl Simulation<'_> {
+impl<'p> Simulation<'p> {
     /// Refuses an initial state that settling would move: where a guard is negative, by more than its rounding, and its
     /// transition changes a coordinate or a velocity. That is no event; the state is beyond where the mode ends. A
     /// change of mode and of discrete states alone is what settling is for: friction that cannot hold what
@@ -38,7 +38,7 @@ impl Simulation<'_> {
         if let Some(reason) = refused {
             return Err(reason);
         }
-        let Problem { model, variant, .. } = self.problem;
+        let (model, variant) = (&*self.problem.model, self.problem.variant());
         Ok(check_bounds(model, variant, parameters, &self.initial.q)?)
     }
 
@@ -46,13 +46,13 @@ impl Simulation<'_> {
     /// target. `None`: there is nothing to refuse.
     fn step_of_settling<const F: usize>(
         &mut self,
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
     ) -> Option<Result<usize, Reason>> {
         let mode = self.mode();
         // What else is wrong with the mode is said when it is entered.
         let violation = self.enter(kernel).ok()??;
         let guard = &mode.guards[violation.guard];
-        let [q, v, a] = self.here.free::<F>(mode.free);
+        let [q, v, a] = self.here.free::<F>(&mode.free);
         let at = Free {
             q: &q,
             v: &v,

@@ -20,7 +20,7 @@ impl Problem {
     /// magnitudes. Guards are taken at the initial state, in each mode that may be visited. Where a
     /// guard has no size there, or a mode no accelerations, it has no say.
     pub fn typical_sizes(&self) -> [Vec<f64>; 2] {
-        let coordinates = self.model.coordinates;
+        let coordinates = &self.model.coordinates;
         let stated = [
             coordinates.iter().map(|c| c.scale).collect::<Vec<_>>(),
             coordinates.iter().map(|c| c.rate_scale).collect(),
@@ -29,7 +29,7 @@ impl Problem {
         let Ok(plan) = Plan::new(self) else {
             return sizes;
         };
-        let mut context = Context::new(self.model, &self.parameters);
+        let mut context = Context::new(&self.model, &self.parameters);
         context.set_signals(&self.signals, 0.0, Side::Right);
         context
             .discrete_mut()

@@ -172,8 +172,8 @@ impl Problem {
     /// # Errors
     /// [`Invalid`]: the first thing that is not.
     pub fn check(&self) -> Result<(), Invalid> {
-        check_parameters(self.model, &self.parameters)?;
-        check_initial(self.model, &self.initial)?;
+        check_parameters(&self.model, &self.parameters)?;
+        check_initial(&self.model, &self.initial)?;
         if let Some(input) = self.barred_input() {
             return Err(Invalid::Barred { input });
         }

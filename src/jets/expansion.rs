@@ -128,7 +128,7 @@ impl Expansion {
 
     /// The accelerations of order `k`, and rates and coordinates that follow from them.
     fn move_on(&mut self, mode: &Mode, k: usize) {
-        let free = mode.free;
+        let free = &mode.free;
         let count = free.len();
         mode.system.expand(k, &self.given, &mut self.system);
         let entry = |place: usize| &self.system[mode.system.results[place]];

@@ -7,9 +7,9 @@ use crate::kernel::sin_cos;
 #[derive(Debug)]
 pub struct Tape {
     /// In the order in which they are carried out.
-    pub instructions: &'static [Instruction],
+    pub instructions: Box<[Instruction]>,
     /// The places of those that are the results.
-    pub results: &'static [usize],
+    pub results: Box<[usize]>,
 }
 
 /// One operation; operands by the place of their instruction.

@@ -8,6 +8,7 @@ use crate::integrate::ORDERS;
 use crate::model::Model;
 use crate::with_kernel;
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// Numbers of entries of the context arrays of a model; its address identifies the model.
 #[derive(Debug)]
@@ -27,16 +28,16 @@ pub(crate) struct Dimensions {
     /// Angles whose sines and cosines are kept.
     pub angles: usize,
     /// Of each signal, whether the equations of motion, the guards or the requirements of some mode depend on it.
-    pub expanded: &'static [bool],
+    pub expanded: Box<[bool]>,
     /// The signals on which what some mode requires depends.
-    pub required: &'static [usize],
+    pub required: Box<[usize]>,
 }
 
 /// What a generated function needs besides the free coordinates. Its arrays keep the lengths that
 /// `Dimensions` state, which the calls rely on: nothing outside of `kernel` can replace them.
 #[derive(Debug)]
 pub struct Context {
-    pub(super) dimensions: &'static Dimensions,
+    pub(super) dimensions: Arc<Dimensions>,
     pub(super) arrays: Arrays,
     /// The arrays as C sees them.
     pub(super) raw: RawContext,
@@ -52,6 +53,8 @@ pub struct Context {
     ahead: Box<[f64]>,
     /// Taylor coefficients of the guards, one row an order.
     pub(super) guard_series: Box<[f64]>,
+    /// Room for the conditions of any transition.
+    pub(super) conditions: Box<[f64]>,
     /// What the series functions carry from one order to the next, two numbers an entry: room for the
     /// longest series of all modes.
     pub(super) workspace: LaneRows<2>,
@@ -77,7 +80,7 @@ impl Clone for Context {
     fn clone(&self) -> Self {
         let arrays = self.arrays.clone();
         Context {
-            dimensions: self.dimensions,
+            dimensions: self.dimensions.clone(),
             raw: arrays.raw(),
             arrays,
             signals_at: self.signals_at,
@@ -86,6 +89,7 @@ impl Clone for Context {
             signal_radii: self.signal_radii.clone(),
             ahead: self.ahead.clone(),
             guard_series: self.guard_series.clone(),
+            conditions: self.conditions.clone(),
             workspace: self.workspace.clone(),
         }
     }
@@ -114,13 +118,18 @@ impl Context {
     ///
     /// # Panics
     /// If the number of parameters is not the model's.
-    pub fn new(model: &'static Model, parameters: &[f64]) -> Self {
-        let dimensions = model.constants.dimensions;
-        let modes = model.automata().flat_map(|variant| variant.modes);
+    pub fn new(model: &Model, parameters: &[f64]) -> Self {
+        let dimensions = model.constants.dimensions.clone();
+        let modes = model.automata().flat_map(|variant| &variant.modes);
         let rooms = modes.map(|mode| with_kernel!(&mode.kernels, k => (k.workspace(), k.guards)));
         let (workspace, guards) = rooms.fold((0, 0), |most, room| {
             (most.0.max(room.0), most.1.max(room.1))
         });
+        let modes = model.automata().flat_map(|variant| &variant.modes);
+        let transitions = modes
+            .flat_map(|mode| &mode.guards)
+            .flat_map(|guard| &guard.transitions);
+        let conditions = transitions.map(|t| t.kernel.conditions()).max();
         let mut constants = vec![0.0; dimensions.constants];
         model.constants.evaluate(parameters, &mut constants);
         let zeros = |count| Array::of(vec![0.0; count]);
@@ -133,7 +142,6 @@ impl Context {
             angles: Array::of(vec![Cell::new(KeptAngle::ZERO); dimensions.angles]),
         };
         Context {
-            dimensions,
             raw: arrays.raw(),
             arrays,
             signals_at: (f64::NAN, Side::Right),
@@ -142,7 +150,9 @@ impl Context {
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             signal_radii: vec![0.0; dimensions.signals].into(),
             guard_series: vec![0.0; ORDERS * guards].into(),
+            conditions: vec![0.0; conditions.unwrap_or(0)].into(),
             workspace: LaneRows::zeros(workspace.div_ceil(2)),
+            dimensions,
         }
     }
 
@@ -150,8 +160,8 @@ impl Context {
     ///
     /// # Panics
     /// As [`Context::new`], and if it is another model.
-    pub fn set_parameters(&mut self, model: &'static Model, parameters: &[f64]) {
-        assert!(std::ptr::eq(self.dimensions, model.constants.dimensions));
+    pub fn set_parameters(&mut self, model: &Model, parameters: &[f64]) {
+        assert!(Arc::ptr_eq(&self.dimensions, &model.constants.dimensions));
         model
             .constants
             .evaluate(parameters, &mut self.arrays.constants);
@@ -213,7 +223,7 @@ impl Context {
     /// Whether [`Context::foresee_signals`] gives all that the equations of motion need: they depend on
     /// no antiderivative of an input, and on some input at all.
     pub fn can_foresee(&self, signals: &Signals) -> bool {
-        !self.quiet && !signals.want_antiderivatives(self.dimensions.expanded)
+        !self.quiet && !signals.want_antiderivatives(&self.dimensions.expanded)
     }
 
     /// Computes the signals at up to [`Context::MOST_AHEAD`] instants side by side, for
@@ -255,7 +265,7 @@ impl Context {
             self.set_signals(signals, t, Side::Right);
             let rows = &mut self.signal_series[..orders * self.arrays.signals.len()];
             let known = [&*self.arrays.signals, &self.arrays.signal_rates];
-            signals.series(t, known, self.dimensions.expanded, rows);
+            signals.series(t, known, &self.dimensions.expanded, rows);
         }
     }
 

@@ -4,6 +4,7 @@ use super::context::{Context, Dimensions};
 use super::{LaneFunctions, ModeKernel};
 use crate::integrate::{LaneMask, Lanes, ORDERS};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
 /// build/compile.rs.
@@ -91,7 +92,7 @@ impl<const W: usize> Default for LaneRows<W> {
 /// [`Context`], each entry a number a lane.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneContext<const W: usize> {
-    pub(super) dimensions: &'static Dimensions,
+    pub(super) dimensions: Arc<Dimensions>,
     /// Signals of the inputs.
     pub signals: LaneRows<W>,
     /// Taylor coefficients of the signals, one row an order.
@@ -120,7 +121,7 @@ impl<const W: usize> LaneContext<W> {
     pub fn new<const F: usize>(kernel: &ModeKernel<F>, like: &Context) -> Self {
         let zeros = LaneRows::zeros;
         let mut context = LaneContext {
-            dimensions: like.dimensions,
+            dimensions: like.dimensions.clone(),
             signals: zeros(like.arrays.signals.len()),
             signal_series: zeros(like.signal_series.len()),
             signal_radii: zeros(like.arrays.signals.len()),
@@ -136,9 +137,10 @@ impl<const W: usize> LaneContext<W> {
         context
     }
 
-    /// Of each signal, whether Taylor series depend on it.
-    pub fn expanded(&self) -> &'static [bool] {
-        self.dimensions.expanded
+    /// Of each signal, whether Taylor series depend on it; and room for the signals and for their series.
+    pub fn signals_mut(&mut self) -> (&[bool], [&mut LaneRows<W>; 2]) {
+        let room = [&mut self.signals, &mut self.signal_series];
+        (&self.dimensions.expanded, room)
     }
 
     /// Takes over discrete states, held coordinates and constants of a trajectory.
@@ -146,7 +148,7 @@ impl<const W: usize> LaneContext<W> {
     /// # Panics
     /// If it is one of another model.
     pub fn load(&mut self, lane: usize, from: &Context) {
-        assert!(std::ptr::eq(self.dimensions, from.dimensions));
+        assert!(Arc::ptr_eq(&self.dimensions, &from.dimensions));
         let of = [
             &from.arrays.discrete,
             &from.arrays.held,
@@ -239,7 +241,7 @@ pub(crate) struct LanePast<const F: usize, const W: usize> {
     /// Number of all coordinates.
     pub coordinates: usize,
     /// Indices of the free ones.
-    pub free: &'static [usize],
+    pub free: Box<[usize]>,
     /// Whether an accumulation is looked for.
     pub may_rest: bool,
     /// Part of itself that a component moves by at most while it stands still.

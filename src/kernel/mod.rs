@@ -12,12 +12,17 @@
 //! ```
 
 mod context;
+mod contract;
+mod description;
 mod few;
 mod lanes;
+mod load;
+mod reader;
 mod tables;
 
 pub use context::Context;
 pub(crate) use context::Dimensions;
+pub use contract::{CONTRACT_VERSION, ContractError, RawFunctions, RawModel};
 use context::{Arrays, KeptAngle};
 pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{
@@ -25,17 +30,18 @@ pub(crate) use lanes::{
     LaneSeries, LaneSystem,
 };
 pub use lanes::{LANES_OF_LEVELS, processor_level};
+pub use load::Library;
+pub(crate) use load::{linked, linked_models, name_of_linked};
 pub use tables::{
     ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_FREE, ModeKernel, ModeKernels,
     TransitionKernel, with_kernel,
 };
-use tables::{LaneKernel, SeriesKernel, most};
 
 use crate::integrate::{LaneMask, Lanes, ORDERS, Series};
-use crate::model::Model;
 use nalgebra::{SMatrix, SVector};
 use std::ops::{Deref, DerefMut};
 use std::ptr::NonNull;
+use std::sync::Arc;
 
 /// Context of a call, as C sees it: signals, their rates, discrete states, held coordinates,
 /// constants, jerks.
@@ -708,7 +714,7 @@ impl Context {
     unsafe fn call(
         &self,
         function: Raw,
-        dimensions: &'static Dimensions,
+        dimensions: &Arc<Dimensions>,
         [q, v, a]: [*const f64; 3],
         out: *mut f64,
     ) {
@@ -721,9 +727,9 @@ impl Context {
     /// # Panics
     /// If it was made for another model. Its arrays have their lengths since it was made.
     #[inline(always)]
-    fn raw(&self, dimensions: &'static Dimensions) -> &RawContext {
+    fn raw(&self, dimensions: &Arc<Dimensions>) -> &RawContext {
         assert!(
-            std::ptr::eq(self.dimensions, dimensions),
+            Arc::ptr_eq(&self.dimensions, dimensions),
             "a context is used with the functions of the model it was made for"
         );
         &self.raw
@@ -773,7 +779,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe {
             x.call(
                 self.residual,
-                self.dimensions,
+                &self.dimensions,
                 at.pointers(),
                 r.as_mut_ptr(),
             )
@@ -787,7 +793,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe {
             x.call(
                 self.jacobian,
-                self.dimensions,
+                &self.dimensions,
                 at.pointers(),
                 out.as_mut_ptr().cast(),
             )
@@ -804,7 +810,7 @@ impl<const F: usize> ModeKernel<F> {
         if F > 0 {
             let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
             // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
-            unsafe { x.call(self.system, self.dimensions, at, (&raw mut out).cast()) }
+            unsafe { x.call(self.system, &self.dimensions, at, (&raw mut out).cast()) }
         }
         out
     }
@@ -823,7 +829,7 @@ impl<const F: usize> ModeKernel<F> {
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let out = x.guard_series.as_mut_ptr();
-        let raw = x.raw(self.dimensions);
+        let raw = x.raw(&self.dimensions);
         // SAFETY: F entries a row of q, v and a, which are only read, and all rows are there; one
         // output a guard and order; guard series and workspace have room for every mode of the model.
         unsafe {
@@ -849,7 +855,7 @@ impl<const F: usize> ModeKernel<F> {
         let series = self.motion_series(x).expect("the mode is analytic");
         let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
-        let raw = x.raw(self.dimensions);
+        let raw = x.raw(&self.dimensions);
         // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
         // struct; the workspace has room for every mode of the model.
         unsafe { (series.start)(q, v, a, u, raw, w, (&raw mut out).cast()) }
@@ -878,7 +884,7 @@ impl<const F: usize> ModeKernel<F> {
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let inverse = inverse.as_ptr().cast_mut();
-        let raw = x.raw(self.dimensions);
+        let raw = x.raw(&self.dimensions);
         // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the
         // inverse are only read; the workspace has room for every mode of the model.
         unsafe { (series.run)(n, q, v, a, u, raw, w, inverse) }
@@ -894,7 +900,7 @@ impl<const F: usize> ModeKernel<F> {
         let mut out = SMatrix::<f64, F, F>::zeros();
         let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
         // SAFETY: F × F outputs; `a` is not read.
-        unsafe { x.call(self.inertia, self.dimensions, at, out.as_mut_ptr()) }
+        unsafe { x.call(self.inertia, &self.dimensions, at, out.as_mut_ptr()) }
         out
     }
 
@@ -919,7 +925,7 @@ impl<const F: usize> ModeKernel<F> {
         let mut out = SVector::<f64, F>::zeros();
         if F > 0 {
             // SAFETY: as the caller promises.
-            unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+            unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
         }
         out
     }
@@ -938,7 +944,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe {
             x.call(
                 self.reactions,
-                self.dimensions,
+                &self.dimensions,
                 at.pointers(),
                 out.as_mut_ptr(),
             )
@@ -952,7 +958,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe {
             x.call(
                 self.energies,
-                self.dimensions,
+                &self.dimensions,
                 at.pointers(),
                 out.as_mut_ptr(),
             )
@@ -968,7 +974,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe {
             x.call(
                 self.powers,
-                self.dimensions,
+                &self.dimensions,
                 at.pointers(),
                 out.as_mut_ptr(),
             )
@@ -989,7 +995,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe {
             x.call(
                 self.momenta,
-                self.dimensions,
+                &self.dimensions,
                 at.pointers(),
                 out.as_mut_ptr(),
             )
@@ -1005,7 +1011,7 @@ impl<const F: usize> ModeKernel<F> {
         let (function, count) = self.requirements;
         assert_eq!(out.len(), count);
         // SAFETY: the length was checked.
-        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
     }
 
     /// Lower bounds of what must be positive, while time goes on by `tau` (s) from where the series of motion
@@ -1038,7 +1044,7 @@ impl<const F: usize> ModeKernel<F> {
             u,
             u_dot: x.signal_radii.as_ptr(),
             j: radii.as_ptr().cast(),
-            ..*x.raw(self.dimensions)
+            ..*x.raw(&self.dimensions)
         };
         let [q, v, a] = middles.each_ref().map(|of| of.as_ptr());
         // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
@@ -1073,7 +1079,7 @@ impl<const F: usize> ModeKernel<F> {
             a: &none,
         };
         // SAFETY: the length was checked.
-        unsafe { x.call(function, self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
     }
 
     /// Value of a guard of this mode.
@@ -1086,7 +1092,7 @@ impl<const F: usize> ModeKernel<F> {
         assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
         let mut out = 0.0;
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.value, guard.dimensions, at.pointers(), &mut out) }
+        unsafe { x.call(guard.value, &guard.dimensions, at.pointers(), &mut out) }
         out
     }
 
@@ -1103,7 +1109,7 @@ impl<const F: usize> ModeKernel<F> {
         let [q, v, a] = at.pointers();
         let raw = RawContext {
             j: j.as_ptr(),
-            ..*x.raw(guard.dimensions)
+            ..*x.raw(&guard.dimensions)
         };
         // SAFETY: one output; the guard's number of free coordinates was checked.
         unsafe { (guard.rate)(q, v, a, &raw, &mut out) }
@@ -1115,7 +1121,7 @@ impl<const F: usize> ModeKernel<F> {
         assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
         let mut out = 0.0;
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.magnitude, guard.dimensions, at.pointers(), &mut out) }
+        unsafe { x.call(guard.magnitude, &guard.dimensions, at.pointers(), &mut out) }
         out
     }
 
@@ -1128,7 +1134,7 @@ impl<const F: usize> ModeKernel<F> {
             transition.source_free, F,
             "a reset is evaluated in its source mode"
         );
-        let dimensions = transition.dimensions;
+        let dimensions = &transition.dimensions;
         assert_eq!(out.len(), 2 * dimensions.coordinates + dimensions.discretes);
         // SAFETY: the lengths were checked.
         unsafe {
@@ -1143,37 +1149,29 @@ impl<const F: usize> ModeKernel<F> {
 
     /// The conditions of a transition into this mode, which is taken only if none is negative; none
     /// if the transition is unconditional.
-    pub fn conditions<'o>(
+    pub fn conditions<'x>(
         &self,
-        x: &Context,
+        x: &'x mut Context,
         transition: &TransitionKernel,
         at: Free<F>,
-        out: &'o mut [f64; MOST_CONDITIONS],
-    ) -> &'o [f64] {
+    ) -> &'x [f64] {
         let Some((function, free, count)) = transition.condition else {
             return &[];
         };
         assert_eq!(free, F, "a condition is evaluated in the target mode");
-        assert!(count <= MOST_CONDITIONS);
+        let out = x.conditions[..count].as_mut_ptr();
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
-        unsafe {
-            x.call(
-                function,
-                transition.dimensions,
-                at.pointers(),
-                out.as_mut_ptr(),
-            )
-        }
-        &out[..count]
+        unsafe { x.call(function, &transition.dimensions, at.pointers(), out) }
+        &x.conditions[..count]
     }
 }
 
 impl<const W: usize> LaneContext<W> {
     /// The context as C sees it.
     #[inline(always)]
-    fn raw(&self, dimensions: &'static Dimensions) -> RawContext {
+    fn raw(&self, dimensions: &Arc<Dimensions>) -> RawContext {
         assert!(
-            std::ptr::eq(self.dimensions, dimensions)
+            Arc::ptr_eq(&self.dimensions, dimensions)
                 && self.signals.len() == dimensions.signals
                 && self.signal_series.len() == ORDERS * dimensions.signals,
             "a context is used with the functions of the model it was made for"
@@ -1209,7 +1207,7 @@ impl<const F: usize> ModeKernel<F> {
         } else {
             &kernel.series
         };
-        let raw = x.raw(self.dimensions);
+        let raw = x.raw(&self.dimensions);
         assert!(x.workspace.len() >= self.workspace());
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
@@ -1233,7 +1231,7 @@ impl<const F: usize> ModeKernel<F> {
             &kernel.series
         };
         assert!(n <= ORDERS - 2);
-        let raw = x.raw(self.dimensions);
+        let raw = x.raw(&self.dimensions);
         assert!(x.workspace.len() >= self.workspace());
         let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
         let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
@@ -1263,7 +1261,7 @@ impl<const F: usize> ModeKernel<F> {
         unsafe { (functions.ranges)(F, orders + 2, q, v, a, tau, to_middles, to_radii) }
         let signals = self.dimensions.signals;
         assert_eq!(x.signal_radii.len(), signals);
-        let raw = x.raw(self.dimensions);
+        let raw = x.raw(&self.dimensions);
         let u = x.signal_series.as_ptr().cast();
         for &i in self.dimensions.required.iter().filter(|_| !quiet) {
             let own = (&raw mut x.signal_radii[i]).cast();
@@ -1298,8 +1296,8 @@ impl<const F: usize> ModeKernel<F> {
         guard: usize,
         [q, v, a]: [&[Lanes<W>; F]; 3],
     ) -> Lanes<W> {
-        let function = self.lane_kernel(level).guards[guard];
-        let raw = x.raw(self.dimensions);
+        let function = self.lane_kernel(level).guards[guard].expect("a guard of a mode that goes in lanes");
+        let raw = x.raw(&self.dimensions);
         let mut out = Lanes::of(0.0);
         let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());
         // SAFETY: one output; the level was compiled for `W` lanes.
@@ -1320,7 +1318,7 @@ impl<const F: usize> ModeKernel<F> {
         [q, v, a]: [&[Lanes<W>; F]; 3],
         out: &mut [Lanes<W>],
     ) {
-        let dimensions = self.dimensions;
+        let dimensions = &self.dimensions;
         assert_eq!(out.len(), 2 * dimensions.coordinates + dimensions.discretes);
         let function = self.lane_kernel(level).resets[guard][transition];
         let function = function.expect("the transition stays in lanes");
@@ -1330,5 +1328,3 @@ impl<const F: usize> ModeKernel<F> {
         unsafe { function(q, v, a, &raw, out.as_mut_ptr().cast()) }
     }
 }
-
-include!(concat!(env!("OUT_DIR"), "/models.rs"));

@@ -1,14 +1,15 @@
-//! What the generated tables hold: functions, typed by the numbers of coordinates, and what is known of
+//! What the tables of a model hold: functions, typed by the numbers of coordinates, and what is known of
 //! them without a call.
 
 use super::{Context, Dimensions, LaneLevel, Raw, RawRun, RawStart};
 use crate::integrate::{ORDERS, SeriesKind};
 use nalgebra::{SMatrix, SVector};
+use std::sync::Arc;
 
 /// What depends on parameters alone.
 #[derive(Debug)]
 pub struct ConstantsKernel {
-    pub(super) dimensions: &'static Dimensions,
+    pub(super) dimensions: Arc<Dimensions>,
     pub(super) function: Raw,
     pub(super) count: usize,
 }
@@ -44,7 +45,7 @@ pub struct LinearSystem<const F: usize> {
 /// The generated functions of one mode with F free coordinates.
 #[derive(Debug)]
 pub struct ModeKernel<const F: usize> {
-    pub(super) dimensions: &'static Dimensions,
+    pub(super) dimensions: Arc<Dimensions>,
     pub(super) residual: Raw,
     pub(super) jacobian: Raw,
     pub(super) system: Raw,
@@ -68,7 +69,8 @@ pub struct ModeKernel<const F: usize> {
     pub(super) is_linear: bool,
     pub(super) held_rates: Raw,
     pub(super) held_values: Raw,
-    pub(super) lanes: &'static [LaneKernel],
+    /// By level of the processor; none where the mode does not go in lanes.
+    pub(super) lanes: Box<[LaneKernel]>,
 }
 
 /// The generated functions of a mode for trajectories side by side, at a level of the processor.
@@ -78,10 +80,10 @@ pub struct LaneKernel {
     /// The same where no input acts.
     pub(super) quiet_series: SeriesKernel,
     pub(super) requirement_bounds: Raw,
-    pub(super) guards: &'static [Raw],
+    pub(super) guards: Box<[Option<Raw>]>,
     /// Of each guard the resets of its transitions: of those that lead to the same mode, change nothing
     /// that it holds, and depend on no signal.
-    pub(super) resets: &'static [&'static [Option<Raw>]],
+    pub(super) resets: Box<[Box<[Option<Raw>]>]>,
 }
 
 /// The generated Taylor series of a mode.
@@ -171,12 +173,12 @@ impl<const F: usize> ModeKernel<F> {
 
     /// Whether a transition of a guard, by their indices, can be taken in lanes.
     pub fn stays_in_lanes(&self, guard: usize, transition: usize) -> bool {
-        let resets = self.lanes.first().map(|lanes| lanes.resets);
+        let resets = self.lanes.first().map(|lanes| &lanes.resets);
         resets.is_some_and(|resets| resets[guard][transition].is_some())
     }
 
     #[inline]
-    pub(super) fn lane_kernel<const W: usize>(&self, level: LaneLevel<W>) -> &'static LaneKernel {
+    pub(super) fn lane_kernel<const W: usize>(&self, level: LaneLevel<W>) -> &LaneKernel {
         &self.lanes[level.index]
     }
 }
@@ -188,26 +190,17 @@ impl TransitionKernel {
     }
 }
 
-/// The largest of some numbers.
-pub(super) const fn most(of: &[usize]) -> usize {
-    match of {
-        [] => 0,
-        [first, others @ ..] => {
-            let largest = most(others);
-            if *first > largest { *first } else { largest }
-        }
-    }
-}
-
 /// A generated guard.
 #[derive(Debug)]
 pub struct GuardKernel {
     /// Of its model.
-    pub(super) dimensions: &'static Dimensions,
+    pub(super) dimensions: Arc<Dimensions>,
     pub(super) free: usize,
     pub(super) value: Raw,
     pub(super) rate: Raw,
     pub(super) magnitude: Raw,
+    /// The value in lanes, by level of the processor.
+    pub(super) in_lanes: Box<[Option<Raw>]>,
 }
 
 /// A generated transition: its reset, and the conditions with the target's number of
@@ -215,36 +208,30 @@ pub struct GuardKernel {
 #[derive(Debug)]
 pub struct TransitionKernel {
     /// Of its model.
-    pub(super) dimensions: &'static Dimensions,
+    pub(super) dimensions: Arc<Dimensions>,
     pub(super) source_free: usize,
     pub(super) reset: Raw,
     pub(super) condition: Option<(Raw, usize, usize)>,
+    /// The reset in lanes, by level of the processor, if it leads to the same mode and changes nothing that it holds.
+    pub(super) in_lanes: Box<[Option<Raw>]>,
 }
 
-/// The functions of a mode, typed by its number of free coordinates. The numbers that some model
-/// has are told by the build script (`free_2` and so on): the event engine is compiled for each.
+/// The functions of a mode, typed by its number of free coordinates: the event engine is compiled for each.
 #[derive(Debug)]
 pub enum ModeKernels {
     /// A mode with 0 free coordinates.
-    #[cfg(free_0)]
     F0(ModeKernel<0>),
     /// A mode with 1 free coordinates.
-    #[cfg(free_1)]
     F1(ModeKernel<1>),
     /// A mode with 2 free coordinates.
-    #[cfg(free_2)]
     F2(ModeKernel<2>),
     /// A mode with 3 free coordinates.
-    #[cfg(free_3)]
     F3(ModeKernel<3>),
     /// A mode with 4 free coordinates.
-    #[cfg(free_4)]
     F4(ModeKernel<4>),
     /// A mode with 5 free coordinates.
-    #[cfg(free_5)]
     F5(ModeKernel<5>),
     /// A mode with 6 free coordinates.
-    #[cfg(free_6)]
     F6(ModeKernel<6>),
 }
 
@@ -253,19 +240,12 @@ pub enum ModeKernels {
 macro_rules! with_kernel {
     ($kernels:expr, $kernel:ident => $body:expr) => {
         match $kernels {
-            #[cfg(free_0)]
             $crate::kernel::ModeKernels::F0($kernel) => $body,
-            #[cfg(free_1)]
             $crate::kernel::ModeKernels::F1($kernel) => $body,
-            #[cfg(free_2)]
             $crate::kernel::ModeKernels::F2($kernel) => $body,
-            #[cfg(free_3)]
             $crate::kernel::ModeKernels::F3($kernel) => $body,
-            #[cfg(free_4)]
             $crate::kernel::ModeKernels::F4($kernel) => $body,
-            #[cfg(free_5)]
             $crate::kernel::ModeKernels::F5($kernel) => $body,
-            #[cfg(free_6)]
             $crate::kernel::ModeKernels::F6($kernel) => $body,
         }
     };

@@ -1,11 +1,14 @@
-//! What a generated model offers: names, units, meanings, dimensions, and the typed tables of
-//! its modes and transitions. Everything here is `'static` data emitted by `codegen/` (one
-//! `Model` a folder under `models/`); the numbers behind it are computed in [`crate::kernel`].
+//! What a model offers: names, units, meanings, dimensions, and the typed tables of its modes and
+//! transitions. A model is read once from the contract that generated code exports, whether it was linked
+//! or loaded ([`crate::kernel`]), and owns all that it holds; names are interned ([`name::intern`]).
 
 mod bounds;
+pub mod name;
+mod registry;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
+pub use registry::{Models, models};
 
 use crate::jets::Tape;
 use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
@@ -15,30 +18,34 @@ use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel}
 pub struct Model {
     /// Folder name, which is also the name a scene uses.
     pub name: &'static str,
+    /// Digest of what its code was generated from: its folder, the generator, the pinned packages.
+    pub digest: &'static str,
     /// One line that says what the model is.
     pub title: &'static str,
     /// Where the model comes from (author, year).
     pub source: &'static str,
     /// Generalized coordinates, in the order of every `q`, `v`, `a` and reaction vector.
-    pub coordinates: &'static [Coordinate],
+    pub coordinates: Box<[Coordinate]>,
     /// Prescribed motions of the ground, in the order of the base reactions.
-    pub motions: &'static [Motion],
+    pub motions: Box<[Motion]>,
     /// Parameters, in the order of the raw parameter vector.
-    pub parameters: &'static [Parameter],
+    pub parameters: Box<[Parameter]>,
     /// Named parameter sets (`"parameters": {"set": "full_plate"}`).
-    pub parameter_sets: &'static [ParameterSet],
+    pub parameter_sets: Box<[ParameterSet]>,
     /// Inputs a scene may prescribe.
-    pub inputs: &'static [Input],
+    pub inputs: Box<[Input]>,
     /// Discrete states, changed by transitions only.
-    pub discretes: &'static [Discrete],
+    pub discretes: Box<[Discrete]>,
     /// Modelling choices of a scene, such as the rule set; each combination is a [`Variant`].
-    pub choices: &'static [Choice],
+    pub choices: Box<[Choice]>,
     /// What depends on parameters alone; evaluated once a run.
     pub constants: ConstantsKernel,
     /// One variant per combination of choices.
-    pub variants: &'static [Variant],
+    pub variants: Box<[Variant]>,
     /// True for models that exist for the test suite alone.
     pub for_tests: bool,
+    /// The library that its functions are in, if it was loaded: it stays as long as they may be called.
+    pub(crate) library: Option<crate::kernel::Library>,
 }
 
 /// A generalized coordinate and its velocity.
@@ -105,7 +112,7 @@ pub struct ParameterSet {
     /// What the set describes, with its source.
     pub meaning: &'static str,
     /// `(parameter name, value)` pairs; parameters not named keep their default.
-    pub values: &'static [(&'static str, f64)],
+    pub values: Box<[(&'static str, f64)]>,
 }
 
 /// What an input prescribes.
@@ -139,7 +146,7 @@ pub struct Discrete {
     /// Name.
     pub name: &'static str,
     /// Admissible values; the first is the default.
-    pub values: &'static [f64],
+    pub values: Box<[f64]>,
     /// Meaning.
     pub meaning: &'static str,
 }
@@ -150,7 +157,7 @@ pub struct Choice {
     /// Name, such as `rules`.
     pub name: &'static str,
     /// The alternatives, such as `reactions`, `paper`.
-    pub options: &'static [&'static str],
+    pub options: Box<[&'static str]>,
     /// Meaning.
     pub meaning: &'static str,
 }
@@ -159,31 +166,31 @@ pub struct Choice {
 #[derive(Debug)]
 pub struct Variant {
     /// Chosen option of each choice, by name, in the order of [`Model::choices`].
-    pub options: &'static [&'static str],
+    pub options: Box<[&'static str]>,
     /// Whether each chosen option is the default, given the choices made before it. A scene gets
     /// the variant that has the options it names and the default for every other choice.
-    pub defaults: &'static [bool],
+    pub defaults: Box<[bool]>,
     /// What pages draw, as `codegen/drawing.py` writes it (JSON); empty where the model draws nothing.
     pub drawing: &'static str,
     /// Inputs, by index, that may not be given under these options.
-    pub barred: &'static [usize],
+    pub barred: Box<[usize]>,
     /// The modes; the first is where a scene starts when it names none and several fit.
-    pub modes: &'static [Mode],
+    pub modes: Box<[Mode]>,
     /// Where accumulations may come to rest, in the order of the file.
-    pub rests: &'static [Rest],
+    pub rests: Box<[Rest]>,
     /// Limit states.
-    pub limits: &'static [Limit],
+    pub limits: Box<[Limit]>,
     /// Under which conditions on the motion the model is meant.
-    pub valid_motion: &'static [Validity],
+    pub valid_motion: Box<[Validity]>,
     /// Under which conditions on the parameters it is meant.
-    pub valid_parameters: &'static [Validity],
+    pub valid_parameters: Box<[Validity]>,
     /// Bounds of coordinates that depend on parameters.
-    pub bounds: &'static [ParametricBound],
+    pub bounds: Box<[ParametricBound]>,
     /// Of the parameters: by how much each of the conditions on them holds, then these bounds.
     pub declared: ConstantsKernel,
     /// The same modes where the motions of the ground that are optional never act, if some are: their inputs, by index,
     /// and the variant without their terms.
-    pub lean: Option<(&'static [usize], &'static Variant)>,
+    pub lean: Option<(Box<[usize]>, Box<Variant>)>,
 }
 
 /// A mode at the limit of infinitely many events in finite time.
@@ -245,18 +252,18 @@ pub struct Mode {
     /// Meaning.
     pub meaning: &'static str,
     /// Indices of the free coordinates, increasing.
-    pub free: &'static [usize],
+    pub free: Box<[usize]>,
     /// Where a frozen coordinate is held; `None`: wherever it was. One entry a coordinate.
-    pub held_at: &'static [Option<HeldAt>],
+    pub held_at: Box<[Option<HeldAt>]>,
     /// Guards of this mode, in the order of the guards function.
-    pub guards: &'static [Guard],
+    pub guards: Box<[Guard]>,
     /// What must stay positive in this mode: the first values of the requirements function.
-    pub requirements: &'static [Requirement],
+    pub requirements: Box<[Requirement]>,
     /// Shapes of its other values: margins of the variant's limits, then of its validity in motion. A limit is reached,
     /// or the validity left, where its margin is negative. `None`: it does not change in this mode.
-    pub margins: &'static [Option<GuardShape>],
+    pub margins: Box<[Option<GuardShape>]>,
     /// Rate of each frozen coordinate that drifts (a belt); false: it rests. One entry a coordinate.
-    pub drifts: &'static [bool],
+    pub drifts: Box<[bool]>,
     /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
     pub without_series: Option<&'static str>,
     /// Mass matrix, column by column, and load.
@@ -266,7 +273,7 @@ pub struct Mode {
     /// Generated functions, typed by the number of free coordinates.
     pub kernels: ModeKernels,
     /// Operation counts of the generated functions, by name.
-    pub operations: &'static [(&'static str, usize)],
+    pub operations: Box<[(&'static str, usize)]>,
 }
 
 /// A continuous scalar whose fall through zero makes the mode inadmissible.
@@ -283,7 +290,7 @@ pub struct Guard {
     /// The generated guard and its derivative along the flow.
     pub kernel: GuardKernel,
     /// Transitions this guard can trigger, tried in order: the first whose condition holds is taken.
-    pub transitions: &'static [Transition],
+    pub transitions: Box<[Transition]>,
 }
 
 /// How a guard depends on the state.
@@ -324,7 +331,7 @@ pub struct Transition {
     /// the reset, is ≥ 0.
     pub conditional: bool,
     /// Names of what the reset may change (coordinates, `theta.rate`, discretes).
-    pub changes: &'static [&'static str],
+    pub changes: Box<[&'static str]>,
     /// Whether it is an impact: velocities may jump and energy may be lost.
     pub impact: bool,
     /// Its conditions, in the target mode; none if it is unconditional.
@@ -344,25 +351,18 @@ pub struct Requirement {
     pub unit: &'static str,
 }
 
-/// Names of the models with the digests of what their code was generated from, as the build has found them.
-const DIGESTS: &str = env!("DALEMBERT_MODEL_DIGESTS");
-
 impl Model {
-    /// Digest of what the code of the model was generated from: its folder, the generator, the pinned packages.
-    pub fn digest(&self) -> &'static str {
-        let pairs = DIGESTS.split(' ').filter_map(|pair| pair.split_once('='));
-        let mut named = pairs.filter(|(name, _)| *name == self.name);
-        named.next().map_or("", |(_, digest)| digest)
-    }
-
     /// Number of signals that the inputs fill.
     pub fn signal_count(&self) -> usize {
         self.inputs.iter().map(|i| i.kind.signals()).sum()
     }
     /// All variants, the lean ones among them.
-    pub fn automata(&self) -> impl Iterator<Item = &'static Variant> {
-        let lean = |v: &'static Variant| v.lean.map(|(_, lean)| lean);
-        (self.variants.iter()).flat_map(move |v| [Some(v), lean(v)].into_iter().flatten())
+    pub fn automata(&self) -> impl Iterator<Item = &Variant> {
+        fn both(variant: &Variant) -> impl Iterator<Item = &Variant> {
+            let lean = variant.lean.as_ref().map(|(_, lean)| &**lean);
+            std::iter::once(variant).chain(lean)
+        }
+        self.variants.iter().flat_map(both)
     }
     /// Index of a coordinate by name.
     pub fn coordinate(&self, name: &str) -> Option<usize> {

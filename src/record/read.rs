@@ -78,8 +78,8 @@ impl Run {
     /// The reason why it stopped, if it did, is not read.
     pub fn read(
         folder: &Path,
-        model: &'static Model,
-        variant: &'static Variant,
+        model: &Model,
+        variant: &Variant,
         recorded: Recorded,
     ) -> Result<Run, ReadError> {
         let layout = Layout::new(model, variant, recorded);
@@ -137,7 +137,7 @@ fn subject(written: &Written, model: &Model, variant: &Variant) -> Result<Subjec
         ));
     }
     let mut choices = Vec::new();
-    for (choice, option) in model.choices.iter().zip(variant.options) {
+    for (choice, option) in model.choices.iter().zip(&variant.options) {
         match written.choices.get(choice.name) {
             Some(was) if was == option => choices.push((choice.name.into(), was.clone())),
             was => {
@@ -219,7 +219,7 @@ fn trajectory(path: &Path, layout: &Layout) -> Result<Trajectory, ReadError> {
 fn events(
     path: &Path,
     layout: &Layout,
-    variant: &'static Variant,
+    variant: &Variant,
     impacts: &BTreeMap<String, IgnoredAny>,
 ) -> Result<Vec<Event>, ReadError> {
     let mut events = Vec::new();
@@ -248,9 +248,9 @@ fn events(
 }
 
 /// The transition of that name; `rest` is the one that every accumulation ends with.
-fn transition(variant: &'static Variant, name: &str) -> Result<&'static str, String> {
-    let guards = variant.modes.iter().flat_map(|mode| mode.guards);
-    let names = guards.flat_map(|guard| guard.transitions).map(|t| t.name);
+fn transition(variant: &Variant, name: &str) -> Result<&'static str, String> {
+    let guards = variant.modes.iter().flat_map(|mode| &mode.guards);
+    let names = guards.flat_map(|guard| &guard.transitions).map(|t| t.name);
     let found = names.chain(["rest"]).find(|known| *known == name);
     found.ok_or_else(|| format!("the model has no transition `{name}`"))
 }

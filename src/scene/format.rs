@@ -44,7 +44,7 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
             parameters(model),
         ),
     ];
-    for choice in model.map_or(&[][..], |m| m.choices) {
+    for choice in model.map_or(&[][..], |m| &m.choices) {
         let options = Shape::Choice("choice", choice.options.to_vec());
         keys.push(Key::new(choice.name, choice.meaning, options));
     }
@@ -256,16 +256,16 @@ fn initial(model: Option<&Model>) -> Object {
     let mut keys = vec![Key::new(
         "mode",
         meaning,
-        Shape::Choice("mode", mode_names(model.variants)),
+        Shape::Choice("mode", mode_names(&model.variants)),
     )];
-    for c in model.coordinates {
+    for c in &model.coordinates {
         let position = Quantity::within(c.bounds(), c.unit);
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
-        keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
+        keys.push(Key::new(rate_key(&c), rate, Quantity::any(rate_unit(&c))));
     }
-    for d in model.discretes {
-        let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values));
+    for d in &model.discretes {
+        let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values.clone()));
         key.default = d.values.first().map(|&v| v.into());
         keys.push(key);
     }
@@ -290,7 +290,7 @@ fn end(model: Option<&Model>) -> Shape {
             let key = |name| Key::new(name, "how many of these transitions", Shape::Count);
             Object::new(
                 "transition",
-                transition_names(model.variants)
+                transition_names(&model.variants)
                     .into_iter()
                     .map(key)
                     .collect(),
@@ -368,18 +368,18 @@ fn record() -> Object {
 
 /// The names of the modes of some variants, each once.
 pub(crate) fn mode_names(variants: &[Variant]) -> Vec<&'static str> {
-    unique(variants.iter().flat_map(|v| v.modes).map(|m| m.name))
+    unique(variants.iter().flat_map(|v| &v.modes).map(|m| m.name))
 }
 
 /// The names of the transitions of some variants, each once.
 pub(crate) fn transition_names(variants: &[Variant]) -> Vec<&'static str> {
-    let guards = variants.iter().flat_map(|v| v.modes).flat_map(|m| m.guards);
-    unique(guards.flat_map(|g| g.transitions).map(|t| t.name))
+    let guards = variants.iter().flat_map(|v| &v.modes).flat_map(|m| &m.guards);
+    unique(guards.flat_map(|g| &g.transitions).map(|t| t.name))
 }
 
 /// The limit states of some variants, those of one name once.
-pub(crate) fn limits(variants: &[Variant]) -> Vec<&'static Limit> {
-    let all = variants.iter().flat_map(|v| v.limits);
+pub(crate) fn limits(variants: &[Variant]) -> Vec<&Limit> {
+    let all = variants.iter().flat_map(|v| &v.limits);
     let mut known: Vec<&Limit> = Vec::new();
     for limit in all {
         if known.iter().all(|k| k.name != limit.name) {

@@ -38,7 +38,7 @@ pub(crate) fn signals(
         })
         .collect();
     Some(Signals::new(
-        model.inputs,
+        &model.inputs,
         functions.into_iter().collect::<Option<_>>()?,
     ))
 }
@@ -51,7 +51,7 @@ pub(crate) fn refuse_barred(
     errors: &mut Errors,
 ) {
     let given = |name: &str| scene.get("inputs").and_then(|inputs| inputs.get(name));
-    for &i in variant.barred {
+    for &i in &variant.barred {
         let input = model.inputs[i].name;
         let Some(described) = given(input).filter(|x| !matches!(x.datum, Datum::Null)) else {
             continue;

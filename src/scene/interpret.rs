@@ -1,6 +1,7 @@
 //! From a checked tree to a [`Scene`]: what no table of keys can say.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::check::{Checked, check, unknown_name};
 use super::error::{Errors, SceneError, SceneErrorKind, SceneErrors};
@@ -10,18 +11,19 @@ use super::tree::{Node, Value};
 use super::wording::listing;
 use super::{Scene, SceneSource, format, inputs, limits, state};
 use crate::hybrid::{Accuracy, End, Exceeds, Method, Problem, Record, check_limits_of_parameters};
-use crate::model::{Model, Variant};
+use crate::model::{Model, Models, Variant};
 use crate::record::Recorded;
 
 /// Checks a tree and makes a scene of it. `folder` is what tables are relative to.
 pub(crate) fn scene(
     root: Node,
-    models: &[&'static Model],
+    models: &Models,
     files: &dyn Files,
     folder: &Path,
 ) -> Result<Scene, SceneErrors> {
     let mut errors = Errors::default();
-    let model = model(&root, models)?;
+    let owned = model(&root, models)?;
+    let model = &*owned;
     let checked = check(
         &root,
         &Shape::Object(format::scene(Some(model))),
@@ -33,7 +35,8 @@ pub(crate) fn scene(
         unreachable!("{root:?} failed its check without an error")
     };
 
-    let variant = variant(model, &checked)?;
+    let chosen = variant(model, &checked)?;
+    let variant = &model.variants[chosen];
     let parameters = errors.note(parameters(model, &checked));
     let signals = inputs::signals(
         model,
@@ -54,8 +57,8 @@ pub(crate) fn scene(
         unreachable!("a part of the scene is absent without an error")
     };
     let mut problem = Problem {
-        model,
-        variant,
+        model: owned.clone(),
+        chosen,
         title: checked.get("title").map(|title| title.text().to_owned()),
         parameters,
         signals,
@@ -72,8 +75,8 @@ pub(crate) fn scene(
     Ok(Scene { problem, source })
 }
 
-fn model(root: &Node, models: &[&'static Model]) -> Result<&'static Model, SceneError> {
-    let known: Vec<&str> = models.iter().map(|m| m.name).collect();
+fn model(root: &Node, models: &Models) -> Result<Arc<Model>, SceneError> {
+    let known: Vec<&str> = models.names().collect();
     let wrong_type = |node: &Node, expected: &str| {
         let (expected, found) = (expected.to_owned(), node.type_name().to_owned());
         SceneError::new(SceneErrorKind::WrongType { expected, found }, &node.place())
@@ -92,22 +95,20 @@ fn model(root: &Node, models: &[&'static Model]) -> Result<&'static Model, Scene
         return Err(wrong_type(node, "the name of a model"));
     };
     models
-        .iter()
-        .find(|m| m.name == name)
-        .copied()
+        .find(name)
         .ok_or_else(|| unknown_name("model", name, &known, &node.place()))
 }
 
 /// The variant that has the options the scene names, and the defaults for the others.
-fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, SceneError> {
+fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
     let named: Vec<Option<&Checked>> = model.choices.iter().map(|c| scene.get(c.name)).collect();
-    let fits = |variant: &&Variant| {
+    let fits = |variant: &Variant| {
         named.iter().enumerate().all(|(i, name)| match name {
             Some(name) => variant.options[i] == name.text(),
             None => variant.defaults[i],
         })
     };
-    model.variants.iter().find(fits).ok_or_else(|| {
+    model.variants.iter().position(fits).ok_or_else(|| {
         let pairs = |options: &[&str]| {
             let pairs = model.choices.iter().zip(options);
             pairs
@@ -126,7 +127,7 @@ fn variant(model: &'static Model, scene: &Checked) -> Result<&'static Variant, S
             .flatten()
             .last()
             .map_or(&scene.place, |name| &name.place);
-        let offered: Vec<String> = model.variants.iter().map(|v| pairs(v.options)).collect();
+        let offered: Vec<String> = model.variants.iter().map(|v| pairs(&v.options)).collect();
         let kind = SceneErrorKind::NoVariant {
             chosen: chosen.join(", "),
         };
@@ -144,7 +145,7 @@ pub(crate) fn under(model: &Model, variant: &Variant) -> String {
 
 /// The options of a variant as text: `rules = paper, landing = velocities`.
 pub(crate) fn options(model: &Model, variant: &Variant) -> String {
-    let pairs = model.choices.iter().zip(variant.options);
+    let pairs = model.choices.iter().zip(&variant.options);
     let pairs: Vec<String> = pairs
         .map(|(c, option)| format!("{} = {option}", c.name))
         .collect();
@@ -162,7 +163,7 @@ fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
             .iter()
             .find(|set| set.name == name.text())
     });
-    for (name, value) in set.map_or(&[][..], |set| set.values) {
+    for (name, value) in set.map_or(&[][..], |set| &set.values) {
         if let Some(i) = model.parameter(name) {
             values[i] = *value;
         }
@@ -182,7 +183,7 @@ fn parameters(model: &Model, scene: &Checked) -> Result<Vec<f64>, SceneError> {
     Ok(values)
 }
 
-fn end(variant: &'static Variant, scene: &Checked) -> Result<End, SceneError> {
+fn end(variant: &Variant, scene: &Checked) -> Result<End, SceneError> {
     let Some(end) = scene.get("end") else {
         unreachable!("`end` is a required key")
     };

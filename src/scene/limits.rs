@@ -66,7 +66,7 @@ pub(super) fn shape(model: Option<&Model>) -> Object {
         let meaning = format!("where {} is a limit", o.name);
         Key::new(o.name, meaning, bounds(&o.unit))
     }));
-    let of_model = format::limits(model.variants).into_iter().map(|limit| {
+    let of_model = format::limits(&model.variants).into_iter().map(|limit| {
         let default = if limit.ends { END } else { CONTINUE };
         Key::new(limit.name, limit.message, course()).default(default)
     });

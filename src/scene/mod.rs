@@ -36,7 +36,7 @@ pub use source::Position;
 pub(crate) use wording::nearest;
 
 use crate::hybrid::Problem;
-use crate::model::Model;
+use crate::model::Models;
 use source::{Source, Span};
 use tree::{Node, Value};
 
@@ -55,7 +55,7 @@ impl Scene {
     pub fn load(
         path: &Path,
         overrides: &[String],
-        models: &[&'static Model],
+        models: &Models,
     ) -> Result<Scene, SceneErrors> {
         let bytes = Disk
             .read(path)
@@ -69,7 +69,7 @@ impl Scene {
         bytes: &[u8],
         path: &Path,
         overrides: &[String],
-        models: &[&'static Model],
+        models: &Models,
         files: &dyn Files,
     ) -> Result<Scene, SceneErrors> {
         let source = decode(bytes, path)?;

@@ -38,12 +38,12 @@ pub(crate) fn count(node: &Node, text: &str) -> Result<f64, SceneError> {
 }
 
 /// One of some numbers.
-pub(crate) fn one_of(node: &Node, values: &'static [f64], text: &str) -> Result<f64, SceneError> {
+pub(crate) fn one_of(node: &Node, values: &[f64], text: &str) -> Result<f64, SceneError> {
     let value = parse_finite(node, text)?;
     if values.contains(&value) {
         return Ok(value);
     }
-    let range = Shape::Values(values).describe();
+    let range = Shape::Values(values.into()).describe();
     Err(SceneError::new(
         SceneErrorKind::OutOfRange { value, range },
         &node.place(),

@@ -106,7 +106,7 @@ pub(crate) fn shape() -> Object {
             Key::new(
                 "order",
                 "order of each of both passes",
-                Shape::Values(&[2.0, 4.0, 6.0, 8.0]),
+                Shape::Values([2.0, 4.0, 6.0, 8.0].into()),
             )
             .default(ORDER),
         ],
@@ -117,7 +117,7 @@ pub(crate) fn shape() -> Object {
             Key::new(
                 "polynomial",
                 "degree of the polynomial that is subtracted: its velocity is nearest to that of the record",
-                Shape::Values(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]),
+                Shape::Values([0.0, 1.0, 2.0, 3.0, 4.0, 5.0].into()),
             ),
             Key::new(
                 "high_pass",

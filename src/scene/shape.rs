@@ -22,7 +22,7 @@ pub(crate) enum Shape {
     /// A number in a unit, or a text with a number and a unit.
     Quantity(Quantity),
     /// One of some numbers.
-    Values(&'static [f64]),
+    Values(Box<[f64]>),
     /// One of some names; the first text says of what (`mode`).
     Choice(&'static str, Vec<&'static str>),
     /// A list of any length.

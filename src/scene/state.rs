@@ -48,7 +48,7 @@ pub(crate) fn freeze(
 type Holding<'m> = (&'m Mode, Vec<Option<f64>>);
 
 /// Where a mode holds the coordinates under these parameters, if they are known.
-fn holding<'m>(model: &'static Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Holding<'m> {
+fn holding<'m>(model: &Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Holding<'m> {
     let values = parameters.map(|parameters| {
         let context = Context::new(model, parameters);
         let mut values = vec![0.0; model.coordinates.len()];
@@ -65,7 +65,7 @@ fn holding<'m>(model: &'static Model, mode: &'m Mode, parameters: Option<&[f64]>
 
 /// The initial state. What the scene does not say is zero, or where the modes hold it.
 pub(crate) fn initial(
-    model: &'static Model,
+    model: &Model,
     variant: &Variant,
     scene: &Checked,
     (freeze, parameters): (&[usize], Option<&[f64]>),

@@ -93,7 +93,7 @@ pub fn at_end(run: &Run, name: &str) -> f64 {
 
 /// Index of a mode of the problem's variant.
 pub fn mode(problem: &Problem, name: &str) -> usize {
-    let mut modes = problem.variant.modes.iter();
+    let mut modes = problem.variant().modes.iter();
     modes.position(|m| m.name == name).expect("the mode exists")
 }
 

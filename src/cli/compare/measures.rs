@@ -14,7 +14,7 @@ pub struct Measure {
     pub values: Vec<Option<f64>>,
 }
 
-impl Comparison {
+impl Comparison<'_> {
     /// The runs there are.
     pub fn runs(&self) -> impl Iterator<Item = (&Case, &Run)> {
         let cases = self.cases.iter();

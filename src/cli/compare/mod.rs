@@ -13,7 +13,7 @@ use super::outcome::{Failure, Outcome, Result};
 use super::run::refusal;
 use super::{models, print};
 use crate::hybrid::simulate;
-use crate::kernel::MODELS;
+use crate::model::models;
 use crate::model::Model;
 use crate::record::{OutputFolder, Run, Silent};
 use crate::scene::Scene;
@@ -41,8 +41,8 @@ pub struct CompareArguments {
 
 /// A comparison of the variants of a model on one scene.
 #[derive(Debug)]
-struct Comparison {
-    model: &'static Model,
+struct Comparison<'m> {
+    model: &'m Model,
     /// Names of the choices that vary.
     choices: Vec<&'static str>,
     cases: Vec<Case>,
@@ -65,8 +65,8 @@ impl Case {
 }
 
 pub fn compare(arguments: &CompareArguments) -> Result {
-    let scene = Scene::load(&arguments.scene, &arguments.overrides, MODELS)?;
-    let model = scene.problem.model;
+    let scene = Scene::load(&arguments.scene, &arguments.overrides, models())?;
+    let model = &*scene.problem.model;
     let varied = varied(model, &arguments.vary)?;
     let folder = arguments
         .out
@@ -128,7 +128,7 @@ fn varied(model: &Model, names: &[String]) -> std::result::Result<Vec<usize>, Fa
 /// The combinations of options that the model offers for the choices that vary, in its order.
 fn combinations(model: &Model, varied: &[usize]) -> Vec<Vec<&'static str>> {
     let mut combinations = Vec::new();
-    for variant in model.variants {
+    for variant in &model.variants {
         let options = varied.iter().map(|&i| variant.options[i]).collect();
         if !combinations.contains(&options) {
             combinations.push(options);
@@ -153,7 +153,7 @@ fn case(
         .cloned()
         .chain(settings)
         .collect();
-    let run = Scene::load(&arguments.scene, &overrides, MODELS)
+    let run = Scene::load(&arguments.scene, &overrides, models())
         .map_err(|errors| errors.to_string())
         .and_then(|scene| {
             let run = simulate(&scene.problem, &mut Interruptible(Silent));

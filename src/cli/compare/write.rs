@@ -56,7 +56,7 @@ fn stopped(run: &Run, failure: &Failure) -> String {
     )
 }
 
-impl Display for Comparison {
+impl Display for Comparison<'_> {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let cases = &self.cases;
         let numbers = (1..=cases.len()).map(|i| i.to_string());
@@ -95,7 +95,7 @@ impl Display for Comparison {
     }
 }
 
-impl Comparison {
+impl Comparison<'_> {
     /// Writes the table and the plots.
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         folder.replace(|files| {

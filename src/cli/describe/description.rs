@@ -27,7 +27,7 @@ pub struct Description {
 #[derive(Debug, Serialize)]
 pub struct Choice {
     pub name: &'static str,
-    pub options: &'static [&'static str],
+    pub options: Box<[&'static str]>,
     pub chosen: &'static str,
     pub meaning: &'static str,
 }
@@ -50,7 +50,7 @@ pub struct Coordinate {
 #[derive(Debug, Serialize)]
 pub struct Discrete {
     pub name: &'static str,
-    pub values: &'static [f64],
+    pub values: Box<[f64]>,
     pub meaning: &'static str,
 }
 
@@ -148,7 +148,7 @@ pub struct Transition {
     /// Whether velocities jump and energy may be lost.
     pub impact: bool,
     /// What the reset may change.
-    pub changes: &'static [&'static str],
+    pub changes: Box<[&'static str]>,
 }
 
 #[derive(Debug, Serialize)]
@@ -187,7 +187,7 @@ pub struct Operations {
 
 impl Description {
     pub fn new(model: &Model, variant: &Variant) -> Description {
-        let choices = model.choices.iter().zip(variant.options);
+        let choices = model.choices.iter().zip(&variant.options);
         let coordinates = model.coordinates.iter();
         let parameter_sets = model.parameter_sets.iter();
         Description {
@@ -197,7 +197,7 @@ impl Description {
             choices: choices
                 .map(|(choice, chosen)| Choice {
                     name: choice.name,
-                    options: choice.options,
+                    options: choice.options.clone(),
                     chosen,
                     meaning: choice.meaning,
                 })
@@ -224,7 +224,7 @@ impl Description {
             discrete: (model.discretes.iter())
                 .map(|d| Discrete {
                     name: d.name,
-                    values: d.values,
+                    values: d.values.clone(),
                     meaning: d.meaning,
                 })
                 .collect(),
@@ -261,8 +261,8 @@ impl Description {
                 })
                 .collect(),
             validity: [
-                (variant.valid_parameters, true),
-                (variant.valid_motion, false),
+                (&variant.valid_parameters, true),
+                (&variant.valid_motion, false),
             ]
             .into_iter()
             .flat_map(|(all, of_parameters)| {
@@ -302,7 +302,7 @@ impl Mode {
             to: to(t.target),
             conditional: t.conditional,
             impact: t.impact,
-            changes: t.changes,
+            changes: t.changes.clone(),
         };
         let guard = |g: &model::Guard| Guard {
             name: g.name,

@@ -22,8 +22,8 @@ pub struct DescribeArguments {
 
 pub fn describe(arguments: &DescribeArguments) -> Result {
     let model = models::find(&arguments.model)?;
-    let variant = choose(model, &arguments.choices)?;
-    let description = Description::new(model, variant);
+    let variant = choose(&model, &arguments.choices)?;
+    let description = Description::new(&model, variant);
     if arguments.json {
         let json = serde_json::to_string_pretty(&description).map_err(Failure::system)?;
         print::output(json)?;
@@ -34,7 +34,10 @@ pub fn describe(arguments: &DescribeArguments) -> Result {
 }
 
 /// The variant with the options asked for, and the defaults of all other choices.
-fn choose(model: &Model, asked: &[String]) -> std::result::Result<&'static Variant, Failure> {
+fn choose<'m>(
+    model: &'m Model,
+    asked: &[String],
+) -> std::result::Result<&'m Variant, Failure> {
     let mut wanted: Vec<Option<&str>> = vec![None; model.choices.len()];
     for setting in asked {
         let Some((name, option)) = setting.split_once('=') else {
@@ -44,7 +47,7 @@ fn choose(model: &Model, asked: &[String]) -> std::result::Result<&'static Varia
         };
         let names: Vec<&str> = model.choices.iter().map(|c| c.name).collect();
         let i = models::place("choice", name, &names)?;
-        models::place("option", option, model.choices[i].options)?;
+        models::place("option", option, &model.choices[i].options)?;
         wanted[i] = Some(option);
     }
     let fits = |variant: &&Variant| {

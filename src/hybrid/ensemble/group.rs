@@ -91,9 +91,9 @@ impl<const F: usize, const W: usize> Way<F, W> {
 }
 
 /// Up to `W` trajectories in one mode.
-pub(super) struct Group<const F: usize, const W: usize> {
-    pub kernel: &'static ModeKernel<F>,
-    pub mode: &'static Mode,
+pub(super) struct Group<'p, const F: usize, const W: usize> {
+    pub kernel: &'p ModeKernel<F>,
+    pub mode: &'p Mode,
     /// Index of the mode.
     pub index: usize,
     /// Level of the processor.
@@ -132,13 +132,13 @@ pub(super) struct Group<const F: usize, const W: usize> {
     pub occupied: LaneMask,
 }
 
-impl<const F: usize, const W: usize> Group<F, W> {
+impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     /// An empty group for the mode of a simulation, whose state is put into the empty lanes.
     pub fn new(
-        kernel: &'static ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         level: LaneLevel<W>,
         quiet: bool,
-        like: &Simulation,
+        like: &Simulation<'p>,
     ) -> Self {
         let (problem, mode) = (like.problem, like.mode());
         let context = LaneContext::new(kernel, &like.context);
@@ -199,7 +199,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
             at_start: LaneMask::ALL,
             past: LanePast {
                 coordinates,
-                free: mode.free,
+                free: mode.free.clone(),
                 may_rest: like.plan.rests(like.here.mode),
                 hardly: Accumulation::HARDLY,
                 shortest: SHORTEST_PATTERN,
@@ -273,7 +273,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
 
     fn set(&mut self, lane: usize, from: &Simulation) {
         let here = &mut self.here;
-        let [q, v, a] = from.here.free::<F>(self.mode.free);
+        let [q, v, a] = from.here.free::<F>(&self.mode.free);
         for i in 0..F {
             here.q[i].0[lane] = q[i];
             here.v[i].0[lane] = v[i];
@@ -334,7 +334,7 @@ impl<const F: usize, const W: usize> Group<F, W> {
         let column = |rows: &[Lanes<W>; F]| SVector::<f64, F>::from_fn(|i, _| rows[i].0[lane]);
         let here = &self.here;
         let [q, v, a] = [column(&here.q), column(&here.v), column(&here.a)];
-        into.here.set_free(self.mode.free, [&q, &v, &a]);
+        into.here.set_free(&self.mode.free, [&q, &v, &a]);
         let discrete = into.context.discrete_mut().iter_mut();
         for (into, of) in discrete.zip(self.context.discrete()) {
             *into = of.0[lane];
@@ -367,7 +367,7 @@ fn transition_in_lanes<const F: usize>(
     of: &Simulation,
     guard: usize,
 ) -> Option<usize> {
-    let transitions = of.mode().guards[guard].transitions;
+    let transitions = &of.mode().guards[guard].transitions;
     let first = transitions.iter().position(|t| of.plan.allowed[t.target])?;
     // Where it ends the run its number is counted.
     let ends = |(name, _)| name == transitions[first].name;

@@ -74,7 +74,7 @@ impl Ensemble {
         problem.record.extremes = false;
         problem.record.columns = Recorded::default();
         problem.record.every = Some(problem.end.time);
-        let modes = problem.automaton().modes;
+        let modes = &problem.automaton().modes;
         let mut pilot = Simulation::new(&problem)?;
         pilot.begin()?;
         let stiff = match problem.method {

@@ -13,7 +13,7 @@ use crate::kernel::{lane_crossed, lane_durations, lane_take, lane_unmet};
 /// [`super::super::locate`].
 const FARTHEST: f64 = 3.8e-6;
 
-impl<const F: usize, const W: usize> Group<F, W> {
+impl<const F: usize, const W: usize> Group<'_, F, W> {
     /// Makes a step in each occupied lane; gives the lanes that do not simply go on.
     pub fn step(&mut self, signals: &Signals) -> LaneMask {
         let in_pieces = self.find_pieces(signals);
@@ -70,9 +70,9 @@ impl<const F: usize, const W: usize> Group<F, W> {
                 true => &self.way.pieces[0],
                 false => &self.here.t[0],
             };
-            let expanded = context.expanded();
-            self.signals.set(signals, t, &mut context.signals);
-            let rows = &mut context.signal_series[..(order + 1) * expanded.len()];
+            let (expanded, [values, rows]) = context.signals_mut();
+            self.signals.set(signals, t, values);
+            let rows = &mut rows[..(order + 1) * expanded.len()];
             self.signals.series(signals, expanded, rows);
         }
         let which = (self.level, self.quiet);

@@ -7,7 +7,7 @@ use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{lane_departs, lane_is_apart, lane_leap, lane_take};
 use crate::record::Jump;
 
-impl<const F: usize, const W: usize> Group<F, W> {
+impl<const F: usize, const W: usize> Group<'_, F, W> {
     /// Takes the transitions of lanes that have just come to an event, where they are plain; gives these
     /// lanes, which go on, and those of them in which events may accumulate. Nothing has changed in the others.
     pub fn transit(&mut self) -> [LaneMask; 2] {

@@ -28,7 +28,7 @@ trait AnyGroup<const W: usize> {
     fn outcome(&self, lane: usize) -> Outcome;
 }
 
-impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
+impl<const F: usize, const W: usize> AnyGroup<W> for Group<'_, F, W> {
     fn load(&mut self, lane: usize, from: &Simulation) {
         Group::load(self, lane, from)
     }
@@ -72,8 +72,8 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<F, W> {
 }
 
 /// The lanes of a mode.
-struct Lanes<const W: usize> {
-    group: Box<dyn AnyGroup<W>>,
+struct Lanes<'a, const W: usize> {
+    group: Box<dyn AnyGroup<W> + 'a>,
     /// The slot in each lane.
     slots: [Option<usize>; W],
     /// Number of lanes with a slot.
@@ -104,7 +104,7 @@ pub(super) struct Worker<'a, const W: usize> {
     next: usize,
     slots: Vec<Slot<'a>>,
     /// The lanes of each mode, made when they are first needed.
-    lanes: Vec<Option<Lanes<W>>>,
+    lanes: Vec<Option<Lanes<'a, W>>>,
     /// Whether a slot or a lane has become free.
     vacancies: bool,
     quiet: bool,
@@ -114,7 +114,7 @@ pub(super) struct Worker<'a, const W: usize> {
 impl<'a, const W: usize> Worker<'a, W> {
     /// Ready to run some of the members of an ensemble.
     pub fn new(ensemble: &'a Ensemble, members: &'a [Member<'a>]) -> Self {
-        let modes = ensemble.problem.variant.modes.len();
+        let modes = ensemble.problem.variant().modes.len();
         let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
         // The fewest of which, however they are spread over the modes, some mode has as many as lanes.
         let count = (going * (W - 1) + 1).min(members.len());
@@ -171,7 +171,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         let (level, quiet) = (self.level, self.quiet);
         let lanes = self.lanes[mode].get_or_insert_with(|| {
             let kernels = &simulation.mode().kernels;
-            let group: Box<dyn AnyGroup<W>> =
+            let group: Box<dyn AnyGroup<W> + 'a> =
                 with_kernel!(kernels, k => Box::new(Group::new(k, level, quiet, simulation)));
             Lanes {
                 group,

@@ -72,7 +72,7 @@ struct Functions {
 pub(super) struct Step<'s, 'e, const F: usize, M> {
     pub equations: &'s mut Equations<'e, F>,
     pub motion: &'s M,
-    pub mode: &'static Mode,
+    pub mode: &'s Mode,
     /// Room for the full state of a row; its free coordinates are overwritten.
     pub here: &'s mut Here,
     /// End of the step in local time, s.
@@ -104,7 +104,7 @@ impl Part {
 impl Observers {
     pub fn new(problem: &Problem) -> Self {
         let record = problem.record;
-        let layout = Layout::new(problem.model, problem.variant, record.columns);
+        let layout = Layout::new(&problem.model, problem.variant(), record.columns);
         let rows = record
             .every
             .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
@@ -163,7 +163,7 @@ impl Observers {
             ..
         } = &mut self.functions;
         columns.clear();
-        columns.extend(mode.free);
+        columns.extend(&mode.free);
         columns.extend(mode.free.iter().map(|i| n + i));
         reactions.clear();
         // Of a free coordinate there is none.
@@ -176,7 +176,7 @@ impl Observers {
         let t = here.now.seconds();
         extremes.note_state(t, [&here.q, &here.v]);
         if !extremes.reactions.is_empty() {
-            for &i in mode.free {
+            for &i in &mode.free {
                 extremes.note(extremes.reactions.start + i, t, 0.0);
             }
         }
@@ -506,9 +506,9 @@ impl Observers {
             let [q, v, a] =
                 guards::motion(equations, step.motion, tau, self.record.columns.reactions);
             let (mode, here) = (step.mode, &mut *step.here);
-            here.set_free(mode.free, [&q, &v, &a]);
+            here.set_free(&mode.free, [&q, &v, &a]);
             if !equations.clock.drift.is_empty() {
-                copy_drifting(&mut here.q, mode.drifts, equations.context.held());
+                copy_drifting(&mut here.q, &mode.drifts, equations.context.held());
             }
             let place = (tau - part.from) / (part.to - part.from);
             let work = work.map_or([0.0; 2], |work| work.each_ref().map(|w| w.value(place)));

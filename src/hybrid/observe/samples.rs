@@ -136,7 +136,7 @@ impl Simulation<'_> {
             ledger: row_of(observers.ledger.as_ref(), [0.0; 2]),
         };
         with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = here.free(mode.free);
+            let [q, v, a] = here.free(&mode.free);
             observers.recorder.push_row(t, here.mode, |values| {
                 row.fill(k, context, Free { q: &q, v: &v, a: &a }, values)
             })

@@ -47,7 +47,7 @@ fn parse(text: &str) -> Result<Scene, SceneErrors> {
 fn option(scene: &Scene, choice: &str) -> &'static str {
     let choices = scene.problem.model.choices;
     let index = choices.iter().position(|c| c.name == choice);
-    scene.problem.variant.options[index.expect("a choice of the model")]
+    scene.problem.variant().options[index.expect("a choice of the model")]
 }
 
 /// The only error of a scene.

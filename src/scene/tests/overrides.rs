@@ -30,7 +30,7 @@ fn values_replace_and_add() {
     ]);
     assert_eq!(scene.end.time, 2.5);
     let rules = scene.model.choices.iter().position(|c| c.name == "rules");
-    assert_eq!(scene.variant.options[rules.unwrap()], "paper");
+    assert_eq!(scene.variant().options[rules.unwrap()], "paper");
     assert_eq!(
         scene.parameters[scene.model.parameter("R_0").unwrap()],
         0.27

@@ -73,7 +73,7 @@ fn every_key_is_read() {
     assert_eq!(parameter(&scene, "mu_s"), 0.6);
     assert_eq!(parameter(&scene, "mu_k"), 0.5);
     assert_eq!(parameter(&scene, "R_0"), 0.28);
-    let mode = scene.initial.mode.map(|m| scene.variant.modes[m].name);
+    let mode = scene.initial.mode.map(|m| scene.variant().modes[m].name);
     assert_eq!(mode, Some("rocks_sticks"));
     let theta = coordinate(&scene, "theta");
     assert_eq!(

@@ -1,0 +1,113 @@
+"""What is known of a mode's functions without a call: what moves, what is constant, how a guard depends on the state."""
+
+import casadi as ca
+
+from . import graph
+
+SERIES = ("series", "quiet_series", "guard_series")
+"""What is emitted as a Taylor series."""
+
+LANES = ("series", "quiet_series", "requirement_bounds", "guard")
+"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and resets that stay in the mode."""
+
+
+def goes_in_lanes(variant, i):
+    """Whether trajectories in a mode can go side by side: it is analytic, nothing drifts, and its guards
+    are coordinates or rates that fall without further conditions."""
+    equations = variant.modes[i]
+    analytic = all(variant.functions[i, what].symbol for what in ("series", "quiet_series"))
+    guards = [
+        linear_shape(variant.model, equations, equations.place(expression)) is not None
+        and all(t.condition is None for t in transitions)
+        for expression, transitions in equations.guards]
+    return bool(equations.free) and analytic and not equations.mode.drift and all(guards)
+
+
+def is_for_lanes(variant, slot, function):
+    """Whether a function, by its slot, is emitted for lanes, too."""
+    return (slot[1] in LANES or function.stays) and goes_in_lanes(variant, slot[0])
+
+
+def shape(model, equations, expression):
+    """The dependence of a guard or margin, as `GuardShape` in src/model/mod.rs."""
+    placed = equations.place(expression)
+    linear = linear_shape(model, equations, placed)
+    if linear is not None:
+        return {"linear": linear}
+    depends = lambda *columns: bool(present(ca.symvar(placed), *columns))
+    return {"general": {"accelerations": depends(equations.a), "signals": depends(ca.vertcat(*signals(model)))}}
+
+
+def is_constant(model, equations, entries):
+    """Whether expressions stay the same while the mode lasts."""
+    return not present(ca.symvar(entries), equations.a, *_moving(model, equations))
+
+
+def is_fixed(model, equations, entries):
+    """Whether expressions follow from the parameters alone: also where the sign of a discrete state of +1 or -1
+    cancels out of them."""
+    of_sign = [d for d in model.discretes if sorted(d.values) == [-1, 1] and graph.is_even(entries, d.symbol)]
+    others = ca.vertcat(*(d.symbol for d in model.discretes if d not in of_sign))
+    return is_constant(model, equations, entries) and not present(ca.symvar(entries), equations.held, others)
+
+
+def linear_shape(model, equations, expression):
+    """`GuardShape::Linear` if the guard is a constant or discrete factor times one coordinate or rate,
+    plus what does not move, else None."""
+    moving = present(ca.symvar(expression), equations.a, *_moving(model, equations))
+    if len(moving) != 1:
+        return None
+    [symbol] = moving
+    slope = _factor(model, ca.simplify(ca.jacobian(expression, symbol)))
+    if slope is None:
+        return None
+    factor, discrete = slope
+    offset = not ca.simplify(ca.substitute(expression, symbol, 0)).is_zero()
+    for rate, column in ((False, equations.q), (True, equations.v)):
+        for index in range(column.numel()):
+            if column[index].element_hash() == symbol.element_hash():
+                return {"index": index, "rate": rate, "factor": factor, "discrete": discrete, "offset": offset}
+    return None
+
+
+def signals(model):
+    """The signals of all inputs."""
+    return [s for i in model.inputs for s in i.signals]
+
+
+def used_signals(variants, slots):
+    """Of each signal, whether these functions of some mode depend on it."""
+    outputs = [f.output for v in variants for slot, f in v.functions.items() if slot[1] in slots]
+    found = {s.element_hash() for output in outputs for s in ca.symvar(output)}
+    return [s.element_hash() in found for s in signals(variants[0].model)]
+
+
+def present(symbols, *columns):
+    """Those of the symbols that some column contains."""
+    wanted = {column[i].element_hash() for column in columns for i in range(column.numel())}
+    return [s for s in symbols if s.element_hash() in wanted]
+
+
+def _moving(model, equations):
+    """Columns of the symbols that change while the mode lasts, accelerations left out."""
+    drifting = [equations.held[i] for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
+    return equations.q, equations.v, ca.vertcat(*signals(model)), ca.vertcat(*drifting)
+
+
+def _factor(model, expression):
+    """(number, index of a discrete state or None) whose product an expression is, else None."""
+    discretes = {d.symbol.element_hash(): k for k, d in enumerate(model.discretes)}
+    factor, discrete = 1.0, None
+    while not expression.is_constant():
+        if expression.element_hash() in discretes:
+            return (factor, discretes[expression.element_hash()]) if discrete is None else None
+        op = expression.op()
+        if op == ca.OP_NEG:
+            factor, expression = -factor, expression.dep(0)
+        elif op == ca.OP_MUL and expression.dep(0).is_constant():
+            factor, expression = factor * float(expression.dep(0)), expression.dep(1)
+        elif op == ca.OP_MUL and expression.dep(0).element_hash() in discretes and discrete is None:
+            discrete, expression = discretes[expression.dep(0).element_hash()], expression.dep(1)
+        else:
+            return None
+    return factor * float(expression), discrete

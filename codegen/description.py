@@ -1,0 +1,204 @@
+"""What a model is besides its functions: names, units, meanings, modes, guards, and where each function is found in the
+tables of the contract (contract.h).
+
+The result is data alone, written as JSON into the compiled model; src/kernel/description.rs reads it and checks it. Keys are
+the names of the fields there.
+"""
+
+import casadi as ca
+
+from . import analysis, drawing, limits, units
+from .emit_c import KEPT_ANGLES
+
+MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions", "energies",
+                  "powers", "momenta", "requirements", "requirement_bounds", "held_rates", "held_values")
+"""Functions that every mode has, each once."""
+
+
+class Tables:
+    """The tables of functions: places by symbol."""
+
+    def __init__(self):
+        self.values, self.series = {}, {}
+
+    def value(self, symbol):
+        """The place of a function by its C name."""
+        return self.values.setdefault(symbol, len(self.values))
+
+    def pair(self, symbols):
+        """The place of the two functions of a series."""
+        return self.series.setdefault(symbols, len(self.series))
+
+
+def describe(name, chosen, constants, for_tests):
+    """(description, tables) of a model: its variants, the C function of the constants and their number."""
+    model, tables = chosen[0].model, Tables()
+    variants = [v for variant in chosen for v in (variant, variant.lean) if v]
+    required = analysis.used_signals(variants, ("requirements",))
+    description = {
+        "name": name, "title": model.title, "source": model.source, "for_tests": for_tests,
+        "dimensions": {
+            "coordinates": len(model.coordinates), "motions": len(model.motions), "signals": len(analysis.signals(model)),
+            "discretes": len(model.discretes), "parameters": len(model.parameters), "constants": constants[1],
+            "angles": KEPT_ANGLES,
+            "expanded": analysis.used_signals(variants, (*analysis.SERIES, "requirements")),
+            "required": [i for i, used in enumerate(required) if used],
+        },
+        "coordinates": [_coordinate(c) for c in model.coordinates],
+        "motions": [{"name": m.name, "unit": m.unit, "reaction_unit": _reaction_unit(m.unit), "meaning": m.meaning}
+                    for m in model.motions],
+        "parameters": [_parameter(p) for p in model.parameters],
+        "parameter_sets": [
+            {"name": set_name, "meaning": meaning, "values": [[k, _number(v)] for k, v in values.items()]}
+            for set_name, meaning, values in model.parameter_sets],
+        "inputs": list(_inputs(model)),
+        "discretes": [{"name": d.name, "values": [_number(v) for v in d.values], "meaning": d.meaning}
+                      for d in model.discretes],
+        "choices": [{"name": c[0], "options": list(c[1]), "meaning": c[2]} for c in model.choices],
+        "constants": {"function": tables.value(constants[0]), "count": constants[1]},
+        "variants": [_variant(variant, tables) for variant in chosen],
+    }
+    return description, tables
+
+
+def _number(value):
+    """A number as JSON can hold it."""
+    value = float(value)
+    if value != value or abs(value) == float("inf"):
+        return repr(value)
+    return value
+
+
+def _reaction_unit(unit):
+    """Unit of the generalized force of a coordinate: N for lengths, N m for angles."""
+    force = units.combine(units.parse("N m"), units.parse(unit), -1)
+    return next((name for name in ("N", "N m") if units.parse(name) == force), units.text(force))
+
+
+def _coordinate(c):
+    return {"name": c.name, "unit": c.unit, "meaning": c.meaning, "reaction_unit": _reaction_unit(c.unit),
+            "scale": _number(c.scale), "rate_scale": _number(c.rate_scale),
+            "minimum": _fixed_bound(c.minimum), "maximum": _fixed_bound(c.maximum)}
+
+
+def _fixed_bound(bound):
+    """A bound that does not depend on parameters."""
+    return None if bound is None or isinstance(bound, ca.SX) else _number(bound)
+
+
+def _parameter(p):
+    return {"name": p.name, "unit": p.unit, "meaning": p.meaning, "default": _number(p.default),
+            "minimum": _number(p.minimum), "minimum_exclusive": bool(p.exclusive), "maximum": _number(p.maximum),
+            "at_most": p.at_most}
+
+
+def _inputs(model):
+    signal = 0
+    for i in model.inputs:
+        kind = "value" if i.motion is None else "acceleration"
+        yield {"name": i.name, "unit": i.unit, "meaning": i.meaning, "kind": kind, "signal": signal}
+        signal += len(i.signals)
+
+
+def _held_at(value):
+    """Where a coordinate is held; None: wherever it was."""
+    if value is None:
+        return None
+    value = ca.SX(value)
+    return {"number": _number(value)} if value.is_constant() else {"expression": units.short(value)}
+
+
+def _variant(variant, tables):
+    model, lean = variant.model, variant.lean
+    barred = [k for k, i in enumerate(model.inputs) for m in model.motions if m.name == i.motion and not m.available]
+    index = {m.name: k for k, m in enumerate(model.modes)}
+    validity = [(limits.is_of_parameters(model, entry.margin), {"condition": entry.text, "sentence": entry.sentence})
+                for entry in model.validity]
+    return {
+        "options": [c[3] for c in model.choices],
+        "defaults": [c[3] == c[4] for c in model.choices],
+        "drawing": drawing.program(model),
+        "barred": barred,
+        "modes": [_mode(variant, i, equations, tables) for i, equations in enumerate(variant.modes)],
+        "rests": [{"source": index[s.name], "target": index[t.name]} for s, t in model.rests],
+        "limits": [{"name": limit.name, "message": limit.message, "text": limit.text, "ends": bool(limit.ends)}
+                   for limit in model.limits],
+        "valid_motion": [entry for of_parameters, entry in validity if not of_parameters],
+        "valid_parameters": [entry for of_parameters, entry in validity if of_parameters],
+        "bounds": [{"coordinate": i, "upper": bool(upper), "text": units.short(bound)}
+                   for i, upper, bound in limits.bounds(model)],
+        "declared": {"function": tables.value(variant.declared), "count": limits.of_parameters(model).numel()},
+        "lean": None if lean is None else {
+            "without": [k for k, i in enumerate(model.inputs) if i.motion in [m.name for m in lean.modes[0].absent]],
+            "variant": _variant(lean, tables)},
+    }
+
+
+def _mode(variant, i, equations, tables):
+    model, mode = variant.model, equations.mode
+    functions = {slot[1:]: f for slot, f in variant.functions.items() if slot[0] == i}
+    mass = functions[("system",)].output[: len(equations.free) ** 2]
+    inertia = ca.vertcat(ca.vec(mass), ca.vec(functions[("inertia",)].output))
+    kernel = {what: tables.value(functions[(what,)].symbol) for what in MODE_FUNCTIONS}
+    kernel |= {what: _series(functions[(what,)], tables) for what in analysis.SERIES}
+    kernel |= {
+        "mass_is_constant": analysis.is_constant(model, equations, mass),
+        "inertia_is_fixed": analysis.is_fixed(model, equations, inertia),
+        "is_linear": analysis.is_constant(model, equations, functions[("jacobian",)].output),
+        "goes_in_lanes": analysis.goes_in_lanes(variant, i),
+    }
+    return {
+        "name": mode.name, "meaning": mode.meaning, "free": list(equations.free),
+        "held_at": [_held_at(mode.held.get(c.name)) for c in model.coordinates],
+        "drifts": [c.name in mode.drift for c in model.coordinates],
+        "guards": [_guard(variant, i, g, functions, tables) for g in range(len(equations.guards))],
+        "requirements": [
+            {"text": units.short(requirement, 200), "failure": failure, "unit": _unit(model, requirement)}
+            for requirement, failure, _ in mode.requirements],
+        "margins": [
+            None if analysis.is_constant(model, equations, margin) else analysis.shape(model, equations, margin)
+            for margin in equations.margins],
+        "without_series": functions[("series",)].without or None,
+        "system": variant.tapes[i, "system"], "guard_values": variant.tapes[i, "guards"],
+        "kernel": kernel,
+        "operations": [[what[0] if len(what) == 1 else " ".join(map(str, what)), f.operations]
+                       for what, f in functions.items()],
+    }
+
+
+def _guard(variant, i, g, functions, tables):
+    model, equations = variant.model, variant.modes[i]
+    expression, transitions = equations.guards[g]
+    return {
+        "name": " / ".join(dict.fromkeys(t.name for t in transitions)), "text": units.short(expression, 200),
+        "unit": _unit(model, expression), "shape": analysis.shape(model, equations, expression),
+        "value": tables.value(functions["guard", g].symbol), "rate": tables.value(functions["guard_rate", g].symbol),
+        "magnitude": tables.value(functions["guard_magnitude", g].symbol),
+        "transitions": [_transition(variant, i, g, t, functions, tables) for t in range(len(transitions))],
+    }
+
+
+def _transition(variant, i, g, t, functions, tables):
+    transition = variant.modes[i].guards[g][1][t]
+    condition, reset = functions.get(("condition", g, t)), functions["reset", g, t]
+    return {
+        "name": transition.name,
+        "target": [m.name for m in variant.model.modes].index(transition.target.name),
+        "changes": list(transition.changes), "impact": bool(transition.impact),
+        "reset": tables.value(reset.symbol), "stays": bool(reset.stays),
+        "condition": condition and {"function": tables.value(condition.symbol), "count": condition.output.numel()},
+        "conditions": variant.tapes[i, "conditions", g, t],
+    }
+
+
+def _series(function, tables):
+    """A Taylor series; None where there is none."""
+    if not function.symbol:
+        return None
+    lead, row, convolutions, ends = function.workspace
+    return {"functions": tables.pair(function.symbol), "lead": lead, "row": row, "convolutions": convolutions,
+            "ends": bool(ends)}
+
+
+def _unit(model, expression):
+    return units.text(units.dimension_of(ca.SX(expression), model.dimensions))

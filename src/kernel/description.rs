@@ -1,0 +1,589 @@
+//! From the description and the functions of a compiled model to a [`Model`]: codegen/description.py wrote it, and every
+//! field and index of it is checked here.
+
+use super::contract::{ContractError, Functions, Parts};
+use super::reader::{At, count, number, text, truth};
+use super::tables::{
+    ConstantsKernel, GuardKernel, LaneKernel, MOST_FREE, ModeKernel, ModeKernels, SeriesKernel,
+    TransitionKernel,
+};
+use super::{Dimensions, Library, Raw};
+use crate::jets::{Instruction, Name, Pick, Tape};
+use crate::model::name::intern;
+use crate::model::{
+    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Limit, Mode, Model,
+    Motion, Parameter, ParameterSet, ParametricBound, Requirement, Rest, Transition, Validity,
+    Variant,
+};
+use std::sync::Arc;
+
+type Read<T> = Result<T, ContractError>;
+
+/// Makes a model of its parts.
+pub(super) fn model(parts: &Parts, library: Option<Library>) -> Read<Model> {
+    let value = serde_json::from_str(&parts.description).map_err(|error| {
+        ContractError::Description {
+            place: format!("line {}, column {}", error.line(), error.column()),
+            found: error.to_string(),
+            expected: "JSON".to_owned(),
+        }
+    })?;
+    let root = At::root(&value);
+    let dimensions = Arc::new(root.get("dimensions", dimensions)?);
+    let reader = Reader {
+        functions: &parts.functions,
+        lanes: &parts.lanes,
+        dimensions,
+    };
+    reader.model(&root, intern(&parts.digest), library)
+}
+
+fn dimensions(at: &At) -> Read<Dimensions> {
+    let signals = at.get("signals", count)?;
+    Ok(Dimensions {
+        coordinates: at.get("coordinates", count)?,
+        motions: at.get("motions", count)?,
+        signals,
+        discretes: at.get("discretes", count)?,
+        parameters: at.get("parameters", count)?,
+        constants: at.get("constants", count)?,
+        angles: at.get("angles", count)?,
+        expanded: at.get("expanded", |at| at.list_of(signals, truth))?,
+        required: at.get("required", |at| at.list(|at| at.index(signals)))?,
+    })
+}
+
+/// What indices refer to.
+struct Reader<'p> {
+    functions: &'p Functions,
+    lanes: &'p [Functions],
+    dimensions: Arc<Dimensions>,
+}
+
+/// What indices of a variant refer to.
+#[derive(Clone, Copy)]
+struct Modes<'f> {
+    /// Number of free coordinates of each.
+    free: &'f [usize],
+    /// Limits, and conditions on the motion under which the model is meant.
+    margins: usize,
+}
+
+impl Reader<'_> {
+    fn model(&self, at: &At, digest: &'static str, library: Option<Library>) -> Read<Model> {
+        let of = &*self.dimensions;
+        let choices = at.get("choices", |at| {
+            at.list(|at| {
+                Ok(Choice {
+                    name: at.get("name", text)?,
+                    options: at.get("options", |at| at.list(text))?,
+                    meaning: at.get("meaning", text)?,
+                })
+            })
+        })?;
+        let parameters = at.get("parameters", |at| at.list_of(of.parameters, parameter))?;
+        let inputs = at.get("inputs", |at| at.list(|at| input(at, of.signals)))?;
+        let constants = at.get("constants", |at| {
+            at.get("count", |at| match count(at)? {
+                count if count == of.constants => Ok(()),
+                _ => Err(at.wrong(format!("{}, as in dimensions.constants", of.constants))),
+            })?;
+            self.of_parameters(at)
+        })?;
+        let model = Model {
+            name: at.get("name", text)?,
+            digest,
+            title: at.get("title", text)?,
+            source: at.get("source", text)?,
+            coordinates: at.get("coordinates", |at| at.list_of(of.coordinates, coordinate))?,
+            motions: at.get("motions", |at| at.list_of(of.motions, motion))?,
+            parameters,
+            parameter_sets: at.get("parameter_sets", |at| at.list(parameter_set))?,
+            discretes: at.get("discretes", |at| at.list_of(of.discretes, discrete))?,
+            variants: at.get("variants", |at| {
+                at.list(|at| self.variant(at, choices.len(), inputs.len()))
+            })?,
+            inputs,
+            choices,
+            constants,
+            for_tests: at.get("for_tests", truth)?,
+            library,
+        };
+        let signals: usize = model.inputs.iter().map(|i| i.kind.signals()).sum();
+        if signals != of.signals {
+            return Err(ContractError::Description {
+                place: "dimensions.signals".to_owned(),
+                found: of.signals.to_string(),
+                expected: format!("{signals}, as many as the inputs fill"),
+            });
+        }
+        Ok(model)
+    }
+
+    fn variant(&self, at: &At, choices: usize, inputs: usize) -> Read<Variant> {
+        let free = at.get("modes", |at| {
+            at.list(|at| at.get("free", |at| Ok(at.list(count)?.len())))
+        })?;
+        if free.is_empty() {
+            return Err(at.wrong("a variant with modes"));
+        }
+        let index = |at: &At| at.index(free.len());
+        let limits = at.get("limits", |at| at.list(limit))?;
+        let valid_motion = at.get("valid_motion", |at| at.list(validity))?;
+        let modes = Modes {
+            free: &free,
+            margins: limits.len() + valid_motion.len(),
+        };
+        Ok(Variant {
+            options: at.get("options", |at| at.list_of(choices, text))?,
+            defaults: at.get("defaults", |at| at.list_of(choices, truth))?,
+            drawing: at.get("drawing", text)?,
+            barred: at.get("barred", |at| at.list(|at| at.index(inputs)))?,
+            modes: at.get("modes", |at| at.list(|at| self.mode(at, modes)))?,
+            rests: at.get("rests", |at| {
+                at.list(|at| {
+                    Ok(Rest {
+                        source: at.get("source", index)?,
+                        target: at.get("target", index)?,
+                    })
+                })
+            })?,
+            limits,
+            valid_motion,
+            valid_parameters: at.get("valid_parameters", |at| at.list(validity))?,
+            bounds: at.get("bounds", |at| {
+                at.list(|at| {
+                    Ok(ParametricBound {
+                        coordinate: at
+                            .get("coordinate", |at| at.index(self.dimensions.coordinates))?,
+                        upper: at.get("upper", truth)?,
+                        text: at.get("text", text)?,
+                    })
+                })
+            })?,
+            declared: at.get("declared", |at| self.of_parameters(at))?,
+            lean: at.get("lean", |at| {
+                at.option(|at| {
+                    Ok((
+                        at.get("without", |at| at.list(|at| at.index(inputs)))?,
+                        Box::new(at.get("variant", |at| self.variant(at, choices, inputs))?),
+                    ))
+                })
+            })?,
+        })
+    }
+
+    fn mode(&self, at: &At, modes: Modes) -> Read<Mode> {
+        let n = self.dimensions.coordinates;
+        let free = at.get("free", |at| {
+            let free = at.list(|at| at.index(n))?;
+            match free.is_sorted_by(|a, b| a < b) && free.len() <= MOST_FREE {
+                true => Ok(free),
+                false => Err(at.wrong(format!("up to {MOST_FREE} increasing indices"))),
+            }
+        })?;
+        let guards = at.get("guards", |at| at.list(|at| self.guard(at, free.len(), modes)))?;
+        let requirements = at.get("requirements", |at| at.list(requirement))?;
+        let margins = at.get("margins", |at| {
+            at.list_of(modes.margins, |at| at.option(|at| self.shape(at, free.len())))
+        })?;
+        let held = requirements.len() + margins.len();
+        Ok(Mode {
+            name: at.get("name", text)?,
+            meaning: at.get("meaning", text)?,
+            held_at: at.get("held_at", |at| at.list_of(n, |at| at.option(held_at)))?,
+            drifts: at.get("drifts", |at| at.list_of(n, truth))?,
+            without_series: at.get("without_series", |at| at.option(text))?,
+            system: at.get("system", |at| {
+                self.tape(at, free.len() * free.len() + free.len())
+            })?,
+            guard_values: at.get("guard_values", |at| self.tape(at, guards.len()))?,
+            kernels: at.get("kernel", |at| self.kernels(at, free.len(), &guards, held))?,
+            operations: at.get("operations", |at| {
+                at.list(|at| Ok((at.entry(0, 2, text)?, at.entry(1, 2, count)?)))
+            })?,
+            free,
+            guards,
+            requirements,
+            margins,
+        })
+    }
+
+    fn guard(&self, at: &At, free: usize, modes: Modes) -> Read<Guard> {
+        Ok(Guard {
+            name: at.get("name", text)?,
+            text: at.get("text", text)?,
+            unit: at.get("unit", text)?,
+            shape: at.get("shape", |at| self.shape(at, free))?,
+            kernel: GuardKernel {
+                dimensions: self.dimensions.clone(),
+                free,
+                value: at.get("value", |at| self.value(at))?,
+                rate: at.get("rate", |at| self.value(at))?,
+                magnitude: at.get("magnitude", |at| self.value(at))?,
+                in_lanes: at.get("value", |at| self.in_lanes(at))?,
+            },
+            transitions: at.get("transitions", |at| {
+                at.list(|at| self.transition(at, free, modes))
+            })?,
+        })
+    }
+
+    fn transition(&self, at: &At, source_free: usize, modes: Modes) -> Read<Transition> {
+        let target = at.get("target", |at| at.index(modes.free.len()))?;
+        let condition = at.get("condition", |at| {
+            at.option(|at| {
+                let function = at.get("function", |at| self.value(at))?;
+                Ok((function, modes.free[target], at.get("count", count)?))
+            })
+        })?;
+        let count = condition.map_or(0, |(_, _, count)| count);
+        let stays = at.get("stays", truth)?;
+        let in_lanes = match stays {
+            true => at.get("reset", |at| self.in_lanes(at))?,
+            false => Box::default(),
+        };
+        Ok(Transition {
+            name: at.get("name", text)?,
+            target,
+            conditional: condition.is_some(),
+            changes: at.get("changes", |at| at.list(text))?,
+            impact: at.get("impact", truth)?,
+            conditions: at.get("conditions", |at| self.tape(at, count))?,
+            kernel: TransitionKernel {
+                dimensions: self.dimensions.clone(),
+                source_free,
+                reset: at.get("reset", |at| self.value(at))?,
+                condition,
+                in_lanes,
+            },
+        })
+    }
+
+    fn kernels(&self, at: &At, free: usize, guards: &[Guard], held: usize) -> Read<ModeKernels> {
+        Ok(match free {
+            0 => ModeKernels::F0(self.kernel(at, guards, held)?),
+            1 => ModeKernels::F1(self.kernel(at, guards, held)?),
+            2 => ModeKernels::F2(self.kernel(at, guards, held)?),
+            3 => ModeKernels::F3(self.kernel(at, guards, held)?),
+            4 => ModeKernels::F4(self.kernel(at, guards, held)?),
+            5 => ModeKernels::F5(self.kernel(at, guards, held)?),
+            6 => ModeKernels::F6(self.kernel(at, guards, held)?),
+            _ => return Err(at.wrong(format!("functions of up to {MOST_FREE} free coordinates"))),
+        })
+    }
+
+    fn kernel<const F: usize>(
+        &self,
+        at: &At,
+        guards: &[Guard],
+        held: usize,
+    ) -> Read<ModeKernel<F>> {
+        let value = |key: &str| at.get(key, |at| self.value(at));
+        let series = |key: &str| {
+            at.get(key, |at| at.option(|at| self.series(at, self.functions)))
+        };
+        let lanes = match at.get("goes_in_lanes", truth)? {
+            true => self.lanes,
+            false => &[],
+        };
+        let lanes = lanes.iter().enumerate().map(|(level, functions)| {
+            let series = |key: &str| at.get(key, |at| self.series(at, functions));
+            Ok(LaneKernel {
+                series: series("series")?,
+                quiet_series: series("quiet_series")?,
+                requirement_bounds: at.get("requirement_bounds", |at| {
+                    in_lanes(at, self.functions, functions)
+                })?,
+                guards: guards.iter().map(|g| g.kernel.in_lanes[level]).collect(),
+                resets: (guards.iter())
+                    .map(|g| {
+                        let resets = g.transitions.iter().map(|t| &t.kernel.in_lanes);
+                        resets.map(|r| r.get(level).copied().flatten()).collect()
+                    })
+                    .collect(),
+            })
+        });
+        Ok(ModeKernel {
+            dimensions: self.dimensions.clone(),
+            residual: value("residual")?,
+            jacobian: value("jacobian")?,
+            system: value("system")?,
+            inertia: value("inertia")?,
+            jerk_load: value("jerk_load")?,
+            magnitude: value("magnitude")?,
+            reactions: value("reactions")?,
+            energies: value("energies")?,
+            powers: value("powers")?,
+            momenta: value("momenta")?,
+            requirements: (value("requirements")?, held),
+            requirement_bounds: value("requirement_bounds")?,
+            held_rates: value("held_rates")?,
+            held_values: value("held_values")?,
+            series: series("series")?,
+            quiet_series: series("quiet_series")?,
+            guard_series: series("guard_series")?,
+            guards: guards.len(),
+            mass_is_constant: at.get("mass_is_constant", truth)?,
+            inertia_is_fixed: at.get("inertia_is_fixed", truth)?,
+            is_linear: at.get("is_linear", truth)?,
+            lanes: lanes.collect::<Read<_>>()?,
+        })
+    }
+
+    /// A function of values by its place.
+    fn value(&self, at: &At) -> Read<Raw> {
+        let values = &self.functions.values;
+        let found = values[at.index(values.len())?];
+        found.ok_or_else(|| at.wrong("the place of a function that is there"))
+    }
+
+    /// The same for lanes, at each level.
+    fn in_lanes(&self, at: &At) -> Read<Box<[Option<Raw>]>> {
+        let place = at.index(self.functions.values.len())?;
+        Ok(self.lanes.iter().map(|of| of.values[place]).collect())
+    }
+
+    fn of_parameters(&self, at: &At) -> Read<ConstantsKernel> {
+        Ok(ConstantsKernel {
+            dimensions: self.dimensions.clone(),
+            function: at.get("function", |at| self.value(at))?,
+            count: at.get("count", count)?,
+        })
+    }
+
+    fn series(&self, at: &At, functions: &Functions) -> Read<SeriesKernel> {
+        let (start, run) = at.get("functions", |at| {
+            let found = functions.series[at.index(functions.series.len())?];
+            found.ok_or_else(|| at.wrong("the place of functions that are there"))
+        })?;
+        Ok(SeriesKernel {
+            start,
+            run,
+            lead: at.get("lead", count)?,
+            row: at.get("row", count)?,
+            convolutions: at.get("convolutions", count)?,
+            ends: at.get("ends", truth)?,
+        })
+    }
+
+    fn shape(&self, at: &At, free: usize) -> Read<GuardShape> {
+        at.tagged(|key, at| match key {
+            "linear" => Ok(GuardShape::Linear {
+                index: at.get("index", |at| at.index(free))?,
+                rate: at.get("rate", truth)?,
+                factor: at.get("factor", number)?,
+                discrete: at.get("discrete", |at| {
+                    at.option(|at| at.index(self.dimensions.discretes))
+                })?,
+                offset: at.get("offset", truth)?,
+            }),
+            "general" => Ok(GuardShape::General {
+                accelerations: at.get("accelerations", truth)?,
+                signals: at.get("signals", truth)?,
+            }),
+            _ => Err(at.wrong("`linear` or `general`")),
+        })
+    }
+
+    /// A tape with so many results. Operands are instructions before them; only the slope of a function may stand behind it.
+    fn tape(&self, at: &At, results: usize) -> Read<Tape> {
+        let count = at.get("instructions", |at| Ok(at.list(|_| Ok(()))?.len()))?;
+        let mut place = 0;
+        let instructions = at.get("instructions", |at| {
+            at.list(|at| {
+                let instruction = self.instruction(at, (place, count));
+                place += 1;
+                instruction
+            })
+        })?;
+        Ok(Tape {
+            instructions,
+            results: at.get("results", |at| at.list_of(results, |at| at.index(count)))?,
+        })
+    }
+
+    fn instruction(&self, at: &At, (place, count): (usize, usize)) -> Read<Instruction> {
+        let of = &*self.dimensions;
+        at.tagged(|key, at| {
+            let before = |at: &At| at.index(place);
+            let two = |of: fn(usize, usize) -> Instruction| {
+                Ok(of(at.entry(0, 2, before)?, at.entry(1, 2, before)?))
+            };
+            Ok(match key {
+                "Constant" => Instruction::Constant(number(at)?),
+                "Coordinate" => Instruction::Coordinate(at.index(of.coordinates)?),
+                "Rate" => Instruction::Rate(at.index(of.coordinates)?),
+                "Acceleration" => Instruction::Acceleration(at.index(of.coordinates)?),
+                "Signal" => Instruction::Signal(at.index(of.signals)?),
+                "Discrete" => Instruction::Discrete(at.index(of.discretes)?),
+                "Parameter" => Instruction::Parameter(at.index(of.parameters)?),
+                "Sum" => two(Instruction::Sum)?,
+                "Difference" => two(Instruction::Difference)?,
+                "Product" => two(Instruction::Product)?,
+                "Quotient" => two(Instruction::Quotient)?,
+                "Negative" => Instruction::Negative(before(at)?),
+                "Function" => Instruction::Function(
+                    at.entry(0, 3, function_name)?,
+                    at.entry(1, 3, before)?,
+                    at.entry(2, 3, |at| at.index(count))?,
+                ),
+                "Fixed" => Instruction::Fixed(
+                    at.entry(0, 3, pick)?,
+                    at.entry(1, 3, before)?,
+                    at.entry(2, 3, before)?,
+                ),
+                _ => return Err(at.wrong(format!("an instruction, which `{key}` is not"))),
+            })
+        })
+    }
+}
+
+/// A function for lanes.
+fn in_lanes(at: &At, functions: &Functions, of_level: &Functions) -> Read<Raw> {
+    let found = of_level.values[at.index(functions.values.len())?];
+    found.ok_or_else(|| at.wrong("the place of a function that is there for lanes, too"))
+}
+
+fn function_name(at: &At) -> Read<Name> {
+    Ok(match text(at)? {
+        "SquareRoot" => Name::SquareRoot,
+        "Exponential" => Name::Exponential,
+        "Logarithm" => Name::Logarithm,
+        "Sine" => Name::Sine,
+        "Cosine" => Name::Cosine,
+        "Tangent" => Name::Tangent,
+        "ArcSine" => Name::ArcSine,
+        "ArcCosine" => Name::ArcCosine,
+        "ArcTangent" => Name::ArcTangent,
+        "HyperbolicSine" => Name::HyperbolicSine,
+        "HyperbolicCosine" => Name::HyperbolicCosine,
+        "HyperbolicTangent" => Name::HyperbolicTangent,
+        _ => return Err(at.wrong("a smooth function")),
+    })
+}
+
+fn pick(at: &At) -> Read<Pick> {
+    Ok(match text(at)? {
+        "Least" => Pick::Least,
+        "Greatest" => Pick::Greatest,
+        "Less" => Pick::Less,
+        "NotMore" => Pick::NotMore,
+        "Equal" => Pick::Equal,
+        "Unequal" => Pick::Unequal,
+        "Not" => Pick::Not,
+        "And" => Pick::And,
+        "Or" => Pick::Or,
+        "Where" => Pick::Where,
+        "Modulus" => Pick::Modulus,
+        "Sign" => Pick::Sign,
+        "Floor" => Pick::Floor,
+        "Ceiling" => Pick::Ceiling,
+        _ => return Err(at.wrong("an operation that is not smooth")),
+    })
+}
+
+fn coordinate(at: &At) -> Read<Coordinate> {
+    Ok(Coordinate {
+        name: at.get("name", text)?,
+        unit: at.get("unit", text)?,
+        meaning: at.get("meaning", text)?,
+        reaction_unit: at.get("reaction_unit", text)?,
+        scale: at.get("scale", number)?,
+        rate_scale: at.get("rate_scale", number)?,
+        minimum: at.get("minimum", |at| at.option(number))?,
+        maximum: at.get("maximum", |at| at.option(number))?,
+    })
+}
+
+fn motion(at: &At) -> Read<Motion> {
+    Ok(Motion {
+        name: at.get("name", text)?,
+        unit: at.get("unit", text)?,
+        reaction_unit: at.get("reaction_unit", text)?,
+        meaning: at.get("meaning", text)?,
+    })
+}
+
+fn parameter(at: &At) -> Read<Parameter> {
+    Ok(Parameter {
+        name: at.get("name", text)?,
+        unit: at.get("unit", text)?,
+        meaning: at.get("meaning", text)?,
+        default: at.get("default", number)?,
+        minimum: at.get("minimum", number)?,
+        minimum_exclusive: at.get("minimum_exclusive", truth)?,
+        maximum: at.get("maximum", number)?,
+        at_most: at.get("at_most", |at| at.option(text))?,
+    })
+}
+
+fn parameter_set(at: &At) -> Read<ParameterSet> {
+    Ok(ParameterSet {
+        name: at.get("name", text)?,
+        meaning: at.get("meaning", text)?,
+        values: at.get("values", |at| {
+            at.list(|at| Ok((at.entry(0, 2, text)?, at.entry(1, 2, number)?)))
+        })?,
+    })
+}
+
+fn input(at: &At, signals: usize) -> Read<Input> {
+    let kind = at.get("kind", |at| match text(at)? {
+        "acceleration" => Ok(InputKind::Acceleration),
+        "value" => Ok(InputKind::Value),
+        _ => Err(at.wrong("`acceleration` or `value`")),
+    })?;
+    Ok(Input {
+        name: at.get("name", text)?,
+        unit: at.get("unit", text)?,
+        meaning: at.get("meaning", text)?,
+        kind,
+        signal: at.get("signal", |at| {
+            at.index((signals + 1).saturating_sub(kind.signals()))
+        })?,
+    })
+}
+
+fn discrete(at: &At) -> Read<Discrete> {
+    Ok(Discrete {
+        name: at.get("name", text)?,
+        values: at.get("values", |at| match at.list(number)? {
+            values if values.is_empty() => Err(at.wrong("values")),
+            values => Ok(values),
+        })?,
+        meaning: at.get("meaning", text)?,
+    })
+}
+
+fn held_at(at: &At) -> Read<HeldAt> {
+    at.tagged(|key, at| match key {
+        "number" => number(at).map(HeldAt::Number),
+        "expression" => text(at).map(HeldAt::Expression),
+        _ => Err(at.wrong("`number` or `expression`")),
+    })
+}
+
+fn limit(at: &At) -> Read<Limit> {
+    Ok(Limit {
+        name: at.get("name", text)?,
+        message: at.get("message", text)?,
+        text: at.get("text", text)?,
+        ends: at.get("ends", truth)?,
+    })
+}
+
+fn validity(at: &At) -> Read<Validity> {
+    Ok(Validity {
+        condition: at.get("condition", text)?,
+        sentence: at.get("sentence", text)?,
+    })
+}
+
+fn requirement(at: &At) -> Read<Requirement> {
+    Ok(Requirement {
+        text: at.get("text", text)?,
+        failure: at.get("failure", text)?,
+        unit: at.get("unit", text)?,
+    })
+}
