@@ -6,7 +6,7 @@ use crate::integrate::{LaneMask, Lanes, ORDERS};
 use std::cell::Cell;
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
-/// build/compile.rs.
+/// codegen/build/compile.rs.
 pub const LANES_OF_LEVELS: &[usize] = &[
     2,
     #[cfg(target_arch = "x86_64")]
