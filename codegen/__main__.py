@@ -8,7 +8,11 @@ from .errors import ModelError
 
 
 def main(argv):
-    """Runs a command; returns the exit status."""
+    """Runs a command; returns the exit status. `--directory DIR`, which comes first, is where paths begin: the package itself is
+    imported from where Python was started."""
+    if argv[:1] == ["--directory"]:
+        os.chdir(argv[1])
+        argv = argv[2:]
     if argv[:1] == ["verify"]:
         from .verify.cli import main as verify
         return verify(argv[1:])

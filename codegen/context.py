@@ -1,6 +1,8 @@
 """Runs of a model file, one for each combination of its choices."""
 
+import os
 import sys
+import types
 
 from .errors import ModelError
 
@@ -24,6 +26,7 @@ CONTEXT = []
 
 def build(name, file, source):
     """Runs a model file (its text) for every combination of choices; returns the models."""
+    package = _package(name, os.path.dirname(file))
     code = compile(source, file, "exec")
     models, pending = [], [{}]
     while pending:
@@ -31,7 +34,7 @@ def build(name, file, source):
         CONTEXT.append(context)
         path = list(sys.path)
         try:
-            exec(code, {"__name__": f"models.{name}", "__file__": file})
+            exec(code, {"__name__": package, "__package__": package, "__file__": file})
         finally:
             CONTEXT.pop()
             sys.path[:] = path
@@ -47,3 +50,15 @@ def build(name, file, source):
                 prefix[key] = value
             pending += [{**prefix, choice: other} for other in others]
     return models
+
+
+def _package(name, folder):
+    """The package whose modules are the files of a model folder, wherever it is: `from .paper import paper` in a model file."""
+    parent = sys.modules.setdefault("models", types.ModuleType("models"))
+    parent.__path__ = []
+    package = f"models.{name}"
+    for module in [m for m in sys.modules if m == package or m.startswith(package + ".")]:
+        del sys.modules[module]
+    sys.modules[package] = types.ModuleType(package)
+    sys.modules[package].__path__ = [folder]
+    return package

@@ -100,7 +100,7 @@ fn the_bits_do_not_depend_on_the_instructions() {
         for level in ["-O0", "-O3"] {
             let program = folder.path().join(format!("{name}{level}"));
             let mut compile = Command::new(&compiler);
-            // As in build/compile.rs.
+            // As in codegen/build/compile.rs.
             compile
                 .args([level, "-ffp-contract=off", &format!("-march={name}"), "-o"])
                 .args([&program, &main])

@@ -154,7 +154,11 @@ fn switches_without_a_rest_stop_and_say_what_is_missing() {
             let mut problem = problem("fuller", &[]);
             problem.choose(&[("limit", limit)]).unwrap();
             problem.set_initial("x", 1.0).unwrap();
-            let left = problem.variant().modes.iter().position(|m| m.name == "left");
+            let left = problem
+                .variant()
+                .modes
+                .iter()
+                .position(|m| m.name == "left");
             problem.initial.mode = left;
             problem.end.time = 10.0;
             let run = simulate(&problem, &mut Silent).unwrap();

@@ -1,6 +1,7 @@
 """Energies see the motion of the ground, or the model is refused with the term that does not."""
 
 import os
+import shutil
 import unittest
 
 from codegen.tests.scratch import ScratchTest
@@ -128,7 +129,10 @@ class Tank(ScratchTest):
 
     def setUp(self):
         super().setUp()
-        with open(os.path.join(ROOT, "models", "walking_tank", "model.py"), encoding="utf-8") as stream:
+        tank = os.path.join(ROOT, "models", "walking_tank")
+        for name in ("paper.py", "corrections.py"):
+            shutil.copy(os.path.join(tank, name), self.folder)
+        with open(os.path.join(tank, "model.py"), encoding="utf-8") as stream:
             self.text = stream.read()
 
     def refused(self, right, wrong, call):

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 from codegen.model import *
 from codegen.verify.corrections import apply, without
-from models.walking_tank.corrections import corrections
-from models.walking_tank.paper import paper
+from .corrections import corrections
+from .paper import paper
 
 model = Model("Walking of an unanchored liquid storage tank", source=paper.source)
 

@@ -1,5 +1,5 @@
 //! `dalembert verify`: runs the verification, which is written in Python, with the interpreter that
-//! the build has provided (`build/mod.rs`).
+//! the build has provided (`codegen/build/lib.rs`).
 
 use std::env;
 use std::ffi::OsString;

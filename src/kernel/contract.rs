@@ -130,11 +130,16 @@ mod tests {
         let version = format!("#define DALEMBERT_CONTRACT_VERSION {CONTRACT_VERSION}\n");
         assert!(header.contains(&version));
         assert!(header.contains(&format!("enum {{ DALEMBERT_LEVELS = {LEVELS} }};")));
-        let mark = MARK.map(|byte| format!("'{}'", char::from(byte))).join(", ");
+        let mark = MARK
+            .map(|byte| format!("'{}'", char::from(byte)))
+            .join(", ");
         assert!(header.contains(&format!("#define DALEMBERT_CONTRACT_MARK {{{mark}}}")));
 
         let pointer = size_of::<usize>();
-        assert_eq!(fields(header, "dalembert_functions"), ["values", "value", "series", "start", "run"]);
+        assert_eq!(
+            fields(header, "dalembert_functions"),
+            ["values", "value", "series", "start", "run"]
+        );
         let offsets = [
             offset_of!(RawFunctions, values),
             offset_of!(RawFunctions, value),
@@ -146,8 +151,15 @@ mod tests {
 
         let names = fields(header, "dalembert_model");
         let expected = [
-            "mark", "version", "size", "digest", "name", "description_length", "description",
-            "functions", "lanes",
+            "mark",
+            "version",
+            "size",
+            "digest",
+            "name",
+            "description_length",
+            "description",
+            "functions",
+            "lanes",
         ];
         assert_eq!(names, expected);
         let offsets = [

@@ -21,13 +21,12 @@ type Read<T> = Result<T, ContractError>;
 
 /// Makes a model of its parts.
 pub(super) fn model(parts: &Parts, library: Option<Library>) -> Read<Model> {
-    let value = serde_json::from_str(&parts.description).map_err(|error| {
-        ContractError::Description {
+    let value =
+        serde_json::from_str(&parts.description).map_err(|error| ContractError::Description {
             place: format!("line {}, column {}", error.line(), error.column()),
             found: error.to_string(),
             expected: "JSON".to_owned(),
-        }
-    })?;
+        })?;
     let root = At::root(&value);
     let dimensions = Arc::new(root.get("dimensions", dimensions)?);
     let reader = Reader {
@@ -182,10 +181,14 @@ impl Reader<'_> {
                 false => Err(at.wrong(format!("up to {MOST_FREE} increasing indices"))),
             }
         })?;
-        let guards = at.get("guards", |at| at.list(|at| self.guard(at, free.len(), modes)))?;
+        let guards = at.get("guards", |at| {
+            at.list(|at| self.guard(at, free.len(), modes))
+        })?;
         let requirements = at.get("requirements", |at| at.list(requirement))?;
         let margins = at.get("margins", |at| {
-            at.list_of(modes.margins, |at| at.option(|at| self.shape(at, free.len())))
+            at.list_of(modes.margins, |at| {
+                at.option(|at| self.shape(at, free.len()))
+            })
         })?;
         let held = requirements.len() + margins.len();
         Ok(Mode {
@@ -280,9 +283,7 @@ impl Reader<'_> {
         held: usize,
     ) -> Read<ModeKernel<F>> {
         let value = |key: &str| at.get(key, |at| self.value(at));
-        let series = |key: &str| {
-            at.get(key, |at| at.option(|at| self.series(at, self.functions)))
-        };
+        let series = |key: &str| at.get(key, |at| at.option(|at| self.series(at, self.functions)));
         let lanes = match at.get("goes_in_lanes", truth)? {
             true => self.lanes,
             false => &[],

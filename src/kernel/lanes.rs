@@ -7,7 +7,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 /// Number of lanes at each level of the processor that generated code is compiled for; the same in
-/// build/compile.rs.
+/// codegen/build/compile.rs.
 pub const LANES_OF_LEVELS: &[usize] = &[
     2,
     #[cfg(target_arch = "x86_64")]

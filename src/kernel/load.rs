@@ -53,7 +53,6 @@ impl Model {
         }
         description::model(&parts, Some(Library { loaded }))
     }
-
 }
 
 /// A model that is linked into the program.
@@ -132,8 +131,7 @@ unsafe fn parts(raw: *const RawModel) -> Result<Parts, ContractError> {
         check(raw)?;
         let raw = &*raw;
         let digest = raw.digest.split(|byte| *byte == 0).next().unwrap_or(&[]);
-        let description =
-            std::slice::from_raw_parts(raw.description, raw.description_length);
+        let description = std::slice::from_raw_parts(raw.description, raw.description_length);
         let lanes = raw.lanes.iter().take_while(|level| !level.is_null());
         Ok(Parts {
             digest: String::from_utf8_lossy(digest).into_owned(),

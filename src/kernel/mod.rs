@@ -22,8 +22,8 @@ mod tables;
 
 pub use context::Context;
 pub(crate) use context::Dimensions;
-pub use contract::{CONTRACT_VERSION, ContractError, RawFunctions, RawModel};
 use context::{Arrays, KeptAngle};
+pub use contract::{CONTRACT_VERSION, ContractError, RawFunctions, RawModel};
 pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{
     LANE_ROWS, LaneContext, LaneGuard, LaneLevel, LaneLimits, LanePast, LanePoint, LaneRows,
@@ -1296,7 +1296,8 @@ impl<const F: usize> ModeKernel<F> {
         guard: usize,
         [q, v, a]: [&[Lanes<W>; F]; 3],
     ) -> Lanes<W> {
-        let function = self.lane_kernel(level).guards[guard].expect("a guard of a mode that goes in lanes");
+        let function =
+            self.lane_kernel(level).guards[guard].expect("a guard of a mode that goes in lanes");
         let raw = x.raw(&self.dimensions);
         let mut out = Lanes::of(0.0);
         let [q, v, a] = [q, v, a].map(|x| x.as_ptr().cast());

@@ -104,7 +104,12 @@ impl<'a> At<'a> {
     }
 
     /// An entry of a list that has `count`.
-    pub fn entry<T>(&self, index: usize, count: usize, read: impl FnOnce(&At) -> Read<T>) -> Read<T> {
+    pub fn entry<T>(
+        &self,
+        index: usize,
+        count: usize,
+        read: impl FnOnce(&At) -> Read<T>,
+    ) -> Read<T> {
         let list = self.value.as_array().filter(|list| list.len() == count);
         let Some(list) = list else {
             return Err(self.wrong(format!("a list of {}", entries(count))));
@@ -141,9 +146,7 @@ pub(super) fn text(at: &At) -> Read<&'static str> {
 
 /// Whether something is so.
 pub(super) fn truth(at: &At) -> Read<bool> {
-    at.value
-        .as_bool()
-        .ok_or_else(|| at.wrong("true or false"))
+    at.value.as_bool().ok_or_else(|| at.wrong("true or false"))
 }
 
 /// A number; infinities and what is no number are texts.

@@ -30,7 +30,9 @@ impl Models {
     /// # Errors
     /// [`ContractError`] if a model is of another version.
     pub fn of(linked: &'static [&'static RawModel]) -> Result<Self, ContractError> {
-        let named = linked.iter().map(|raw| Ok((kernel::name_of_linked(raw)?, *raw)));
+        let named = linked
+            .iter()
+            .map(|raw| Ok((kernel::name_of_linked(raw)?, *raw)));
         Ok(Models {
             linked: named.collect::<Result<_, _>>()?,
             read: Mutex::default(),

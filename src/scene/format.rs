@@ -373,7 +373,10 @@ pub(crate) fn mode_names(variants: &[Variant]) -> Vec<&'static str> {
 
 /// The names of the transitions of some variants, each once.
 pub(crate) fn transition_names(variants: &[Variant]) -> Vec<&'static str> {
-    let guards = variants.iter().flat_map(|v| &v.modes).flat_map(|m| &m.guards);
+    let guards = variants
+        .iter()
+        .flat_map(|v| &v.modes)
+        .flat_map(|m| &m.guards);
     unique(guards.flat_map(|g| &g.transitions).map(|t| t.name))
 }
 

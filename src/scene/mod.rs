@@ -52,11 +52,7 @@ pub struct Scene {
 impl Scene {
     /// Reads a scene file, applies the overrides (`path=value`) and checks the result. Tables are
     /// found relative to the folder of the scene.
-    pub fn load(
-        path: &Path,
-        overrides: &[String],
-        models: &Models,
-    ) -> Result<Scene, SceneErrors> {
+    pub fn load(path: &Path, overrides: &[String], models: &Models) -> Result<Scene, SceneErrors> {
         let bytes = Disk
             .read(path)
             .map_err(|e| SceneError::unreadable(path.to_owned(), &e))?;

@@ -145,6 +145,7 @@ impl Fixture {
             .current_dir(self.path("project"))
             .env_clear()
             .env("CARGO_MANIFEST_DIR", self.path("project"))
+            .env("DALEMBERT_GENERATOR", self.path("project/codegen"))
             .env("TARGET", env!("DALEMBERT_TARGET"))
             .env("HOST", env!("DALEMBERT_TARGET"))
             .env("OPT_LEVEL", "0")

@@ -9,11 +9,13 @@ import sys
 import casadi  # as the generator does
 
 parser = argparse.ArgumentParser()
+parser.add_argument("--directory", required=True)
 parser.add_argument("command", choices=["generate"])
 parser.add_argument("--model-dir", required=True)
 parser.add_argument("--out", required=True)
 parser.add_argument("--for-tests", action="store_true")
 arguments = parser.parse_args()
+os.chdir(arguments.directory)
 
 name = os.path.basename(arguments.model_dir)
 with open(os.environ["PROVISIONING_LOG"], "a") as log:

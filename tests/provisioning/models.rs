@@ -168,3 +168,25 @@ fn a_missing_compiler_and_c_that_does_not_compile_are_told_apart() {
     let message = fails(&mut fixture.script());
     has(&message, &["cannot compile the C code of models/beta: "]);
 }
+
+#[test]
+fn the_generator_runs_from_the_cache() {
+    let fixture = Fixture::new();
+    succeeds(&mut fixture.script());
+    let generators = fixture.path("home/.cache/dalembert/generator");
+    let generator = only_folder(&generators, "");
+    let lock = generator.join("codegen/requirements.lock");
+    let locked = fs::read(fixture.path("project/codegen/requirements.lock")).unwrap();
+    assert_eq!(fs::read(&lock).unwrap(), locked);
+    // What was changed there is not run.
+    fs::write(generator.join("codegen/__main__.py"), "raise SystemExit(1)").unwrap();
+    fixture.model("alpha", "5.0");
+    succeeds(&mut fixture.script());
+    // A folder `codegen` of the project is not it, unless it is named.
+    let mut script = fixture.script();
+    script.env("DALEMBERT_GENERATOR", fixture.path("nowhere"));
+    has(
+        &fails(&mut script),
+        &["DALEMBERT_GENERATOR=", "nowhere: ", "to do: let it name"],
+    );
+}

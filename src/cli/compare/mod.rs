@@ -13,8 +13,8 @@ use super::outcome::{Failure, Outcome, Result};
 use super::run::refusal;
 use super::{models, print};
 use crate::hybrid::simulate;
-use crate::model::models;
 use crate::model::Model;
+use crate::model::models;
 use crate::record::{OutputFolder, Run, Silent};
 use crate::scene::Scene;
 

@@ -34,10 +34,7 @@ pub fn describe(arguments: &DescribeArguments) -> Result {
 }
 
 /// The variant with the options asked for, and the defaults of all other choices.
-fn choose<'m>(
-    model: &'m Model,
-    asked: &[String],
-) -> std::result::Result<&'m Variant, Failure> {
+fn choose<'m>(model: &'m Model, asked: &[String]) -> std::result::Result<&'m Variant, Failure> {
     let mut wanted: Vec<Option<&str>> = vec![None; model.choices.len()];
     for setting in asked {
         let Some((name, option)) = setting.split_once('=') else {

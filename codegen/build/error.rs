@@ -37,6 +37,8 @@ pub enum Error {
         package: String,
         /// The interpreter whose pip ran.
         python: PathBuf,
+        /// The lock file.
+        lock: PathBuf,
         /// Why it failed.
         cause: InstallCause,
         /// What pip wrote.
@@ -150,9 +152,10 @@ impl fmt::Display for Error {
             Error::Install {
                 package,
                 python,
+                lock,
                 cause,
                 output,
-            } => install(f, package, python, *cause, output),
+            } => install(f, package, python, lock, *cause, output),
             Error::Import { python, output } => {
                 writeln!(
                     f,
@@ -248,10 +251,11 @@ fn install(
     f: &mut fmt::Formatter<'_>,
     package: &str,
     python: &Path,
+    lock: &Path,
     cause: InstallCause,
     output: &str,
 ) -> fmt::Result {
-    let python = python.display();
+    let (python, lock) = (python.display(), lock.display());
     match cause {
         InstallCause::NothingFound => writeln!(
             f,
@@ -260,7 +264,7 @@ fn install(
         )?,
         InstallCause::HashMismatch => writeln!(
             f,
-            "refused {package}: a fetched file is not the one that codegen/requirements.lock pins \
+            "refused {package}: a fetched file is not the one that {lock} pins \
              by its hash"
         )?,
         InstallCause::Other => writeln!(f, "cannot install {package}: pip of {python} failed")?,
@@ -276,7 +280,7 @@ fn install(
             writeln!(
                 f,
                 "    without: on a machine of the same kind that has one, `python3 -m pip download \
-                 --no-deps --only-binary :all: --require-hashes -r codegen/requirements.lock -d \
+                 --no-deps --only-binary :all: --require-hashes -r {lock} -d \
                  wheels`; copy the folder wheels here and build with PIP_NO_INDEX=1 \
                  PIP_FIND_LINKS=/path/to/wheels"
             )?;

@@ -1,7 +1,12 @@
-//! What `build.rs` does: Python with CasADi, generated code, compiled models.
+//! From model folders to compiled models: Python with CasADi, generated code, C. The whole of a `build.rs`:
+//!
+//! ```no_run
+//! dalembert_build::models();
+//! ```
 //!
 //! | module | subject |
 //! |---|---|
+//! | `generator`, `files` | the generator, which travels inside this crate |
 //! | `python` | which interpreter, and how it is run |
 //! | `install` | the locked packages, from the cache or a registry |
 //! | `generate` | from model folders to C |
@@ -16,6 +21,7 @@
 //! |---|---|
 //! | `DALEMBERT_PYTHON` | an interpreter that already has the CasADi of the lock file |
 //! | `DALEMBERT_CACHE` | folder for installed packages and generated code |
+//! | `DALEMBERT_GENERATOR` | a folder `codegen` in place of the generator inside |
 //! | `PIP_INDEX_URL`, `PIP_FIND_LINKS`, … | how pip reaches a registry |
 //! | `DALEMBERT_SANITIZE` | if set, the C checks its addresses and for undefined behaviour: `.ci/sanitize` |
 //! | `CC`, `CFLAGS`, … | the C compiler, as the `cc` crate understands them |
@@ -23,8 +29,10 @@
 mod cache;
 mod compile;
 mod error;
+mod files;
 mod fingerprint;
 mod generate;
+mod generator;
 mod install;
 mod parallel;
 mod python;
@@ -34,48 +42,68 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use cache::Cache;
-use error::Error;
+pub use error::{Error, InstallCause, ModelFailure};
+use generator::Generator;
 use install::{Environment, Lock};
 
+/// Builds the models under `models/` of the crate whose build script calls it.
+///
+/// Reports failures as cargo errors. The exit status stays 0, on which cargo prints those lines
+/// alone and still fails the build; a non-zero status would bury them under the build script's
+/// whole output.
+pub fn models() {
+    if let Err(error) = run() {
+        for line in error.to_string().lines() {
+            println!("cargo::error={line}");
+        }
+    }
+}
+
 /// Provides everything that the crate includes, links and reads from its build environment.
-pub fn run() -> Result<(), Error> {
+fn run() -> Result<(), Error> {
     let project = PathBuf::from(cargo("CARGO_MANIFEST_DIR")?);
     let out_dir = PathBuf::from(cargo("OUT_DIR")?);
     let target = cargo("TARGET")?;
     let with_tests = env::var_os("CARGO_FEATURE_TEST_MODELS").is_some();
-    watch(&project, with_tests)?;
+    watch(&project, with_tests);
 
-    let lock = Lock::read(project.join("codegen").join("requirements.lock"))?;
     let cache = Cache::shared(&out_dir)?;
+    let generator = Generator::provide(&cache)?;
+    for file in &generator.watched {
+        println!("cargo::rerun-if-changed={}", file.display());
+    }
+    let lock = Lock::read(generator.file("requirements.lock"))?;
     let environment = Environment::provide(&lock, &cache)?;
     announce(&environment, &lock);
     announce_build(&target)?;
 
     let models = generate::discover(&project, with_tests)?;
-    let generated = generate::generate(&project, &models, &lock, &environment, &cache, &target)?;
-    compile::compile(&project, &generated, &out_dir)
+    let generated =
+        generate::generate(&project, &models, &generator, &environment, &cache, &target)?;
+    compile::compile(&generator, &generated, &out_dir)
 }
 
 /// Tells cargo when to run the build script again.
 ///
-/// The generator is watched file by file: bytecode and tests beside it change nothing. `models/`
-/// is watched as a whole, because a new folder counts. Not watched are the variables that only
+/// `models/` is watched as a whole, because a new folder counts. Not watched are the variables that only
 /// lead to Python or to a registry (`PATH`, `HOME`, `PIP_*`): what they led to stays valid, and a
-/// build that failed is run again anyway.
-fn watch(project: &Path, with_tests: bool) -> Result<(), Error> {
-    let mut paths: Vec<_> = ["build.rs", "build", "models"].map(Into::into).into();
-    if with_tests {
-        paths.push("tests/models".into());
-    }
-    paths.extend(generate::generator_files(project)?);
+/// build that failed is run again anyway. The generator is part of the build script.
+fn watch(project: &Path, with_tests: bool) {
+    let tests = with_tests.then_some("tests/models");
+    let paths = ["build.rs", "models"].into_iter().chain(tests);
     // Cargo takes a path that is missing for one that changed.
-    for path in paths.iter().filter(|path| project.join(path).exists()) {
-        println!("cargo::rerun-if-changed={}", path.display());
+    for path in paths.filter(|path| project.join(path).exists()) {
+        println!("cargo::rerun-if-changed={path}");
     }
-    for variable in [python::SETTING, cache::SETTING, compile::SANITIZE] {
+    let settings = [
+        python::SETTING,
+        cache::SETTING,
+        generator::SETTING,
+        compile::SANITIZE,
+    ];
+    for variable in settings {
         println!("cargo::rerun-if-env-changed={variable}");
     }
-    Ok(())
 }
 
 /// Passes the interpreter on to the crate, which runs Python for verification and in tests: with

@@ -7,6 +7,7 @@ use super::cache::{Cache, Compares, Kind};
 use super::error::Error;
 use super::fingerprint::Fingerprint;
 use super::generate::Generated;
+use super::generator::Generator;
 use super::{parallel, registry};
 
 /// Variable that has the C compiled with sanitizers of addresses and undefined behaviour: `.ci/sanitize`.
@@ -18,15 +19,10 @@ const KIND: Kind = Kind {
     compares: Compares::Digests,
 };
 
-/// C that generated code and the crate call, relative to the project, and for lanes; what they include.
-const ELEMENTARY: [&str; 3] = ["codegen/elementary.c", "codegen/ranges.c", "codegen/sums.c"];
-const LANES: &str = "codegen/lanes.c";
-const INCLUDED: [&str; 4] = [
-    "codegen/contract.h",
-    "codegen/elementary.h",
-    "codegen/lanes.h",
-    "codegen/vectors.h",
-];
+/// C of the generator that generated code and the crate call, and for lanes; what they include.
+const ELEMENTARY: [&str; 3] = ["elementary.c", "ranges.c", "sums.c"];
+const LANES: &str = "lanes.c";
+const INCLUDED: [&str; 4] = ["contract.h", "elementary.h", "lanes.h", "vectors.h"];
 
 /// A level of the processor, with the width of its registers: see `codegen/lanes.h`.
 struct Level {
@@ -71,7 +67,7 @@ struct Library {
 ///
 /// A library is kept under the hash of its C files, the compiler and the flags, so that a model
 /// that generated the same C as before is not compiled again.
-pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(), Error> {
+pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> Result<(), Error> {
     let of_model = |model: &Generated| Library {
         name: model.name.clone(),
         defines: Vec::new(),
@@ -110,8 +106,8 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         defines: Vec::new(),
         level: None,
         origin: ELEMENTARY.join(", "),
-        directory: project.join("codegen"),
-        sources: ELEMENTARY.map(|file| project.join(file)).into(),
+        directory: generator.folder(),
+        sources: ELEMENTARY.map(|file| generator.file(file)).into(),
     };
     let x86_64 = std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "x86_64");
     let levels = || std::iter::once(&ANY).chain(X86_64.iter().filter(|_| x86_64));
@@ -126,8 +122,8 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         defines: Vec::new(),
         level: None,
         origin: LANES.to_owned(),
-        directory: project.join("codegen"),
-        sources: vec![project.join(LANES)],
+        directory: generator.folder(),
+        sources: vec![generator.file(LANES)],
     };
     let lanes = lanes.chain([elementary_lanes]).flat_map(|library| {
         levels().map(move |level| Library {
@@ -151,10 +147,10 @@ pub fn compile(project: &Path, models: &[Generated], out_dir: &Path) -> Result<(
         problem,
     };
     let command = command(&build).map_err(|problem| failed("the models", problem))?;
-    let included = INCLUDED.map(|file| project.join(file));
+    let included = INCLUDED.map(|file| generator.file(file));
     let command = Fingerprint::default()
         .with(command)
-        .with_files(project, included.iter().map(PathBuf::as_path))?;
+        .with_files(&generator.folder(), included.iter().map(PathBuf::as_path))?;
     let libraries = Cache::at(out_dir);
     let compiled = parallel::map(&all, |library| {
         let flags = library.level.map_or(&[][..], |level| level.flags);

@@ -176,6 +176,7 @@ fn install(lock: &Lock, python: &Python, folder: &Path) -> Result<(), Error> {
         return Err(Error::Install {
             package: format!("CasADi {}", lock.casadi),
             python: python.executable.clone(),
+            lock: lock.path.clone(),
             cause: cause(&output),
             output,
         });

@@ -7,8 +7,10 @@ use serde_json::Value;
 
 use super::cache::{self, Cache, Compares, Kind};
 use super::error::{Error, ModelFailure};
+use super::files;
 use super::fingerprint::Fingerprint;
-use super::install::{Environment, Lock};
+use super::generator::Generator;
+use super::install::Environment;
 use super::parallel;
 
 /// Kind of the cache entries that hold generated code.
@@ -84,34 +86,26 @@ pub fn discover(project: &Path, with_tests: bool) -> Result<Vec<Model>, Error> {
     }
 }
 
-/// Files of the generator, whose change regenerates every model.
-pub fn generator_files(project: &Path) -> Result<Vec<PathBuf>, Error> {
-    inputs(&project.join("codegen"))
-}
-
 /// The generated code of all models, in their order: from the cache where neither the model, nor
 /// the generator, nor the lock file changed. A failure reports every model that failed.
 pub fn generate(
     project: &Path,
     models: &[Model],
-    lock: &Lock,
+    generator: &Generator,
     environment: &Environment,
     cache: &Cache,
     target: &str,
 ) -> Result<Vec<Generated>, Error> {
-    let generator = generator_files(project)?;
-    let common = Fingerprint::default()
-        .with(target)
-        .with(&lock.text)
-        .with_files(project, generator.iter().map(PathBuf::as_path))?;
+    let common = (Fingerprint::default().with(target)).with(&generator.digest);
     let results = parallel::map(models, |model| {
-        let files = inputs(&project.join(&model.folder))?;
+        let folder = project.join(&model.folder);
+        let files = files::sources(&folder).map_err(Error::io("list", &folder))?;
         let hash = common
             .clone()
             .with_files(project, files.iter().map(PathBuf::as_path))?
             .finish();
         let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
-            run(project, model, environment, folder)
+            run(project, model, generator, environment, folder)
         })?;
         read(model, &entry.join(&model.name), hash)
     });
@@ -135,13 +129,16 @@ pub fn generate(
 fn run(
     project: &Path,
     model: &Model,
+    generator: &Generator,
     environment: &Environment,
     folder: &Path,
 ) -> Result<(), Error> {
     let mut command = environment.command();
     command
-        .current_dir(project)
-        .args(["-m", "codegen", "generate", "--model-dir", &model.folder])
+        .current_dir(&generator.root)
+        .args(["-m", "codegen", "--directory"])
+        .arg(project)
+        .args(["generate", "--model-dir", &model.folder])
         .arg("--out")
         .arg(folder)
         .args(model.for_tests.then_some("--for-tests"));
@@ -193,15 +190,6 @@ fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error
         lanes,
         tables: folder.join(tables),
         digest,
-    })
-}
-
-/// The files of a folder on which generated code can depend: all but prose, the generator's own
-/// tests, bytecode and hidden files.
-fn inputs(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    cache::files(folder, &|path| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.starts_with('.') || name.ends_with(".md") || name == "tests" || name == "__pycache__"
     })
 }
 
