@@ -12,7 +12,8 @@
 
 use dalembert::hybrid::{Ensemble, Member, Problem, Simulator};
 use dalembert::input::{Function, Sine};
-use dalembert::kernel::{LANES_OF_LEVELS, MODELS, processor_level};
+use dalembert::kernel::{LANES_OF_LEVELS, processor_level};
+use dalembert::model::models;
 use dalembert::record::Silent;
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -133,8 +134,8 @@ fn compare(pool: &rayon::ThreadPool, name: &str, tolerance: f64, problems: &[Pro
 }
 
 fn model(name: &str) -> Problem {
-    let model = MODELS.iter().find(|m| m.name == name);
-    let mut problem = Problem::new(model.expect("the model is there"));
+    let model = models().find(name);
+    let mut problem = Problem::new(&model.expect("the model is there"));
     problem.end.time = 10.0;
     problem.record.ledger = false;
     problem.record.event_states = false;

@@ -11,7 +11,8 @@
 use dalembert::hybrid::{Problem, simulate};
 use dalembert::input::Signals;
 use dalembert::integrate::{Radau, System, Tolerances};
-use dalembert::kernel::{Context, Free, MODELS, ModeKernel, ModeKernels};
+use dalembert::kernel::{Context, Free, ModeKernel, ModeKernels};
+use dalembert::model::models;
 use dalembert::record::{Event, Recorded, Silent, Snapshot};
 use dalembert::scene::Scene;
 use dalembert::with_kernel;
@@ -82,7 +83,7 @@ fn problem(scene: &str, overrides: &[&str]) -> Problem {
     let scene = Scene::load(
         &folder.join(scene).with_extension("json"),
         &overrides,
-        MODELS,
+        models(),
     )
     .unwrap_or_else(|errors| panic!("{errors}"));
     let mut problem = scene.problem;
@@ -109,7 +110,7 @@ fn fastest<T>(work: impl Fn() -> T) -> (f64, T) {
 
 /// Number of guards of the mode at the start that lead to a mode the scene may visit.
 fn guards(problem: &Problem) -> usize {
-    let modes = problem.variant().modes;
+    let modes = &problem.variant().modes;
     let allowed = |m: usize| problem.freeze.iter().all(|i| !modes[m].free.contains(i));
     let leads_on = |g: &&dalembert::model::Guard| g.transitions.iter().any(|t| allowed(t.target));
     modes[0].guards.iter().filter(leads_on).count()
@@ -153,15 +154,15 @@ fn stretches(problem: &Problem) -> Vec<Stretch> {
 
 /// A mode's equations over a stretch.
 struct Reduced<'a, const F: usize> {
-    kernel: &'static ModeKernel<F>,
+    kernel: &'a ModeKernel<F>,
     context: Context,
     signals: &'a Signals,
     start: f64,
 }
 
 impl<'a, const F: usize> Reduced<'a, F> {
-    fn new(problem: &'a Problem, stretch: &Stretch, kernel: &'static ModeKernel<F>) -> Self {
-        let mut context = Context::new(problem.model, &problem.parameters);
+    fn new(problem: &'a Problem, stretch: &Stretch, kernel: &'a ModeKernel<F>) -> Self {
+        let mut context = Context::new(&problem.model, &problem.parameters);
         context
             .discrete_mut()
             .copy_from_slice(&stretch.from.discrete);
@@ -283,12 +284,12 @@ fn integrate<const F: usize, Y: System<F>>(
 fn integrate_free(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
     let mode = &problem.variant().modes[stretch.mode];
     with_kernel!(&mode.kernels, kernel => {
-        integrate(problem, stretch, mode.free, &mut Reduced::new(problem, stretch, kernel))
+        integrate(problem, stretch, &mode.free, &mut Reduced::new(problem, stretch, kernel))
     })
 }
 
 fn integrate_all(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
-    let modes = problem.variant().modes;
+    let modes = &problem.variant().modes;
     let kernels = modes.iter().map(|m| &m.kernels);
     let mut all = kernels.filter_map(|k| {
         if let ModeKernels::F3(k) = k {
@@ -298,7 +299,7 @@ fn integrate_all(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
         }
     });
     let kernel = all.next().expect("in one mode all are free");
-    let free = modes[stretch.mode].free;
+    let free = &modes[stretch.mode].free;
     let mut system = Whole {
         all: Reduced::new(problem, stretch, kernel),
         held: std::array::from_fn(|i| !free.contains(&i)),

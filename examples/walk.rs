@@ -4,7 +4,7 @@
 //! Every scene of the tank under both rule sets and both landing laws.
 
 use dalembert::hybrid::simulate;
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::{Run, Silent};
 use dalembert::scene::Scene;
 use std::fmt::Write;
@@ -55,7 +55,7 @@ fn run(scene: &str, changes: &[&str], rules: &str, landing: &str) -> Run {
     let scene = Scene::load(
         &folder.join(scene).with_extension("json"),
         &overrides,
-        MODELS,
+        models(),
     )
     .unwrap_or_else(|errors| panic!("{errors}"));
     let run = simulate(&scene.problem, &mut Silent).expect("the initial state fits a mode");

@@ -7,11 +7,11 @@
 //!
 //! ```
 //! use dalembert::hybrid::{Problem, simulate};
-//! use dalembert::kernel::MODELS;
+//! use dalembert::model::models;
 //! use dalembert::record::Silent;
 //!
-//! let model = MODELS.iter().find(|m| m.name == "bouncing_ball").expect("it is in models/");
-//! let mut problem = Problem::new(model);
+//! let model = models().find("bouncing_ball").expect("it is in models/");
+//! let mut problem = Problem::new(&model);
 //! problem.set_parameter("e", 0.5)?;
 //! problem.set_initial("h", 1.0)?;
 //! problem.end.time = 2.0;

@@ -3,7 +3,8 @@
 
 use dalembert::hybrid::Problem;
 use dalembert::integrate::solve;
-use dalembert::kernel::{Context, Free, MODELS, ModeKernel};
+use dalembert::kernel::{Context, Free, ModeKernel};
+use dalembert::model::models;
 use dalembert::model::{InputKind, Mode, Model, Variant};
 use dalembert::with_kernel;
 use nalgebra::{SMatrix, SVector};
@@ -32,17 +33,12 @@ struct Point<const F: usize> {
 }
 
 impl<const F: usize> Point<F> {
-    fn random(
-        model: &'static Model,
-        mode: &Mode,
-        kernel: &ModeKernel<F>,
-        random: &mut Random,
-    ) -> Self {
+    fn random(model: &Model, mode: &Mode, kernel: &ModeKernel<F>, random: &mut Random) -> Self {
         let parameters: Vec<f64> = (model.parameters.iter())
             .map(|p| (p.default * (1.0 + 0.01 * random.next())).clamp(p.minimum, p.maximum))
             .collect();
         let mut context = Context::new(model, &parameters);
-        for (value, discrete) in context.discrete_mut().iter_mut().zip(model.discretes) {
+        for (value, discrete) in context.discrete_mut().iter_mut().zip(&model.discretes) {
             *value = discrete.values[usize::from(random.next() > 0.0)];
         }
         for (i, c) in model.coordinates.iter().enumerate() {
@@ -199,7 +195,7 @@ fn check_equations<const F: usize>(
 }
 
 fn check_guards<const F: usize>(what: &str, kernel: &ModeKernel<F>, mode: &Mode, point: &Point<F>) {
-    for guard in mode.guards {
+    for guard in &mode.guards {
         let value = |t: f64| {
             let point = point.later(t);
             SVector::from([kernel.guard(&point.context, &guard.kernel, point.at())])
@@ -259,7 +255,7 @@ fn check_energies<const F: usize>(
     );
 }
 
-fn check_mode(model: &'static Model, variant: &Variant, mode: &Mode, random: &mut Random) {
+fn check_mode(model: &Model, variant: &Variant, mode: &Mode, random: &mut Random) {
     let what = format!("{} {:?} {}", model.name, variant.options, mode.name);
     with_kernel!(&mode.kernels, kernel => {
         for _ in 0..5 {
@@ -279,10 +275,10 @@ fn check_mode(model: &'static Model, variant: &Variant, mode: &Mode, random: &mu
 fn generated_functions_agree_with_each_other() {
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut modes = 0;
-    for model in MODELS {
+    for model in models().iter() {
         for variant in model.automata() {
-            for mode in variant.modes {
-                check_mode(model, variant, mode, &mut random);
+            for mode in &variant.modes {
+                check_mode(&model, variant, &mode, &mut random);
                 modes += 1;
             }
         }
@@ -292,7 +288,10 @@ fn generated_functions_agree_with_each_other() {
 
 #[test]
 fn every_model_starts_with_its_defaults() {
-    for model in MODELS {
-        assert_eq!(Problem::new(model).parameters.len(), model.parameters.len());
+    for model in models().iter() {
+        assert_eq!(
+            Problem::new(&model).parameters.len(),
+            model.parameters.len()
+        );
     }
 }

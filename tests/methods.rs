@@ -152,9 +152,10 @@ fn smooth_lift_offs_with_each_method() {
     for method in [Method::Taylor, Method::Radau] {
         for relative in [1e-5, 1e-8, 1e-11] {
             let mut tank = problem("walking_tank", &[]);
-            let sets = tank.model.parameter_sets;
+            let model = tank.model.clone();
+            let sets = &model.parameter_sets;
             let doughnut = sets.iter().find(|s| s.name == "doughnut").unwrap();
-            for (name, value) in doughnut.values {
+            for (name, value) in &doughnut.values {
                 tank.set_parameter(name, *value).unwrap();
             }
             tank.set_parameter("mu_s", 0.6).unwrap();

@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::{Event, Run};
 use dalembert::scene::{Disk, Scene};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -50,7 +50,7 @@ fn a_contact_that_opens_does_not_collide() {
 /// Runs a scene with a method.
 fn run_scene(text: &str, method: Method) -> (Problem, Run) {
     let path = Path::new("onsets.json");
-    let mut problem = Scene::parse(text.as_bytes(), path, &[], MODELS, &Disk)
+    let mut problem = Scene::parse(text.as_bytes(), path, &[], models(), &Disk)
         .unwrap()
         .problem;
     problem.method = method;

@@ -160,7 +160,7 @@ fn energies_balance_as_well_as_the_motion_is_computed() {
         ("sliding_oscillator", 1e-10),
     ] {
         let path = format!("{}/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
-        let models = dalembert::kernel::MODELS;
+        let models = dalembert::model::models();
         let scene = Scene::load(path.as_ref(), &[], models).expect("the scene is in order");
         let run = run(&scene.problem);
         let ledger = run.energy.as_ref().unwrap();
@@ -182,7 +182,7 @@ fn extremes_do_not_depend_on_the_rows() {
                 "" => vec![],
                 setting => vec![setting.to_owned()],
             };
-            let models = dalembert::kernel::MODELS;
+            let models = dalembert::model::models();
             let scene = Scene::load(path.as_ref(), &settings, models).unwrap();
             let run = run(&scene.problem);
             // No row exceeds them by more than rounding.

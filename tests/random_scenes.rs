@@ -96,8 +96,9 @@ fn scene(number: u64) -> Problem {
                 ("damping", damping),
             ];
             let mut tank = problem(model, &parameters);
-            let set = random.one_of(tank.model.parameter_sets);
-            for (name, value) in set.values {
+            let model = tank.model.clone();
+            let set = random.one_of(&model.parameter_sets);
+            for (name, value) in &set.values {
                 if !parameters.iter().any(|(own, _)| own == name) {
                     tank.set_parameter(name, *value).unwrap();
                 }
@@ -133,7 +134,7 @@ fn scene(number: u64) -> Problem {
 fn fault(problem: &Problem, run: &Run) -> Option<String> {
     if let Some(failure) = &run.failure {
         let modes = problem.variant().modes.iter();
-        let mut required = modes.flat_map(|mode| mode.requirements);
+        let mut required = modes.flat_map(|mode| &mode.requirements);
         if !required.any(|requirement| failure.reason.contains(requirement.failure)) {
             return Some(format!("stops at {}: {}", failure.at.t, failure.reason));
         }

@@ -1,6 +1,6 @@
 //! What the README and the page of the walk say is what the program does.
 
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::scene::{Disk, Scene};
 use std::path::Path;
 
@@ -25,7 +25,13 @@ fn the_scene_it_shows_is_one() {
     let mut blocks = readme.split("```json\n").skip(1);
     let scene = blocks.next().expect("it shows a scene");
     let scene = scene.split("```").next().expect("the block ends");
-    let read = Scene::parse(scene.as_bytes(), Path::new("README.md"), &[], MODELS, &Disk);
+    let read = Scene::parse(
+        scene.as_bytes(),
+        Path::new("README.md"),
+        &[],
+        models(),
+        &Disk,
+    );
     if let Err(errors) = read {
         panic!("{errors}");
     }

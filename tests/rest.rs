@@ -3,7 +3,7 @@
 mod common;
 use common::*;
 use dalembert::hybrid::{Problem, simulate};
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::{Run, Silent};
 use dalembert::scene::Scene;
 use std::path::Path;
@@ -13,7 +13,7 @@ const G: f64 = 9.81;
 /// A scene of the tests.
 fn scene(name: &str) -> Problem {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/scenes");
-    let scene = Scene::load(&folder.join(format!("{name}.json")), &[], MODELS);
+    let scene = Scene::load(&folder.join(format!("{name}.json")), &[], models());
     scene.unwrap_or_else(|errors| panic!("{errors}")).problem
 }
 

@@ -4,24 +4,30 @@
 #![forbid(unsafe_code)]
 
 use dalembert::integrate::{ORDERS, Series};
-use dalembert::kernel::{Context, Free, MODELS, ModeKernel};
+use dalembert::kernel::{Context, Free, ModeKernel};
+use dalembert::model::models;
 use dalembert::model::{Guard, Mode, Model, Variant};
 use dalembert::with_kernel;
 use nalgebra::{SMatrix, SVector};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 /// A mode with the model that it is of.
-type Of = (&'static Model, &'static Mode);
+type Of<'m> = (&'m Model, &'m Mode);
 
-fn modes() -> impl Iterator<Item = Of> {
-    MODELS.iter().flat_map(|&model| {
-        let modes = model.automata().flat_map(|variant| variant.modes);
-        modes.map(move |mode| (model, mode))
+fn all_models() -> Vec<Arc<Model>> {
+    models().iter().collect()
+}
+
+fn modes(models: &[Arc<Model>]) -> impl Iterator<Item = Of<'_>> {
+    models.iter().flat_map(|model| {
+        let modes = model.automata().flat_map(|variant| &variant.modes);
+        modes.map(move |mode| (&**model, mode))
     })
 }
 
 /// A context with the default parameters.
-fn context(model: &'static Model) -> Context {
+fn context(model: &Model) -> Context {
     let parameters: Vec<_> = model.parameters.iter().map(|p| p.default).collect();
     Context::new(model, &parameters)
 }
@@ -58,7 +64,7 @@ fn taken<const F: usize>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<
         "guard_magnitude",
         refuses(|| kernel.guard_magnitude(&x, own_guard, at)),
     );
-    for transition in guard.transitions {
+    for transition in &guard.transitions {
         let transition = &transition.kernel;
         let mut out = room(own.0);
         expect_refusal(
@@ -66,10 +72,10 @@ fn taken<const F: usize>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<
             refuses(|| kernel.reset(&x, transition, at, &mut out)),
         );
         if transition.conditions() > 0 {
-            let mut out = Default::default();
+            let mut x = context(own.0);
             expect_refusal(
                 "conditions",
-                refuses(|| kernel.conditions(&x, transition, at, &mut out).len()),
+                refuses(|| kernel.conditions(&mut x, transition, at).len()),
             );
         }
     }
@@ -80,15 +86,16 @@ fn taken<const F: usize>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<
 #[test]
 fn a_kernel_takes_nothing_of_another_model() {
     std::panic::set_hook(Box::new(|_| {}));
+    let models = all_models();
     let (mut pairs, mut wrong) = (0, Vec::new());
-    for own in modes() {
-        for (model, mode) in modes() {
+    for own in modes(&models) {
+        for (model, mode) in modes(&models) {
             // Those of other numbers of coordinates are refused by these.
             if std::ptr::eq(own.0, model) || own.1.free.len() != mode.free.len() {
                 continue;
             }
-            for guard in mode.guards {
-                let taken = with_kernel!(&own.1.kernels, k => taken(k, own, guard));
+            for guard in &mode.guards {
+                let taken = with_kernel!(&own.1.kernels, k => taken(k, own, &guard));
                 if !taken.is_empty() {
                     wrong.push(format!(
                         "{} {} takes {taken:?} of {} {}",
@@ -115,15 +122,16 @@ fn a_kernel_takes_nothing_of_another_model() {
 
 #[test]
 fn a_kernel_takes_what_is_of_its_own_model() {
-    for own in modes() {
+    let models = all_models();
+    for own in modes(&models) {
         let x = context(own.0);
         with_kernel!(&own.1.kernels, k => {
             let rest = SVector::zeros();
             let at = Free { q: &rest, v: &rest, a: &rest };
-            for guard in own.1.guards {
+            for guard in &own.1.guards {
                 let _ = k.guard(&x, &guard.kernel, at);
                 let _ = k.guard_magnitude(&x, &guard.kernel, at);
-                for transition in guard.transitions {
+                for transition in &guard.transitions {
                     k.reset(&x, &transition.kernel, at, &mut room(own.0));
                 }
             }
@@ -199,11 +207,11 @@ fn call_all<const F: usize>(
     kernel.held_rates(&x, &mut out);
     expect("held_rates", is_written(&out));
 
-    for guard in mode.guards {
+    for guard in &mode.guards {
         let _ = kernel.guard(&x, &guard.kernel, at);
         let _ = kernel.guard_magnitude(&x, &guard.kernel, at);
         let _ = kernel.guard_rate(&x, &guard.kernel, at, &a);
-        for transition in guard.transitions {
+        for transition in &guard.transitions {
             let mut out = unwritten(room(model).len());
             kernel.reset(&x, &transition.kernel, at, &mut out);
             expect(transition.name, is_written(&out));
@@ -211,7 +219,7 @@ fn call_all<const F: usize>(
             with_kernel!(&target.kernels, target => {
                 let rest = SVector::zeros();
                 let at = Free { q: &rest, v: &rest, a: &rest };
-                let _ = target.conditions(&x, &transition.kernel, at, &mut Default::default());
+                let _ = target.conditions(&mut x, &transition.kernel, at);
             });
         }
     }
@@ -240,11 +248,11 @@ fn call_all<const F: usize>(
 #[test]
 fn every_function_writes_all_its_outputs() {
     let mut unfinished = Vec::new();
-    for &model in MODELS {
-        for variant in model.variants {
-            for mode in variant.modes {
+    for model in models().iter() {
+        for variant in &model.variants {
+            for mode in &variant.modes {
                 unfinished
-                    .extend(with_kernel!(&mode.kernels, k => call_all(k, (model, mode), variant)));
+                    .extend(with_kernel!(&mode.kernels, k => call_all(k, (&model, mode), variant)));
             }
         }
     }

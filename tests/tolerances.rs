@@ -3,7 +3,7 @@
 mod common;
 
 use dalembert::hybrid::{Method, Problem};
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::precision::{Difference, TOLERANCES, match_events};
 use dalembert::record::{Recorded, Run};
 use dalembert::scene::Scene;
@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// The scene of a file, shortened to `end` seconds.
 fn scene(file: &Path, end: f64) -> Problem {
-    let mut problem = Scene::load(file, &[], MODELS).unwrap().problem;
+    let mut problem = Scene::load(file, &[], models()).unwrap().problem;
     problem.end.time = problem.end.time.min(end);
     problem.record.columns = Recorded::default();
     problem.record.every = Some(f64::INFINITY);

@@ -39,8 +39,8 @@ fn factor(unit: &str, units: Units) -> f64 {
 /// The problem in other units; `inputs` are its inputs there.
 fn in_units(problem: &Problem, units: Units, inputs: &[(&str, Function)]) -> Problem {
     let mut other = problem.clone();
-    let model = problem.model;
-    for (value, parameter) in other.parameters.iter_mut().zip(model.parameters) {
+    let model = &problem.model;
+    for (value, parameter) in other.parameters.iter_mut().zip(&model.parameters) {
         *value *= factor(parameter.unit, units);
     }
     let (initial, accuracy) = (&mut other.initial, &mut other.accuracy);

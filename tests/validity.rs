@@ -53,8 +53,8 @@ fn a_steel_tank_is_told_that_its_bottom_plate_is_not_rigid() {
 
 #[test]
 fn the_tanks_of_the_paper_are_what_the_model_is_meant_for() {
-    for set in problem("walking_tank", &[]).model.parameter_sets {
-        let tank = problem("walking_tank", set.values);
+    for set in &problem("walking_tank", &[]).model.parameter_sets {
+        let tank = problem("walking_tank", &set.values);
         assert_eq!(tank.invalid_parameters(), [], "{}", set.name);
     }
 }

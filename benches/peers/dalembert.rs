@@ -9,7 +9,7 @@ mod overhead;
 
 use dalembert::hybrid::{End, Method, Problem, Simulator};
 use dalembert::input::{Function, Sine};
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::Silent;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
@@ -182,8 +182,8 @@ pub fn problem(name: &str, tolerance: f64) -> Problem {
 }
 
 fn model(name: &str, parameters: &[(&str, f64)]) -> Problem {
-    let model = MODELS.iter().find(|m| m.name == name);
-    let mut problem = Problem::new(model.expect("the model is linked"));
+    let model = models().find(name);
+    let mut problem = Problem::new(&model.expect("the model is linked"));
     for &(name, value) in parameters {
         problem
             .set_parameter(name, value)

@@ -2,7 +2,7 @@
 //! end is a fault, and a panic that is planted to see that it is found.
 
 use dalembert::hybrid::{Method, Problem, simulate};
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::{Progress, Run};
 use dalembert::scene::{Files, Scene};
 use std::hint::black_box;
@@ -46,7 +46,7 @@ impl Files for Everywhere<'_> {
 /// Reads a scene; if it is one, runs it for some steps.
 pub fn read_and_run(scene: &[u8], overrides: &[String], table: &[u8]) {
     let path = Path::new("scene.json");
-    match Scene::parse(scene, path, overrides, MODELS, &Everywhere(table)) {
+    match Scene::parse(scene, path, overrides, models(), &Everywhere(table)) {
         Ok(scene) => run(scene.problem),
         // What is wrong is shown, too.
         Err(errors) => drop(errors.to_string()),

@@ -303,20 +303,21 @@ fn inverse<const F: usize>(
 mod tests {
     use super::super::problem::Problem;
     use super::*;
-    use crate::kernel::{MODELS, with_kernel};
+    use crate::kernel::with_kernel;
+    use crate::model::models;
 
     /// A ball at height y with velocity v, just after an event in flight: whether it flies on, and the sign
     /// remembered of its height.
     fn flies_on(y: f64, v: f64) -> Option<Watch> {
-        let model = MODELS.iter().find(|m| m.name == "bouncing_ball").unwrap();
-        let problem = Problem::new(model);
+        let model = models().find("bouncing_ball").unwrap();
+        let problem = Problem::new(&model);
         let mut simulation = Simulation::new(&problem).unwrap();
         simulation.here.mode = 0;
         (simulation.here.q[0], simulation.here.v[0]) = (y, v);
         simulation.set_context();
         let mode = simulation.mode();
         let again = with_kernel!(&mode.kernels, k => {
-            let [q, v, _] = simulation.here.free(mode.free);
+            let [q, v, _] = simulation.here.free(&mode.free);
             simulation.enter_again(k, q, v, true).unwrap()
         });
         again.then(|| simulation.signs.watches[0])

@@ -106,12 +106,12 @@ pub(super) fn is_impact(guard: &Guard) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::MODELS;
+    use crate::model::models;
 
     /// Names of the modes that a tank may visit, each with its guards that are watched.
     fn plan(freeze: &[&str]) -> Vec<(&'static str, Vec<&'static str>)> {
-        let model = MODELS.iter().find(|m| m.name == "walking_tank").unwrap();
-        let mut problem = Problem::new(model);
+        let model = models().find("walking_tank").unwrap();
+        let mut problem = Problem::new(&model);
         problem.freeze = freeze
             .iter()
             .map(|c| model.coordinate(c).unwrap())

@@ -103,12 +103,12 @@ fn limit<const F: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::MODELS;
+    use crate::model::models;
 
     /// Typical sizes of the spring's elongation and of its rate.
     fn spring(k: f64, c: f64) -> [f64; 2] {
-        let model = MODELS.iter().find(|m| m.name == "sliding_oscillator");
-        let mut problem = Problem::new(model.unwrap());
+        let model = models().find("sliding_oscillator");
+        let mut problem = Problem::new(&model.unwrap());
         problem.set_parameter("k", k).unwrap();
         problem.set_parameter("c", c).unwrap();
         let d = problem.model.coordinate("d").unwrap();

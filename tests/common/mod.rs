@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test file uses some of them
 
 use dalembert::hybrid::{Method, Problem, simulate};
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::{Run, Silent};
 use serde_json::Value;
 use std::cell::Cell;
@@ -34,11 +34,8 @@ pub fn with_each_method(test: impl Fn()) {
 
 /// A problem of a model by name, with the given parameters.
 pub fn problem(model: &str, parameters: &[(&str, f64)]) -> Problem {
-    let model = MODELS
-        .iter()
-        .find(|m| m.name == model)
-        .expect("the model exists");
-    let mut problem = Problem::new(model);
+    let model = models().find(model).expect("the model exists");
+    let mut problem = Problem::new(&model);
     problem.method = METHOD.get();
     for (name, value) in parameters {
         problem.set_parameter(name, *value).unwrap();

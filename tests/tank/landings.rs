@@ -53,8 +53,8 @@ fn tank(release: &Release, law: &str) -> Problem {
     );
     tank.choose(&[("landing", law)]).unwrap();
     if release.doughnut {
-        for (name, value) in tank.model.parameter_sets[1].values {
-            tank.set_parameter(name, *value).unwrap();
+        for &(name, value) in &tank.model.clone().parameter_sets[1].values {
+            tank.set_parameter(name, value).unwrap();
         }
     }
     for (name, value) in [

@@ -1,7 +1,7 @@
 //! The scenes the tank is looked at in.
 
 use dalembert::hybrid::Problem;
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::scene::Scene;
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub const SCENES: [&str; 4] = [
 pub fn scene(name: &str, overrides: &[&str]) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.json"));
     let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
-    match Scene::load(&path, &overrides, MODELS) {
+    match Scene::load(&path, &overrides, models()) {
         Ok(scene) => scene.problem,
         Err(errors) => panic!("{errors}"),
     }

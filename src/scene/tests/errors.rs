@@ -350,7 +350,7 @@ fn independent_errors_are_reported_together() {
 
 #[test]
 fn unreadable_scene_has_no_place() {
-    let errors = Scene::load(Path::new("no/such/scene.json"), &[], MODELS).unwrap_err();
+    let errors = Scene::load(Path::new("no/such/scene.json"), &[], models()).unwrap_err();
     let error = errors.iter().next().unwrap();
     assert_eq!(error.position(), None);
     assert!(

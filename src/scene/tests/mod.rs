@@ -13,7 +13,7 @@ use std::io;
 use std::path::Path;
 
 use super::{Scene, SceneError, SceneErrors};
-use crate::kernel::MODELS;
+use crate::model::models;
 
 /// Reads a scene called `scenes/test.json`, with some tables beside it.
 fn parse_with(
@@ -34,7 +34,7 @@ fn parse_with(
         text,
         Path::new("scenes/test.json"),
         &overrides,
-        MODELS,
+        models(),
         &files,
     )
 }
@@ -45,7 +45,7 @@ fn parse(text: &str) -> Result<Scene, SceneErrors> {
 
 /// The option that a scene gets for a choice of its model.
 fn option(scene: &Scene, choice: &str) -> &'static str {
-    let choices = scene.problem.model.choices;
+    let choices = &scene.problem.model.choices;
     let index = choices.iter().position(|c| c.name == choice);
     scene.problem.variant().options[index.expect("a choice of the model")]
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 
-use crate::kernel::MODELS;
+use crate::model::models;
 use crate::scene::unit::{QuantityError, Unit, convert};
 
 #[test]
@@ -105,7 +105,7 @@ proptest! {
 }
 #[test]
 fn units_of_every_model_can_be_written_in_scenes() {
-    for model in MODELS {
+    for model in models().iter() {
         let units = model.parameters.iter().map(|p| p.unit);
         let units = units.chain(model.coordinates.iter().map(|c| c.unit));
         for unit in units.chain(model.inputs.iter().map(|i| i.unit)) {

@@ -204,8 +204,8 @@ fn tables_may_have_comments_quotes_and_a_byte_order_mark() {
 
 #[test]
 fn schema_lists_what_a_model_has() {
-    for model in MODELS {
-        let schema = crate::scene::schema(Some(model));
+    for model in models().iter() {
+        let schema = crate::scene::schema(Some(&model));
         let parameters = schema["properties"]["parameters"]["properties"]
             .as_object()
             .unwrap();
@@ -225,7 +225,7 @@ fn schema_lists_what_a_model_has() {
         assert_eq!(schema["additionalProperties"], false);
         assert_eq!(schema["required"], serde_json::json!(["model", "end"]));
     }
-    let tank = crate::scene::schema(MODELS.iter().find(|m| m.name == "walking_tank").copied());
+    let tank = crate::scene::schema(models().find("walking_tank").as_deref());
     assert_eq!(
         tank["properties"]["rules"]["enum"],
         serde_json::json!(["reactions", "paper"])
