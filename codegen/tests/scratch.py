@@ -1,5 +1,6 @@
 """Model files made up for a test, in a folder of their own."""
 
+import json
 import os
 import tempfile
 import unittest
@@ -34,6 +35,10 @@ class ScratchTest(unittest.TestCase):
         with open(os.path.join(self.folder, "model.py"), "w", encoding="utf-8") as stream:
             stream.write(text)
         return generate.generate(self.folder)
+
+    def described(self, text):
+        """The description of the same."""
+        return json.loads(self.generate(text)["description.json"])
 
     def refusal(self, text, line):
         """The message with which a model file is refused, which must point at `line`."""

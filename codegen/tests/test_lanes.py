@@ -1,7 +1,5 @@
 """What is emitted for trajectories side by side."""
 
-import re
-
 from codegen.tests.scratch import BODY, HEAD, MODE, ScratchTest
 
 TWO = HEAD + BODY.replace("(x, 0)", "(x, y)").replace("model.point", 'y = model.coordinate("y", "m", "height")\nmodel.point')
@@ -11,8 +9,8 @@ FLIES = 'moves = model.mode("moves", freeze=[(y, {held})])\n'
 class Lanes(ScratchTest):
     def resets(self, text):
         """Of each transition of the first guard of the first mode, whether lanes can take it."""
-        found = re.search(r"resets: &\[&\[(.*?)\]", self.generate(text)["model.rs"])
-        return [entry.startswith("Some") for entry in found[1].split(", ")]
+        mode = self.described(text)["variants"][0]["modes"][0]
+        return [transition["stays"] for transition in mode["guards"][0]["transitions"]]
 
     def test_a_reset_of_what_is_free_is_for_lanes(self):
         bounce = 'model.transition("bounce", moves, moves, when=falls(x), reset=[(x, 0), (x.rate, -x.rate)])\n'

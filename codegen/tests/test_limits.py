@@ -29,12 +29,14 @@ class Limits(ScratchTest):
     def test_a_reaction_in_its_mode(self):
         line = ('held = model.mode("held", freeze=[x])\n'
                 'model.limit("torn", "torn", when=held.reaction(x) > 0, modes=[held])\n')
-        self.assertIn('Limit { name: "torn", message: "torn"', self.generate(WHOLE + line)["model.rs"])
+        [limit] = self.described(WHOLE + line)["variants"][0]["limits"]
+        self.assertEqual((limit["name"], limit["message"]), ("torn", "torn"))
 
     def test_conditions_of_parameters_are_no_margins(self):
-        rust = self.generate(WHOLE + 'model.valid(m > 0, "light")\nmodel.valid(x < 0, "near")\n')["model.rs"]
-        self.assertEqual(rust.count('sentence: "light"'), 1)
-        self.assertIn("margins: &[Some(GuardShape::Linear", rust)
+        [variant] = self.described(WHOLE + 'model.valid(m > 0, "light")\nmodel.valid(x < 0, "near")\n')["variants"]
+        self.assertEqual([entry["sentence"] for entry in variant["valid_parameters"]], ["light"])
+        self.assertEqual([entry["sentence"] for entry in variant["valid_motion"]], ["near"])
+        self.assertEqual(list(variant["modes"][0]["margins"][0]), ["linear"])
 
     def test_a_bound_that_moves(self):
         self.assertIn("a bound of a coordinate", self.refusal(
@@ -43,9 +45,11 @@ class Limits(ScratchTest):
     def test_a_bound_that_depends_on_parameters(self):
         wall = 'wall = model.parameter("wall", "m", 1.0, "wall")\n'
         head = HEAD.replace("x = ", wall + "x = ").replace('"place")', '"place", minimum=-1, maximum=2 * wall)')
-        rust = self.generate(head + BODY + MODE)["model.rs"]
-        self.assertIn("minimum: Some(-1.0), maximum: None", rust)
-        self.assertIn('ParametricBound { coordinate: 0, upper: true, text: "(2.*wall)" }', rust)
+        described = self.described(head + BODY + MODE)
+        [coordinate] = described["coordinates"]
+        self.assertEqual((coordinate["minimum"], coordinate["maximum"]), (-1.0, None))
+        [bound] = described["variants"][0]["bounds"]
+        self.assertEqual(bound, {"coordinate": 0, "upper": True, "text": "(2.*wall)"})
 
 
 if __name__ == "__main__":

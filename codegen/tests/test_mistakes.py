@@ -109,17 +109,19 @@ class Mistakes(ScratchTest):
         self.generate(START + AGAIN.format("reset=[(s, s * (1 - 2 * (x.rate < 0)))]"))
 
     def test_a_coordinate_is_held_at_a_parameter(self):
-        files = self.generate(HEAD + 'l = model.parameter("l", "m", 1, "")\n' + BODY
-                              + 'model.mode("held", freeze=[(x, 2 * l)])\nmodel.mode("at_zero", freeze=[(x, 0)])\n')
-        self.assertIn('held_at: &[Some(HeldAt::Expression("(2.*l)"))]', files["model.rs"])
-        self.assertIn("held_at: &[Some(HeldAt::Number(0.0))]", files["model.rs"])
+        described = self.described(HEAD + 'l = model.parameter("l", "m", 1, "")\n' + BODY
+                                   + 'model.mode("held", freeze=[(x, 2 * l)])\nmodel.mode("at_zero", freeze=[(x, 0)])\n')
+        modes = described["variants"][0]["modes"]
+        self.assertEqual([mode["held_at"] for mode in modes], [[{"expression": "(2.*l)"}], [{"number": 0.0}]])
 
     def test_there_may_be_many_conditions_and_requirements(self):
         conditions = "provided=[x.rate + n * x.rate for n in range(20)]"
-        files = self.generate(START + AGAIN.format(conditions)
-                              + 'for n in range(30): model.requires(moves, m + n * m + 0 * x, "no")\n')
-        self.assertIn("pub const MOST_CONDITIONS: usize = 20;", files["model.rs"])
-        self.assertEqual(files["model.rs"].count("Requirement {"), 30)
+        described = self.described(START + AGAIN.format(conditions)
+                                   + 'for n in range(30): model.requires(moves, m + n * m + 0 * x, "no")\n')
+        modes = described["variants"][0]["modes"]
+        conditions = [t["condition"] for mode in modes for guard in mode["guards"] for t in guard["transitions"]]
+        self.assertIn(20, [condition["count"] for condition in conditions if condition])
+        self.assertEqual(sum(len(mode["requirements"]) for mode in modes), 30)
 
 
 if __name__ == "__main__":

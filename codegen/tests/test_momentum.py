@@ -154,8 +154,10 @@ class Tank(ScratchTest):
         self.assertIn("gravity `g` must enter", message)
 
     def test_there_is_code_with_and_without_vertical_motion(self):
-        tables = self.generate(self.text)["model.rs"]
-        self.assertEqual((tables.count("lean: Some((&[1], &Variant {"), tables.count("barred: &[1]")), (2, 4))
+        variants = self.described(self.text)["variants"]
+        lean = [v["lean"] for v in variants if v["lean"]]
+        self.assertEqual([of["without"] for of in lean], [[1], [1]])
+        self.assertEqual([v["barred"] for v in variants + [of["variant"] for of in lean]].count([1]), 4)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 use super::failure::Reason;
 use super::limits::check_bounds;
-use super::problem::Problem;
 use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::GuardShape;

@@ -82,13 +82,7 @@ impl Reader<'_> {
         })?;
         let parameters = at.get("parameters", |at| at.list_of(of.parameters, parameter))?;
         let inputs = at.get("inputs", |at| at.list(|at| input(at, of.signals)))?;
-        let constants = at.get("constants", |at| {
-            at.get("count", |at| match count(at)? {
-                count if count == of.constants => Ok(()),
-                _ => Err(at.wrong(format!("{}, as in dimensions.constants", of.constants))),
-            })?;
-            self.of_parameters(at)
-        })?;
+        let constants = at.get("constants", |at| self.of_parameters(at, of.constants))?;
         let model = Model {
             name: at.get("name", text)?,
             digest,
@@ -129,6 +123,8 @@ impl Reader<'_> {
         let index = |at: &At| at.index(free.len());
         let limits = at.get("limits", |at| at.list(limit))?;
         let valid_motion = at.get("valid_motion", |at| at.list(validity))?;
+        let valid_parameters = at.get("valid_parameters", |at| at.list(validity))?;
+        let bounds = at.get("bounds", |at| at.list(|at| self.bound(at)))?;
         let modes = Modes {
             free: &free,
             margins: limits.len() + valid_motion.len(),
@@ -149,18 +145,11 @@ impl Reader<'_> {
             })?,
             limits,
             valid_motion,
-            valid_parameters: at.get("valid_parameters", |at| at.list(validity))?,
-            bounds: at.get("bounds", |at| {
-                at.list(|at| {
-                    Ok(ParametricBound {
-                        coordinate: at
-                            .get("coordinate", |at| at.index(self.dimensions.coordinates))?,
-                        upper: at.get("upper", truth)?,
-                        text: at.get("text", text)?,
-                    })
-                })
+            declared: at.get("declared", |at| {
+                self.of_parameters(at, valid_parameters.len() + bounds.len())
             })?,
-            declared: at.get("declared", |at| self.of_parameters(at))?,
+            valid_parameters,
+            bounds,
             lean: at.get("lean", |at| {
                 at.option(|at| {
                     Ok((
@@ -169,6 +158,15 @@ impl Reader<'_> {
                     ))
                 })
             })?,
+        })
+    }
+
+    fn bound(&self, at: &At) -> Read<ParametricBound> {
+        let coordinates = self.dimensions.coordinates;
+        Ok(ParametricBound {
+            coordinate: at.get("coordinate", |at| at.index(coordinates))?,
+            upper: at.get("upper", truth)?,
+            text: at.get("text", text)?,
         })
     }
 
@@ -345,11 +343,15 @@ impl Reader<'_> {
         Ok(self.lanes.iter().map(|of| of.values[place]).collect())
     }
 
-    fn of_parameters(&self, at: &At) -> Read<ConstantsKernel> {
+    /// A function of parameters with so many results.
+    fn of_parameters(&self, at: &At, results: usize) -> Read<ConstantsKernel> {
         Ok(ConstantsKernel {
             dimensions: self.dimensions.clone(),
             function: at.get("function", |at| self.value(at))?,
-            count: at.get("count", count)?,
+            count: at.get("count", |at| match count(at)? {
+                count if count == results => Ok(count),
+                _ => Err(at.wrong(results.to_string())),
+            })?,
         })
     }
 

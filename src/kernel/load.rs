@@ -12,8 +12,7 @@ use std::path::Path;
 /// A shared library that was loaded.
 #[derive(Debug)]
 pub struct Library {
-    /// Never read: it is there so that it is not unloaded.
-    #[expect(dead_code)]
+    #[expect(dead_code, reason = "it is there so that the library is not unloaded")]
     loaded: libloading::Library,
 }
 
@@ -60,8 +59,13 @@ impl Model {
 /// # Errors
 /// [`ContractError`] if it is of another version.
 pub(crate) fn linked(raw: &'static RawModel) -> Result<Model, ContractError> {
+    description::model(&parts_of_linked(raw)?, None)
+}
+
+/// What is in it.
+pub(super) fn parts_of_linked(raw: &'static RawModel) -> Result<Parts, ContractError> {
     // SAFETY: only generated C makes one, and what is linked stays.
-    description::model(&unsafe { parts(raw) }?, None)
+    unsafe { parts(raw) }
 }
 
 /// The name of a model that is linked into the program.

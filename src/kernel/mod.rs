@@ -19,6 +19,8 @@ mod lanes;
 mod load;
 mod reader;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use context::Context;
 pub(crate) use context::Dimensions;

@@ -56,16 +56,16 @@ impl<'a> At<'a> {
         place
     }
 
-    /// Reads the value of a key; one that is missing is null.
+    /// Reads the value of a key.
     pub fn get<T>(&self, key: &str, read: impl FnOnce(&At) -> Read<T>) -> Read<T> {
-        static MISSING: Value = Value::Null;
         let Value::Object(entries) = self.value else {
             return Err(self.wrong("an object"));
         };
-        read(&At {
-            value: entries.get(key).unwrap_or(&MISSING),
-            parent: Some((self, Step::Key(key))),
-        })
+        let Some(value) = entries.get(key) else {
+            return Err(self.wrong(format!("an object with the key `{key}`")));
+        };
+        let parent = Some((self, Step::Key(key)));
+        read(&At { value, parent })
     }
 
     /// The only key of an object, and what `read` makes of its value.

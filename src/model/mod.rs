@@ -45,6 +45,7 @@ pub struct Model {
     /// True for models that exist for the test suite alone.
     pub for_tests: bool,
     /// The library that its functions are in, if it was loaded: it stays as long as they may be called.
+    #[expect(dead_code, reason = "it is there so that the library is not unloaded")]
     pub(crate) library: Option<crate::kernel::Library>,
 }
 

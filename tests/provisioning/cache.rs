@@ -41,7 +41,7 @@ fn a_damaged_cache_heals() {
     assert_eq!(fixture.log(), ["install"]);
 
     let generated = only_folder(&cache.join("code"), "alpha-");
-    fs::remove_file(generated.join("alpha/model.rs")).unwrap();
+    fs::remove_file(generated.join("alpha/alpha_model.c")).unwrap();
     succeeds(&mut fixture.installing());
     assert_eq!(fixture.log(), ["generate alpha"]);
 

@@ -172,7 +172,7 @@ impl Fixture {
 
     /// The generated list of models.
     pub fn models(&self) -> String {
-        fs::read_to_string(self.path("target/debug/build/project/out/models.rs")).unwrap()
+        fs::read_to_string(self.path("target/debug/build/project/out/models.c")).unwrap()
     }
 
     /// What was installed and generated since the last call, sorted.

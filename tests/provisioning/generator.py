@@ -29,8 +29,8 @@ if model == "crash":
 
 files = {
     f"{name}.c": f"double dalembert_{name}(void) {{ return {model}; }}\n",
-    "model.rs": f"pub static {name.upper()}: Model = Model;\n",
-    "manifest.json": json.dumps({"name": name, "static": name.upper(), "sources": [f"{name}.c"], "lanes": []}),
+    f"{name}_model.c": f"const int DALEMBERT_SYMBOL = sizeof DALEMBERT_DIGEST;\n",
+    "manifest.json": json.dumps({"name": name, "tables": f"{name}_model.c", "sources": [f"{name}.c"], "lanes": []}),
 }
 folder = os.path.join(arguments.out, name)
 os.makedirs(folder)

@@ -14,7 +14,7 @@ fn the_first_build_does_everything_and_the_second_nothing() {
     assert_eq!(fixture.log(), ALL);
     has(
         &fixture.models(),
-        &["pub mod alpha {", "&alpha::ALPHA,\n    &beta::BETA,"],
+        &["{&dalembert_model_alpha, &dalembert_model_beta, 0}"],
     );
     let libraries = fixture.path("target/debug/build/project/out/libraries");
     let library = only_folder(&libraries, "alpha-").join("libdalembert_alpha.a");
@@ -94,7 +94,7 @@ fn a_new_folder_is_a_new_model() {
     fixture.model("gamma", "3.0");
     succeeds(&mut fixture.script());
     assert_eq!(fixture.log(), ["generate gamma"]);
-    has(&fixture.models(), &["&gamma::GAMMA"]);
+    has(&fixture.models(), &["&dalembert_model_gamma"]);
 }
 
 #[test]
