@@ -278,7 +278,7 @@ fn generated_functions_agree_with_each_other() {
     for model in models().iter() {
         for variant in model.automata() {
             for mode in &variant.modes {
-                check_mode(&model, variant, &mode, &mut random);
+                check_mode(&model, variant, mode, &mut random);
                 modes += 1;
             }
         }

@@ -95,7 +95,7 @@ fn a_kernel_takes_nothing_of_another_model() {
                 continue;
             }
             for guard in &mode.guards {
-                let taken = with_kernel!(&own.1.kernels, k => taken(k, own, &guard));
+                let taken = with_kernel!(&own.1.kernels, k => taken(k, own, guard));
                 if !taken.is_empty() {
                     wrong.push(format!(
                         "{} {} takes {taken:?} of {} {}",

@@ -113,7 +113,7 @@ struct Cost {
 }
 
 fn functions<const F: usize>(kernel: &ModeKernel<F>, problem: &Problem, mode: &Mode) -> Cost {
-    let mut context = Context::new(&&problem.model, &problem.parameters);
+    let mut context = Context::new(&problem.model, &problem.parameters);
     context.quiet = problem.signals.is_zero();
     // A state at which nothing is zero.
     let (q, v) = (SVector::repeat(0.01), SVector::repeat(0.1));

@@ -236,7 +236,7 @@ impl Problem {
                 .unknown("coordinate, rate or discrete state", name, known)
                 .into());
         }
-        check_initial(&model, &initial)?;
+        check_initial(model, &initial)?;
         self.initial = initial;
         Ok(())
     }
@@ -252,7 +252,7 @@ impl Problem {
         let index = found.ok_or_else(|| self.unknown("input", name, known()))?;
         let mut functions: Vec<Function> = self.signals.functions().cloned().collect();
         functions[index] = function;
-        self.signals = Signals::new(&inputs, functions);
+        self.signals = Signals::new(inputs, functions);
         Ok(())
     }
 

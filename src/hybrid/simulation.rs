@@ -146,7 +146,7 @@ impl<'p> Simulation<'p> {
         problem.check()?;
         let plan = Plan::new(problem)?;
         problem.check_method(&plan)?;
-        let mut context = Context::new(&model, &problem.parameters);
+        let mut context = Context::new(model, &problem.parameters);
         context
             .discrete_mut()
             .copy_from_slice(&problem.initial.discrete);
@@ -221,10 +221,10 @@ impl<'p> Simulation<'p> {
     /// Takes the place of a member of an ensemble, at its start.
     pub fn become_member(&mut self, member: &Member<'p>) -> Result<(), Reason> {
         let model = &self.problem.model;
-        check_parameters(&model, member.parameters)?;
-        check_initial(&model, member.initial)?;
+        check_parameters(model, member.parameters)?;
+        check_initial(model, member.initial)?;
         self.initial = member.initial;
-        self.context.set_parameters(&model, member.parameters);
+        self.context.set_parameters(model, member.parameters);
         self.expansion.set_parameters(member.parameters);
         self.rewind(0);
         self.choose_initial_mode()?;

@@ -262,7 +262,7 @@ fn initial(model: Option<&Model>) -> Object {
         let position = Quantity::within(c.bounds(), c.unit);
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
-        keys.push(Key::new(rate_key(&c), rate, Quantity::any(rate_unit(&c))));
+        keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
     }
     for d in &model.discretes {
         let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values.clone()));
