@@ -181,7 +181,7 @@ impl Simulation<'_> {
                 return Ok(false);
             };
             self.here.set_free(mode.free, [&q, &v, &a]);
-            self.flush_samples();
+            self.flush_samples()?;
         }
         Ok(true)
     }
