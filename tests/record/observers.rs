@@ -16,13 +16,16 @@ fn scene(name: &str, overrides: &[&str]) -> Scene {
     Scene::load(&path, &overrides, MODELS).unwrap()
 }
 
+/// A time, and coordinates and velocities then.
+type At = (f64, Vec<f64>, Vec<f64>);
+
 /// Keeps what it is told, and ends the run at a row by its index.
 #[derive(Default)]
 struct Told {
     rows: Vec<(f64, usize, Vec<f64>)>,
     events: Vec<(Jump, Option<[Snapshot; 2]>)>,
     /// Times at which steps begin and end, and the states at these.
-    steps: Vec<[(f64, Vec<f64>, Vec<f64>); 2]>,
+    steps: Vec<[At; 2]>,
     sees_steps: bool,
     coordinates: usize,
     end_at: Option<usize>,
@@ -111,7 +114,7 @@ fn steps_are_shown_with_their_dense_output_up_to_their_events() {
         let mut seen = 0;
         for (jump, sides) in &told.events {
             let [before, _] = sides.as_ref().unwrap();
-            let at_its_time = |(t, ..): &&(f64, Vec<f64>, Vec<f64>)| (t - jump.t).abs() < 1e-14;
+            let at_its_time = |(t, ..): &&At| (t - jump.t).abs() < 1e-14;
             let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-10);
             let mut ends = told.steps.iter().map(|step| &step[1]).filter(at_its_time);
             seen += usize::from(ends.any(|(_, q, v)| near(q, &before.q) && near(v, &before.v)));
