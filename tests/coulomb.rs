@@ -4,7 +4,7 @@
 mod common;
 use common::*;
 use dalembert::hybrid::Problem;
-use dalembert::input::{Function, Sine};
+use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::record::Event;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -205,6 +205,80 @@ fn a_newmark_block_slips_both_ways() {
                     assert!(error.abs() < 1e-12, "η = {eta}: slip off by {error:e}");
                 }
             }
+        }
+    });
+}
+
+/// A mass that a force presses against its stop, on the right or on the left; the force falls by 0.4 N a second from
+/// t = 5 s on. It starts at rest in the middle.
+fn pressed(direction: f64, e: f64) -> Problem {
+    let parameters = [
+        ("k", 0.1),
+        ("static_friction", 0.1),
+        ("kinetic_friction", 0.1),
+        ("stop", 0.5),
+        ("e", e),
+    ];
+    let mut problem = problem("coulomb_oscillator", &parameters);
+    let (times, forces) = (
+        [0.0, 5.0, 10.0],
+        [1.0, 1.0, -1.0].map(|f: f64| direction * f),
+    );
+    let table = Table::new(&times, &forces, Interpolation::Linear, Outside::Hold).unwrap();
+    problem.set_input("force", Function::from(table)).unwrap();
+    problem.record.columns.reactions = true;
+    problem
+}
+
+#[test]
+fn a_mass_that_is_pressed_rests_against_its_stop() {
+    with_each_method(|| {
+        for (direction, name) in [(1.0, "rests_right"), (-1.0, "rests_left")] {
+            for e in [0.0, 0.5] {
+                let mut problem = pressed(direction, e);
+                problem.end.time = 5.0;
+                let run = run(&problem);
+                let last = run.trajectory.row(run.trajectory.len() - 1);
+                let value = |column: &str| last[run.trajectory.column(column).unwrap()];
+                let mode = usize::from(run.trajectory.mode[run.trajectory.len() - 1]);
+                assert_eq!(run.layout.modes[mode], name, "e = {e}");
+                assert_eq!(
+                    [value("x"), value("x.rate")],
+                    [direction * 0.5, 0.0],
+                    "e = {e}"
+                );
+                let reaction = direction * (0.1 * 0.5 - 1.0);
+                assert!((value("reaction.x") - reaction).abs() < 1e-15, "e = {e}");
+                // The impacts end before long: the mass is thrown back by the stop, and pressed on by at least 0.85 N.
+                let rest = run
+                    .events
+                    .iter()
+                    .find(|event| event.transition == "rest")
+                    .unwrap();
+                assert!(rest.t < 4.5, "e = {e}: {}", rest.t);
+            }
+        }
+    });
+}
+
+#[test]
+fn it_leaves_when_friction_can_no_longer_hold_it_back() {
+    with_each_method(|| {
+        for direction in [1.0, -1.0] {
+            let mut problem = pressed(direction, 0.5);
+            problem.end.time = 9.0;
+            let run = run(&problem);
+            // The spring pulls with 0.05 N, friction holds 0.1 N: the force must have come down to −0.05 N.
+            let leaves = run
+                .events
+                .iter()
+                .find(|event| event.transition == "leave")
+                .unwrap();
+            let exact = 5.0 + 1.05 / 0.4;
+            assert!((leaves.t - exact).abs() < 1e-12, "{}", leaves.t);
+            let last = run.trajectory.row(run.trajectory.len() - 1);
+            let x = last[run.trajectory.column("x").unwrap()];
+            assert!(direction * x < 0.5, "{x}");
         }
     });
 }

@@ -23,6 +23,10 @@ model.force(x, force)
 
 slides = model.mode("slides", "in motion")
 sticks = model.mode("sticks", "held by friction", freeze=[x])
+at_stops = {
+    +1: model.mode("rests_right", "pressed against the stop on the right", freeze=[(x, stop)]),
+    -1: model.mode("rests_left", "pressed against the stop on the left", freeze=[(x, -stop)]),
+}
 slides.force(x, -kinetic * slip)
 
 stops = falls(slip * x.rate)
@@ -33,6 +37,11 @@ for direction in (+1, -1):
     model.transition(
         "impact", slides, slides, when=falls(stop - direction * x), impact=True,
         reset=[(x, direction * stop), (x.rate, -e * x.rate), (slip, -direction)])
+
+# A stop pushes the mass away from it; friction alone can hold it back there.
+for direction, rests in at_stops.items():
+    model.rest(slides, rests)
+    model.transition("leave", rests, slides, when=falls(static - direction * rests.reaction(x)), reset=[(slip, -direction)])
 
 model.draw("ground", [(-3, -0.1), (3, -0.1)], kind="fixed")
 model.draw("wall", [(-3, -0.1), (-3, 0.4)], kind="fixed")

@@ -1,4 +1,4 @@
-//! Ctrl-C: a simulation ends at its next step and keeps what it has.
+//! Ctrl-C: a simulation ends at its next step or row and keeps what it has.
 
 use std::ops::ControlFlow;
 use std::process;
@@ -10,19 +10,27 @@ use crate::record::Progress;
 /// Whether a signal asked the process to end.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
+/// Whether no simulation goes on any more that could end early.
+static LEFT: AtomicBool = AtomicBool::new(false);
+
 /// What a shell reports for a process that SIGINT ended: 128 + 2.
 const ENDED_BY_SIGNAL: i32 = 130;
 
 /// From here on SIGINT (Ctrl-C), SIGTERM and SIGHUP end simulations early instead of the process.
-/// A second signal ends the process at once.
+/// A second signal ends the process at once, and so does any after [`leave`].
 pub fn listen() -> Result<(), Failure> {
     let on_signal = || {
-        if ASKED.swap(true, Ordering::Relaxed) {
+        if ASKED.swap(true, Ordering::Relaxed) || LEFT.load(Ordering::Relaxed) {
             process::exit(ENDED_BY_SIGNAL);
         }
     };
     ctrlc::set_handler(on_signal)
         .map_err(|error| Failure::system(format!("cannot listen to Ctrl-C: {error}")))
+}
+
+/// The simulations have ended: from here on a signal ends the process, wherever it is.
+pub fn leave() {
+    LEFT.store(true, Ordering::Relaxed);
 }
 
 /// Whether a signal asked the process to end.

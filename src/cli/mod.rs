@@ -15,6 +15,7 @@ mod interrupt;
 mod models;
 mod motion;
 mod outcome;
+mod outputs;
 mod precision;
 mod print;
 mod room;

@@ -10,32 +10,46 @@ use crate::scene::Scene;
 /// Most bytes of a number in a table: sign, 17 digits, point, exponent and separator.
 const DIGITS: f64 = 25.0;
 
-/// Refuses a scene whose rows exceed the memory, or the disk on which `out` is to be.
-pub fn check(scene: &Scene, out: Option<&Path>) -> Result<(), Failure> {
+/// Bytes of the digest of a row.
+const DIGEST: f64 = 9.0;
+
+/// Refuses a scene whose rows exceed the disk on which `out` is to be. (In memory there are never many.)
+pub fn check_disk(scene: &Scene, out: Option<&Path>) -> Result<(), Failure> {
+    let bytes = |columns: f64| columns * DIGITS + DIGEST;
+    check(scene, "disk", bytes, out.and_then(free_disk))
+}
+
+/// Refuses a scene whose rows, of so many runs, exceed the memory.
+pub fn check_memory(scene: &Scene, runs: usize) -> Result<(), Failure> {
+    let bytes = |columns: f64| runs as f64 * columns * 8.0;
+    check(scene, "memory", bytes, free_memory())
+}
+
+/// Refuses a scene whose rows, each of so many `bytes` for its columns, exceed what is `free`.
+fn check(
+    scene: &Scene,
+    what: &str,
+    bytes: impl Fn(f64) -> f64,
+    free: Option<f64>,
+) -> Result<(), Failure> {
     let problem = &scene.problem;
-    let Some(every) = problem.record.every else {
+    let (Some(every), Some(free)) = (problem.record.every, free) else {
         return Ok(());
     };
     let layout = Layout::new(&problem.model, problem.variant(), problem.record.columns);
     // With the time and the mode.
     let columns = (layout.columns().len() + 2) as f64;
     let rows = (problem.end.time / every).floor() + 1.0;
-    let needed = [
-        ("memory", rows * columns * 8.0, free_memory()),
-        ("disk", rows * columns * DIGITS, out.and_then(free_disk)),
-    ];
-    for (what, bytes, free) in needed {
-        let Some(free) = free.filter(|&free| bytes > free) else {
-            continue;
-        };
-        let message = format!(
-            "{rows:.4e} rows of the trajectory would take up to {bytes:.3e} bytes of {what}, of which {free:.3e} are free"
-        );
-        let help = "raise `record.every`, or leave out columns";
-        let source = &scene.source;
-        return Err(source.error_at("record.every", message, Some(help)).into());
+    let bytes = rows * bytes(columns);
+    if bytes <= free {
+        return Ok(());
     }
-    Ok(())
+    let message = format!(
+        "{rows:.4e} rows of the trajectory would take up to {bytes:.3e} bytes of {what}, of which {free:.3e} are free"
+    );
+    let help = "raise `record.every`, or leave out columns";
+    let source = &scene.source;
+    Err(source.error_at("record.every", message, Some(help)).into())
 }
 
 /// Memory that programs can still have, in bytes, where the system tells.

@@ -2,21 +2,24 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
+use super::outputs::{NotReplayed, Outputs};
 use super::{print, room, warnings};
-use crate::hybrid::{Invalid, Problem, Reason, resume, simulate};
+use crate::hybrid::{Invalid, Problem, Reason, Replay, check_same, resume_with, simulate_with};
 use crate::model::models;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
-use crate::record::{OutputFolder, ProgressLine, Report, Run};
+use crate::record::{Earlier, Layout, OutputFolder, ProgressLine, Report, Run, Sketch, Stream};
 use crate::scene::Scene;
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
-Ctrl-C ends the simulation at its next step; what was computed is written, with status 3. A second \
-Ctrl-C ends it at once, and nothing is written.
+Ctrl-C ends the simulation at its next step or row; what was computed is written, with status 3. A second \
+Ctrl-C, or one that comes when the simulation is over and its pictures are drawn, ends it at once, and \
+nothing is written.
 
 --resume continues the run in DIR, whether it was interrupted or reached its end, to the end of \
 the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, inputs, \
@@ -60,54 +63,73 @@ pub fn run(arguments: &RunArguments) -> Result {
     let scene = Scene::load(&arguments.scene, &arguments.overrides, models())?;
     let problem = &scene.problem;
     let earlier = match &arguments.resume {
-        Some(folder) => Some(
-            Run::read(
-                folder,
-                &problem.model,
-                problem.variant(),
-                problem.record.columns,
-            )
-            .map_err(Failure::wrong_input)?,
-        ),
+        Some(folder) => {
+            let columns = problem.record.columns;
+            let earlier = Earlier::open(folder, &problem.model, problem.variant(), columns);
+            let earlier = earlier.map_err(Failure::wrong_input)?;
+            check_same(problem, &earlier.run).map_err(|reason| other_run(folder, &reason))?;
+            Some((folder, earlier))
+        }
         None => None,
     };
     // Before the simulation, so that a folder that cannot be written costs no time.
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
-    room::check(&scene, out.map(PathBuf::as_path))?;
+    room::check_disk(&scene, out.map(PathBuf::as_path))?;
 
     warnings::before(problem);
+    let layout = Layout::new(&problem.model, problem.variant(), problem.record.columns);
+    let (page, compared) = (arguments.html.is_some(), arguments.error_estimate);
+    let mut outputs = Outputs::new(&layout, folder.as_ref(), page, compared);
+    let earlier = match earlier {
+        Some((folder, mut earlier)) => {
+            let mut replay = Replay::new(problem);
+            let replayed = outputs.replay(&mut earlier, &mut replay);
+            replayed.map_err(|error| match error {
+                NotReplayed::Unread(error) => Failure::wrong_input(error),
+                NotReplayed::Other(reason) => other_run(folder, &reason),
+            })?;
+            Some((earlier.run, replay))
+        }
+        None => None,
+    };
+    let spent = |outputs: &Outputs| {
+        outputs
+            .stream
+            .as_ref()
+            .map_or(Duration::ZERO, Stream::spent)
+    };
+    let before = spent(&outputs);
     interrupt::listen()?;
     let mut progress = Interruptible(ProgressLine::new(problem.end.time));
     let run = match earlier {
-        None => simulate(problem, &mut progress),
-        Some(earlier) => resume(problem, earlier, &mut progress),
+        None => simulate_with(problem, &mut outputs, &mut progress),
+        Some((run, replay)) => resume_with(problem, run, replay, &mut outputs, &mut progress),
     };
     drop(progress);
-    let mut run = run.map_err(|reason| match (&reason, &arguments.resume) {
-        (Reason::OtherRun { .. }, Some(folder)) => Failure::wrong_input(format!(
-            "{}: {reason}; continue it with the scene it was made with",
-            folder.display()
-        )),
-        _ => refusal(&scene, &reason),
-    })?;
+    let mut run = run.map_err(|reason| refusal(&scene, &reason))?;
+    run.wall = run.wall.saturating_sub(spent(&outputs) - before);
     let mut no_estimate = None;
     if arguments.error_estimate {
         let mut progress = Interruptible(ProgressLine::new(problem.end.time));
+        run.events = outputs.events();
         match estimate(problem, &run, &mut progress) {
             Ok(error) => run.error = Some(error),
             Err(reason) => no_estimate = Some(reason),
         }
     }
+    interrupt::leave();
     // The report is shown also where files cannot be written.
-    let written = folder.as_ref().map(|folder| run.write(folder));
-    let page =
-        (arguments.html.as_ref()).map(|page| write_page(page, &run, &arguments.scene, problem));
     let report = Report::new(&run);
     print::output(&report)?;
     warnings::after(report.summary());
+    let Outputs { stream, sketch, .. } = outputs;
+    let sketch = sketch.unwrap_or_else(|| Sketch::new(&layout));
+    let written = stream.map(|stream| stream.finish(&run, &sketch));
+    if let Some(page) = &arguments.html {
+        write_page(page, (&run, &sketch), &arguments.scene, problem)?;
+    }
     written.transpose()?;
-    page.transpose()?;
     if let Some(reason) = &no_estimate {
         print::error(format!("no estimate of the error: {reason}"));
     }
@@ -127,10 +149,18 @@ pub fn run(arguments: &RunArguments) -> Result {
     }
 }
 
+/// Why a run cannot be continued with a scene.
+fn other_run(folder: &Path, reason: &Reason) -> Failure {
+    let folder = folder.display();
+    Failure::wrong_input(format!(
+        "{folder}: {reason}; continue it with the scene it was made with"
+    ))
+}
+
 /// Writes the page of a run, whole or not at all.
 fn write_page(
     path: &Path,
-    run: &Run,
+    (run, sketch): (&Run, &Sketch),
     scene: &Path,
     problem: &Problem,
 ) -> std::result::Result<(), Failure> {
@@ -141,6 +171,7 @@ fn write_page(
     let text = std::fs::read_to_string(scene).unwrap_or_default();
     let page = run_page(
         run,
+        sketch,
         Told {
             drawing: problem.variant().drawing,
             scene: &text,

@@ -181,7 +181,7 @@ impl<'p> Simulation<'p> {
                 return Ok(false);
             };
             self.here.set_free(&mode.free, [&q, &v, &a]);
-            self.flush_samples();
+            self.flush_samples()?;
         }
         Ok(true)
     }

@@ -118,14 +118,14 @@ impl<'p> Simulation<'p> {
         if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, energy) {
             ledger.add_jump(jump);
         }
-        self.jumps.push(Jump {
+        let jump = Jump {
             t: self.here.now.seconds(),
             j: self.here.j,
             transition: name,
             from,
             to: target,
             energy: energy.filter(|_| impact),
-        });
+        };
         if let Some(before) = before {
             let after = self.snapshot();
             if self.observers.watch_extremes() {
@@ -133,7 +133,9 @@ impl<'p> Simulation<'p> {
                 self.observers
                     .jump(&self.here, &after.reactions, Some(stored));
             }
-            self.states_at_jumps.push([before, after]);
+            (self.observers.recording).event(&jump, Some(&[before, after]));
+        } else {
+            self.observers.recording.event(&jump, None);
         }
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let modes = self.modes;

@@ -5,7 +5,7 @@
 //! already. Of several that fit the limit decides how much comes to rest: what it tells from the value that a mode
 //! holds goes on, and all else is held.
 
-use super::accumulation::{Accumulation, Limit};
+use super::accumulation::Limit;
 use super::failure::{Reason, Stoppable};
 use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
@@ -53,8 +53,7 @@ impl Simulation<'_> {
         }
         let relative = self.problem.accuracy.relative;
         if self.accumulation.stands_still(self.here.now) || self.accumulation.is_over(relative) {
-            let recent = self.jumps.iter().rev().take(Accumulation::MEMORY);
-            let mut transitions: Vec<_> = recent.map(|e| e.transition).collect();
+            let mut transitions = self.observers.recording.recent();
             transitions.sort_unstable();
             transitions.dedup();
             return Err(Box::new(Reason::Chattering {

@@ -2,7 +2,7 @@
 
 use super::failure::Reason;
 use super::instant::Instant;
-use super::observe::{Samples, sample_time};
+use super::observe::{Collected, Observer, Samples, sample_time};
 use super::problem::Problem;
 use super::simulation::Simulation;
 use crate::record::digest::digest;
@@ -20,19 +20,128 @@ use std::time::Instant as WallClock;
 /// # Errors
 /// [`Reason::OtherRun`] if the run is not one of this problem.
 pub fn resume(problem: &Problem, run: Run, progress: &mut dyn Progress) -> Result<Run, Reason> {
+    check_rows(problem, &run)?;
+    go_on(problem, run, None, progress)
+}
+
+/// The same; rows and transitions go to an observer as they come. It was told of those of the earlier run already
+/// ([`Replay`]), of which `run` holds none.
+///
+/// # Errors
+/// As [`resume`].
+pub fn resume_with(
+    problem: &Problem,
+    run: Run,
+    replayed: Replay,
+    observer: &mut dyn Observer,
+    progress: &mut dyn Progress,
+) -> Result<Run, Reason> {
+    go_on(problem, run, Some((replayed, observer)), progress)
+}
+
+fn go_on<'p>(
+    problem: &'p Problem,
+    run: Run,
+    told: Option<(Replay, &'p mut dyn Observer)>,
+    progress: &mut dyn Progress,
+) -> Result<Run, Reason> {
     let clock = WallClock::now();
-    check(problem, &run)?;
+    check_same(problem, &run)?;
     let wall = run.wall;
-    let mut simulation = Simulation::new(problem)?;
-    simulation.restore(run);
+    let (replayed, observer) = match told {
+        Some((replayed, observer)) => (Some(replayed), Some(observer)),
+        None => (None, None),
+    };
+    let mut simulation = Simulation::observed(problem, observer)?;
+    simulation.restore(run, replayed);
     let outcome = simulation.run(progress);
     let mut run = simulation.finish(outcome.err(), clock);
     run.wall += wall;
     Ok(run)
 }
 
-/// Model, choices and columns are those of the problem, or the run could not have been read.
-fn check(problem: &Problem, run: &Run) -> Result<(), Reason> {
+/// Hands the rows of an earlier run to an observer, all but a last one that is off the grid of the samples: it is where
+/// that run has ended, and not this one.
+#[derive(Debug)]
+pub struct Replay {
+    every: Option<f64>,
+    /// How many were handed on.
+    rows: u64,
+    last: Option<f64>,
+    /// The next one, with its mode.
+    held: Option<(f64, usize)>,
+    values: Vec<f64>,
+}
+
+impl Replay {
+    /// Nothing yet of a run of this problem.
+    pub fn new(problem: &Problem) -> Self {
+        Replay {
+            every: problem.record.every,
+            rows: 0,
+            last: None,
+            held: None,
+            values: Vec::new(),
+        }
+    }
+
+    /// Takes a row: time, mode, values.
+    ///
+    /// # Errors
+    /// [`Reason::OtherRun`] if the one before is not on the grid.
+    pub fn row(
+        &mut self,
+        (t, mode, values): (f64, usize, &[f64]),
+        observer: &mut dyn Observer,
+    ) -> Result<(), Reason> {
+        if let Some((before, _)) = self.held {
+            check_row(self.every, self.rows, before)?;
+            self.hand_on(observer);
+        }
+        self.held = Some((t, mode));
+        self.values.clear();
+        self.values.extend_from_slice(values);
+        Ok(())
+    }
+
+    /// There are no more.
+    pub fn end(&mut self, observer: &mut dyn Observer) {
+        let on_grid = |(t, _): &(f64, usize)| is_on_grid(self.every, self.rows, *t);
+        if self.held.as_ref().is_some_and(on_grid) {
+            self.hand_on(observer);
+        }
+    }
+
+    fn hand_on(&mut self, observer: &mut dyn Observer) {
+        if let Some((t, mode)) = self.held.take() {
+            // Nothing is simulated yet that could end here.
+            let _ = observer.row(t, mode, &self.values);
+            self.rows += 1;
+            self.last = Some(t);
+        }
+    }
+}
+
+fn is_on_grid(every: Option<f64>, row: u64, t: f64) -> bool {
+    every.is_none() || t == sample_time(every, row)
+}
+
+/// A row, counted from 0, must be where the grid of the samples has it.
+fn check_row(every: Option<f64>, row: u64, t: f64) -> Result<(), Reason> {
+    if is_on_grid(every, row, t) {
+        return Ok(());
+    }
+    let (now, row) = (sample_time(every, row), row + 1);
+    let why = format!("row {row} of the trajectory would be at {now} s and is at {t} s");
+    Err(Reason::OtherRun { why })
+}
+
+/// Compares what a run was simulated with with a problem: parameters, inputs, initial state, accuracy, method, and the
+/// model itself. (Model, choices and columns are the same, or it could not have been read.)
+///
+/// # Errors
+/// [`Reason::OtherRun`] with the first that differs.
+pub fn check_same(problem: &Problem, run: &Run) -> Result<(), Reason> {
     let now = problem.model.parameters.iter().zip(&problem.parameters);
     for ((parameter, &now), (_, then)) in now.zip(&run.subject.parameters) {
         if now.to_bits() != then.to_bits() {
@@ -52,21 +161,14 @@ fn check(problem: &Problem, run: &Run) -> Result<(), Reason> {
             return Err(Reason::OtherRun { why });
         }
     }
-    // The last row may be off the grid: it is where the run ended.
-    let rows = run.trajectory.t.iter().enumerate();
-    let grid = rows.take(run.trajectory.len().saturating_sub(1));
-    let every = problem.record.every;
-    for (i, &t) in grid.filter(|_| every.is_some()) {
-        let now = sample_time(every, i as u64);
-        if t != now {
-            let why = format!(
-                "row {} of the trajectory would be at {now} s and is at {t} s",
-                i + 1
-            );
-            return Err(Reason::OtherRun { why });
-        }
-    }
     Ok(())
+}
+
+/// The rows of a run must be on the grid, but for the last: it is where the run ended.
+fn check_rows(problem: &Problem, run: &Run) -> Result<(), Reason> {
+    let rows = run.trajectory.t.iter().zip(0..);
+    let mut grid = rows.take(run.trajectory.len().saturating_sub(1));
+    grid.try_for_each(|(&t, i)| check_row(problem.record.every, i, t))
 }
 
 /// Digests of the model and of what a run is simulated with, but for its end and what is recorded: as (part, digest),
@@ -86,11 +188,12 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
 }
 
 impl Simulation<'_> {
-    /// Goes to the end of a run, and takes over what it has recorded.
-    fn restore(&mut self, run: Run) {
+    /// Goes to the end of a run, and takes over what it has recorded, or what of it was replayed to the observer.
+    fn restore(&mut self, run: Run, replayed: Option<Replay>) {
         let Run {
             mut trajectory,
             events,
+            tally,
             end,
             solver,
             energy,
@@ -112,24 +215,35 @@ impl Simulation<'_> {
         self.doubts.go_on(solver.steps, uncertain);
         self.solver = solver;
         if let Some((name, _)) = self.problem.end.after {
-            self.counted = events.iter().filter(|e| e.transition == name).count() as u64;
-        }
-        self.jumps = events.iter().map(Event::jump).collect();
-        if self.problem.record.event_states {
-            let states = events.into_iter().map(|e| [e.before, e.after]);
-            self.states_at_jumps = states.collect();
+            self.counted = tally.count(name) as u64;
         }
         let every = self.problem.record.every;
-        let is_on_grid = |i: usize, t: f64| every.is_none() || t == sample_time(every, i as u64);
-        if let Some(last) = trajectory.len().checked_sub(1)
-            && !is_on_grid(last, trajectory.t[last])
-        {
-            trajectory.truncate(last);
-        }
-        self.observers.samples = Samples::from(every, trajectory.len() as u64);
-        let to_come = every.map_or(0, |every| {
-            Recorder::grid_rows(self.problem.end.time - end.t, every)
-        });
-        self.observers.recorder = Recorder::continuing(trajectory, to_come);
+        let recording = &mut self.observers.recording;
+        let rows = match replayed {
+            Some(replayed) => {
+                recording.continue_told(tally, replayed.last);
+                replayed.rows
+            }
+            None => {
+                if let Some(last) = trajectory.len().checked_sub(1)
+                    && !is_on_grid(every, last as u64, trajectory.t[last])
+                {
+                    trajectory.truncate(last);
+                }
+                let (rows, last) = (trajectory.len() as u64, trajectory.t.last().copied());
+                let to_come = every.map_or(0, |every| {
+                    Recorder::grid_rows(self.problem.end.time - end.t, every)
+                });
+                let jumps = events.iter().map(Event::jump).collect();
+                let sides = match self.problem.record.event_states {
+                    true => events.into_iter().map(|e| [e.before, e.after]).collect(),
+                    false => Vec::new(),
+                };
+                let collected = Collected::continuing(trajectory, to_come, jumps, sides);
+                recording.continue_with(collected, last);
+                rows
+            }
+        };
+        self.observers.samples = Samples::from(every, rows);
     }
 }

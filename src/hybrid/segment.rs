@@ -17,6 +17,7 @@ use crate::kernel::{Context, ModeKernel, copy_few};
 use crate::model::Mode;
 use crate::record::Progress;
 use nalgebra::SVector;
+use std::ops::ControlFlow;
 
 /// What does not change while a mode is followed.
 struct Stay<'p, const F: usize> {
@@ -329,7 +330,7 @@ impl<'p> Simulation<'p> {
                 }
                 work = Some(sum);
             }
-            self.observers.step(Step {
+            let cut = self.observers.step(Step {
                 equations: &mut equations,
                 motion: dense,
                 mode,
@@ -338,6 +339,11 @@ impl<'p> Simulation<'p> {
                 beyond,
                 work,
             });
+            if let ControlFlow::Break(t) = cut {
+                // The state is that of the sample.
+                self.here.now = Instant::new(t);
+                return Err(Box::new(Reason::Interrupted));
+            }
 
             if looks_at_ends {
                 equations.at(state.t);
@@ -351,8 +357,9 @@ impl<'p> Simulation<'p> {
                 copy_drifting(&mut self.here.q, &mode.drifts, equations.context.held());
             }
 
+            let mut flow = ControlFlow::Continue(());
             if problem.record.every.is_none() {
-                self.observers.sample_end(&equations, &self.here, at);
+                flow = self.observers.sample_end(&equations, &self.here, at);
             }
             if event.is_some() {
                 self.observers.jump(&self.here, &[], None);
@@ -362,10 +369,8 @@ impl<'p> Simulation<'p> {
                 Some(Ended::Limit) => return Ok(Stop::End),
                 None => {}
             }
-            if progress
-                .advance(self.here.now.seconds(), self.here.j)
-                .is_break()
-            {
+            let heard = progress.advance(self.here.now.seconds(), self.here.j);
+            if heard.is_break() || flow.is_break() {
                 return Err(Box::new(Reason::Interrupted));
             }
 

@@ -8,7 +8,7 @@ use super::equations::Piece;
 use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
 use super::limits::Margins;
-use super::observe::Observers;
+use super::observe::{Observer, Observers};
 use super::plan::Plan;
 use super::problem::{Initial, Problem};
 use super::solvers::Solvers;
@@ -21,7 +21,7 @@ use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
-use crate::record::{Event, Failure, Jump, Place, Progress, Run, Snapshot, Solver, Subject};
+use crate::record::{Failure, Place, Progress, Run, Snapshot, Solver, Subject};
 use nalgebra::SVector;
 use std::time::Instant as WallClock;
 
@@ -31,8 +31,28 @@ use std::time::Instant as WallClock;
 /// [`Reason`] if the problem cannot even be started: its initial state fits no mode, or the scene
 /// froze what every mode needs.
 pub fn simulate(problem: &Problem, progress: &mut dyn Progress) -> Result<Run, Reason> {
+    simulate_and_tell(problem, None, progress)
+}
+
+/// The same; rows and transitions go to an observer as they come, and the run holds none of them.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_with(
+    problem: &Problem,
+    observer: &mut dyn Observer,
+    progress: &mut dyn Progress,
+) -> Result<Run, Reason> {
+    simulate_and_tell(problem, Some(observer), progress)
+}
+
+fn simulate_and_tell<'p>(
+    problem: &'p Problem,
+    observer: Option<&'p mut dyn Observer>,
+    progress: &mut dyn Progress,
+) -> Result<Run, Reason> {
     let clock = WallClock::now();
-    let mut simulation = Simulation::new(problem)?;
+    let mut simulation = Simulation::observed(problem, observer)?;
     simulation.begin()?;
     let outcome = simulation.run(progress);
     Ok(simulation.finish(outcome.err(), clock))
@@ -111,10 +131,7 @@ pub(super) struct Simulation<'p> {
     pub accumulation: Accumulation,
     pub visited: Visited,
     /// What the run is watched for.
-    pub observers: Observers,
-    pub jumps: Vec<Jump>,
-    /// States before and after each of them, where they are kept.
-    pub states_at_jumps: Vec<[Snapshot; 2]>,
+    pub observers: Observers<'p>,
     pub solver: Solver,
     pub solvers: Solvers,
     /// What was seen of the stiffness of each mode.
@@ -140,13 +157,21 @@ pub(super) struct Simulation<'p> {
 }
 
 impl<'p> Simulation<'p> {
-    /// A simulation before its first instant.
+    /// A simulation before its first instant, which keeps rows and transitions in memory.
     pub fn new(problem: &'p Problem) -> Result<Self, Reason> {
+        Self::observed(problem, None)
+    }
+
+    /// A simulation before its first instant; rows and transitions go to `observer`, else to memory.
+    pub fn observed(
+        problem: &'p Problem,
+        observer: Option<&'p mut dyn Observer>,
+    ) -> Result<Self, Reason> {
         let model = &problem.model;
         problem.check()?;
         let plan = Plan::new(problem)?;
         problem.check_method(&plan)?;
-        let mut context = Context::new(model, &problem.parameters);
+        let mut context = Context::new(&model, &problem.parameters);
         context
             .discrete_mut()
             .copy_from_slice(&problem.initial.discrete);
@@ -181,9 +206,7 @@ impl<'p> Simulation<'p> {
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
             visited: Visited::default(),
-            observers: Observers::new(problem),
-            jumps: Vec::new(),
-            states_at_jumps: Vec::new(),
+            observers: Observers::new(problem, observer),
             solver: Solver::default(),
             solvers: Solvers::new(modes),
             stiffness: vec![Stiffness::default(); modes.len()].into(),
@@ -254,8 +277,6 @@ impl<'p> Simulation<'p> {
         self.visited.clear();
         self.doubts.clear();
         self.margins.clear();
-        self.jumps.clear();
-        self.states_at_jumps.clear();
         self.solver = Solver::default();
         self.counted = 0;
         self.set_context();
@@ -429,7 +450,7 @@ impl<'p> Simulation<'p> {
                 Some(violation) => self.resolve(violation)?,
             }
         }
-        self.flush_samples();
+        self.flush_samples()?;
         Ok(!self.is_over())
     }
 
@@ -513,9 +534,10 @@ impl<'p> Simulation<'p> {
     /// Everything that was recorded, as far as it came.
     pub fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
         self.set_context();
-        let last = self.observers.recorder.last_time();
+        let last = self.observers.recording.last_row();
         if last.is_none_or(|t| t < self.here.now.seconds()) {
-            self.sample_here();
+            // It is the last one in any case.
+            let _ = self.sample_here();
         }
         if reason.is_some() {
             // A mode that goes on after an event has none before its first step; where the equations have none,
@@ -536,6 +558,11 @@ impl<'p> Simulation<'p> {
             .map(|l| l.close(self.stored_energy()));
         self.name_methods();
         let wall = clock.elapsed();
+        let peaks = self.observers.peaks();
+        let Observers {
+            layout, recording, ..
+        } = self.observers;
+        let (trajectory, events, tally) = recording.finish(&layout);
         Run {
             subject: Subject {
                 model: problem.model.name.into(),
@@ -548,17 +575,11 @@ impl<'p> Simulation<'p> {
                     .collect(),
                 digests: super::resume::digests(problem),
             },
-            peaks: self.observers.peaks(),
-            layout: self.observers.layout,
-            trajectory: self.observers.recorder.finish(),
-            events: {
-                let given = self.states_at_jumps.into_iter();
-                let states = given.chain(std::iter::repeat_with(Default::default));
-                let pairs = self.jumps.iter().zip(states);
-                pairs
-                    .map(|(jump, states)| Event::new(jump, states))
-                    .collect()
-            },
+            peaks,
+            layout,
+            trajectory,
+            events,
+            tally,
             failure: reason.map(|reason| Failure {
                 reason: reason.to_string(),
                 at: end.clone(),

@@ -67,7 +67,7 @@ impl<'p> Simulator<'p> {
 
     /// The transitions so far.
     pub fn events(&self) -> &[Jump] {
-        &self.simulation.jumps
+        self.simulation.observers.recording.jumps()
     }
 
     /// Limit states that were reached, and conditions on the motion under which the model is meant that were left.

@@ -2,7 +2,7 @@
 
 use super::thin::thin;
 use crate::record::plot::{Grouped, grouped};
-use crate::record::{Group, Run, exact};
+use crate::record::{Group, Run, Sketch, exact};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -55,29 +55,26 @@ struct Frames {
 
 impl Data {
     /// The data of a run, with the drawing of its model as `codegen/drawing.py` wrote it.
-    pub fn new(run: &Run, drawing: &str) -> Data {
+    pub fn new(run: &Run, sketch: &Sketch, drawing: &str) -> Data {
         let mut notes = Vec::new();
-        let (groups, constants) = grouped(run);
+        let (groups, constants) = grouped(run, sketch);
         let panels = (groups.iter())
-            .filter_map(|group| panel(run, group, &mut notes))
+            .filter_map(|group| panel(sketch, group, &mut notes))
             .collect();
         notes.extend((!constants.is_empty()).then_some(constants));
         let drawing: Option<Value> = serde_json::from_str(drawing).ok();
-        let times = run.trajectory.t.iter().copied();
-        let times = times
-            .chain(run.events.iter().map(|e| e.t))
-            .chain([run.end.t]);
+        let times = sketch.times().chain([run.end.t]);
         let span = times.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], t| {
             [low.min(t), high.max(t)]
         });
-        let (visits, events) = marks(run, span, &mut notes);
+        let (visits, events) = marks(run, sketch, span, &mut notes);
         Data {
             span,
             modes: run.layout.modes.clone(),
             visits,
             events,
             panels,
-            frames: drawing.as_ref().map(|drawing| frames(run, drawing)),
+            frames: drawing.as_ref().map(|drawing| frames(run, sketch, drawing)),
             drawing,
             coordinates: (run.layout.coordinates.iter())
                 .map(|c| c.name.clone())
@@ -89,11 +86,11 @@ impl Data {
 }
 
 /// The curves of a panel; none where their range is not to be drawn.
-fn panel(run: &Run, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
-    let name = |i: usize| run.trajectory.columns[i].name.clone();
+fn panel(sketch: &Sketch, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
+    let name = |i: usize| sketch.columns()[i].name.clone();
     let drawable = |&i: &usize| {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (_, x) in run.curve(i).filter(|(_, x)| !x.is_nan()) {
+        for (_, x) in sketch.curve(i).filter(|(_, x)| !x.is_nan()) {
             (low, high) = (low.min(x), high.max(x));
         }
         // Scales of a canvas divide by the range and multiply by pixels.
@@ -107,15 +104,15 @@ fn panel(run: &Run, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
                 name(i),
                 exact(low),
                 exact(high),
-                run.trajectory.columns[i].unit
+                sketch.columns()[i].unit
             ));
         }
         is_drawable
     };
     let columns: Vec<usize> = group.columns.iter().copied().filter(drawable).collect();
     let &first = columns.first()?;
-    let t: Vec<f64> = run.curve(first).map(|(t, _)| t).collect();
-    let values = |&i: &usize| run.curve(i).map(|(_, x)| x).collect();
+    let t: Vec<f64> = sketch.curve(first).map(|(t, _)| t).collect();
+    let values = |&i: &usize| sketch.curve(i).map(|(_, x)| x).collect();
     let y: Vec<Vec<f64>> = columns.iter().map(values).collect();
     let kept = thin(&y, t.len(), MOST_POINTS);
     let pick = |column: &Vec<f64>| kept.iter().map(|&i| column[i]).collect();
@@ -128,7 +125,7 @@ fn panel(run: &Run, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
             Group::Energy => "energy",
             Group::Input => "input",
         },
-        unit: run.trajectory.columns[first].unit.clone(),
+        unit: sketch.columns()[first].unit.clone(),
         names: columns.iter().map(|&i| name(i)).collect(),
         t: pick(&t),
         y: y.iter().map(pick).collect(),
@@ -139,49 +136,51 @@ fn panel(run: &Run, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
 #[expect(clippy::type_complexity)]
 fn marks(
     run: &Run,
+    sketch: &Sketch,
     [first, last]: [f64; 2],
     notes: &mut Vec<String>,
 ) -> (Vec<(f64, f64, usize)>, Vec<(f64, &'static str)>) {
-    let mode = run.events.first().map_or(run.end.mode, |e| e.from);
+    let marks = sketch.marks();
+    let mode = marks.visits.first().map_or(run.end.mode, |visit| visit.2);
     let mut visits = vec![(first, last, mode)];
     let mut events: Vec<(f64, &'static str)> = Vec::new();
-    let part = match run.events.len() > MOST_MARKS {
+    let part = match marks.total() > MOST_MARKS {
         true => (last - first) / MOST_MARKS as f64,
         false => 0.0,
     };
-    for event in &run.events {
-        if let Some(&(t, _)) = events.last()
-            && event.t - t < part
+    for &(t, transition, to) in &marks.events {
+        if let Some(&(before, _)) = events.last()
+            && t - before < part
         {
-            visits.last_mut().expect("there is one").2 = event.to;
+            visits.last_mut().expect("there is one").2 = to;
             continue;
         }
-        events.push((event.t, event.transition));
+        events.push((t, transition));
         let visit = visits.last_mut().expect("there is one");
-        if visit.2 != event.to {
-            visit.1 = event.t;
-            visits.push((event.t, last, event.to));
+        if visit.2 != to {
+            visit.1 = t;
+            visits.push((t, last, to));
         }
     }
     if part > 0.0 {
         notes.push(format!(
             "{} of {} transitions are marked",
             events.len(),
-            run.events.len()
+            marks.total()
         ));
     }
     (visits, events)
 }
 
 /// Key frames: the samples and both sides of every transition, as far as the drawing depends on them.
-fn frames(run: &Run, drawing: &Value) -> Frames {
+fn frames(run: &Run, sketch: &Sketch, drawing: &Value) -> Frames {
     let symbols = drawing["symbols"].as_array().map_or(&[][..], Vec::as_slice);
     let names = symbols.iter().filter_map(Value::as_str);
     let names: Vec<String> = names
         .flat_map(|name| [name.to_owned(), format!("{name}.rate")])
         .collect();
     let columns: Vec<(String, usize)> = (names.into_iter())
-        .filter_map(|name| Some((name.clone(), run.trajectory.column(&name)?)))
+        .filter_map(|name| Some((name.clone(), sketch.column(&name)?)))
         .collect();
     let Some((_, any)) = columns.first() else {
         // A drawing of parameters alone.
@@ -190,9 +189,9 @@ fn frames(run: &Run, drawing: &Value) -> Frames {
             columns: BTreeMap::new(),
         };
     };
-    let t: Vec<f64> = run.curve(*any).map(|(t, _)| t).collect();
+    let t: Vec<f64> = sketch.curve(*any).map(|(t, _)| t).collect();
     let values: Vec<Vec<f64>> = (columns.iter())
-        .map(|(_, i)| run.curve(*i).map(|(_, x)| x).collect())
+        .map(|(_, i)| sketch.curve(*i).map(|(_, x)| x).collect())
         .collect();
     let kept = thin(&values, t.len(), MOST_POINTS);
     Frames {

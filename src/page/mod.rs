@@ -9,7 +9,7 @@ mod escape;
 mod tables;
 mod thin;
 
-use crate::record::{Run, Summary};
+use crate::record::{Run, Sketch, Summary};
 use data::Data;
 use escape::{script_data, text};
 use std::fmt::Write;
@@ -31,10 +31,10 @@ pub struct Told<'a> {
     pub command: &'a str,
 }
 
-/// The page of a run.
-pub fn run_page(run: &Run, told: Told) -> String {
+/// The page of a run, with the curves of a sketch of it.
+pub fn run_page(run: &Run, sketch: &Sketch, told: Told) -> String {
     let summary = Summary::new(run);
-    let data = Data::new(run, told.drawing);
+    let data = Data::new(run, sketch, told.drawing);
     let title = match summary.title.is_empty() {
         true => &summary.model,
         false => &summary.title,

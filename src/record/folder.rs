@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::digest::{Digesting, Lines};
+use super::digest::{Digesting, Digests, difference};
 
 /// Name of the marker.
 const MARKER: &str = ".dalembert-output";
@@ -98,11 +98,21 @@ pub struct OutputFolder {
 #[derive(Debug)]
 pub struct Staging {
     folder: TempDir,
+    /// What is to be replaced.
+    of: OutputFolder,
+    /// The folder that it is in.
+    parent: PathBuf,
     files: BTreeSet<String>,
-    /// A line of digests for each file.
-    digests: String,
+    digests: Digests,
     /// Locked until the files are in place.
     _lock: File,
+}
+
+/// A file that is filled while others are.
+#[derive(Debug)]
+pub struct StagedFile {
+    name: String,
+    out: BufWriter<Digesting<File>>,
 }
 
 impl OutputFolder {
@@ -127,62 +137,38 @@ impl OutputFolder {
         &self,
         write: impl FnOnce(&mut Staging) -> Result<(), FolderError>,
     ) -> Result<(), FolderError> {
+        let mut staging = self.stage()?;
+        write(&mut staging)?;
+        staging.put_in_place()
+    }
+
+    /// A place for files, which take that of the last run's with [`Staging::put_in_place`]. Folders above are created
+    /// as needed.
+    pub fn stage(&self) -> Result<Staging, FolderError> {
         let target = self.target()?;
         let parent = match target.parent() {
-            Some(parent) if parent != Path::new("") => parent,
-            _ => Path::new("."),
+            Some(parent) if parent != Path::new("") => parent.to_owned(),
+            _ => PathBuf::from("."),
         };
-        fs::create_dir_all(parent).map_err(io_error("create the folder", parent))?;
+        fs::create_dir_all(&parent).map_err(io_error("create the folder", &parent))?;
         let name = target
             .file_name()
             .unwrap_or(OsStr::new("out"))
             .to_string_lossy();
-        remove_left(&name, parent);
-        let folder =
-            temporary_folder(&name, parent).map_err(io_error("create a folder inside", parent))?;
-        let lock = lock(folder.path()).map_err(io_error("lock a folder inside", parent))?;
-        let mut staging = Staging {
+        remove_left(&name, &parent);
+        let folder = temporary_folder(&name, &parent)
+            .map_err(io_error("create a folder inside", &parent))?;
+        let lock = lock(folder.path()).map_err(io_error("lock a folder inside", &parent))?;
+        let digests = Digests::create(&folder.path().join(DIGESTS))
+            .map_err(io_error("write", Path::new(DIGESTS)))?;
+        Ok(Staging {
             folder,
+            of: self.clone(),
+            parent,
             files: BTreeSet::new(),
-            digests: String::new(),
+            digests,
             _lock: lock,
-        };
-        write(&mut staging)?;
-        staging.mark()?;
-        let new = staging.folder.path();
-        sync(new).map_err(io_error("write", new))?;
-        if fs::symlink_metadata(&target).is_err() {
-            fs::rename(new, &target).map_err(io_error("create the folder", &target))?;
-            // The folder has moved: there is nothing left to clean up at its old path.
-            let _ = staging.folder.keep();
-            let _ = fs::remove_file(target.join(LOCK));
-            return sync(parent).map_err(io_error("write", parent));
-        }
-        let ours = ours(&target)?;
-        if let Some(file) = staging
-            .files
-            .iter()
-            .find(|f| !ours.contains(*f) && target.join(f).exists())
-        {
-            return Err(FolderError::WouldReplace {
-                path: target,
-                file: file.clone(),
-            });
-        }
-        let permissions = fs::metadata(&target)
-            .map_err(io_error("read", &target))?
-            .permissions();
-        fs::set_permissions(new, permissions).map_err(io_error("set the permissions of", new))?;
-        keep_foreign(&target, new, &ours).map_err(io_error("copy other files of", &target))?;
-        exchange(new, &target).map_err(io_error("replace the folder", &target))?;
-        let _ = fs::remove_file(target.join(LOCK));
-        sync(parent).map_err(io_error("write", parent))?;
-        // `new` is now the path of the old folder. Foreign files that appeared there meanwhile:
-        keep_foreign(new, &target, &ours).map_err(io_error("copy other files of", new))?;
-        staging
-            .folder
-            .close()
-            .map_err(io_error("remove the old output of", &target))
+        })
     }
 
     /// The folder to replace, symbolic links resolved, after the checks of [`OutputFolder::new`].
@@ -229,37 +215,102 @@ impl Staging {
         name: &str,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), FolderError> {
-        let path = self.folder.path().join(name);
-        let filled = File::create_new(&path).and_then(|file| {
-            let mut out = BufWriter::new(Digesting::new(&file));
-            write(&mut out)?;
-            let digesting = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-            let lines = digesting.finish();
-            file.sync_all()?;
-            Ok(lines)
-        });
-        let lines = filled.map_err(io_error("write", Path::new(name)))?;
-        self.digests
-            .push_str(&format!("{name}: {}\n", lines.text()));
-        self.files.insert(name.to_owned());
+        let mut file = self.create(name)?;
+        write(&mut file).map_err(io_error("write", Path::new(name)))?;
+        self.close(file)
+    }
+
+    /// Creates a file that is filled while others are, until [`Staging::close`].
+    pub fn create(&mut self, name: &str) -> Result<StagedFile, FolderError> {
+        let file = File::create_new(self.folder.path().join(name));
+        let file = file.map_err(io_error("write", Path::new(name)))?;
+        Ok(StagedFile {
+            name: name.to_owned(),
+            out: BufWriter::new(Digesting::new(file, name, self.digests.clone())),
+        })
+    }
+
+    /// Brings a file to the disk.
+    pub fn close(&mut self, file: StagedFile) -> Result<(), FolderError> {
+        let StagedFile { name, out } = file;
+        let digesting = out.into_inner().map_err(io::IntoInnerError::into_error);
+        digesting
+            .and_then(Digesting::finish)
+            .and_then(|file| file.sync_all())
+            .map_err(io_error("write", Path::new(&name)))?;
+        self.files.insert(name);
         Ok(())
     }
 
-    /// Writes the digests and the marker.
+    /// Finishes the digests and writes the marker.
     fn mark(&mut self) -> Result<(), FolderError> {
-        let digests = std::mem::take(&mut self.digests);
-        self.file(DIGESTS, |out| out.write_all(digests.as_bytes()))?;
+        self.digests
+            .sync()
+            .map_err(io_error("write", Path::new(DIGESTS)))?;
+        self.files.insert(DIGESTS.to_owned());
         let lines: Vec<String> = self.files.iter().map(|file| format!("{file}\n")).collect();
-        self.file(MARKER, |out| {
-            writeln!(out, "{MARKER_TITLE}")?;
-            lines
-                .iter()
-                .try_for_each(|line| out.write_all(line.as_bytes()))
-        })
+        let write = |path: &Path| {
+            let mut out = File::create_new(path)?;
+            out.write_all(format!("{MARKER_TITLE}\n{}", lines.concat()).as_bytes())?;
+            out.sync_all()
+        };
+        let marker = self.folder.path().join(MARKER);
+        write(&marker).map_err(io_error("write", Path::new(MARKER)))?;
+        self.files.insert(MARKER.to_owned());
+        Ok(())
+    }
+
+    /// Puts the files in the place of those of the last run, all at once.
+    pub fn put_in_place(mut self) -> Result<(), FolderError> {
+        self.mark()?;
+        // What is there may have changed since files were begun.
+        let (target, parent) = (&self.of.target()?, &self.parent);
+        let new = self.folder.path();
+        sync(new).map_err(io_error("write", new))?;
+        if fs::symlink_metadata(target).is_err() {
+            fs::rename(new, target).map_err(io_error("create the folder", target))?;
+            // The folder has moved: there is nothing left to clean up at its old path.
+            let _ = self.folder.keep();
+            let _ = fs::remove_file(target.join(LOCK));
+            return sync(parent).map_err(io_error("write", parent));
+        }
+        let ours = ours(target)?;
+        if let Some(file) = self
+            .files
+            .iter()
+            .find(|f| !ours.contains(*f) && target.join(f).exists())
+        {
+            return Err(FolderError::WouldReplace {
+                path: target.clone(),
+                file: file.clone(),
+            });
+        }
+        let permissions = fs::metadata(target)
+            .map_err(io_error("read", target))?
+            .permissions();
+        fs::set_permissions(new, permissions).map_err(io_error("set the permissions of", new))?;
+        keep_foreign(target, new, &ours).map_err(io_error("copy other files of", target))?;
+        exchange(new, target).map_err(io_error("replace the folder", target))?;
+        let _ = fs::remove_file(target.join(LOCK));
+        sync(parent).map_err(io_error("write", parent))?;
+        // `new` is now the path of the old folder. Foreign files that appeared there meanwhile:
+        keep_foreign(new, target, &ours).map_err(io_error("copy other files of", new))?;
+        self.folder
+            .close()
+            .map_err(io_error("remove the old output of", target))
     }
 }
 
-fn io_error(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FolderError {
+impl Write for StagedFile {
+    fn write(&mut self, content: &[u8]) -> io::Result<usize> {
+        self.out.write(content)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+pub(super) fn io_error(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FolderError {
     let path = path.to_owned();
     move |source| FolderError::Io {
         action,
@@ -283,15 +334,7 @@ fn ours(folder: &Path) -> Result<BTreeSet<String>, FolderError> {
 
 /// Compares a file of a folder with the digests that were written with it; an error says what differs.
 pub(super) fn check(folder: &Path, name: &str) -> Result<(), String> {
-    let digests = fs::read_to_string(folder.join(DIGESTS))
-        .map_err(|e| format!("cannot be told to be what was written, without {DIGESTS}: {e}"))?;
-    let of_file = digests.lines().find_map(|line| {
-        let (file, text) = line.split_once(": ")?;
-        (file == name).then(|| Lines::read(text))?
-    });
-    let written = of_file.ok_or_else(|| format!("{DIGESTS} does not list it"))?;
-    let found = Lines::of(&folder.join(name)).map_err(|e| format!("cannot be read: {e}"))?;
-    match written.difference(&found) {
+    match difference(&folder.join(DIGESTS), name, &folder.join(name))? {
         None => Ok(()),
         Some(difference) => Err(difference),
     }

@@ -14,9 +14,13 @@ use super::folder::check;
 use super::layout::{Layout, Quantity, Recorded};
 use super::peaks::Peak;
 use super::reached::Reached;
-use super::run::{EnergyJump, Event, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory};
+use super::recorder::Recorder;
+use super::run::{
+    EnergyJump, Event, Jump, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory,
+};
 use super::summary::SUMMARY;
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
+use super::tally::Tally;
 use super::uncertain::Uncertain;
 use crate::model::{Model, Variant};
 
@@ -73,15 +77,27 @@ struct Energy {
     frame: String,
 }
 
-impl Run {
-    /// Reads the run in a folder, which must be one of this model and variant, with these columns.
-    /// The reason why it stopped, if it did, is not read.
-    pub fn read(
+/// A run in a folder: all but its tables, which are read row by row.
+#[derive(Debug)]
+pub struct Earlier {
+    /// The run, without its rows and transitions. The reason why it stopped, if it did, is not read.
+    pub run: Run,
+    folder: PathBuf,
+    /// Names of all transitions.
+    transitions: Vec<&'static str>,
+    /// Transitions that are impacts.
+    impacts: BTreeMap<String, IgnoredAny>,
+}
+
+impl Earlier {
+    /// Opens the run in a folder, which must be one of this model and variant, with these columns, and compares its
+    /// files with their digests.
+    pub fn open(
         folder: &Path,
         model: &Model,
         variant: &Variant,
         recorded: Recorded,
-    ) -> Result<Run, ReadError> {
+    ) -> Result<Earlier, ReadError> {
         let layout = Layout::new(model, variant, recorded);
         let path = folder.join(SUMMARY);
         let error = |reason| ReadError {
@@ -100,13 +116,17 @@ impl Run {
         let subject = subject(&written, model, variant).map_err(error)?;
         let end = end(&written.end, &layout).map_err(error)?;
         let columns = layout.columns();
-        let columns = columns.iter().enumerate();
-        let peaks = columns.filter_map(|(i, c)| Some((i, *written.peaks.get(&c.name)?)));
+        let named = columns.iter().enumerate();
+        let peaks = named.filter_map(|(i, c)| Some((i, *written.peaks.get(&c.name)?)));
         let peaks = peaks.collect();
-        Ok(Run {
+        let run = Run {
             subject,
-            trajectory: trajectory(&folder.join(TRAJECTORY), &layout)?,
-            events: events(&folder.join(EVENTS), &layout, variant, &written.impacts)?,
+            trajectory: Trajectory {
+                columns,
+                ..Trajectory::default()
+            },
+            events: Vec::new(),
+            tally: Tally::default(),
             peaks,
             layout,
             end,
@@ -124,6 +144,82 @@ impl Run {
             reached: written.reached,
             wall: Duration::try_from_secs_f64(written.wall_seconds).unwrap_or_default(),
             failure: None,
+        };
+        Ok(Earlier {
+            run,
+            folder: folder.to_owned(),
+            transitions: transitions(variant),
+            impacts: written.impacts,
+        })
+    }
+
+    /// Hands on the rows of the trajectory: time, mode, values.
+    pub fn rows(
+        &self,
+        mut take: impl FnMut(f64, usize, &[f64]) -> Result<(), String>,
+    ) -> Result<(), ReadError> {
+        let layout = &self.run.layout;
+        let columns = layout.columns();
+        let mut values = vec![0.0; columns.len()];
+        let header = trajectory_header(&columns);
+        rows(&self.folder.join(TRAJECTORY), &header, |row| {
+            let t = row.number()?;
+            for value in &mut values {
+                *value = row.number()?;
+            }
+            take(t, mode(layout, row.text()?)?, &values)
+        })
+    }
+
+    /// Hands on the transitions, with the states before and after them, and counts them in the run.
+    pub fn events(&mut self, mut take: impl FnMut(&Jump, &[Snapshot; 2])) -> Result<(), ReadError> {
+        let (layout, impacts) = (&self.run.layout, &self.impacts);
+        let tally = &mut self.run.tally;
+        *tally = Tally::default();
+        rows(&self.folder.join(EVENTS), &events_header(layout), |row| {
+            let (t, j) = (row.number()?, row.parse()?);
+            let transition = transition(&self.transitions, row.text()?)?;
+            let (from, to) = (mode(layout, row.text()?)?, mode(layout, row.text()?)?);
+            let sides = [snapshot(layout, row)?, snapshot(layout, row)?];
+            let energy = EnergyJump {
+                lost: row.number()?,
+                ground_work: row.number()?,
+            };
+            let jump = Jump {
+                t,
+                j,
+                transition,
+                from,
+                to,
+                energy: impacts.contains_key(transition).then_some(energy),
+            };
+            tally.note(&jump);
+            take(&jump, &sides);
+            Ok(())
+        })
+    }
+}
+
+impl Run {
+    /// Reads the run in a folder into memory, as [`Earlier::open`] does.
+    pub fn read(
+        folder: &Path,
+        model: &'static Model,
+        variant: &'static Variant,
+        recorded: Recorded,
+    ) -> Result<Run, ReadError> {
+        let mut earlier = Earlier::open(folder, model, variant, recorded)?;
+        let mut recorder = Recorder::new(&earlier.run.layout, 0);
+        earlier.rows(|t, mode, values| {
+            recorder.push_row(t, mode, |row| row.copy_from_slice(values));
+            Ok(())
+        })?;
+        let mut events = Vec::new();
+        earlier.events(|jump, sides| events.push(Event::new(jump, sides.clone())))?;
+        Ok(Run {
+            trajectory: recorder.finish(),
+            events,
+            ..earlier.run
         })
     }
 }
@@ -194,65 +290,19 @@ fn mode(layout: &Layout, name: &str) -> Result<usize, String> {
     found.ok_or_else(|| format!("the model has no mode `{name}`"))
 }
 
-fn trajectory(path: &Path, layout: &Layout) -> Result<Trajectory, ReadError> {
-    let columns = layout.columns();
-    let header = trajectory_header(&columns);
-    let mut trajectory = Trajectory {
-        columns: columns.clone(),
-        ..Trajectory::default()
-    };
-    rows(path, &header, |row| {
-        trajectory.t.push(row.number()?);
-        for _ in &columns {
-            trajectory.values.push(row.number()?);
-        }
-        let mode = mode(layout, row.text()?)?;
-        trajectory
-            .mode
-            .push(u16::try_from(mode).expect("as when it was recorded"));
-        Ok(())
-    })?;
-    Ok(trajectory)
-}
-
-/// `impacts` holds the transitions that are impacts.
-fn events(
-    path: &Path,
-    layout: &Layout,
-    variant: &Variant,
-    impacts: &BTreeMap<String, IgnoredAny>,
-) -> Result<Vec<Event>, ReadError> {
-    let mut events = Vec::new();
-    rows(path, &events_header(layout), |row| {
-        events.push(Event {
-            t: row.number()?,
-            j: row.parse()?,
-            transition: transition(variant, row.text()?)?,
-            from: mode(layout, row.text()?)?,
-            to: mode(layout, row.text()?)?,
-            before: snapshot(layout, row)?,
-            after: snapshot(layout, row)?,
-            energy: Some(EnergyJump {
-                lost: row.number()?,
-                ground_work: row.number()?,
-            }),
-        });
-        Ok(())
-    })?;
-    for event in &mut events {
-        event.energy = event
-            .energy
-            .filter(|_| impacts.contains_key(event.transition));
-    }
-    Ok(events)
-}
-
 /// The transition of that name; `rest` is the one that every accumulation ends with.
-fn transition(variant: &Variant, name: &str) -> Result<&'static str, String> {
+fn transition(names: &[&'static str], name: &str) -> Result<&'static str, String> {
+    let found = names.iter().find(|known| **known == name);
+    found
+        .copied()
+        .ok_or_else(|| format!("the model has no transition `{name}`"))
+}
+
+/// Names of the transitions of a variant, and that of coming to rest.
+fn transitions(variant: &Variant) -> Vec<&'static str> {
     let guards = variant.modes.iter().flat_map(|mode| &mode.guards);
     let names = guards.flat_map(|guard| &guard.transitions).map(|t| t.name);
-    let found = names.chain(["rest"]).find(|known| *known == name);
-    found.ok_or_else(|| format!("the model has no transition `{name}`"))
+    names.chain(["rest"]).collect()
 }
 
 fn snapshot(layout: &Layout, row: &mut Row) -> Result<Snapshot, String> {

@@ -16,9 +16,9 @@ impl Recorder {
         let columns = layout.columns();
         Recorder {
             trajectory: Trajectory {
-                t: Vec::with_capacity(rows),
-                mode: Vec::with_capacity(rows),
-                values: Vec::with_capacity(rows * columns.len()),
+                t: room(rows),
+                mode: room(rows),
+                values: room(rows.saturating_mul(columns.len())),
                 columns,
             },
         }
@@ -26,9 +26,11 @@ impl Recorder {
 
     /// A recorder that appends to a trajectory, with room for so many rows more.
     pub fn continuing(mut trajectory: Trajectory, rows: usize) -> Recorder {
-        trajectory.t.reserve(rows);
-        trajectory.mode.reserve(rows);
-        trajectory.values.reserve(rows * trajectory.columns.len());
+        let width = trajectory.columns.len();
+        // What there is no room for now grows later, as far as it comes.
+        let _ = trajectory.t.try_reserve(rows);
+        let _ = trajectory.mode.try_reserve(rows);
+        let _ = trajectory.values.try_reserve(rows.saturating_mul(width));
         Recorder { trajectory }
     }
 
@@ -71,4 +73,11 @@ impl Recorder {
     pub fn finish(self) -> Trajectory {
         self.trajectory
     }
+}
+
+/// Room for so many numbers, where there is so much; else it grows as far as it comes.
+fn room<T>(numbers: usize) -> Vec<T> {
+    let mut room = Vec::new();
+    let _ = room.try_reserve_exact(numbers);
+    room
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Layout, Peak, Reached, Uncertain};
+use super::{Layout, Peak, Reached, Tally, Uncertain};
 
 /// The result of a simulation, complete or stopped early.
 #[derive(Debug, Clone)]
@@ -11,10 +11,12 @@ pub struct Run {
     pub subject: Subject,
     /// Names and units of everything below.
     pub layout: Layout,
-    /// The samples.
+    /// The samples; of a run that an observer was told of, the columns alone.
     pub trajectory: Trajectory,
-    /// The transitions, in hybrid time.
+    /// The transitions, in hybrid time; of a run that an observer was told of, none.
     pub events: Vec<Event>,
+    /// How often transitions happened, and what the impacts did.
+    pub tally: Tally,
     /// Extremes of the motion, as (index of the column, peak), whether or not a row hits them; none where they were
     /// not looked for.
     pub peaks: Vec<(usize, Peak)>,

@@ -6,10 +6,10 @@ use std::io::{self, Write};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 
-use super::gains::{Gain, gains};
 use super::layout::Quantity;
 use super::number::push_exact;
 use super::run::{Place, Run};
+use super::tally::{Gain, Impacts};
 
 /// File name of the summary.
 pub const SUMMARY: &str = "summary.json";
@@ -119,23 +119,6 @@ pub struct AllImpacts {
     pub gains: Vec<Gain>,
 }
 
-/// What the impacts of one kind did to the energy.
-#[derive(Debug, Clone, Default, serde::Serialize)]
-pub struct Impacts {
-    /// Number of impacts.
-    pub count: usize,
-    /// Energy lost in all, in the frame of the ground (J).
-    pub lost: f64,
-    /// Number of impacts that gained energy.
-    pub gaining: usize,
-    /// Smallest loss of one impact (J); negative where an impact gained energy.
-    pub smallest_loss: f64,
-    /// Largest loss of one impact (J).
-    pub largest_loss: f64,
-    /// Work of the ground's impulses, in the inertial frame (J).
-    pub ground_work: f64,
-}
-
 /// Estimate of the error: the difference to a run by another method at a tighter tolerance, and the
 /// rounding of their steps.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -198,12 +181,11 @@ impl<T: Serialize> Serialize for Named<T> {
 impl Summary {
     /// The summary of a run.
     pub fn new(run: &Run) -> Summary {
-        let mut by_transition = BTreeMap::new();
-        for event in &run.events {
-            *by_transition.entry(event.transition).or_default() += 1;
-        }
+        let counted = run.tally.counted().iter();
+        let by_transition = counted.map(|c| (c.transition, c.count)).collect();
+        let columns = run.layout.columns();
         let extremes = run.peaks.iter().map(|&(i, peak)| {
-            let column = &run.trajectory.columns[i];
+            let column = &columns[i];
             let extremes = Extremes {
                 max: peak.max,
                 t_max: peak.t_max,
@@ -226,12 +208,12 @@ impl Summary {
             }),
             peaks: Named(extremes.collect()),
             events: Events {
-                total: run.events.len(),
+                total: run.tally.total(),
                 by_transition,
             },
             impacts: AllImpacts {
                 by_transition: impacts(run),
-                gains: gains(run),
+                gains: run.tally.gains.clone(),
             },
             energy: run.energy.as_ref().map(|energy| Energy {
                 initial: energy.initial,
@@ -289,27 +271,10 @@ fn point(run: &Run, place: &Place) -> Point {
 }
 
 fn impacts(run: &Run) -> Named<Impacts> {
-    let mut by_transition = BTreeMap::<&str, Impacts>::new();
-    for event in &run.events {
-        let Some(jump) = event.energy else { continue };
-        let impacts = by_transition.entry(event.transition).or_insert(Impacts {
-            smallest_loss: f64::INFINITY,
-            largest_loss: f64::NEG_INFINITY,
-            ..Impacts::default()
-        });
-        impacts.count += 1;
-        impacts.lost += jump.lost;
-        impacts.gaining += usize::from(jump.lost < 0.0);
-        impacts.smallest_loss = impacts.smallest_loss.min(jump.lost);
-        impacts.largest_loss = impacts.largest_loss.max(jump.lost);
-        impacts.ground_work += jump.ground_work;
-    }
-    Named(
-        by_transition
-            .into_iter()
-            .map(|(name, impacts)| (name.to_owned(), impacts))
-            .collect(),
-    )
+    let counted = run.tally.counted().iter();
+    let impacts = counted.filter_map(|c| Some((c.transition.to_owned(), c.impacts.clone()?)));
+    let by_name: BTreeMap<String, Impacts> = impacts.collect();
+    Named(by_name.into_iter().collect())
 }
 
 /// Pretty JSON with exact numbers. (What is not finite is `null`: JSON has no other way.)

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::layout::Layout;
 use super::number::push_exact;
-use super::run::{Column, EnergyJump, Group, Run};
+use super::run::{Column, EnergyJump, Group, Jump, Run};
 
 /// File name of the samples.
 pub const TRAJECTORY: &str = "trajectory.csv";
@@ -31,48 +31,96 @@ pub(super) fn events_header(layout: &Layout) -> Vec<String> {
     columns.map(|column| column.name).collect()
 }
 
-/// Writes the samples: `t`, every column of the trajectory by name, `mode` by name.
-pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
-    let mut rows = Rows::new(out);
-    for name in trajectory_header(&run.trajectory.columns) {
-        rows.text(name)?;
-    }
-    rows.end()?;
-    for (i, &t) in run.trajectory.t.iter().enumerate() {
-        rows.number(t)?;
-        for &value in run.trajectory.row(i) {
-            rows.number(value)?;
-        }
-        rows.text(&run.layout.modes[usize::from(run.trajectory.mode[i])])?;
-        rows.end()?;
-    }
-    rows.finish()
+/// The table of samples on its way: `t`, every column of the trajectory by name, `mode` by name.
+pub(super) struct TrajectoryTable<W: Write> {
+    rows: Rows<W>,
+    modes: Vec<String>,
 }
 
-/// Writes the transitions: `t,j,transition,from,to`, the state before (`theta.before`, …) and
+impl<W: Write> TrajectoryTable<W> {
+    pub fn new(out: W, layout: &Layout) -> io::Result<Self> {
+        let mut rows = Rows::new(out);
+        for name in trajectory_header(&layout.columns()) {
+            rows.text(name)?;
+        }
+        rows.end()?;
+        let modes = layout.modes.clone();
+        Ok(TrajectoryTable { rows, modes })
+    }
+
+    pub fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> io::Result<()> {
+        self.rows.number(t)?;
+        for &value in values {
+            self.rows.number(value)?;
+        }
+        self.rows.text(&self.modes[mode])?;
+        self.rows.end()
+    }
+
+    pub fn finish(self) -> io::Result<W> {
+        self.rows.finish()
+    }
+}
+
+/// The table of transitions on its way: `t,j,transition,from,to`, the state before (`theta.before`, …) and
 /// after, reactions and discrete states included, and the jump of the energy: `lost`,
 /// `ground_work`, 0 where the transition is no impact.
-pub fn write_events(run: &Run, out: impl Write) -> io::Result<()> {
-    let mut rows = Rows::new(out);
-    for name in events_header(&run.layout) {
-        rows.text(&name)?;
+pub(super) struct EventsTable<W: Write> {
+    rows: Rows<W>,
+    modes: Vec<String>,
+}
+
+impl<W: Write> EventsTable<W> {
+    pub fn new(out: W, layout: &Layout) -> io::Result<Self> {
+        let mut rows = Rows::new(out);
+        for name in events_header(layout) {
+            rows.text(&name)?;
+        }
+        rows.end()?;
+        let modes = layout.modes.clone();
+        Ok(EventsTable { rows, modes })
     }
-    rows.end()?;
-    for event in &run.events {
-        rows.number(event.t)?;
-        rows.text(&event.j.to_string())?;
-        rows.text(event.transition)?;
-        rows.text(&run.layout.modes[event.from])?;
-        rows.text(&run.layout.modes[event.to])?;
-        for value in event.before.values().chain(event.after.values()) {
+
+    /// `states` are the values before and then those after the transition.
+    pub fn row(&mut self, jump: &Jump, states: &[f64]) -> io::Result<()> {
+        let rows = &mut self.rows;
+        rows.number(jump.t)?;
+        rows.text(&jump.j.to_string())?;
+        rows.text(jump.transition)?;
+        rows.text(&self.modes[jump.from])?;
+        rows.text(&self.modes[jump.to])?;
+        for &value in states {
             rows.number(value)?;
         }
-        let EnergyJump { lost, ground_work } = event.energy.unwrap_or_default();
+        let EnergyJump { lost, ground_work } = jump.energy.unwrap_or_default();
         rows.number(lost)?;
         rows.number(ground_work)?;
-        rows.end()?;
+        rows.end()
     }
-    rows.finish()
+
+    pub fn finish(self) -> io::Result<W> {
+        self.rows.finish()
+    }
+}
+
+/// Writes the samples of a run that is in memory.
+pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
+    let mut table = TrajectoryTable::new(out, &run.layout)?;
+    for (i, &t) in run.trajectory.t.iter().enumerate() {
+        let mode = usize::from(run.trajectory.mode[i]);
+        table.row(t, mode, run.trajectory.row(i))?;
+    }
+    table.finish().map(drop)
+}
+
+/// Writes the transitions of a run that is in memory.
+pub fn write_events(run: &Run, out: impl Write) -> io::Result<()> {
+    let mut table = EventsTable::new(out, &run.layout)?;
+    for event in &run.events {
+        let states: Vec<f64> = event.before.values().chain(event.after.values()).collect();
+        table.row(&event.jump(), &states)?;
+    }
+    table.finish().map(drop)
 }
 
 /// Writes the description of both tables.
@@ -226,7 +274,7 @@ impl<W: Write> Rows<W> {
     fn end(&mut self) -> io::Result<()> {
         Ok(self.csv.write_record(None::<&[u8]>)?)
     }
-    fn finish(mut self) -> io::Result<()> {
-        self.csv.flush()
+    fn finish(self) -> io::Result<W> {
+        self.csv.into_inner().map_err(|error| error.into_error())
     }
 }

@@ -132,15 +132,15 @@ fn a_folder_that_was_changed_is_not_continued() {
     // Cut off at the end of a line, as no parser sees it.
     let cut = |text: &str| without(text, rows(text));
     refused("trajectory.csv", &cut, "it has 101 lines, and had 102");
-    refused("events.csv", &|text| without(text, 2), "lines 1 to");
+    refused("events.csv", &|text| without(text, 2), "line 2 is not");
     let digit = |text: &str| text.replacen("0.25,", "0.26,", 1);
     refused(
         "trajectory.csv",
         &digit,
-        "lines 33 to 64 are not what the run has written",
+        "line 52 is not what the run has written",
     );
     let work = |text: &str| text.replacen("\"initial\": ", "\"initial\": 1", 1);
-    refused("summary.json", &work, "are not what the run has written");
+    refused("summary.json", &work, "is not what the run has written");
     // As it was it goes on.
     ends_with(0, home.path(), &["run", &ball, "--resume", "out"]);
 }
@@ -253,6 +253,57 @@ mod signals {
         let summary = json(&home.path().join("out/summary.json"));
         assert_eq!(summary["end"]["t"].as_f64(), Some(t + 1.0));
         assert!(summary["failure"].is_null());
+    }
+
+    #[test]
+    fn a_run_is_interrupted_between_the_samples_of_a_step() {
+        let home = tempfile::tempdir().unwrap();
+        // A fall of 0.4 s is one step.
+        let fall = ["run", &scene("bouncing_ball"), "--set", "record.every=2e-7"];
+        let out = ["--set", "end=0.45", "--out", "out"];
+        let output = interrupted(home.path(), &[&fall[..], &out].concat());
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        let summary = json(&home.path().join("out/summary.json"));
+        let t = summary["end"]["t"].as_f64().unwrap();
+        assert!(0.0 < t && t < 0.45, "{t}");
+        let until = format!("end={}", t + 1e-3);
+        let more = ["--set", &until, "--resume", "out"];
+        ends_with(0, home.path(), &[&fall[..], &more].concat());
+        let rows = table(&home.path().join("out/trajectory.csv"));
+        for (i, row) in rows.iter().enumerate().step_by(1000) {
+            let [t, h] = [0, 1].map(|column| row[column].parse::<f64>().unwrap());
+            assert_eq!(t, i as f64 * 2e-7);
+            assert!((h - (1.0 - 9.81 / 2.0 * t * t)).abs() < 1e-12, "{t} {h}");
+        }
+    }
+
+    /// Largest resident memory of a process so far, kB.
+    fn memory(child: &Child) -> Option<u64> {
+        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
+        let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+        line.trim().strip_suffix(" kB")?.parse().ok()
+    }
+
+    #[test]
+    fn memory_does_not_grow_with_the_rows() {
+        let home = tempfile::tempdir().unwrap();
+        let most = |every: &str| {
+            let mut child = Command::new(env!("CARGO_BIN_EXE_dalembert"))
+                .args(["run", &scene("bouncing_ball"), "--set", every])
+                .current_dir(home.path())
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap();
+            let mut most = 0;
+            while child.try_wait().unwrap().is_none() {
+                most = memory(&child).unwrap_or(0).max(most);
+                thread::sleep(Duration::from_millis(1));
+            }
+            most
+        };
+        let (few, many) = (most("record.every=1e-4"), most("record.every=5e-6"));
+        // A million rows were 80 MB.
+        assert!(many < few + 8_000, "{few} and {many} kB");
     }
 
     #[test]

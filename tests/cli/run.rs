@@ -250,7 +250,7 @@ fn more_rows_than_there_is_room_for_are_refused_before_the_run() {
         let output = ends_with(2, home.path(), &run);
         let said = stderr(&output);
         assert!(
-            said.contains("rows of the trajectory") && said.contains("bytes of memory"),
+            said.contains("rows of the trajectory") && said.contains("bytes of disk"),
             "{said}"
         );
         assert!(!home.path().join("out").exists());

@@ -49,6 +49,7 @@ impl Fixture {
         fixture.write("project/codegen/__main__.py", include_str!("generator.py"));
         for (name, text) in [
             ("elementary.c", include_str!("../../codegen/elementary.c")),
+            ("contract.h", include_str!("../../codegen/contract.h")),
             ("elementary.h", include_str!("../../codegen/elementary.h")),
             ("lanes.c", include_str!("../../codegen/lanes.c")),
             ("lanes.h", include_str!("../../codegen/lanes.h")),

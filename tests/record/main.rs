@@ -2,6 +2,7 @@
 //! by formula.
 
 mod killed;
+mod observers;
 mod synthetic;
 
 use std::fs;

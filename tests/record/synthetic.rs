@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use dalembert::record::{
     EnergyJump, Event, Group, Layout, Ledger, Peak, Place, Quantity, Reached, Recorder, Run,
-    Snapshot, Solver, Subject, Uncertain,
+    Snapshot, Solver, Subject, Tally, Uncertain,
 };
 
 const G: f64 = 9.81;
@@ -100,6 +100,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
     }
     with_peaks(Run {
         peaks: Vec::new(),
+        tally: Tally::of(events.iter().map(Event::jump)),
         subject: Subject {
             model: "bouncing_ball".into(),
             title: "A ball".into(),
@@ -316,6 +317,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
     }
     with_peaks(Run {
         peaks: Vec::new(),
+        tally: Tally::of(events.iter().map(Event::jump)),
         subject: Subject {
             model: "walking_tank".into(),
             title: "Something like a tank".into(),

@@ -49,11 +49,10 @@ impl Comparison<'_> {
             let end = |run: &Run| Some(run.end.state.q[i]);
             measures.push(self.measure(&format!("{name} end"), unit, end));
         }
-        let events = self.runs().flat_map(|(_, run)| &run.events);
-        let transitions: BTreeSet<&str> = events.map(|event| event.transition).collect();
+        let counted = self.runs().flat_map(|(_, run)| run.tally.counted());
+        let transitions: BTreeSet<&str> = counted.map(|c| c.transition).collect();
         for name in transitions {
-            let count =
-                |run: &Run| Some(run.events.iter().filter(|e| e.transition == name).count() as f64);
+            let count = |run: &Run| Some(run.tally.count(name) as f64);
             measures.push(self.measure(&format!("{name} count"), "1", count));
         }
         type Energy = fn(&Ledger) -> f64;
@@ -68,10 +67,7 @@ impl Comparison<'_> {
             let measure = self.measure(name, "J", |run| run.energy.as_ref().map(energy));
             measures.push(measure);
         }
-        let gaining = |run: &Run| {
-            let jumps = run.events.iter().filter_map(|event| event.energy);
-            Some(jumps.filter(|jump| jump.lost < 0.0).count() as f64)
-        };
+        let gaining = |run: &Run| Some(run.tally.gaining() as f64);
         measures.push(self.measure("impacts that gained energy", "1", gaining));
         measures
     }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::run::refusal;
-use super::{models, print};
+use super::{models, print, room};
 use crate::hybrid::simulate;
 use crate::model::Model;
 use crate::model::models;
@@ -79,8 +79,9 @@ pub fn compare(arguments: &CompareArguments) -> Result {
     let style = ProgressStyle::with_template("{bar:30} {pos} of {len} variants  {elapsed}");
     let bar = ProgressBar::new(combinations.len() as u64)
         .with_style(style.expect("the template is well-formed"));
+    let variants = combinations.len();
     let cases = combinations.into_par_iter().map(|options| {
-        let case = case(model, &varied, options, arguments);
+        let case = case(model, &varied, options, (arguments, variants));
         bar.inc(1);
         case
     });
@@ -90,6 +91,7 @@ pub fn compare(arguments: &CompareArguments) -> Result {
         cases: cases.collect(),
     };
     bar.finish_and_clear();
+    interrupt::leave();
 
     if let Some(folder) = &folder {
         comparison.write(folder)?;
@@ -143,7 +145,7 @@ fn case(
     model: &Model,
     varied: &[usize],
     options: Vec<&'static str>,
-    arguments: &CompareArguments,
+    (arguments, variants): (&CompareArguments, usize),
 ) -> Case {
     let settings = varied.iter().zip(&options);
     let settings = settings.map(|(&i, option)| format!("{}={option}", model.choices[i].name));
@@ -156,6 +158,7 @@ fn case(
     let run = Scene::load(&arguments.scene, &overrides, models())
         .map_err(|errors| errors.to_string())
         .and_then(|scene| {
+            room::check_memory(&scene, variants).map_err(|error| error.to_string())?;
             let run = simulate(&scene.problem, &mut Interruptible(Silent));
             run.map_err(|reason| refusal(&scene, &reason).to_string())
         });

@@ -93,6 +93,7 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
         bar.set_position(done as u64);
     });
     bar.finish_and_clear();
+    interrupt::leave();
     let precision = Precision {
         title: problem.title.clone().unwrap_or(problem.model.name.into()),
         study: study.map_err(|reason| refusal(&scene, &reason))?,

@@ -169,7 +169,7 @@ impl Finished<'_, '_> {
 
     /// The transitions.
     pub fn events(&self) -> &[Jump] {
-        &self.simulation.jumps
+        self.simulation.observers.recording.jumps()
     }
 
     /// Limit states that were reached, and conditions on the motion under which the model is meant that were left.

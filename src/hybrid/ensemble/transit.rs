@@ -87,7 +87,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         let at = self.now(lane);
         let here = &mut into.here;
         here.j += 1;
-        into.jumps.push(Jump {
+        into.observers.recording.push(Jump {
             t: at.seconds(),
             j: here.j,
             transition: guard.name,

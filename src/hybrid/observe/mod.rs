@@ -12,6 +12,8 @@
 mod extremes;
 mod interpolants;
 mod ledger;
+mod observer;
+mod recording;
 mod samples;
 
 use super::equations::Equations;
@@ -21,12 +23,15 @@ use super::simulation::Here;
 use crate::integrate::Motion;
 use crate::kernel::Free;
 use crate::model::Mode;
-use crate::record::{Layout, Ledger, Peak, Recorder};
+use crate::record::{Layout, Ledger, Peak};
 use extremes::Extremes;
 use interpolants::{DEGREES, Interpolants, MOST, Polynomial, place};
 use ledger::RunningLedger;
+pub use observer::{Collected, MadeStep, Observer};
+pub(super) use recording::Recording;
 use samples::Row;
 pub(super) use samples::{Samples, sample_time};
+use std::ops::ControlFlow;
 
 /// Most times that a step is cut in halves: in a part with a kink the error is quartered each time, and a
 /// step that is smooth is not cut at all.
@@ -38,10 +43,11 @@ const LOOSEST: f64 = 1e-8;
 
 /// The observers of a run.
 #[derive(Debug)]
-pub(super) struct Observers {
+pub(super) struct Observers<'o> {
     record: Record,
     pub layout: Layout,
-    pub recorder: Recorder,
+    /// Where rows and transitions go.
+    pub recording: Recording<'o>,
     pub samples: Samples,
     /// The energy ledger, where it is kept.
     pub ledger: Option<RunningLedger>,
@@ -84,6 +90,15 @@ pub(super) struct Step<'s, 'e, const F: usize, M> {
     pub work: Option<[f64; 2]>,
 }
 
+/// A sample at which the run ends.
+struct Sampled {
+    /// Start of the part of the step that it is in, in local time, s.
+    from: f64,
+    /// When it is, in local time and in that of the run, s.
+    tau: f64,
+    t: f64,
+}
+
 /// A part of a step.
 #[derive(Debug, Clone, Copy)]
 struct Part {
@@ -101,18 +116,20 @@ impl Part {
     }
 }
 
-impl Observers {
-    pub fn new(problem: &Problem) -> Self {
+impl<'o> Observers<'o> {
+    /// The observers of a run; rows and transitions go to `observer`, else to memory.
+    pub fn new(problem: &Problem, observer: Option<&'o mut dyn Observer>) -> Self {
         let record = problem.record;
         let layout = Layout::new(&problem.model, problem.variant(), record.columns);
-        let rows = record
-            .every
-            .map_or(0, |every| Recorder::grid_rows(problem.end.time, every));
+        let recording = match observer {
+            None => Recording::collected(problem, &layout),
+            Some(observer) => Recording::told(observer, &layout),
+        };
         let n = layout.coordinates.len();
         let extremes = record.extremes.then(|| Extremes::new(&layout));
         let most = 2 * n + layout.reactions.len() + 3;
         Observers {
-            recorder: Recorder::new(&layout, rows + 1),
+            recording,
             samples: Samples::from(record.every, 0),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             interpolants: match extremes.is_some() || record.ledger || record.columns.energies {
@@ -136,7 +153,7 @@ impl Observers {
 
     /// Whether steps are looked at beyond the samples.
     pub fn watch_steps(&self) -> bool {
-        self.ledger.is_some() || self.extremes.is_some()
+        self.ledger.is_some() || self.extremes.is_some() || self.recording.sees_steps
     }
 
     /// Whether extremes are looked for.
@@ -213,7 +230,7 @@ impl Observers {
 
     /// Forgets all that was recorded, and keeps the room.
     pub fn rewind(&mut self) {
-        self.recorder.clear();
+        self.recording.rewind();
         self.samples.rewind();
         if let Some(extremes) = &mut self.extremes {
             *extremes = Extremes::new(&self.layout);
@@ -231,30 +248,97 @@ impl Observers {
         (tau <= to).then_some(tau)
     }
 
-    /// Looks at a step: its samples, its extremes, its energies.
+    /// Looks at a step: its samples, its extremes, its energies. `Break`: the run ends at a sample, whose time (s) is
+    /// given and whose state is in `step.here`.
     #[inline]
-    pub fn step<const F: usize, M: Motion<F>>(&mut self, mut step: Step<F, M>) {
+    pub fn step<const F: usize, M: Motion<F>>(&mut self, mut step: Step<F, M>) -> ControlFlow<f64> {
+        if self.recording.sees_steps {
+            self.show(&mut step);
+        }
         let due = self.due(step.equations, step.end + step.beyond).is_some();
         // What the method gives in one number is not enough inside of the step.
         let inside = due && self.record.columns.energies || self.functions.stored;
         let powers = self.ledger.is_some() && (step.work.is_none() || inside);
         if due || powers || self.extremes.is_some() {
-            self.look(&mut step, powers);
+            let start = step.motion.start();
+            if let ControlFlow::Break(cut) = self.look(&mut step, start, powers) {
+                return ControlFlow::Break(self.cut(&mut step, cut, powers));
+            }
         } else {
             self.joined = false;
         }
         if let (Some(ledger), Some(work), false) = (&mut self.ledger, step.work, powers) {
             ledger.add_work(work);
         }
+        ControlFlow::Continue(())
     }
 
-    fn look<const F: usize, M: Motion<F>>(&mut self, step: &mut Step<F, M>, powers: bool) {
+    /// Ends a step at a sample in it: what is left of it has no samples. Gives the time of the sample, s.
+    #[cold]
+    fn cut<const F: usize, M: Motion<F>>(
+        &mut self,
+        step: &mut Step<F, M>,
+        Sampled { from, tau, t }: Sampled,
+        powers: bool,
+    ) -> f64 {
+        // The work of the parts before was added, or none was.
+        let from = match powers {
+            true => from,
+            false => step.motion.start(),
+        };
+        (step.end, step.beyond, step.work) = (tau, 0.0, None);
+        self.joined = false;
+        if tau > from && self.watches() {
+            let _ = self.look(step, from, self.ledger.is_some());
+        }
+        t
+    }
+
+    /// Whether steps are looked at for extremes or energies.
+    fn watches(&self) -> bool {
+        self.ledger.is_some() || self.extremes.is_some()
+    }
+
+    /// Shows a step to the observer.
+    fn show<const F: usize, M: Motion<F>>(&mut self, step: &mut Step<F, M>) {
+        let clock = step.equations.clock;
+        let seconds = |tau: f64| clock.start.plus(tau).seconds();
+        let (from, to) = (step.motion.start(), step.end + step.beyond);
+        let (equations, motion, mode) = (&mut *step.equations, step.motion, step.mode);
+        let here = &*step.here;
+        let mut state = |t: f64, q: &mut [f64], v: &mut [f64]| {
+            let tau = super::instant::Instant::new(t).since(clock.start);
+            let [free, rates, _] = guards::motion(equations, motion, tau.clamp(from, to), false);
+            q.copy_from_slice(&here.q);
+            v.copy_from_slice(&here.v);
+            for (i, &full) in mode.free.iter().enumerate() {
+                (q[full], v[full]) = (free[i], rates[i]);
+            }
+            if !clock.drift.is_empty() {
+                copy_drifting(q, &mode.drifts, equations.context.held());
+            }
+        };
+        self.recording.step(&mut MadeStep {
+            from: seconds(from),
+            to: seconds(to),
+            mode: here.mode,
+            state: &mut state,
+        });
+    }
+
+    /// Looks at a step from local time `start` on.
+    fn look<const F: usize, M: Motion<F>>(
+        &mut self,
+        step: &mut Step<F, M>,
+        start: f64,
+        powers: bool,
+    ) -> ControlFlow<Sampled> {
         let columns = match self.extremes {
             Some(_) => self.functions.columns.len(),
             None => 0,
         };
         let count = columns + if powers { 2 } else { 0 };
-        let (start, end) = (step.motion.start(), step.end);
+        let end = step.end;
         let mut part = Part {
             from: start,
             to: end,
@@ -265,8 +349,7 @@ impl Observers {
         let (mut index, mut parts) = (0, 1_u32);
         if count == 0 {
             self.joined = false;
-            self.sample(step, part, None);
-            return;
+            return self.sample(step, part, None);
         }
         loop {
             let resolved = self.represent(step, part, (columns, powers));
@@ -275,7 +358,10 @@ impl Observers {
                 // The values at the start stay.
                 self.joined = true;
             } else {
-                let work = self.take(step, part, (columns, powers));
+                let work = match self.take(step, part, (columns, powers)) {
+                    ControlFlow::Continue(work) => work,
+                    ControlFlow::Break(sampled) => return ControlFlow::Break(sampled),
+                };
                 flown = [flown[0] + work[0], flown[1] + work[1]];
                 self.interpolants.copy_values(MOST, 0);
                 self.joined = true;
@@ -296,6 +382,7 @@ impl Observers {
         {
             ledger.add_work([work[0] - flown[0], work[1] - flown[1]]);
         }
+        ControlFlow::Continue(())
     }
 
     /// Fits polynomials to all functions in a part of a step; false: they do not represent them.
@@ -404,7 +491,7 @@ impl Observers {
         step: &mut Step<F, M>,
         part: Part,
         (columns, powers): (usize, bool),
-    ) -> [f64; 2] {
+    ) -> ControlFlow<Sampled, [f64; 2]> {
         let length = part.to - part.from;
         let integral = |i: usize| self.interpolants.polynomial(columns + i).integral(length);
         // Inside of the part the work is asked for by samples alone, and where a power changes its sign.
@@ -417,6 +504,10 @@ impl Observers {
             true => [0, 1].map(|i| self.interpolants.whole_integral(columns + i) * length),
             false => [0.0; 2],
         };
+        // Before the rest: the run may end at one.
+        if let ControlFlow::Break(sampled) = self.sample(step, part, work.as_ref()) {
+            return ControlFlow::Break(sampled);
+        }
         if let Some(mut extremes) = self.extremes.take() {
             self.look_for_extremes(&mut extremes, step, part, columns);
             if powers && self.functions.stored {
@@ -425,7 +516,6 @@ impl Observers {
             }
             self.extremes = Some(extremes);
         }
-        self.sample(step, part, work.as_ref());
         if let (Some(ledger), true) = (&mut self.ledger, powers) {
             ledger.add_work(whole);
             if part.is_last && step.beyond != 0.0 && step.work.is_none() {
@@ -433,7 +523,7 @@ impl Observers {
                 ledger.add_work([0, 1].map(|i| of.value_at(MOST, columns + i) * step.beyond));
             }
         }
-        whole
+        ControlFlow::Continue(whole)
     }
 
     /// Looks for extremes of all that is represented in a part of a step.
@@ -496,7 +586,7 @@ impl Observers {
         step: &mut Step<F, M>,
         part: Part,
         work: Option<&[Polynomial; 2]>,
-    ) {
+    ) -> ControlFlow<Sampled> {
         let to = match part.is_last {
             true => step.end + step.beyond,
             false => part.to,
@@ -524,12 +614,16 @@ impl Observers {
                 a: &a,
             };
             let (kernel, context) = (equations.kernel, &*equations.context);
-            self.recorder
-                .push_row(self.samples.next(), here.mode, |values| {
-                    row.fill(kernel, context, at, values)
-                });
+            let t = self.samples.next();
+            let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
+            let flow = self.recording.row(t, here.mode, fill);
             self.samples.pass();
+            if flow.is_break() {
+                let from = part.from;
+                return ControlFlow::Break(Sampled { from, tau, t });
+            }
         }
+        ControlFlow::Continue(())
     }
 
     /// Records the state at the end of a step, whose time the context is set for.
@@ -538,7 +632,7 @@ impl Observers {
         equations: &Equations<F>,
         here: &Here,
         at: Free<F>,
-    ) {
+    ) -> ControlFlow<()> {
         let row = Row {
             layout: &self.layout,
             q: &here.q,
@@ -546,10 +640,8 @@ impl Observers {
             ledger: samples::row_of(self.ledger.as_ref(), [0.0; 2]),
         };
         let (kernel, context) = (equations.kernel, &*equations.context);
-        self.recorder
-            .push_row(here.now.seconds(), here.mode, |values| {
-                row.fill(kernel, context, at, values)
-            });
+        let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
+        self.recording.row(here.now.seconds(), here.mode, fill)
     }
 }
 

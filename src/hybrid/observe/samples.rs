@@ -1,10 +1,12 @@
 //! Samples of the trajectory.
 
+use super::super::failure::{Reason, Stoppable};
 use super::super::simulation::Simulation;
 use super::ledger::RunningLedger;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::record::{Group, Layout};
+use std::ops::ControlFlow;
 
 /// What a row needs besides the state.
 pub(super) struct Row<'a> {
@@ -106,22 +108,26 @@ impl Simulation<'_> {
     /// Records the samples up to the present instant that no segment has covered: the first one,
     /// and those that an accumulation left out.
     #[inline(always)]
-    pub fn flush_samples(&mut self) {
+    pub fn flush_samples(&mut self) -> Stoppable<()> {
         while self.has_sample_left() {
-            match self.problem.record.every {
+            let flow = match self.problem.record.every {
                 None => self.sample_here(),
                 Some(_) => self.sample_at(self.observers.samples.next()),
-            }
+            };
             self.observers.samples.pass();
+            if flow.is_break() {
+                return Err(Box::new(Reason::Interrupted));
+            }
         }
+        Ok(())
     }
 
     /// Records the present state.
-    pub fn sample_here(&mut self) {
-        self.sample_at(self.here.now.seconds());
+    pub fn sample_here(&mut self) -> ControlFlow<()> {
+        self.sample_at(self.here.now.seconds())
     }
 
-    fn sample_at(&mut self, t: f64) {
+    fn sample_at(&mut self, t: f64) -> ControlFlow<()> {
         let mode = self.mode();
         let Simulation {
             observers,
@@ -137,9 +143,9 @@ impl Simulation<'_> {
         };
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = here.free(&mode.free);
-            observers.recorder.push_row(t, here.mode, |values| {
+            observers.recording.row(t, here.mode, |values| {
                 row.fill(k, context, Free { q: &q, v: &v, a: &a }, values)
             })
-        });
+        })
     }
 }

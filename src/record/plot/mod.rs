@@ -17,6 +17,7 @@ mod symbol;
 pub use axis::Scale;
 pub use chart::{Chart, Dimension, comparison};
 pub use overview::overview;
-pub(crate) use overview::{Grouped, grouped};
+pub(crate) use overview::{Grouped, grouped, overview_of};
 pub use panel::Curve;
 pub use phase::phase_portraits;
+pub(crate) use phase::phase_portraits_of;

@@ -10,7 +10,7 @@ use super::panel::{
 use super::strip::Strip;
 use super::symbol::symbol;
 use crate::record::number::rounded;
-use crate::record::{Column, Group, Run};
+use crate::record::{Column, Group, Run, Sketch};
 
 /// Width of the picture and of its margins, which hold the labels of the axes and, on the right,
 /// the numbers of transitions.
@@ -53,10 +53,15 @@ struct Panel {
 /// with the modes and the transitions underneath, as SVG. Quantities of the same kind and unit
 /// share a panel where each is readable there; those that never change are listed.
 pub fn overview(run: &Run) -> String {
-    let (panels, constants) = panels(run);
-    let time = time_axis(run);
-    let strip = Strip::new(run);
-    let with_curves = |panel| (panel_curves(run, &panel), panel);
+    overview_of(run, &Sketch::of(run))
+}
+
+/// The same from a sketch of a run.
+pub(crate) fn overview_of(run: &Run, sketch: &Sketch) -> String {
+    let (panels, constants) = panels(run, sketch);
+    let time = time_axis(run, sketch);
+    let strip = Strip::new(run, sketch);
+    let with_curves = |panel| (panel_curves(sketch, &panel), panel);
     let panels: Vec<(Vec<Curve>, Panel)> = panels.into_iter().map(with_curves).collect();
     let notes = wrapped(&constants, INNER);
     let panel_height = |c: &[Curve]| legend_height(&entries(c), INNER) + PANEL + GAP;
@@ -86,7 +91,7 @@ pub fn overview(run: &Run) -> String {
                 height: PANEL,
             };
             let y = Axis::new(Scale::Linear, &panel.unit, panel.range, 0.06);
-            grid(canvas, last, &time, &y, &axis_title(run, panel));
+            grid(canvas, last, &time, &y, &axis_title(sketch, panel));
             curves(canvas, last, &time, &y, c, false);
             top += PANEL + GAP;
         }
@@ -129,19 +134,14 @@ fn head(canvas: &mut Canvas, run: &Run) {
 }
 
 /// The axis from the first instant of a run to its end.
-pub(super) fn time_axis(run: &Run) -> Axis {
-    let times = run
-        .trajectory
-        .t
-        .iter()
-        .copied()
-        .chain(run.events.iter().map(|e| e.t));
-    let (from, to) = range(times.chain([run.end.t]), |_| true).unwrap_or((0.0, 0.0));
+fn time_axis(run: &Run, sketch: &Sketch) -> Axis {
+    let times = sketch.times().chain([run.end.t]);
+    let (from, to) = range(times, |_| true).unwrap_or((0.0, 0.0));
     Axis::new(Scale::Linear, "s", (from, to), 0.0)
 }
 
 /// Divides the columns among panels; also a sentence about those that never change.
-fn panels(run: &Run) -> (Vec<Panel>, String) {
+fn panels(run: &Run, sketch: &Sketch) -> (Vec<Panel>, String) {
     const ORDER: [Group; 5] = [
         Group::Input,
         Group::Coordinate,
@@ -154,8 +154,8 @@ fn panels(run: &Run) -> (Vec<Panel>, String) {
     for group in ORDER {
         let start = panels.len();
         for i in run.layout.range(group) {
-            let column = &run.trajectory.columns[i];
-            let Some(range) = range(run.curve(i).map(|p| p.1), |_| true) else {
+            let column = &sketch.columns()[i];
+            let Some(range) = range(sketch.curve(i).map(|p| p.1), |_| true) else {
                 continue;
             };
             if !varies(range) {
@@ -194,8 +194,8 @@ pub(crate) struct Grouped {
 
 /// How a run's columns are divided among panels, the response before the inputs; also a sentence about those that never
 /// change.
-pub(crate) fn grouped(run: &Run) -> (Vec<Grouped>, String) {
-    let (panels, constants) = panels(run);
+pub(crate) fn grouped(run: &Run, sketch: &Sketch) -> (Vec<Grouped>, String) {
+    let (panels, constants) = panels(run, sketch);
     let mut groups: Vec<Grouped> = (panels.into_iter())
         .map(|panel| Grouped {
             group: panel.group,
@@ -230,9 +230,9 @@ impl Panel {
     }
 }
 
-fn panel_curves(run: &Run, panel: &Panel) -> Vec<Curve> {
+fn panel_curves(sketch: &Sketch, panel: &Panel) -> Vec<Curve> {
     let curve = |&(i, _): &(usize, (f64, f64))| {
-        let column = &run.trajectory.columns[i];
+        let column = &sketch.columns()[i];
         // Of a rate the symbol says it all, and a lone one has it beside its axis.
         let label = match (panel.group, panel.columns.len()) {
             (Group::Velocity, 1) => String::new(),
@@ -241,17 +241,17 @@ fn panel_curves(run: &Run, panel: &Panel) -> Vec<Curve> {
         };
         Curve {
             label,
-            points: run.curve(i).collect(),
+            points: sketch.curve(i).collect(),
         }
     };
     panel.columns.iter().map(curve).collect()
 }
 
 /// The symbol of the only quantity of a panel, or the kind of its quantities.
-fn axis_title(run: &Run, panel: &Panel) -> String {
+fn axis_title(sketch: &Sketch, panel: &Panel) -> String {
     match (&panel.columns[..], panel.group) {
         ([(i, _)], Group::Coordinate | Group::Velocity | Group::Reaction) => {
-            symbol(&run.trajectory.columns[*i].name)
+            symbol(&sketch.columns()[*i].name)
         }
         (_, Group::Coordinate) => "coordinate".into(),
         (_, Group::Velocity) => "velocity".into(),

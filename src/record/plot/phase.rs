@@ -7,7 +7,7 @@ use super::chart::{Chart, Dimension};
 use super::panel::{Area, Curve, range};
 use super::symbol::symbol;
 use crate::record::number::rounded;
-use crate::record::{Group, Run};
+use crate::record::{Group, Run, Sketch};
 
 /// Size of a portrait.
 const SIZE: (f64, f64) = (380.0, 330.0);
@@ -20,11 +20,16 @@ const PIECES: usize = 16_000;
 
 /// Draws the phase portrait of every coordinate that moves, as SVG; `None` when none does.
 pub fn phase_portraits(run: &Run) -> Option<String> {
+    phase_portraits_of(run, &Sketch::of(run))
+}
+
+/// The same from a sketch of a run; of a long one what is kept whole.
+pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch) -> Option<String> {
     let coordinates = run.layout.range(Group::Coordinate);
     let velocities = run.layout.range(Group::Velocity);
     let charts: Vec<Chart> = coordinates
         .zip(velocities)
-        .filter_map(|(q, v)| portrait(run, q, v))
+        .filter_map(|(q, v)| portrait(sketch, q, v))
         .collect();
     if charts.is_empty() {
         return None;
@@ -51,12 +56,12 @@ pub fn phase_portraits(run: &Run) -> Option<String> {
     }))
 }
 
-fn portrait(run: &Run, q: usize, v: usize) -> Option<Chart> {
-    let points: Vec<_> = run
-        .curve(q)
-        .map(|p| p.1)
-        .zip(run.curve(v).map(|p| p.1))
-        .collect();
+fn portrait(sketch: &Sketch, q: usize, v: usize) -> Option<Chart> {
+    // Between rows that are apart there is no line to draw.
+    let since = sketch.whole_since();
+    let left_out = sketch.curve(q).take_while(|p| p.0 < since).count();
+    let values = |i: usize| sketch.curve(i).skip(left_out).map(|p| p.1);
+    let points: Vec<_> = values(q).zip(values(v)).collect();
     let (low, high) = range(points.iter().map(|p| p.0), |_| true)?;
     let (slow, fast) = range(points.iter().map(|p| p.1), |_| true)?;
     if low == high || slow == fast {
@@ -70,11 +75,11 @@ fn portrait(run: &Run, q: usize, v: usize) -> Option<Chart> {
         (part(p.0, low, high), part(p.1, slow, fast))
     };
     let (pieces, from) = distinct(&points, cell);
-    let title = match run.curve(q).nth(from) {
-        Some((t, _)) if from > 0 => format!("from t = {} s on", rounded(t, 4)),
+    let title = match sketch.curve(q).nth(left_out + from) {
+        Some((t, _)) if left_out + from > 0 => format!("from t = {} s on", rounded(t, 4)),
         _ => String::new(),
     };
-    let (q, v) = (&run.trajectory.columns[q], &run.trajectory.columns[v]);
+    let (q, v) = (&sketch.columns()[q], &sketch.columns()[v]);
     Some(Chart {
         title,
         x: Dimension::linear(&symbol(&q.name), &q.unit),

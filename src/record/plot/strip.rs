@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::canvas::{Anchor, Canvas};
 use super::palette::{INK, area};
 use super::panel::{Area, Entry, SMALL, TEXT, frame, legend, legend_height};
-use crate::record::Run;
+use crate::record::{Run, Sketch};
 
 /// Height of the strip of the modes, and of the lane of a transition.
 const STRIP: f64 = 18.0;
@@ -19,28 +19,23 @@ pub(super) struct Strip {
     /// The modes that occur.
     modes: Vec<usize>,
     entries: Vec<Entry>,
-    /// Name and times, in the order of first occurrence.
-    lanes: Vec<(&'static str, Vec<f64>)>,
+    /// Name, number and times, in the order of first occurrence.
+    lanes: Vec<(&'static str, usize, Vec<f64>)>,
 }
 
 impl Strip {
     /// The strip of a run.
-    pub fn new(run: &Run) -> Strip {
-        let start = run.trajectory.t.first().copied();
-        let mut since = start
-            .or(run.events.first().map(|e| e.t))
-            .unwrap_or(run.end.t);
-        let mut intervals = Vec::new();
-        let mut lanes: Vec<(&'static str, Vec<f64>)> = Vec::new();
-        for event in &run.events {
-            intervals.push((since, event.t, event.from));
-            since = event.t;
-            match lanes.iter_mut().find(|(name, _)| *name == event.transition) {
-                Some((_, times)) => times.push(event.t),
-                None => lanes.push((event.transition, vec![event.t])),
-            }
-        }
+    pub fn new(run: &Run, sketch: &Sketch) -> Strip {
+        let marks = sketch.marks();
+        let mut intervals = marks.visits.clone();
+        let since = intervals.last().map(|visit| visit.1);
+        let since = since.or(sketch.first_row()).unwrap_or(run.end.t);
         intervals.push((since, run.end.t, run.end.mode));
+        let lane = |&(name, count): &(&'static str, usize)| {
+            let of_name = marks.events.iter().filter(|event| event.1 == name);
+            (name, count, of_name.map(|event| event.0).collect())
+        };
+        let lanes = marks.counts.iter().map(lane).collect();
         let mut modes: Vec<usize> = intervals.iter().map(|i| i.2).collect();
         modes.sort_unstable();
         modes.dedup();
@@ -77,7 +72,7 @@ impl Strip {
         let below = strip.bottom() + GAP;
         legend(canvas, &self.entries, (left, below), width);
         let mut top = below + legend_height(&self.entries, width);
-        for (name, times) in &self.lanes {
+        for (name, count, times) in &self.lanes {
             let lane = Area {
                 left,
                 top,
@@ -87,7 +82,7 @@ impl Strip {
             let middle = top + LANE / 2.0;
             canvas.text(name, (left - GAP, middle), Anchor::Right, SMALL);
             canvas.text(
-                &times.len().to_string(),
+                &count.to_string(),
                 (lane.right() + GAP, middle),
                 Anchor::Left,
                 SMALL,

@@ -1,0 +1,98 @@
+//! What `dalembert run` makes of a run while it goes on.
+
+use std::ops::ControlFlow;
+
+use super::interrupt;
+use crate::hybrid::{Observer, Reason, Replay};
+use crate::record::{
+    Earlier, Event, Jump, Layout, OutputFolder, ReadError, Sketch, Snapshot, Stream,
+};
+
+/// The files of a run, what its pictures are drawn from, and its transitions, each where it is wanted.
+pub struct Outputs {
+    pub stream: Option<Stream>,
+    pub sketch: Option<Sketch>,
+    jumps: Option<Vec<Jump>>,
+}
+
+/// Why an earlier run cannot be gone on with.
+pub enum NotReplayed {
+    /// It cannot be read.
+    Unread(ReadError),
+    /// It is not one of this problem.
+    Other(Reason),
+}
+
+impl Outputs {
+    /// Outputs to a folder, where there is one; a sketch for that or for a `page`; all transitions, if they are `compared`.
+    pub fn new(
+        layout: &Layout,
+        folder: Option<&OutputFolder>,
+        page: bool,
+        compared: bool,
+    ) -> Outputs {
+        Outputs {
+            stream: folder.map(|folder| Stream::new(folder, layout)),
+            sketch: (folder.is_some() || page).then(|| Sketch::new(layout)),
+            jumps: compared.then(Vec::new),
+        }
+    }
+
+    /// The transitions without their states, where they were wanted.
+    pub fn events(&mut self) -> Vec<Event> {
+        let jumps = self.jumps.take().unwrap_or_default();
+        let event = |jump: &Jump| Event::new(jump, Default::default());
+        jumps.iter().map(event).collect()
+    }
+
+    /// Takes the rows and transitions of a run that is to go on.
+    pub fn replay(
+        &mut self,
+        earlier: &mut Earlier,
+        replay: &mut Replay,
+    ) -> Result<(), NotReplayed> {
+        let mut other = None;
+        let rows = earlier.rows(|t, mode, values| {
+            replay.row((t, mode, values), self).map_err(|reason| {
+                let words = reason.to_string();
+                other = Some(reason);
+                words
+            })
+        });
+        match (rows, other) {
+            (_, Some(reason)) => return Err(NotReplayed::Other(reason)),
+            (rows, None) => rows.map_err(NotReplayed::Unread)?,
+        }
+        replay.end(self);
+        let events = earlier.events(|jump, sides| self.event(jump, Some(sides)));
+        events.map_err(NotReplayed::Unread)
+    }
+}
+
+impl Observer for Outputs {
+    fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()> {
+        if let Some(stream) = &mut self.stream {
+            stream.row(t, mode, values);
+        }
+        if let Some(sketch) = &mut self.sketch {
+            sketch.row(t, values);
+        }
+        match interrupt::asked() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+
+    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+        let sides = sides.map(|[before, after]| [before, after]);
+        if let Some(stream) = &mut self.stream {
+            stream.event(jump, sides);
+        }
+        if let Some(sketch) = &mut self.sketch {
+            sketch.event(jump, sides);
+        }
+        if let Some(jumps) = &mut self.jumps {
+            jumps.push(*jump);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Where rows and transitions go.
+
+use super::super::accumulation::Accumulation;
+use super::super::problem::Problem;
+use super::observer::{Collected, MadeStep, Observer};
+use crate::record::{Event, Jump, Layout, Snapshot, Tally, Trajectory};
+use std::ops::ControlFlow;
+
+/// What rows and transitions are told to, one of them.
+enum To<'o> {
+    /// Memory.
+    Collected(Collected),
+    /// An observer from outside.
+    Observer(Box<dyn Observer + 'o>),
+}
+
+/// The rows and transitions of a run on their way to who wants them.
+pub(in crate::hybrid) struct Recording<'o> {
+    to: To<'o>,
+    /// Whether the observer sees steps.
+    pub sees_steps: bool,
+    /// Room for a row.
+    row: Box<[f64]>,
+    /// Time of the last one, s.
+    last: Option<f64>,
+    /// What was counted of the transitions that an observer was told of.
+    tally: Tally,
+    /// The last of these, as many as an accumulation is recognised by.
+    recent: Vec<&'static str>,
+}
+
+impl<'o> Recording<'o> {
+    /// Into memory.
+    pub fn collected(problem: &Problem, layout: &Layout) -> Self {
+        Self::new(To::Collected(Collected::new(problem, layout)), layout)
+    }
+
+    /// To an observer.
+    pub fn told(observer: &'o mut dyn Observer, layout: &Layout) -> Self {
+        let sees_steps = observer.sees_steps();
+        Recording {
+            sees_steps,
+            ..Self::new(To::Observer(Box::new(observer)), layout)
+        }
+    }
+
+    fn new(to: To<'o>, layout: &Layout) -> Self {
+        Recording {
+            to,
+            sees_steps: false,
+            row: vec![0.0; layout.columns().len()].into(),
+            last: None,
+            tally: Tally::default(),
+            recent: Vec::new(),
+        }
+    }
+
+    /// Goes on where an earlier run has ended whose rows and transitions are in memory; the last row was at this time.
+    pub fn continue_with(&mut self, collected: Collected, last: Option<f64>) {
+        self.to = To::Collected(collected);
+        self.last = last;
+    }
+
+    /// Goes on where one has ended whose rows and transitions the observer was told of.
+    pub fn continue_told(&mut self, tally: Tally, last: Option<f64>) {
+        self.tally = tally;
+        self.last = last;
+    }
+
+    /// Forgets what is in memory.
+    pub fn rewind(&mut self) {
+        if let To::Collected(collected) = &mut self.to {
+            collected.clear();
+        }
+        self.last = None;
+    }
+
+    /// A row, which `fill` fills.
+    pub fn row(&mut self, t: f64, mode: usize, fill: impl FnOnce(&mut [f64])) -> ControlFlow<()> {
+        self.row.fill(0.0);
+        fill(&mut self.row);
+        self.last = Some(t);
+        match &mut self.to {
+            To::Collected(collected) => collected.row(t, mode, &self.row),
+            To::Observer(observer) => observer.row(t, mode, &self.row),
+        }
+    }
+
+    /// Time of the last row, s.
+    pub fn last_row(&self) -> Option<f64> {
+        self.last
+    }
+
+    /// A transition.
+    pub fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+        match &mut self.to {
+            To::Collected(collected) => collected.event(jump, sides),
+            To::Observer(observer) => {
+                self.tally.note(jump);
+                if self.recent.len() == Accumulation::MEMORY {
+                    self.recent.remove(0);
+                }
+                self.recent.push(jump.transition);
+                observer.event(jump, sides);
+            }
+        }
+    }
+
+    /// A transition in memory, without its states.
+    #[inline(always)]
+    pub fn push(&mut self, jump: Jump) {
+        if let To::Collected(collected) = &mut self.to {
+            collected.push(jump);
+        }
+    }
+
+    /// A step.
+    pub fn step(&mut self, step: &mut MadeStep) {
+        if let To::Observer(observer) = &mut self.to {
+            observer.step(step);
+        }
+    }
+
+    /// The transitions so far that are in memory.
+    pub fn jumps(&self) -> &[Jump] {
+        match &self.to {
+            To::Collected(collected) => collected.jumps(),
+            To::Observer(_) => &[],
+        }
+    }
+
+    /// Names of the last transitions, at most as many as an accumulation is recognised by, the latest first.
+    pub fn recent(&self) -> Vec<&'static str> {
+        let of_memory = self.jumps().iter().rev().take(Accumulation::MEMORY);
+        let of_memory = of_memory.map(|jump| jump.transition);
+        of_memory.chain(self.recent.iter().rev().copied()).collect()
+    }
+
+    /// Rows and transitions as far as they are in memory, and the tally of all.
+    pub fn finish(self, layout: &Layout) -> (Trajectory, Vec<Event>, Tally) {
+        let To::Collected(collected) = self.to else {
+            let columns = layout.columns();
+            let none = Trajectory {
+                columns,
+                ..Trajectory::default()
+            };
+            return (none, Vec::new(), self.tally);
+        };
+        let (trajectory, jumps, sides) = collected.into_parts();
+        let tally = Tally::of(jumps.iter().copied());
+        let sides = sides.into_iter();
+        let sides = sides.chain(std::iter::repeat_with(Default::default));
+        let events = jumps.iter().zip(sides);
+        let events = events.map(|(jump, sides)| Event::new(jump, sides));
+        (trajectory, events.collect(), tally)
+    }
+}
+
+impl std::fmt::Debug for Recording<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Recording").finish_non_exhaustive()
+    }
+}

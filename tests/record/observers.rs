@@ -1,0 +1,271 @@
+//! Runs that are observed while they go on.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use dalembert::hybrid::{
+    MadeStep, Observer, Problem, Replay, resume, resume_with, simulate, simulate_with,
+};
+use dalembert::model::models;
+use dalembert::record::{Earlier, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream};
+use dalembert::scene::Scene;
+
+fn scene(name: &str, overrides: &[&str]) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.json"));
+    let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
+    Scene::load(&path, &overrides, models()).unwrap()
+}
+
+/// A time, and coordinates and velocities then.
+type At = (f64, Vec<f64>, Vec<f64>);
+
+/// Keeps what it is told, and ends the run at a row by its index.
+#[derive(Default)]
+struct Told {
+    rows: Vec<(f64, usize, Vec<f64>)>,
+    events: Vec<(Jump, Option<[Snapshot; 2]>)>,
+    /// Times at which steps begin and end, and the states at these.
+    steps: Vec<[At; 2]>,
+    sees_steps: bool,
+    coordinates: usize,
+    end_at: Option<usize>,
+}
+
+impl Observer for Told {
+    fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()> {
+        self.rows.push((t, mode, values.to_vec()));
+        match self.end_at == Some(self.rows.len()) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+        self.events.push((*jump, sides.cloned()));
+    }
+    fn sees_steps(&self) -> bool {
+        self.sees_steps
+    }
+    fn step(&mut self, step: &mut MadeStep) {
+        let count = self.coordinates;
+        let ends = [step.from, step.to].map(|t| {
+            let (mut q, mut v) = (vec![0.0; count], vec![0.0; count]);
+            step.state_at(t, &mut q, &mut v);
+            (t, q, v)
+        });
+        self.steps.push(ends);
+    }
+}
+
+fn same(run: &Run, told: &Told) {
+    assert_eq!(run.trajectory.len(), told.rows.len());
+    for (i, (t, mode, values)) in told.rows.iter().enumerate() {
+        assert_eq!(run.trajectory.t[i], *t, "row {i}");
+        assert_eq!(usize::from(run.trajectory.mode[i]), *mode, "row {i}");
+        assert_eq!(run.trajectory.row(i), values, "row {i}");
+    }
+    assert_eq!(run.events.len(), told.events.len());
+    for (event, (jump, sides)) in run.events.iter().zip(&told.events) {
+        assert_eq!(event.jump(), *jump);
+        let [before, after] = sides.as_ref().unwrap();
+        assert_eq!((&event.before, &event.after), (before, after));
+    }
+}
+
+#[test]
+fn an_observer_is_told_what_a_run_in_memory_holds() {
+    for name in [
+        "bouncing_ball",
+        "tank_full_plate",
+        "vibrating_table_ball",
+        "belt_oscillator",
+    ] {
+        let scene = scene(name, &["end=0.9"]);
+        let run = simulate(&scene.problem, &mut Silent).unwrap();
+        let mut told = Told::default();
+        let observed = simulate_with(&scene.problem, &mut told, &mut Silent).unwrap();
+        same(&run, &told);
+        assert!(observed.trajectory.is_empty() && observed.events.is_empty());
+        assert_eq!(observed.trajectory.columns, run.trajectory.columns);
+        assert_eq!(observed.tally, run.tally);
+        assert_eq!(observed.peaks, run.peaks);
+        assert_eq!((observed.energy, observed.end), (run.energy, run.end));
+    }
+}
+
+#[test]
+fn steps_are_shown_with_their_dense_output_up_to_their_events() {
+    for (name, method) in [("bouncing_ball", "taylor"), ("tank_full_plate", "radau")] {
+        let method = format!("method={method}");
+        let scene = scene(name, &["end=0.9", "record={}", &method]);
+        let problem = &scene.problem;
+        let mut told = Told {
+            sees_steps: true,
+            coordinates: problem.model.coordinates.len(),
+            ..Told::default()
+        };
+        let run = simulate_with(problem, &mut told, &mut Silent).unwrap();
+        assert_eq!(told.steps.len() as u64, run.solver.steps, "{name}");
+        // One step begins where the one before has ended, in time and, without an event between them, in state.
+        for steps in told.steps.windows(2) {
+            let [(end, ..), (start, ..)] = [&steps[0][1], &steps[1][0]];
+            assert!((start - end).abs() < 1e-12, "{name}: {end} {start}");
+        }
+        // Before an event the state is that at the end of a step, but for what it takes to the far side.
+        let mut seen = 0;
+        for (jump, sides) in &told.events {
+            let [before, _] = sides.as_ref().unwrap();
+            let at_its_time = |(t, ..): &&At| (t - jump.t).abs() < 1e-14;
+            let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-10);
+            let mut ends = told.steps.iter().map(|step| &step[1]).filter(at_its_time);
+            seen += usize::from(ends.any(|(_, q, v)| near(q, &before.q) && near(v, &before.v)));
+        }
+        assert!(2 * seen > told.events.len(), "{name}: {seen}");
+    }
+}
+
+/// Problems of which steps hold many samples: a flight, and a motion with energies in its rows.
+fn with_many_samples() -> [Scene; 3] {
+    [
+        scene("bouncing_ball", &["record.every=1e-4", "end=0.4"]),
+        scene(
+            "bouncing_ball",
+            &["record={\"every\":1e-4}", "end=0.4", "method=radau"],
+        ),
+        scene("forced_pendulum", &["record.every=1e-3", "end=4"]),
+    ]
+}
+
+#[test]
+fn a_run_that_ends_at_a_sample_goes_on_as_if_it_had_not() {
+    for scene in with_many_samples() {
+        let problem = &scene.problem;
+        let whole = simulate(problem, &mut Silent).unwrap();
+        let mut told = Told {
+            end_at: Some(1235),
+            ..Told::default()
+        };
+        let first = simulate_with(problem, &mut told, &mut Silent).unwrap();
+        assert_eq!(first.failure.as_ref().unwrap().reason, "interrupted");
+        assert_eq!(told.rows.len(), 1235);
+        // The state is that of the sample, and so are the energies and the extremes.
+        assert_eq!(first.end.t, whole.trajectory.t[1234]);
+        let row = whole.trajectory.row(1234);
+        assert_eq!(first.end.state.q[..], row[..first.end.state.q.len()]);
+        assert!(
+            first
+                .peaks
+                .iter()
+                .all(|(_, p)| p.t_max.max(p.t_min) <= first.end.t)
+        );
+        let (energy, exact) = (
+            first.energy.as_ref().unwrap(),
+            whole.energy.as_ref().unwrap(),
+        );
+        assert!(
+            energy.imbalance().abs() < 1e-8 * (1.0 + exact.initial.abs()),
+            "{energy:?}"
+        );
+        let mut replay = Replay::new(problem);
+        let mut again = Told::default();
+        for (t, mode, values) in &told.rows {
+            replay.row((*t, *mode, values), &mut again).unwrap();
+        }
+        replay.end(&mut again);
+        let both = resume_with(problem, first, replay, &mut again, &mut Silent).unwrap();
+        assert!(both.failure.is_none());
+        assert_eq!(again.rows.len(), whole.trajectory.len());
+        for (i, (t, _, values)) in again.rows.iter().enumerate() {
+            assert_eq!(*t, whole.trajectory.t[i]);
+            for (a, b) in values.iter().zip(whole.trajectory.row(i)) {
+                assert!((a - b).abs() < 1e-7 * (1.0 + b.abs()), "row {i}: {a} {b}");
+            }
+        }
+        let (both, whole) = (both.energy.unwrap(), whole.energy.unwrap());
+        assert!((both.input_work - whole.input_work).abs() < 1e-7);
+        assert!((both.dissipated - whole.dissipated).abs() < 1e-7);
+    }
+}
+
+/// All files of a folder that a run decides, by name.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let names = [
+        "trajectory.csv",
+        "events.csv",
+        "csv-metadata.json",
+        "overview.svg",
+        "phase.svg",
+    ];
+    let read = |name: &str| (name.to_owned(), std::fs::read(folder.join(name)).unwrap());
+    names.map(read).into()
+}
+
+/// Files and pictures of a run, as they come.
+struct Files(Stream, Sketch);
+
+impl Observer for Files {
+    fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()> {
+        self.0.row(t, mode, values);
+        self.1.row(t, values);
+        ControlFlow::Continue(())
+    }
+    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+        let sides = sides.map(|[before, after]| [before, after]);
+        self.0.event(jump, sides);
+        self.1.event(jump, sides);
+    }
+}
+
+fn observed(problem: &Problem, folder: &Path) -> Run {
+    let run = simulate(problem, &mut Silent).unwrap();
+    let folder = OutputFolder::new(folder).unwrap();
+    let mut files = Files(Stream::new(&folder, &run.layout), Sketch::new(&run.layout));
+    let run = simulate_with(problem, &mut files, &mut Silent).unwrap();
+    files.0.finish(&run, &files.1).unwrap();
+    run
+}
+
+#[test]
+fn files_that_were_written_as_rows_came_are_those_of_a_run_in_memory() {
+    let home = tempfile::tempdir().unwrap();
+    let [streamed, written] = ["streamed", "written"].map(|name| home.path().join(name));
+    let mut scene = scene("tank_full_plate", &["end=1.2"]);
+    for every in [scene.problem.record.every, None] {
+        scene.problem.record.every = every;
+        observed(&scene.problem, &streamed);
+        let run = simulate(&scene.problem, &mut Silent).unwrap();
+        run.write(&OutputFolder::new(&written).unwrap()).unwrap();
+        assert!(files(&streamed) == files(&written));
+    }
+}
+
+#[test]
+fn a_run_is_read_back_row_by_row_or_whole() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = scene("tank_full_plate", &["end=0.7503"]);
+    let problem = &scene.problem;
+    let out = home.path().join("out");
+    observed(problem, &out);
+    let columns = problem.record.columns;
+    let run = Run::read(&out, problem.model, problem.variant(), columns).unwrap();
+    let mut earlier = Earlier::open(&out, problem.model, problem.variant(), columns).unwrap();
+    let (mut told, mut replay) = (Told::default(), Replay::new(problem));
+    earlier
+        .rows(|t, mode, values| {
+            replay.row((t, mode, values), &mut told).unwrap();
+            Ok(())
+        })
+        .unwrap();
+    replay.end(&mut told);
+    earlier
+        .events(|jump, sides| told.event(jump, Some(sides)))
+        .unwrap();
+    assert_eq!(earlier.run.tally, run.tally);
+    // The last row is off the grid, and not one of the run that goes on.
+    assert_eq!(told.rows.len() + 1, run.trajectory.len());
+    let mut longer = problem.clone();
+    longer.end.time = 1.0;
+    let told_of = resume_with(&longer, earlier.run, replay, &mut told, &mut Silent).unwrap();
+    let whole = resume(&longer, run, &mut Silent).unwrap();
+    same(&whole, &told);
+    assert_eq!(told_of.tally, whole.tally);
+}
