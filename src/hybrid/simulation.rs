@@ -171,7 +171,7 @@ impl<'p> Simulation<'p> {
         problem.check()?;
         let plan = Plan::new(problem)?;
         problem.check_method(&plan)?;
-        let mut context = Context::new(&model, &problem.parameters);
+        let mut context = Context::new(model, &problem.parameters);
         context
             .discrete_mut()
             .copy_from_slice(&problem.initial.discrete);

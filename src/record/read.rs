@@ -204,8 +204,8 @@ impl Run {
     /// Reads the run in a folder into memory, as [`Earlier::open`] does.
     pub fn read(
         folder: &Path,
-        model: &'static Model,
-        variant: &'static Variant,
+        model: &Model,
+        variant: &Variant,
         recorded: Recorded,
     ) -> Result<Run, ReadError> {
         let mut earlier = Earlier::open(folder, model, variant, recorded)?;
