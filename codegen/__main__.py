@@ -1,6 +1,7 @@
-"""Command line of the package: `generate` writes code, `verify` judges printed equations."""
+"""Command line of the package: `generate` writes code, `check` judges a model, `verify` judges printed equations."""
 
 import argparse
+import json
 import os
 import sys
 
@@ -22,13 +23,28 @@ def main(argv):
     generator.add_argument("--model-dir", action="append", required=True, help="a folder with a model.py")
     generator.add_argument("--out", required=True, help="output root; each model gets a folder in it")
     generator.add_argument("--for-tests", action="store_true", help="mark the models as test models")
+    generator.add_argument("--only", action="append", metavar="CHOICE=OPTION", nargs="?", const="",
+                           help="derive one variant, with these options and the defaults of other choices")
+    generator.add_argument("--reads", action="store_true", help="also list the files that were read, in reads.json")
+    judge = commands.add_parser("check", help="print all errors of a model, or its modes, as JSON")
+    judge.add_argument("--model-dir", required=True, help="a folder with a model.py")
     arguments = parser.parse_args(argv)
+    if arguments.command == "check":
+        from .judge import judge
+        print(json.dumps(judge(arguments.model_dir)))
+        return 0
+    named = arguments.only and dict(pair.split("=", 1) for pair in arguments.only if pair)
+    from . import reads
+    if arguments.reads:
+        reads.watch()
     from .generate import generate
     try:
         for folder in arguments.model_dir:
-            files = generate(folder, arguments.for_tests)
+            files = generate(folder, arguments.for_tests, named)
             target = os.path.join(arguments.out, os.path.basename(os.path.normpath(folder)))
             os.makedirs(target, exist_ok=True)
+            if arguments.reads:
+                files["reads.json"] = reads.listed(folder)
             for name, text in files.items():
                 with open(os.path.join(target, name), "w", encoding="utf-8", newline="\n") as stream:
                     stream.write(text)

@@ -7,7 +7,7 @@ import casadi as ca
 
 from . import graph, units
 from .arguments import shown
-from .errors import ModelError
+from .errors import ModelError, each
 
 MOST_FREE = 6
 """Most free coordinates a mode may have; `ModeKernels` in src/kernel/tables.rs has one case for each."""
@@ -18,22 +18,22 @@ def check(model):
     if not model.modes:
         raise ModelError("the model has no mode: add model.mode(name, meaning, freeze=[…]), without `freeze` if all of its"
                          " coordinates are free", model.location_of_model)
-    _check_symbols(model)
-    _check_energies_know_no_accelerations(model)
-    _check_masses(model)
-    for transition in model.transitions:
-        _check_guard(model, transition)
-        _check_reset(model, transition)
+    each(lambda check: check(model), (_check_symbols, _check_energies_know_no_accelerations, _check_masses))
+    each(lambda transition: _check_guard(model, transition), model.transitions)
+    each(lambda transition: _check_reset(model, transition), model.transitions)
 
 
 def check_equations(model, modes):
     """Refuses modes whose equations do not determine the accelerations."""
-    for equations in modes:
-        mode = equations.mode
-        if len(equations.free) > MOST_FREE:
-            raise ModelError(f"mode `{mode.name}` has {len(equations.free)} free coordinates; at most {MOST_FREE} are supported",
-                             mode.location)
-        _check_inertia(model, equations)
+    each(lambda equations: _check_mode(model, equations), modes)
+
+
+def _check_mode(model, equations):
+    mode = equations.mode
+    if len(equations.free) > MOST_FREE:
+        raise ModelError(f"mode `{mode.name}` has {len(equations.free)} free coordinates; at most {MOST_FREE} are supported",
+                         mode.location)
+    _check_inertia(model, equations)
 
 
 # ---- symbols ------------------------------------------------------------------------------------

@@ -24,8 +24,8 @@ class BuildContext:
 CONTEXT = []
 
 
-def build(name, file, source):
-    """Runs a model file (its text) for every combination of choices; returns the models."""
+def build(name, file, source, run=exec):
+    """Runs a model file (its text) for every combination of choices; returns the models. `run` runs its code."""
     package = _package(name, os.path.dirname(file))
     code = compile(source, file, "exec")
     models, pending = [], [{}]
@@ -34,7 +34,7 @@ def build(name, file, source):
         CONTEXT.append(context)
         path = list(sys.path)
         try:
-            exec(code, {"__name__": package, "__package__": package, "__file__": file})
+            run(code, {"__name__": package, "__package__": package, "__file__": file})
         finally:
             CONTEXT.pop()
             sys.path[:] = path

@@ -3,7 +3,7 @@
 import casadi as ca
 
 from . import graph, limits, units
-from .errors import ModelError
+from .errors import ModelError, report
 
 
 def check(model):
@@ -63,8 +63,9 @@ def _check_unit(expression, want, table, what, location):
     try:
         found = units.dimension_of(ca.SX(expression), table)
     except units.UnitError as error:
-        raise ModelError(f"{what}: {error}", location) from None
+        report(ModelError(f"{what}: {error}", location))
+        return
     if want is not None and found != want and not ca.SX(expression).is_zero():
-        raise ModelError(
+        report(ModelError(
             f"{what}: the term `{units.short(expression)}` has the dimension {units.text(found)},"
-            f" expected {units.text(want)}", location)
+            f" expected {units.text(want)}", location))

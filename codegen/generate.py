@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import (analysis, bounds, check, derive, description, dimensions, emit_model, emit_series, graph, limits,
+from . import (analysis, bounds, check, combinations, derive, description, dimensions, emit_model, emit_series, graph, limits,
                momentum, tape)
 from .arguments import NOT_FOLDERS
 from .context import build
@@ -47,7 +47,7 @@ class Variant:
     """The same where no optional motion of the ground acts, if there is one."""
 
 
-def load(folder):
+def load(folder, build=build):
     """The models (one a combination of choices) of a model folder."""
     name = os.path.basename(os.path.normpath(folder))
     file = os.path.abspath(os.path.join(folder, "model.py"))
@@ -61,24 +61,31 @@ def load(folder):
         raise ModelError(f"the model folder has no readable model.py: {error.strerror}", file) from None
     try:
         return build(name, file, source)
-    except ModelError as error:
-        if error.location is None:
-            error.location = error_location(error, file)
-        raise
     except Exception as error:
-        message = f"{type(error).__name__}: {error}"
-        if "truth value" in message:
-            message = ("an `if`, `and`, `or`, `not`, `min`, `max` or the like asks whether an expression is true, which is not known"
-                       " before the run: write one mode or one guard for each case instead")
-        raise ModelError(message, error_location(error, file)) from error
+        raise as_model_error(error, file) from error
 
 
-def generate(folder, for_tests=False):
-    """All files of a model: a dict from file name to text."""
+def as_model_error(error, file):
+    """What ended the run of a model file, as an error with its place."""
+    if isinstance(error, ModelError):
+        error.location = error.location or error_location(error, file)
+        return error
+    message = f"{type(error).__name__}: {error}"
+    if isinstance(error, SyntaxError):
+        message = f"{type(error).__name__}: {error.msg}"
+    if "truth value" in message:
+        message = ("an `if`, `and`, `or`, `not`, `min`, `max` or the like asks whether an expression is true, which is not known"
+                   " before the run: write one mode or one guard for each case instead")
+    return ModelError(message, error_location(error, file))
+
+
+def generate(folder, for_tests=False, named=None):
+    """All files of a model: a dict from file name to text. With `named`, options by choices, that of the fitting variant alone."""
     models = load(folder)
     name = models[0].name
-    _check_same_declarations(models)
-    chosen = [_variants(model) for model in models]
+    check_same_declarations(models)
+    derived = models if named is None else [combinations.fitting(models, named)]
+    chosen = [variants_of(model) for model in derived]
     variants = [v for variant in chosen for v in (variant, variant.lean) if v]
     constants = _extract_constants(variants)
     source = Source()
@@ -116,6 +123,8 @@ def generate(folder, for_tests=False):
         "sources": [f"{name}.c"],
         "tables": f"{name}_model.c",
         "lanes": [f"{name}_lanes.c"] if lanes_text else [],
+        **combinations.table(models),
+        "derived": [models.index(model) for model in derived],
         "casadi": ca.__version__,
         "content": hashlib.sha256((c_text + (lanes_text or "") + model_text).encode()).hexdigest(),
         "operations": {
@@ -165,7 +174,7 @@ def _emit_series(source, prefix, variant, slot, function, constants):
     function.operations = series.operations
 
 
-def _check_same_declarations(models):
+def check_same_declarations(models):
     def declared(model):
         groups = (model.parameters, model.coordinates, model.motions, model.inputs, model.discretes)
         return [[(d.name, d.unit) for d in group] for group in groups]
@@ -198,7 +207,7 @@ def _discretes(model):
     return ca.vertcat(*[d.symbol for d in model.discretes])
 
 
-def _variants(model):
+def variants_of(model):
     """The variant of a model with all motions of the ground that may be given, and in it the one without the optional ones
     among them."""
     check.check(model)

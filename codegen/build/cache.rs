@@ -19,6 +19,13 @@ pub const SETTING: &str = "DALEMBERT_CACHE";
 /// Name of the list of an entry's files. It is written last.
 pub const INVENTORY: &str = "inventory";
 
+/// Endings of what stands beside an entry: the mark that it is in use, and what is being made.
+pub const USED: &str = "used";
+pub const PARTIAL: &str = "partial";
+
+/// Ending of the lock of whoever makes it.
+pub const LOCK: &str = "lock";
+
 /// A kind of entries: a sub-folder, and what its inventories compare.
 #[derive(Debug, Clone, Copy)]
 pub struct Kind {
@@ -35,6 +42,15 @@ pub enum Compares {
     Digests,
     /// Its size: for what takes longer to read than a build, and was checked when it was installed.
     Sizes,
+}
+
+/// An entry in use: it is not evicted while this is held.
+#[derive(Debug)]
+pub struct Entry {
+    /// Its folder.
+    pub path: PathBuf,
+    #[expect(dead_code, reason = "held, never asked")]
+    used: File,
 }
 
 /// A folder of entries, in one sub-folder per kind.
@@ -55,6 +71,16 @@ impl Cache {
     /// platform's folder for caches if it is writable, else a folder in cargo's target directory,
     /// of which `out_dir` is a part.
     pub fn shared(out_dir: &Path) -> Result<Self, Error> {
+        if let Some(cache) = Self::of_user()? {
+            return Ok(cache);
+        }
+        let root = target_dir(out_dir).join("dalembert-cache");
+        claim(&root).map_err(Error::io("write to", &root))?;
+        Ok(Self { root })
+    }
+
+    /// The same where there is no target directory: `None` if neither folder is there.
+    pub fn of_user() -> Result<Option<Self>, Error> {
         if let Some(value) = env::var_os(SETTING).filter(|value| !value.is_empty()) {
             let refuse = |problem: std::io::Error| Error::Setting {
                 name: SETTING,
@@ -64,16 +90,11 @@ impl Cache {
             };
             let root = path::absolute(&value).map_err(refuse)?;
             claim(&root).map_err(refuse)?;
-            return Ok(Self { root });
+            return Ok(Some(Self { root }));
         }
-        if let Some(root) = user_caches().map(|caches| caches.join("dalembert"))
-            && claim(&root).is_ok()
-        {
-            return Ok(Self { root });
-        }
-        let root = target_dir(out_dir).join("dalembert-cache");
-        claim(&root).map_err(Error::io("write to", &root))?;
-        Ok(Self { root })
+        let root = user_caches().map(|caches| caches.join("dalembert"));
+        let root = root.filter(|root| claim(root).is_ok());
+        Ok(root.map(|root| Self { root }))
     }
 
     /// Whether the entry is there, whole.
@@ -81,39 +102,74 @@ impl Cache {
         is_whole(&self.path(kind, key), kind.compares)
     }
 
-    /// The folder of the entry `key`, made by `fill` (which gets an empty folder) if it is not
-    /// there or not whole.
+    /// The entry `key`, made by `fill` (which gets an empty folder) if it is not there or not whole.
     pub fn entry(
         &self,
         kind: Kind,
         key: &str,
         fill: impl FnOnce(&Path) -> Result<(), Error>,
-    ) -> Result<PathBuf, Error> {
-        let entry = self.path(kind, key);
-        if is_whole(&entry, kind.compares) {
+    ) -> Result<Entry, Error> {
+        let entry = Entry {
+            path: self.path(kind, key),
+            used: self.used(kind, key)?,
+        };
+        if is_whole(&entry.path, kind.compares) {
             return Ok(entry);
         }
-        let folder = self.root.join(kind.name);
-        fs::create_dir_all(&folder).map_err(Error::io("create", &folder))?;
-        let lock_path = folder.join(format!("{key}.lock"));
-        let lock = File::create(&lock_path).map_err(Error::io("create", &lock_path))?;
-        // Held until the file is closed, by a crash too.
-        lock.lock().map_err(Error::io("lock", &lock_path))?;
-        if is_whole(&entry, kind.compares) {
+        let _lock = self.lock(kind, key)?;
+        if is_whole(&entry.path, kind.compares) {
             return Ok(entry);
         }
-        let staging = folder.join(format!("{key}.partial"));
-        remove(&staging)?;
-        remove(&entry)?;
-        fs::create_dir(&staging).map_err(Error::io("create", &staging))?;
+        let staging = self.staging(kind, key)?;
+        remove(&entry.path)?;
         let filled = fill(&staging).and_then(|()| write_inventory(&staging, kind.compares));
         if let Err(error) = filled {
             remove(&staging)?;
             return Err(error);
         }
-        fs::rename(&staging, &entry).map_err(Error::io("create", &entry))?;
-        sync_folder(&folder)?;
+        fs::rename(&staging, &entry.path).map_err(Error::io("create", &entry.path))?;
+        sync_folder(&self.root.join(kind.name))?;
         Ok(entry)
+    }
+
+    /// The entry `key`, if it is there, whole.
+    pub fn find(&self, kind: Kind, key: &str) -> Result<Option<Entry>, Error> {
+        if !self.path(kind, key).is_dir() {
+            return Ok(None);
+        }
+        let entry = Entry {
+            path: self.path(kind, key),
+            used: self.used(kind, key)?,
+        };
+        Ok(is_whole(&entry.path, kind.compares).then_some(entry))
+    }
+
+    /// The lock of whoever makes an entry, held until the file is closed, by a crash too.
+    pub fn lock(&self, kind: Kind, key: &str) -> Result<File, Error> {
+        locked(&self.beside(kind, key, LOCK)?, File::lock)
+    }
+
+    /// The mark that an entry is in use, held until the file is closed. Its time tells when it was last.
+    fn used(&self, kind: Kind, key: &str) -> Result<File, Error> {
+        let path = self.beside(kind, key, USED)?;
+        let used = locked(&path, File::lock_shared)?;
+        (used.set_modified(SystemTime::now())).map_err(Error::io("write", &path))?;
+        Ok(used)
+    }
+
+    /// An empty folder for what becomes an entry. Whoever asks for it holds the lock of its key.
+    pub fn staging(&self, kind: Kind, key: &str) -> Result<PathBuf, Error> {
+        let staging = self.beside(kind, key, PARTIAL)?;
+        remove(&staging)?;
+        fs::create_dir(&staging).map_err(Error::io("create", &staging))?;
+        Ok(staging)
+    }
+
+    /// A path beside an entry, in the folder of its kind, which is there.
+    fn beside(&self, kind: Kind, key: &str, what: &str) -> Result<PathBuf, Error> {
+        let folder = self.root.join(kind.name);
+        fs::create_dir_all(&folder).map_err(Error::io("create", &folder))?;
+        Ok(folder.join(format!("{key}.{what}")))
     }
 
     /// Removes the entries of a kind other than `keys`. For a cache that no other build uses.
@@ -126,9 +182,40 @@ impl Cache {
         Ok(())
     }
 
+    /// Where entries are.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
     fn path(&self, kind: Kind, key: &str) -> PathBuf {
         self.root.join(kind.name).join(key)
     }
+}
+
+/// Creates a file and locks it. Whoever removes lock files holds their locks, and what was locked may be a file without a name
+/// then.
+fn locked(path: &Path, lock: fn(&File) -> std::io::Result<()>) -> Result<File, Error> {
+    loop {
+        let file = (OpenOptions::new().create(true).append(true).open(path))
+            .map_err(Error::io("create", path))?;
+        lock(&file).map_err(Error::io("lock", path))?;
+        if has_name(&file, path) {
+            return Ok(file);
+        }
+    }
+}
+
+/// Whether a name leads to a file that is open. Where that cannot be asked no lock files are removed.
+#[cfg(unix)]
+pub fn has_name(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let id = |data: fs::Metadata| (data.dev(), data.ino());
+    (file.metadata().map(id).ok()).is_some_and(|own| fs::metadata(path).map(id).ok() == Some(own))
+}
+
+#[cfg(not(unix))]
+pub fn has_name(_: &File, _: &Path) -> bool {
+    true
 }
 
 /// The files and folders in a folder, sorted.
@@ -244,7 +331,7 @@ fn is_whole(entry: &Path, compares: Compares) -> bool {
 }
 
 /// Removes a folder, if it is there.
-fn remove(folder: &Path) -> Result<(), Error> {
+pub fn remove(folder: &Path) -> Result<(), Error> {
     match fs::remove_dir_all(folder) {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
             Err(Error::io("remove", folder)(error))

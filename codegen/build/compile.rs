@@ -25,8 +25,8 @@ const LANES: &str = "lanes.c";
 const INCLUDED: [&str; 4] = ["contract.h", "elementary.h", "lanes.h", "vectors.h"];
 
 /// A level of the processor, with the width of its registers: see `codegen/lanes.h`.
-struct Level {
-    name: &'static str,
+pub struct Level {
+    pub name: &'static str,
     lanes: usize,
     flags: &'static [&'static str],
 }
@@ -110,7 +110,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
         sources: ELEMENTARY.map(|file| generator.file(file)).into(),
     };
     let x86_64 = std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "x86_64");
-    let levels = || std::iter::once(&ANY).chain(X86_64.iter().filter(|_| x86_64));
+    let levels = || levels(x86_64);
     let with_lanes = models.iter().filter(|model| !model.lanes.is_empty());
     let lanes = with_lanes.map(|model| Library {
         name: format!("{}_lanes", model.name),
@@ -164,7 +164,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
             )?
             .finish();
         let key = format!("{}-{hash}", library.name);
-        let folder = libraries.entry(KIND, &key, |folder| {
+        let entry = libraries.entry(KIND, &key, |folder| {
             let mut build = build.clone();
             if let Some(level) = library.level {
                 level.set(&mut build);
@@ -185,7 +185,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
                     )
                 })
         })?;
-        Ok((key, folder))
+        Ok((key, entry.path))
     });
     if sanitizes() {
         for library in ["-lasan", "-lubsan"] {
@@ -207,7 +207,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
 /// same bits. For the same reason products and sums are not contracted (a fused multiply-add
 /// changes the last bits, and with them the time of an event), and the code is not tuned to the
 /// machine of the build.
-fn compiler() -> cc::Build {
+pub fn compiler() -> cc::Build {
     let mut build = cc::Build::new();
     build
         // Level 3 makes vectors of the independent sums of a Taylor series; it changes no bit.
@@ -234,24 +234,32 @@ fn sanitizes() -> bool {
 /// The command line of the compiler, once it is known to exist: otherwise the `cc` crate would
 /// warn once for every flag that it cannot try.
 fn command(build: &cc::Build) -> Result<String, String> {
-    let found = cc::Build::new()
-        .cargo_metadata(false)
-        .cargo_warnings(false)
-        .try_get_compiler()
-        .map_err(|error| error.to_string())?;
-    let program = found.path();
-    Command::new(program)
-        .arg("--version")
-        .output()
-        .map_err(|error| format!("{}: {error}", program.display()))?;
+    let mut plain = cc::Build::new();
+    exists(plain.cargo_metadata(false).cargo_warnings(false))?;
     let tool = build
         .try_get_compiler()
         .map_err(|error| error.to_string())?;
     Ok(format!("{:?}", tool.to_command()))
 }
 
+/// The levels of a processor.
+pub fn levels(x86_64: bool) -> impl Iterator<Item = &'static Level> {
+    std::iter::once(&ANY).chain(X86_64.iter().filter(move |_| x86_64))
+}
+
+/// Whether there is a compiler.
+pub fn exists(plain: &cc::Build) -> Result<(), String> {
+    let found = plain
+        .try_get_compiler()
+        .map_err(|error| error.to_string())?;
+    let program = found.path();
+    let answer = Command::new(program).arg("--version").output();
+    answer.map_err(|error| format!("{}: {error}", program.display()))?;
+    Ok(())
+}
+
 impl Level {
-    fn set(&self, build: &mut cc::Build) {
+    pub fn set(&self, build: &mut cc::Build) {
         build
             .define("DALEMBERT_LEVEL", format!("_{}", self.name).as_str())
             .define("DALEMBERT_LANES", self.lanes.to_string().as_str())

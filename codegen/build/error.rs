@@ -77,6 +77,28 @@ pub enum Error {
         /// The message of the `cc` crate.
         problem: String,
     },
+    /// The C compiler refused generated C.
+    Refused {
+        /// What was being compiled.
+        what: String,
+        /// The compiler, with its flags.
+        command: String,
+        /// What it wrote.
+        output: String,
+        /// The folder of the C.
+        kept: PathBuf,
+    },
+    /// What should be a model folder is none.
+    Folder {
+        /// The folder, as it was named.
+        folder: PathBuf,
+        /// Why it is none.
+        problem: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// There is no folder for a cache.
+    NoCache,
     /// A file operation failed.
     Io {
         /// What was attempted, as an infinitive: "create", "read", …
@@ -190,6 +212,31 @@ impl fmt::Display for Error {
                 f,
                 "cannot compile {what}: {problem}\n\
                  to do: install a C compiler (cc, gcc or clang), or let CC name one"
+            ),
+            Error::Refused {
+                what,
+                command,
+                output,
+                kept,
+            } => {
+                writeln!(f, "cannot compile {what}: `{command}` says:")?;
+                quote(f, output)?;
+                write!(
+                    f,
+                    "the C is in {}\nto do: if the compiler is a usual one, please report it; else let CC name another",
+                    kept.display()
+                )
+            }
+            Error::Folder {
+                folder,
+                problem,
+                advice,
+            } => write!(f, "{}: {problem}\nto do: {advice}", folder.display()),
+            Error::NoCache => write!(
+                f,
+                "there is no folder for compiled models: the home folder cannot be written\n\
+                 to do: let {} name a folder that can",
+                super::cache::SETTING
             ),
             Error::Io {
                 action,

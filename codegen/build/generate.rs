@@ -105,9 +105,22 @@ pub fn generate(
             .with_files(project, files.iter().map(PathBuf::as_path))?
             .finish();
         let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
-            run(project, model, generator, environment, folder)
+            let for_tests = model.for_tests.then_some("--for-tests");
+            run(
+                project,
+                model.folder.as_ref(),
+                for_tests,
+                generator,
+                environment,
+                folder,
+            )
         })?;
-        read(model, &entry.join(&model.name), hash)
+        read(
+            &model.name,
+            &model.folder,
+            &entry.path.join(&model.name),
+            hash,
+        )
     });
     let mut generated = Vec::new();
     let mut failures = Vec::new();
@@ -125,23 +138,26 @@ pub fn generate(
     }
 }
 
-/// Runs the generator on one model, for which it makes a sub-folder of `folder`.
-fn run(
-    project: &Path,
-    model: &Model,
+/// Runs the generator on one model, for which it makes a sub-folder of `out`. Paths in messages are relative to `directory`, as
+/// the model's `folder` is.
+pub fn run<'a>(
+    directory: &Path,
+    folder: &Path,
+    options: impl IntoIterator<Item = &'a str>,
     generator: &Generator,
     environment: &Environment,
-    folder: &Path,
+    out: &Path,
 ) -> Result<(), Error> {
     let mut command = environment.command();
     command
         .current_dir(&generator.root)
         .args(["-m", "codegen", "--directory"])
-        .arg(project)
-        .args(["generate", "--model-dir", &model.folder])
-        .arg("--out")
+        .arg(directory)
+        .args(["generate", "--model-dir"])
         .arg(folder)
-        .args(model.for_tests.then_some("--for-tests"));
+        .arg("--out")
+        .arg(out)
+        .args(options);
     let output = command
         .output()
         .map_err(Error::io("run", Path::new(command.get_program())))?;
@@ -150,17 +166,17 @@ fn run(
     }
     let text = String::from_utf8_lossy(&output.stderr);
     Err(Error::Models(vec![ModelFailure {
-        folder: model.folder.clone(),
+        folder: folder.display().to_string(),
         fault: text.trim().strip_prefix(NAMED_FAULT).map(str::to_owned),
         status: output.status.to_string(),
         output: text.into_owned(),
     }]))
 }
 
-/// Reads what the generator wrote for a model.
-fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error> {
+/// Reads what the generator wrote for a model into a folder.
+pub fn read(name: &str, origin: &str, folder: &Path, digest: String) -> Result<Generated, Error> {
     let wrong = |problem: &str| Error::Manifest {
-        folder: model.folder.clone(),
+        folder: origin.to_owned(),
         problem: problem.to_owned(),
     };
     let text = |name: &str| {
@@ -183,8 +199,8 @@ fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error
     let lanes = files("lanes")
         .ok_or_else(|| wrong("a manifest.json without the list of file names `lanes`"))?;
     Ok(Generated {
-        name: model.name.clone(),
-        folder: model.folder.clone(),
+        name: name.to_owned(),
+        folder: origin.to_owned(),
         directory: folder.to_owned(),
         sources,
         lanes,
@@ -195,7 +211,7 @@ fn read(model: &Model, folder: &Path, digest: String) -> Result<Generated, Error
 
 /// Whether a name can be that of a Rust module and part of a CasADi function name, in which
 /// CasADi allows no double underscore.
-fn is_module_name(name: &str) -> bool {
+pub fn is_module_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase())
         && name
             .chars()

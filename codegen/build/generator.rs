@@ -5,10 +5,11 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::cache::{Cache, Compares, Kind};
+use super::cache::{Cache, Compares, Entry, Kind};
 use super::error::Error;
 use super::files;
 use super::fingerprint::Fingerprint;
+use super::install::Lock;
 
 /// Variable that names a folder `codegen` to use in place of the one inside: to work on the generator.
 pub const SETTING: &str = "DALEMBERT_GENERATOR";
@@ -25,20 +26,18 @@ const PACKAGE: &str = "codegen";
 /// The files of the generator, by their paths below its folder.
 const EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/generator.rs"));
 
-/// A generator that can be run.
-#[derive(Debug)]
-pub struct Generator {
-    /// The folder from which Python imports the package `codegen`.
-    pub root: PathBuf,
+/// The files of the generator, which are not on the disk yet.
+pub struct Bundle {
+    files: Files,
     /// Digest of all of its files.
     pub digest: String,
     /// The files it was read from, if [`SETTING`] names a folder.
     pub watched: Vec<PathBuf>,
 }
 
-impl Generator {
-    /// Writes the generator into the cache, where it is not there already.
-    pub fn provide(cache: &Cache) -> Result<Self, Error> {
+impl Bundle {
+    /// The generator inside, or the one that [`SETTING`] names.
+    pub fn open() -> Result<Self, Error> {
         let (files, watched) = match env::var_os(SETTING).filter(|value| !value.is_empty()) {
             Some(folder) => read(Path::new(&folder))?,
             None => (embedded(), Vec::new()),
@@ -48,9 +47,18 @@ impl Generator {
                 hash.with(name).with(content)
             })
             .finish();
-        let root = cache.entry(KIND, &digest, |root| {
+        Ok(Self {
+            files,
+            digest,
+            watched,
+        })
+    }
+
+    /// Writes the generator into the cache, where it is not there already.
+    pub fn extract(self, cache: &Cache) -> Result<Generator, Error> {
+        let entry = cache.entry(KIND, &self.digest, |root| {
             let folder = root.join(PACKAGE);
-            for (name, content) in &files {
+            for (name, content) in &self.files {
                 let path = folder.join(name);
                 let parent = path.parent().unwrap_or(&folder);
                 fs::create_dir_all(parent).map_err(Error::io("create", parent))?;
@@ -58,11 +66,28 @@ impl Generator {
             }
             Ok(())
         })?;
-        Ok(Self {
-            root,
-            digest,
-            watched,
+        Ok(Generator {
+            root: entry.path.clone(),
+            digest: self.digest,
+            _entry: entry,
         })
+    }
+}
+
+/// A generator that can be run.
+#[derive(Debug)]
+pub struct Generator {
+    /// The folder from which Python imports the package `codegen`.
+    pub root: PathBuf,
+    /// Digest of all of its files.
+    pub digest: String,
+    _entry: Entry,
+}
+
+impl Generator {
+    /// Its lock file.
+    pub fn lock(&self) -> Result<Lock, Error> {
+        Lock::read(self.file("requirements.lock"))
     }
 
     /// A file of it: `file("lanes.c")`.

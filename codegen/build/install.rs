@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use super::cache::{Cache, Compares, Kind};
+use super::cache::{Cache, Compares, Entry, Kind};
 use super::error::{Error, InstallCause};
 use super::fingerprint::Fingerprint;
 use super::python::{self, Python};
@@ -77,15 +77,17 @@ pub struct Environment {
     pub packages: Option<PathBuf>,
     /// Whether SymPy is there, which verification needs and the build does not.
     pub can_verify: bool,
+    _entry: Option<Entry>,
 }
 
 impl Environment {
     /// The interpreter that the user names, which must have the CasADi of the lock file; else one
     /// from the search path, with the locked packages from the cache or, once, from a registry.
-    pub fn provide(lock: &Lock, cache: &Cache) -> Result<Self, Error> {
+    /// `installing` is called before something is installed.
+    pub fn provide(lock: &Lock, cache: &Cache, installing: impl FnOnce()) -> Result<Self, Error> {
         match python::named() {
             Some(python) => Self::given(python?, lock),
-            None => Self::managed(lock, cache),
+            None => Self::managed(lock, cache, installing),
         }
     }
 
@@ -123,18 +125,21 @@ impl Environment {
             python,
             packages: None,
             can_verify,
+            _entry: None,
         })
     }
 
-    fn managed(lock: &Lock, cache: &Cache) -> Result<Self, Error> {
+    fn managed(lock: &Lock, cache: &Cache, installing: impl FnOnce()) -> Result<Self, Error> {
         let python = python::discover(|python| cache.contains(KIND, &lock.key(python)))?;
-        let packages = cache.entry(KIND, &lock.key(&python), |folder| {
+        let entry = cache.entry(KIND, &lock.key(&python), |folder| {
+            installing();
             install(lock, &python, folder)
         })?;
         Ok(Self {
             python,
-            packages: Some(packages),
+            packages: Some(entry.path.clone()),
             can_verify: true,
+            _entry: Some(entry),
         })
     }
 

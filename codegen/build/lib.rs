@@ -11,8 +11,11 @@
 //! | `install` | the locked packages, from the cache or a registry |
 //! | `generate` | from model folders to C |
 //! | `compile` | from C to static libraries |
+//! | `model` | folders of models, wherever they are, and the judgement on one |
+//! | `library`, `index`, `link` | from such a folder to a shared library, while a program runs |
 //! | `registry` | the C file that lists the models |
-//! | `cache`, `fingerprint`, `parallel` | folders under content keys; hashes; threads |
+//! | `cache`, `evict` | folders under content keys, and what becomes of old ones |
+//! | `fingerprint`, `parallel` | hashes; threads |
 //! | `error` | every failure, with what to do |
 //!
 //! Variables that the user may set:
@@ -29,11 +32,16 @@
 mod cache;
 mod compile;
 mod error;
+mod evict;
 mod files;
 mod fingerprint;
 mod generate;
 mod generator;
+mod index;
 mod install;
+mod library;
+mod link;
+mod model;
 mod parallel;
 mod python;
 mod registry;
@@ -41,10 +49,14 @@ mod registry;
 use std::env;
 use std::path::{Path, PathBuf};
 
-use cache::Cache;
+pub use cache::Cache;
 pub use error::{Error, InstallCause, ModelFailure};
-use generator::Generator;
+pub use evict::Item;
+pub use generate::is_module_name as is_model_name;
+use generator::Bundle;
 use install::{Environment, Lock};
+pub use library::{Choices, Library, Options, Stage, library};
+pub use model::check;
 
 /// Builds the models under `models/` of the crate whose build script calls it.
 ///
@@ -68,12 +80,13 @@ fn run() -> Result<(), Error> {
     watch(&project, with_tests);
 
     let cache = Cache::shared(&out_dir)?;
-    let generator = Generator::provide(&cache)?;
-    for file in &generator.watched {
+    let bundle = Bundle::open()?;
+    for file in &bundle.watched {
         println!("cargo::rerun-if-changed={}", file.display());
     }
-    let lock = Lock::read(generator.file("requirements.lock"))?;
-    let environment = Environment::provide(&lock, &cache)?;
+    let generator = bundle.extract(&cache)?;
+    let lock = generator.lock()?;
+    let environment = Environment::provide(&lock, &cache, || {})?;
     announce(&environment, &lock);
     announce_build(&target)?;
 

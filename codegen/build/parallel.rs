@@ -1,4 +1,4 @@
-//! A map over a slice on as many threads as cargo gives the build script.
+//! A map over a slice on as many threads as cargo gives the build script, or as there are processors.
 
 use std::env;
 use std::sync::Mutex;
@@ -9,6 +9,7 @@ pub fn map<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync) -> Vec<R> 
     let threads = env::var("NUM_JOBS")
         .ok()
         .and_then(|jobs| jobs.parse().ok())
+        .or_else(|| thread::available_parallelism().ok().map(usize::from))
         .unwrap_or(1)
         .min(items.len());
     let queue = Mutex::new(items.iter().enumerate());

@@ -9,11 +9,15 @@
 //!
 //! Results go to the standard output, errors and progress to the standard error.
 
+mod cache;
+mod check;
 mod compare;
 mod describe;
+mod folders;
 mod interrupt;
 mod models;
 mod motion;
+mod new;
 mod outcome;
 mod outputs;
 mod precision;
@@ -50,12 +54,18 @@ enum Command {
     Precision(precision::PrecisionArguments),
     /// Show what ground-motion records hold: peaks, intensity, spectra
     Motion(motion::MotionArguments),
+    /// Make a model folder to start from
+    New(new::NewArguments),
+    /// Say what is wrong with a model folder, or what the model is
+    Check(check::CheckArguments),
     /// List the models
     Models(models::ModelsArguments),
     /// Show what a model offers: parameters, modes, guards, transitions, reactions, cost
     Describe(describe::DescribeArguments),
     /// Print the format of scenes as a JSON Schema
     Schema(schema::SchemaArguments),
+    /// Show, limit or clear what is kept of models that were built
+    Cache(cache::CacheArguments),
     /// Judge the hand-written equations of a model against its energies
     Verify(verify::VerifyArguments),
 }
@@ -67,9 +77,12 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Precision(arguments) => precision::precision(&arguments),
         Command::Motion(arguments) => motion::motion(&arguments),
+        Command::New(arguments) => new::new(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
         Command::Models(arguments) => models::models(&arguments),
         Command::Describe(arguments) => describe::describe(&arguments),
         Command::Schema(arguments) => schema::schema(&arguments),
+        Command::Cache(arguments) => cache::cache(&arguments),
         Command::Verify(arguments) => verify::verify(&arguments),
     };
     outcome::exit_code(result)

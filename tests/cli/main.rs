@@ -1,11 +1,14 @@
 //! The command line, from outside: statuses, messages, files.
 
+mod cache;
+mod check;
 mod compare;
 mod describe;
 mod input;
 mod interrupt;
 mod limits;
 mod motion;
+mod new;
 mod output;
 mod page;
 mod precision;

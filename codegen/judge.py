@@ -1,0 +1,134 @@
+"""Judges a model without generating code: all errors that are independent of each other, and what its modes are."""
+
+import ast
+import contextlib
+import os
+import sys
+
+import casadi as ca
+
+from . import check, dimensions, generate, momentum
+from .context import build
+from .errors import Location, ModelError, collected, error_location, report, split
+
+
+def judge(folder):
+    """The judgement as data for JSON: model, ok, errors, and for a model without errors its modes."""
+    result = {"model": os.path.basename(os.path.abspath(folder)), "ok": False, "errors": [], "modes": [], "variants": []}
+    # Whatever the model file prints is not the answer.
+    with contextlib.redirect_stdout(sys.stderr), collected() as errors:
+        models = generate.load(folder, _build)
+        if not errors:
+            variants = _variants(models)
+    result["errors"] = _unique([_error(error) for error in errors])
+    result["ok"] = not errors
+    if not errors:
+        result["variants"] = variants
+        default = next((v for v in variants if all(v["defaults"])), variants[0])
+        result["modes"] = default["modes"]
+    return result
+
+
+def _unique(errors):
+    """Without repetitions, in the order of their lines: the file is run once a combination of choices."""
+    errors = [e for k, e in enumerate(errors) if e not in errors[:k]]
+    return sorted(errors, key=lambda e: (e["line"] or 0, e["column"] or 0))
+
+
+def _error(error):
+    where = error.location if isinstance(error.location, Location) else Location(error.location or "")
+    message, to_do = split(error.message)
+    return {"file": where.file, "line": where.line, "column": where.column, "end_column": where.end_column, "message": message,
+            "help": to_do}
+
+
+# ---- the model file -----------------------------------------------------------------------------
+
+
+def _build(name, file, source):
+    """As `context.build`, going on after a statement that fails; what follows from its failure is not reported."""
+    tree = ast.parse(source, file)
+
+    def run(_, scope):
+        lost = set()
+        for statement in tree.body:
+            try:
+                exec(compile(ast.Module([statement], []), file, "exec"), scope)
+            except Exception as error:
+                if not _follows(error, lost):
+                    report(generate.as_model_error(error, file))
+                lost |= _names(statement)
+
+    try:
+        return build(name, file, source, run)
+    except ModelError as error:
+        # Without a model nothing else can be said.
+        report(error)
+        return []
+
+
+_DECLARE = ("parameter", "coordinate", "ground", "input", "discrete", "mode", "choice")
+"""Methods whose first argument is the name of what they declare."""
+
+
+def _names(statement):
+    """What a statement would have declared: variables, and what later messages would call it."""
+    names = set()
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+        elif isinstance(node, ast.alias):
+            names.add((node.asname or node.name).split(".")[0])
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _DECLARE:
+            names.update(a.value for a in node.args[:1] if isinstance(a, ast.Constant) and isinstance(a.value, str))
+    return names
+
+
+def _follows(error, lost):
+    """Whether an error is about something that an earlier one kept from being declared."""
+    text = str(error)
+    return any(f"`{name}`" in text or isinstance(error, NameError) and f"'{name}'" in text for name in lost)
+
+
+# ---- the model ----------------------------------------------------------------------------------
+
+
+def _variants(models):
+    generate.check_same_declarations(models)
+    found = []
+    for model in models:
+        with collected() as errors:
+            check.check(model)
+            dimensions.check(model)
+            if not errors:
+                momentum.check(model)
+            if not errors:
+                variant = generate.variants_of(model)
+        for error in errors:
+            report(error)
+        if not errors:
+            found.append(_variant(model, variant))
+    return found
+
+
+def _variant(model, variant):
+    return {
+        "options": {c[0]: c[3] for c in model.choices}, "defaults": [c[3] == c[4] for c in model.choices],
+        "modes": [_mode(variant, i, equations) for i, equations in enumerate(variant.modes)]}
+
+
+def _mode(variant, i, equations):
+    coordinates = variant.model.coordinates
+    return {
+        "name": equations.mode.name, "free": [coordinates[k].name for k in equations.free],
+        "guards": [" / ".join(dict.fromkeys(t.name for t in transitions)) for _, transitions in equations.guards],
+        "operations": {" ".join(map(str, slot[1:])): _operations(f.output) for slot, f in variant.functions.items() if slot[0] == i}}
+
+
+def _operations(output):
+    """Operations of a function, as the emission counts them."""
+    function = ca.Function("count", ca.symvar(output), [ca.cse(output)])
+    uncounted = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)
+    return sum(function.instruction_id(k) not in uncounted for k in range(function.n_instructions()))

@@ -1,0 +1,113 @@
+//! `dalembert new`: a model folder to start from.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::outcome::{Failure, Outcome, Result};
+use super::print;
+
+/// A folder that is inside the program.
+struct Template {
+    name: &'static str,
+    files: [(&'static str, &'static str); 3],
+}
+
+macro_rules! template {
+    ($name:literal) => {
+        Template {
+            name: $name,
+            files: [
+                (
+                    "model.py",
+                    include_str!(concat!("../../templates/", $name, "/model.py")),
+                ),
+                (
+                    "README.md",
+                    include_str!(concat!("../../templates/", $name, "/README.md")),
+                ),
+                (
+                    "scene.json",
+                    include_str!(concat!("../../templates/", $name, "/scene.json")),
+                ),
+            ],
+        }
+    };
+}
+
+const TEMPLATES: [Template; 4] = [
+    template!("energies"),
+    template!("bodies"),
+    template!("stick-slip"),
+    template!("impact"),
+];
+
+#[derive(Debug, clap::Args)]
+pub struct NewArguments {
+    /// Folder to make; its name is that of the model
+    folder: PathBuf,
+    /// What to start from: a pendulum by its energies, a rod on a cart by its bodies, a block on a rough slope, a ball
+    /// that bounces
+    #[arg(long, default_value = "energies", value_parser = TEMPLATES.map(|template| template.name))]
+    template: String,
+}
+
+pub fn new(arguments: &NewArguments) -> Result {
+    let folder = &arguments.folder;
+    refuse(folder)?;
+    let found = TEMPLATES
+        .iter()
+        .find(|template| template.name == arguments.template);
+    let Some(template) = found else {
+        return Err(Failure::wrong_input(format!(
+            "there is no template `{}`",
+            arguments.template
+        )));
+    };
+    write(folder, template)
+        .map_err(|error| Failure::system(format!("cannot write {}: {error}", folder.display())))?;
+    let shown = folder.display();
+    print::output(format_args!(
+        "made {shown}; next:\n  dalembert check {shown}\n  dalembert run {}",
+        folder.join("scene.json").display()
+    ))?;
+    Ok(Outcome::Done)
+}
+
+/// Refuses a folder whose name no model can have, and one in which there is something.
+fn refuse(folder: &Path) -> std::result::Result<(), Failure> {
+    let shown = folder.display();
+    let absolute =
+        std::path::absolute(folder).map_err(|e| Failure::wrong_input(format!("{shown}: {e}")))?;
+    let name = absolute.file_name().unwrap_or_default().to_string_lossy();
+    if !dalembert_build::is_model_name(&name) {
+        return Err(Failure::wrong_input(format!(
+            "{shown}: the name of the folder becomes that of the model, and part of names in C: take one of lower-case \
+             letters, digits and single underscores, a letter first and no underscore last"
+        )));
+    }
+    match fs::read_dir(folder) {
+        Ok(mut entries) => match entries.next() {
+            None => Ok(()),
+            Some(_) => Err(Failure::wrong_input(format!(
+                "{shown}: exists and is not empty; choose another folder, or move its files away"
+            ))),
+        },
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotADirectory => {
+            Err(Failure::wrong_input(format!(
+                "{shown}: exists and is not a folder; choose another name"
+            )))
+        }
+        Err(error) => Err(Failure::system(format!("cannot list {shown}: {error}"))),
+    }
+}
+
+/// Writes the files. A file that is there by now is not replaced.
+fn write(folder: &Path, template: &Template) -> std::io::Result<()> {
+    fs::create_dir_all(folder)?;
+    for (name, text) in template.files {
+        let mut file = fs::File::create_new(folder.join(name))?;
+        std::io::Write::write_all(&mut file, text.as_bytes())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,45 @@
+//! `new`: what it leaves, and what it refuses.
+
+use std::fs;
+
+use super::{ends_with, json, names, stderr, stdout};
+
+/// The templates.
+pub const TEMPLATES: [&str; 4] = ["energies", "bodies", "stick-slip", "impact"];
+
+#[test]
+fn a_new_folder_is_a_model_without_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    for template in TEMPLATES {
+        let name = template.replace('-', "_");
+        let output = ends_with(0, folder.path(), &["new", &name, "--template", template]);
+        assert!(stdout(&output).contains(&format!("dalembert check {name}\n")));
+        let made = folder.path().join(&name);
+        assert_eq!(names(&made), ["README.md", "model.py", "scene.json"]);
+        assert_eq!(json(&made.join("scene.json"))["model"], "./");
+        let output = ends_with(0, folder.path(), &["check", &name]);
+        assert!(stdout(&output).starts_with(&format!("{name}: no errors\n  mode ")));
+    }
+}
+
+#[test]
+fn a_folder_that_holds_something_is_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("full")).unwrap();
+    fs::write(folder.path().join("full/notes.txt"), "").unwrap();
+    fs::write(folder.path().join("file"), "").unwrap();
+    for (name, says) in [
+        ("full", "exists and is not empty"),
+        ("file", "exists and is not a folder"),
+        ("My-Block", "take one of lower-case letters"),
+    ] {
+        let output = ends_with(2, folder.path(), &["new", name]);
+        assert!(stderr(&output).contains(says), "{}", stderr(&output));
+    }
+    assert_eq!(names(&folder.path().join("full")), ["notes.txt"]);
+    assert!(!folder.path().join("My-Block").exists());
+    // An empty one may be filled.
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    ends_with(0, folder.path(), &["new", "empty"]);
+    ends_with(2, folder.path(), &["new", "other", "--template", "nothing"]);
+}
