@@ -295,12 +295,10 @@ impl Simulation<'_> {
 mod tests {
     use super::*;
     use crate::input::{Function, Interpolation, Outside, Sine, Table};
-    use crate::kernel::MODELS;
+    use crate::model::models;
 
     fn problem() -> Problem {
-        let model = MODELS
-            .iter()
-            .find(|model| model.name == "coulomb_oscillator");
+        let model = models().iter().find(|m| m.name == "coulomb_oscillator");
         let mut problem = Problem::new(model.unwrap());
         let table = Table::new(
             &[0.0, 1.0, 3.0],

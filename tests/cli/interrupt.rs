@@ -1,8 +1,7 @@
 //! Ctrl-C, and runs that are continued.
 
 use super::*;
-use dalembert::hybrid::Problem;
-use dalembert::kernel::MODELS;
+use dalembert::model::models;
 use dalembert::record::{OutputFolder, Run};
 use dalembert::scene::Scene;
 
@@ -178,14 +177,10 @@ fn a_run_is_not_continued_with_a_model_that_was_changed_since() {
     ends_with(0, home.path(), &run);
     // The same folder as another version of the model would have written it.
     let out = home.path().join("out");
-    let scene = Scene::load(Path::new(&ball), &[], MODELS).unwrap();
-    let Problem {
-        model,
-        variant,
-        record,
-        ..
-    } = scene.problem;
-    let mut earlier = Run::read(&out, model, variant, record.columns).unwrap();
+    let scene = Scene::load(Path::new(&ball), &[], models()).unwrap();
+    let problem = &scene.problem;
+    let columns = problem.record.columns;
+    let mut earlier = Run::read(&out, &problem.model, problem.variant(), columns).unwrap();
     let mut digests = earlier.subject.digests.iter_mut();
     let (_, digest) = digests.find(|(part, _)| part == "model").unwrap();
     assert_eq!(digest.len(), 16);

@@ -83,17 +83,17 @@ impl Extremes {
 
     /// Whether a function may take a value on its window that is above, or below, all that its column has had, and
     /// its polynomial cannot tell where. Its `rate` may be a function as well: where that keeps its sign the ends of the
-    /// window are extremes.
+    /// window are extremes. `scale` is the size of what it is a sum of, where that may be more than its own.
     pub fn is_open(
         &self,
         of: &Interpolants,
         function: usize,
         column: usize,
         tolerance: f64,
-        rate: Option<usize>,
+        (rate, scale): (Option<usize>, f64),
     ) -> bool {
         let error = of.error(function);
-        let size = of.size(function).max(self.magnitude(column));
+        let size = of.size(function).max(self.magnitude(column)).max(scale);
         error > tolerance * size
             && self.may_exceed(of, function, column, error) != [false; 2]
             && !rate.is_some_and(|rate| of.keeps_sign(rate))

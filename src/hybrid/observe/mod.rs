@@ -439,7 +439,13 @@ impl<'o> Observers<'o> {
             let mut of = self.functions.columns.iter().enumerate();
             of.any(|(f, &column)| {
                 let rate = self.functions.rate_of(f);
-                extremes.is_open(&self.interpolants, f, column, self.tolerance, rate)
+                // The stored energy is a sum of two, which may be far larger.
+                let scale = match column == extremes.energies.start {
+                    true => self.energy,
+                    false => 0.0,
+                };
+                let of = (rate, scale);
+                extremes.is_open(&self.interpolants, f, column, self.tolerance, of)
             })
         });
         !open && (!powers || self.work_is_resolved(part, columns))
