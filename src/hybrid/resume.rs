@@ -299,7 +299,7 @@ mod tests {
 
     fn problem() -> Problem {
         let model = models().iter().find(|m| m.name == "coulomb_oscillator");
-        let mut problem = Problem::new(model.unwrap());
+        let mut problem = Problem::new(&model.unwrap());
         let table = Table::new(
             &[0.0, 1.0, 3.0],
             &[0.0, 2.0, 1.0],
