@@ -35,6 +35,8 @@ IN_THE_NEXT_LINE = (
     ("a guard on what is held", 'model.transition("goes", sticks, moves, when=falls(x.rate))\n', "`x.rate` never changes in mode `sticks`"),
     ("a guard that is an expression", 'model.transition("stops", moves, sticks, when=x)\n', "`when` must be falls(…) or rises(…)"),
     ("a guard that is a text", 'model.transition("stops", moves, sticks, when=falls("x"))\n', "its guard: the text 'x' is not an expression"),
+    ("a rest of a string", 'model.rest("moves", sticks)\n', "rest: its source is the text 'moves', not a mode"),
+    ("a rest declared twice", "model.rest(moves, sticks), model.rest(moves, sticks)\n", "rest of `moves` in `sticks` is declared twice"),
     ("a rest into a freer mode", "model.rest(sticks, moves)\n", "rest of `sticks` in `moves`: `moves` lets `x` move, which `sticks` holds"),
     ("a rest into the same mode", "model.rest(moves, moves)\n", "`moves` holds no more than `moves`"),
     ("a coordinate to freeze as a string", 'model.mode("third", freeze=["x"])\n',

@@ -165,13 +165,15 @@ pub(super) fn motion_at_stage<const F: usize>(
     tau: f64,
     accelerations: bool,
 ) -> [SVector<f64, F>; 3] {
-    let (q, v, mut a) = dense.at(tau);
-    equations.at_stage(tau);
-    if accelerations {
-        let found = equations.acceleration_here(&q, &v);
-        a = found.unwrap_or(SVector::repeat(f64::NAN));
+    if !accelerations {
+        let (q, v, a) = dense.at(tau);
+        equations.at_stage(tau);
+        return [q, v, a];
     }
-    [q, v, a]
+    let (q, v) = dense.state_at(tau);
+    equations.at_stage(tau);
+    let a = equations.acceleration_here(&q, &v);
+    [q, v, a.unwrap_or(SVector::repeat(f64::NAN))]
 }
 
 /// What a linear guard multiplies its coordinate or rate with: its factor and its discrete state, if any.

@@ -3,7 +3,7 @@
 use super::failure::Reason;
 use super::instant::Instant;
 use super::observe::{Collected, Observer, Samples, sample_time};
-use super::problem::Problem;
+use super::problem::{Method, Problem};
 use super::simulation::Simulation;
 use crate::record::digest::digest;
 use crate::record::{Event, Progress, Recorder, Run};
@@ -174,17 +174,60 @@ fn check_rows(problem: &Problem, run: &Run) -> Result<(), Reason> {
 /// Digests of the model and of what a run is simulated with, but for its end and what is recorded: as (part, digest),
 /// by the keys of a scene.
 pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
-    // Numbers are printed with all their digits.
-    let text = |part: &dyn std::fmt::Debug| digest(format!("{part:?}"));
+    let Problem {
+        model,
+        accuracy,
+        initial,
+        ..
+    } = problem;
+    let mut frozen: Vec<&str> = (problem.freeze.iter())
+        .map(|&i| &*model.coordinates[i].name)
+        .collect();
+    frozen.sort_unstable();
+    frozen.dedup();
+    let modes = &problem.variant().modes;
+    let mode = initial.mode.map_or("", |mode| &*modes[mode].name);
+    let method = match problem.method {
+        Method::Auto => "auto",
+        Method::Radau => "radau",
+        Method::Taylor => "taylor",
+    };
+    let accuracy_lists = [&accuracy.q_absolute, &accuracy.v_absolute];
+    let initial_lists = [&initial.q, &initial.v, &initial.discrete];
     let parts = [
-        ("accuracy", text(&problem.accuracy)),
-        ("freeze", text(&problem.freeze)),
-        ("initial", text(&problem.initial)),
-        ("inputs", text(&problem.signals)),
-        ("method", text(&problem.method)),
-        ("model", problem.model.digest.to_owned()),
+        (
+            "accuracy",
+            content("", |put| {
+                put(accuracy.relative);
+                put_lists(&accuracy_lists, put);
+            }),
+        ),
+        ("freeze", content(&frozen.join(" "), |_| {})),
+        (
+            "initial",
+            content(mode, |put| put_lists(&initial_lists, put)),
+        ),
+        ("inputs", content("", |put| problem.signals.content(put))),
+        ("method", content(method, |_| {})),
+        ("model", model.digest.to_owned()),
     ];
     parts.map(|(part, digest)| (part.to_owned(), digest)).into()
+}
+
+/// Digest of a text and of numbers, by their bits.
+fn content(text: &str, numbers: impl FnOnce(&mut dyn FnMut(f64))) -> String {
+    let mut bytes = text.as_bytes().to_vec();
+    bytes.push(0);
+    numbers(&mut |x| bytes.extend(x.to_bits().to_le_bytes()));
+    digest(bytes)
+}
+
+/// Lists of numbers, each with its length.
+fn put_lists(lists: &[&Vec<f64>], put: &mut dyn FnMut(f64)) {
+    for list in lists {
+        put(list.len() as f64);
+        list.iter().copied().for_each(&mut *put);
+    }
 }
 
 impl Simulation<'_> {
@@ -245,5 +288,73 @@ impl Simulation<'_> {
             }
         };
         self.observers.samples = Samples::from(every, rows);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::{Function, Interpolation, Outside, Sine, Table};
+    use crate::model::models;
+
+    fn problem() -> Problem {
+        let model = models().iter().find(|m| m.name == "coulomb_oscillator");
+        let mut problem = Problem::new(&model.unwrap());
+        let table = Table::new(
+            &[0.0, 1.0, 3.0],
+            &[0.0, 2.0, 1.0],
+            Interpolation::Linear,
+            Outside::Hold,
+        );
+        let force = [
+            Function::from(table.unwrap()),
+            Function::from(Sine::new(1.5, 2.0, 0.25)),
+            Function::constant(0.5),
+        ];
+        problem.set_input("force", Function::sum(force)).unwrap();
+        problem
+    }
+
+    #[test]
+    fn digests_are_of_what_a_scene_says_and_not_of_how_it_is_printed() {
+        let of = |problem: &Problem| {
+            let all = digests(problem).into_iter();
+            all.filter(|(part, _)| part != "model").collect::<Vec<_>>()
+        };
+        let known = of(&problem());
+        let expected = [
+            ("accuracy", "f76df14f3e8cd409"),
+            ("freeze", "6e340b9cffb37a98"),
+            ("initial", "b56575d097d9e31e"),
+            ("inputs", "24943f835e047dee"),
+            ("method", "99501bbdabca4107"),
+        ];
+        let named = known
+            .iter()
+            .map(|(part, digest)| (part.as_str(), digest.as_str()));
+        assert_eq!(named.collect::<Vec<_>>(), expected);
+        let changed = |change: &dyn Fn(&mut Problem)| -> Vec<String> {
+            let mut problem = problem();
+            change(&mut problem);
+            let now = of(&problem).into_iter().zip(known.clone());
+            now.filter(|(now, then)| now != then)
+                .map(|(now, _)| now.0)
+                .collect()
+        };
+        assert_eq!(changed(&|p| p.title = Some("another".into())), [""; 0]);
+        assert_eq!(changed(&|p| p.end.time = 7.0), [""; 0]);
+        assert_eq!(
+            changed(&|p| p.accuracy.v_absolute[0] *= 1.0 + f64::EPSILON),
+            ["accuracy"]
+        );
+        assert_eq!(changed(&|p| p.freeze = vec![0]), ["freeze"]);
+        assert_eq!(changed(&|p| p.initial.q[0] = -0.0), ["initial"]);
+        assert_eq!(changed(&|p| p.initial.mode = Some(0)), ["initial"]);
+        assert_eq!(changed(&|p| p.method = Method::Radau), ["method"]);
+        let sine = Function::from(Sine::new(1.5, 2.0, 0.25));
+        assert_eq!(
+            changed(&|p| p.set_input("force", sine.clone()).unwrap()),
+            ["inputs"]
+        );
     }
 }

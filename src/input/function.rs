@@ -73,6 +73,24 @@ impl Function {
         }
     }
 
+    /// Hands on the numbers that decide it; a term begins with its kind.
+    pub(super) fn content(&self, put: &mut dyn FnMut(f64)) {
+        put(self.terms.len() as f64);
+        for term in &self.terms {
+            match term {
+                Term::Constant(value) => [0.0, *value].into_iter().for_each(&mut *put),
+                Term::Sine(sine) => {
+                    put(1.0);
+                    sine.content(put);
+                }
+                Term::Table(table) => {
+                    put(2.0);
+                    table.content(put);
+                }
+            }
+        }
+    }
+
     /// Value, rate and antiderivatives at time `t` (s).
     #[inline(always)]
     pub fn at(&self, t: f64, side: Side) -> Jet {

@@ -58,6 +58,15 @@ impl Signals {
         Signals { channels }
     }
 
+    /// Hands on the numbers that decide the functions, one after the other: the same for the same functions, whatever
+    /// they are called or how they are printed.
+    pub(crate) fn content(&self, put: &mut dyn FnMut(f64)) {
+        put(self.channels.len() as f64);
+        for channel in &self.channels {
+            channel.function.content(put);
+        }
+    }
+
     /// The functions, one for each input of the model.
     pub fn functions(&self) -> impl Iterator<Item = &Function> {
         self.channels.iter().map(|c| &c.function)

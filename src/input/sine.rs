@@ -33,6 +33,22 @@ pub struct Sine {
 }
 
 impl Sine {
+    /// Hands on the numbers that decide it.
+    pub(super) fn content(&self, put: &mut dyn FnMut(f64)) {
+        let Sine {
+            amplitude,
+            angular_frequency,
+            start,
+            end,
+            sin_phase,
+            cos_phase,
+            of_integrals: _,
+        } = *self;
+        let phase = [sin_phase, cos_phase];
+        let numbers = [amplitude, angular_frequency, start, end].into_iter();
+        numbers.chain(phase).for_each(put);
+    }
+
     /// A sine that acts from t = 0 on. The amplitude is in the unit of the function, the angular
     /// frequency ω > 0 in rad/s, the phase φ in rad.
     pub fn new(amplitude: f64, angular_frequency: f64, phase: f64) -> Self {

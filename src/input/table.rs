@@ -93,6 +93,16 @@ struct Piece {
 }
 
 impl Table {
+    /// Hands on the numbers that decide it.
+    pub(super) fn content(&self, put: &mut dyn FnMut(f64)) {
+        put(self.knots.len() as f64);
+        self.knots.iter().copied().for_each(&mut *put);
+        for piece in &self.pieces {
+            put(piece.origin);
+            piece.coefficients.into_iter().for_each(&mut *put);
+        }
+    }
+
     /// A table of at least two rows, with strictly increasing times (s).
     ///
     /// # Panics

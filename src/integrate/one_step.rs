@@ -98,6 +98,13 @@ pub trait Motion<const F: usize> {
     /// Coordinates, velocities and accelerations at time `t` of the step.
     fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>);
 
+    /// Coordinates and velocities alone.
+    #[inline]
+    fn state_at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>) {
+        let (q, v, _) = self.at(t);
+        (q, v)
+    }
+
     /// The motion as a Taylor series and the number of its orders that are known of everything, if
     /// that is what it is.
     fn series(&self) -> Option<(&Series<F>, usize)> {
@@ -298,6 +305,12 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
 
     fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
         self.at(t)
+    }
+
+    #[inline]
+    fn state_at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>) {
+        let (dq, dv) = self.change(t - self.start());
+        (self.series().q[0] + dq, self.series().v[0] + dv)
     }
 
     fn series(&self) -> Option<(&Series<F>, usize)> {

@@ -1,6 +1,9 @@
 //! Ctrl-C, and runs that are continued.
 
 use super::*;
+use dalembert::model::models;
+use dalembert::record::{OutputFolder, Run};
+use dalembert::scene::Scene;
 
 /// The rows of a table, numbers where they are numbers.
 fn table(path: &Path) -> Vec<Vec<String>> {
@@ -164,10 +167,31 @@ fn a_run_is_not_continued_with_other_inputs_or_another_accuracy() {
         let output = ends_with(2, home.path(), &arguments);
         assert!(stderr(&output).contains(part), "{}", stderr(&output));
     }
-    // Another model, as one that was changed since is.
-    let path = home.path().join("out");
-    let digests = json(&path.join("summary.json"))["digests"].clone();
-    assert_eq!(digests["model"].as_str().map(str::len), Some(16));
+}
+
+#[test]
+fn a_run_is_not_continued_with_a_model_that_was_changed_since() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    let run = ["run", &ball, "--set", "end=0.5", "--out", "out"];
+    ends_with(0, home.path(), &run);
+    // The same folder as another version of the model would have written it.
+    let out = home.path().join("out");
+    let scene = Scene::load(Path::new(&ball), &[], models()).unwrap();
+    let problem = &scene.problem;
+    let columns = problem.record.columns;
+    let mut earlier = Run::read(&out, &problem.model, problem.variant(), columns).unwrap();
+    let mut digests = earlier.subject.digests.iter_mut();
+    let (_, digest) = digests.find(|(part, _)| part == "model").unwrap();
+    assert_eq!(digest.len(), 16);
+    *digest = "0123456789abcdef".into();
+    earlier.write(&OutputFolder::new(&out).unwrap()).unwrap();
+    let output = ends_with(2, home.path(), &["run", &ball, "--resume", "out"]);
+    let said = stderr(&output);
+    assert!(
+        said.contains("the model, or what makes code of it, was changed since"),
+        "{said}"
+    );
 }
 
 /// A signal needs a process that listens to it, which Linux tells.

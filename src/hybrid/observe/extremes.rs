@@ -82,17 +82,21 @@ impl Extremes {
     }
 
     /// Whether a function may take a value on its window that is above, or below, all that its column has had, and
-    /// its polynomial cannot tell where.
+    /// its polynomial cannot tell where. Its `rate` may be a function as well: where that keeps its sign the ends of the
+    /// window are extremes. `scale` is the size of what it is a sum of, where that may be more than its own.
     pub fn is_open(
         &self,
         of: &Interpolants,
         function: usize,
         column: usize,
         tolerance: f64,
+        (rate, scale): (Option<usize>, f64),
     ) -> bool {
         let error = of.error(function);
-        let size = of.size(function).max(self.magnitude(column));
-        error > tolerance * size && self.may_exceed(of, function, column, error) != [false; 2]
+        let size = of.size(function).max(self.magnitude(column)).max(scale);
+        error > tolerance * size
+            && self.may_exceed(of, function, column, error) != [false; 2]
+            && !rate.is_some_and(|rate| of.keeps_sign(rate))
     }
 
     /// Whether a function may exceed the largest value of its column between nodes, and fall below the smallest.
@@ -115,6 +119,7 @@ impl Extremes {
         of: &Interpolants,
         function: usize,
         column: usize,
+        rate: Option<usize>,
         time: impl Fn(f64) -> f64,
     ) -> [Option<f64>; 2] {
         for value in of.range(function) {
@@ -125,6 +130,9 @@ impl Extremes {
             }
         }
         let may = self.may_exceed(of, function, column, of.error(function));
+        if may == [false; 2] || rate.is_some_and(|rate| of.keeps_sign(rate)) {
+            return [None; 2];
+        }
         let Peak { max, min, .. } = self.peaks[column];
         [(may[0], 1.0, max), (may[1], -1.0, -min)]
             .map(|(may, sign, best)| may.then(|| of.summit(function, sign, best)).flatten())

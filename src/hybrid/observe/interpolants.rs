@@ -6,6 +6,7 @@
 //! cosines of φ, and its nodes are equally spaced in φ: between two of them it exceeds the larger
 //! value by no more than (π/n)²/8 Σ k²|cₖ|.
 
+use super::summit::Search;
 use std::f64::consts::PI;
 
 /// Highest degree.
@@ -91,7 +92,7 @@ impl Interpolants {
     pub const SPARE: usize = MOST + 1;
 
     /// How closely the place of an extremum is sought: its value is then off by rounding.
-    const CLOSE: f64 = 1e-9;
+    pub const CLOSE: f64 = 1e-9;
 
     /// Room for so many functions.
     pub fn new(most: usize) -> Self {
@@ -263,6 +264,13 @@ impl Interpolants {
         even.map(term).sum()
     }
 
+    /// Whether a function has one sign throughout.
+    pub fn keeps_sign(&self, function: usize) -> bool {
+        let [highest, lowest] = self.range(function);
+        let room = self.overshoot(function) + self.error(function);
+        lowest - room > 0.0 || highest + room < 0.0
+    }
+
     /// Whether a function has values of both signs at the nodes.
     pub fn changes_sign(&self, function: usize) -> bool {
         let [highest, lowest] = self.range(function);
@@ -292,36 +300,27 @@ impl Interpolants {
     }
 
     /// Where the polynomial of a function times `sign` is largest, if that is more than `best` and between two
-    /// nodes. Of two crests closer than a quarter of the distance of nodes one may be left out.
-    pub fn summit(&self, function: usize, sign: f64, mut best: f64) -> Option<f64> {
+    /// nodes. Of crests that are closer to each other than a thousandth of the window some may be left out.
+    pub fn summit(&self, function: usize, sign: f64, best: f64) -> Option<f64> {
         let room = self.overshoot(function);
-        let polynomial = self.polynomial(function).times(sign);
-        let slope = polynomial.derivative();
-        let mut summit = None;
+        let value = |node: usize| sign * self.value_at(node, function);
         let stride = MOST / self.degree;
+        let mut search: Option<Search> = None;
         for node in (stride..=MOST).step_by(stride) {
-            let value = |node: usize| sign * self.value_at(node, function);
             let most = value(node - stride).max(value(node)) + room;
+            let best = search.as_ref().map_or(best, |search| search.best);
             // A bound that is not a number tells nothing.
             if most.is_nan() || most <= best {
                 continue;
             }
-            let (from, to) = (place(node - stride), place(node));
-            let mut left = (from, slope.value(from));
-            for quarter in 1..=4 {
-                let s = from + (to - from) * (0.25 * f64::from(quarter));
-                let right = (s, slope.value(s));
-                if left.1 > 0.0 && right.1 <= 0.0 {
-                    let place = slope.fall(left, right, Self::CLOSE);
-                    let value = polynomial.value(place);
-                    if value > best {
-                        (best, summit) = (value, Some(place));
-                    }
-                }
-                left = right;
-            }
+            let search = search.get_or_insert_with(|| {
+                let of = self.polynomial(function).times(sign);
+                let least = self.rounding(function).max(self.error(function));
+                Search::new(of, least, best)
+            });
+            search.climb([node - stride, node], PI / self.degree as f64);
         }
-        summit
+        search.and_then(|search| search.summit)
     }
 }
 
@@ -344,13 +343,21 @@ impl Polynomial {
         self.coefficients[0] + 0.5 * twice_x * b1 - b2
     }
 
+    /// Σ kⁿ|cₖ|: a bound of the nth derivative with respect to φ.
+    pub fn bound_of_derivative(&self, n: i32) -> f64 {
+        let coefficients = self.coefficients[..=self.degree].iter().enumerate();
+        coefficients
+            .map(|(k, c)| (k as f64).powi(n) * c.abs())
+            .sum()
+    }
+
     fn times(mut self, factor: f64) -> Polynomial {
         self.coefficients.iter_mut().for_each(|c| *c *= factor);
         self
     }
 
     /// Half of the derivative with respect to s.
-    fn derivative(&self) -> Polynomial {
+    pub fn derivative(&self) -> Polynomial {
         let mut derivative = [0.0; MOST + 2];
         // d_(k−1) = d_(k+1) + 2k cₖ, and half of that for d₀.
         for k in (1..=self.degree).rev() {
@@ -388,7 +395,7 @@ impl Polynomial {
 
     /// Where it falls through zero between a place where it is positive and one where it is negative, by the
     /// method of false position (Illinois): until places are `close`.
-    fn fall(&self, mut left: (f64, f64), mut right: (f64, f64), close: f64) -> f64 {
+    pub fn fall(&self, mut left: (f64, f64), mut right: (f64, f64), close: f64) -> f64 {
         let (mut last, mut before) = (0, f64::INFINITY);
         loop {
             let place = left.0 + (right.0 - left.0) * (left.1 / (left.1 - right.1));
@@ -493,6 +500,31 @@ mod tests {
                 let most = samples.fold(f64::NEG_INFINITY, f64::max);
                 assert!(best >= most - 1e-15, "{i} {sign}: {best} {most}");
             }
+        }
+    }
+
+    #[test]
+    fn of_two_crests_beside_each_other_the_higher_one_is_found() {
+        // Nodes are 0.15 apart here, the crests 0.01.
+        let functions: [fn(f64) -> f64; 3] = [
+            |s| {
+                let u = s - 0.41;
+                1e-6 * u - (u * u - 2.5e-5) * (u * u - 2.5e-5)
+            },
+            |s| {
+                let u = s - 0.41;
+                -1e-6 * u - (u * u - 2.5e-5) * (u * u - 2.5e-5)
+            },
+            // A crest that is flat to the fourth order.
+            |s| -(s - 0.41).powi(4),
+        ];
+        let interpolants = of(8, functions);
+        for (i, f) in functions.iter().enumerate() {
+            let [highest, _] = interpolants.range(i);
+            let found = interpolants.summit(i, 1.0, highest).unwrap();
+            let samples = (0..=100_000).map(|k| f(0.4 + f64::from(k) * 2e-7));
+            let most = samples.fold(f64::NEG_INFINITY, f64::max);
+            assert!(f(found) >= most - 1e-15, "{i}: {found} {} {most}", f(found));
         }
     }
 

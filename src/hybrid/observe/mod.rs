@@ -15,6 +15,7 @@ mod ledger;
 mod observer;
 mod recording;
 mod samples;
+mod summit;
 
 use super::equations::Equations;
 use super::guards;
@@ -70,8 +71,17 @@ struct Functions {
     /// Which reactions, by their index.
     reactions: Vec<usize>,
     stored: bool,
+    /// Number of free coordinates.
+    free: usize,
     /// Room for all reactions.
     room: Box<[f64]>,
+}
+
+impl Functions {
+    /// Which function is the rate of another.
+    fn rate_of(&self, function: usize) -> Option<usize> {
+        (function < self.free).then_some(self.free + function)
+    }
 }
 
 /// A step that was made, or what its first event has left of it.
@@ -140,6 +150,7 @@ impl<'o> Observers<'o> {
                 columns: Vec::with_capacity(most),
                 reactions: Vec::with_capacity(layout.reactions.len()),
                 stored: false,
+                free: 0,
                 room: vec![0.0; layout.reactions.len()].into(),
             },
             extremes,
@@ -177,8 +188,10 @@ impl<'o> Observers<'o> {
             columns,
             reactions,
             stored,
+            free,
             ..
         } = &mut self.functions;
+        *free = mode.free.len();
         columns.clear();
         columns.extend(&mode.free);
         columns.extend(mode.free.iter().map(|i| n + i));
@@ -424,7 +437,16 @@ impl<'o> Observers<'o> {
     fn is_resolved(&self, part: Part, (columns, powers): (usize, bool)) -> bool {
         let open = self.extremes.as_ref().is_some_and(|extremes| {
             let mut of = self.functions.columns.iter().enumerate();
-            of.any(|(f, &column)| extremes.is_open(&self.interpolants, f, column, self.tolerance))
+            of.any(|(f, &column)| {
+                let rate = self.functions.rate_of(f);
+                // The stored energy is a sum of two, which may be far larger.
+                let scale = match column == extremes.energies.start {
+                    true => self.energy,
+                    false => 0.0,
+                };
+                let of = (rate, scale);
+                extremes.is_open(&self.interpolants, f, column, self.tolerance, of)
+            })
         });
         !open && (!powers || self.work_is_resolved(part, columns))
     }
@@ -537,9 +559,9 @@ impl<'o> Observers<'o> {
         let clock = step.equations.clock;
         let seconds = |tau: f64| clock.start.plus(tau).seconds();
         for f in 0..columns {
-            let column = self.functions.columns[f];
+            let (column, rate) = (self.functions.columns[f], self.functions.rate_of(f));
             let time = |place: f64| seconds(part.time(place));
-            let summits = extremes.look(&self.interpolants, f, column, time);
+            let summits = extremes.look(&self.interpolants, f, column, rate, time);
             for place in summits.into_iter().flatten() {
                 let tau = polish(step.motion, part, f, part.time(place));
                 self.evaluate(step, tau, Interpolants::SPARE, (columns, false));
@@ -646,7 +668,8 @@ impl<'o> Observers<'o> {
 }
 
 /// Goes from a place near an extremum of a function to it, where its derivative is that of the motion: by the
-/// secant method, from a place that is off by less than a thousandth of the part.
+/// secant method, from a place that is off by less than a thousandth of the part, until a step is as short as places
+/// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again.
 fn polish<const F: usize, M: Motion<F>>(motion: &M, part: Part, f: usize, tau: f64) -> f64 {
     let rate = |tau: f64| {
         let (_, v, a) = motion.at(tau);
@@ -666,6 +689,9 @@ fn polish<const F: usize, M: Motion<F>>(motion: &M, part: Part, f: usize, tau: f
         }
         (last, rate_last) = (next, rate_next);
         next = clamp(next - step);
+        if step.abs() <= Interpolants::CLOSE * (part.to - part.from) {
+            break;
+        }
         rate_next = rate(next);
     }
     next

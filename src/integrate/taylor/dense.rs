@@ -69,7 +69,7 @@ impl<const F: usize> TaylorDense<F> {
 
     /// By how much coordinates and velocities change in τ.
     #[inline(always)]
-    pub(super) fn change(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>) {
+    pub(in crate::integrate) fn change(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>) {
         let Series { q, v, .. } = &self.series;
         (
             sum(&q[1..self.order + 2], tau) * tau,
