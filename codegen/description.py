@@ -30,8 +30,9 @@ class Tables:
         return self.series.setdefault(symbols, len(self.series))
 
 
-def describe(name, chosen, constants, for_tests):
-    """(description, tables) of a model: its variants, the C function of the constants and their number."""
+def describe(name, models, chosen, constants, for_tests):
+    """(description, tables) of a model: its combinations of choices, the variants of those that were derived, the C function of the
+    constants and their number."""
     model, tables = chosen[0].model, Tables()
     variants = [v for variant in chosen for v in (variant, variant.lean) if v]
     required = analysis.used_signals(variants, ("requirements",))
@@ -55,6 +56,7 @@ def describe(name, chosen, constants, for_tests):
         "discretes": [{"name": d.name, "values": [_number(v) for v in d.values], "meaning": d.meaning}
                       for d in model.discretes],
         "choices": [{"name": c[0], "options": list(c[1]), "meaning": c[2]} for c in model.choices],
+        "combinations": [[c[3] for c in m.choices] for m in models],
         "constants": {"function": tables.value(constants[0]), "count": constants[1]},
         "variants": [_variant(variant, tables) for variant in chosen],
     }

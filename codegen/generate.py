@@ -114,7 +114,7 @@ def generate(folder, for_tests=False, named=None):
         if variant.lean is not None:
             variant.lean.declared = variant.declared
     c_text = source.text(name)
-    described, tables = description.describe(name, chosen, (constants_symbol, constants.values.numel()), for_tests)
+    described, tables = description.describe(name, models, chosen, (constants_symbol, constants.values.numel()), for_tests)
     for_lanes = _lane_functions(variants)
     lanes_text = source.lanes_text(name, for_lanes, emit_model.lanes_text(name, tables, for_lanes))
     model_text = emit_model.model_text(name, described, tables, bool(lanes_text))

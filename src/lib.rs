@@ -30,6 +30,7 @@
 #![warn(missing_docs)]
 
 pub mod cli;
+pub mod folders;
 pub mod hybrid;
 pub mod input;
 pub mod integrate;

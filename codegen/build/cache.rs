@@ -124,10 +124,11 @@ impl Cache {
         remove(&entry.path)?;
         let filled = fill(&staging).and_then(|()| write_inventory(&staging, kind.compares));
         if let Err(error) = filled {
-            remove(&staging)?;
+            self.unstage(kind, key)?;
             return Err(error);
         }
         fs::rename(&staging, &entry.path).map_err(Error::io("create", &entry.path))?;
+        self.unstage(kind, key)?;
         sync_folder(&self.root.join(kind.name))?;
         Ok(entry)
     }
@@ -157,12 +158,19 @@ impl Cache {
         Ok(used)
     }
 
-    /// An empty folder for what becomes an entry. Whoever asks for it holds the lock of its key.
+    /// An empty folder for what becomes an entry. Whoever asks for it holds the lock of its key. Its path is that of no other
+    /// process: programs that a killed one had started may still write.
     pub fn staging(&self, kind: Kind, key: &str) -> Result<PathBuf, Error> {
+        self.unstage(kind, key)?;
         let staging = self.beside(kind, key, PARTIAL)?;
-        remove(&staging)?;
-        fs::create_dir(&staging).map_err(Error::io("create", &staging))?;
+        let staging = staging.join(std::process::id().to_string());
+        fs::create_dir_all(&staging).map_err(Error::io("create", &staging))?;
         Ok(staging)
+    }
+
+    /// Removes what is being made. Whoever asks for it holds the lock of its key.
+    pub fn unstage(&self, kind: Kind, key: &str) -> Result<(), Error> {
+        remove(&self.beside(kind, key, PARTIAL)?)
     }
 
     /// A path beside an entry, in the folder of its kind, which is there.

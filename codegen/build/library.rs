@@ -14,7 +14,7 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::cache::{self, Cache, Compares, Entry, Kind};
+use super::cache::{Cache, Compares, Entry, Kind};
 use super::error::Error;
 use super::fingerprint::Fingerprint;
 use super::generate::{self, Generated};
@@ -204,7 +204,7 @@ impl Model {
             index.write(cache, key)?;
             Ok(Derived { digest, entry })
         });
-        cache::remove(&staging)?;
+        cache.unstage(DERIVED, key)?;
         made
     }
 }

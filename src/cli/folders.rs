@@ -1,8 +1,86 @@
-//! What the commands share that are given model folders.
+//! What the commands share that may be given model folders.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::outcome::Failure;
 use super::print;
-use dalembert_build::{Error, Stage};
+use crate::folders::{self, Choices, Error, FolderError, Options, Stage};
+use crate::model::{FolderRefused, Model, Models};
+
+/// Whether models are built from folders; `--no-build` says that they are not.
+static BUILDS: AtomicBool = AtomicBool::new(true);
+
+/// Refuses folders from now on.
+pub fn refuse() {
+    BUILDS.store(false, Ordering::Relaxed);
+}
+
+/// Which variants a command needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// That of the scene.
+    One,
+    /// All.
+    All,
+}
+
+/// The models that scenes may name: those of the program, and folders.
+pub fn models(needs: Needs) -> Models {
+    Models::linked().with_folders(move |folder, named| {
+        let choices = match needs {
+            Needs::One => Choices::Fitting(named.clone()),
+            Needs::All => Choices::All,
+        };
+        load(folder, choices).map_err(|failure| {
+            let text = failure.to_string();
+            let text = text.trim_start_matches("error: ");
+            let (message, help) = text.split_once("\nto do: ").unwrap_or((text, ""));
+            FolderRefused {
+                message: message.to_owned(),
+                help: (!help.is_empty()).then(|| help.to_owned()),
+            }
+        })
+    })
+}
+
+/// The model in a folder, or that of a name.
+pub fn find(
+    model: &str,
+    named: BTreeMap<String, String>,
+) -> std::result::Result<Arc<Model>, Failure> {
+    if Models::is_folder(model) {
+        load(Path::new(model), Choices::Fitting(named))
+    } else {
+        super::models::find(model)
+    }
+}
+
+fn load(folder: &Path, choices: Choices) -> std::result::Result<Arc<Model>, Failure> {
+    if !BUILDS.load(Ordering::Relaxed) {
+        return Err(Failure::wrong_input(format!(
+            "{}: --no-build refuses models from folders: they run their model.py and the code made from it\n\
+             to do: name a model of the program, or leave --no-build out",
+            folder.display()
+        )));
+    }
+    let options = Options {
+        choices,
+        lanes: false,
+    };
+    Ok(folders::load(folder, &options, &progress)?)
+}
+
+impl From<FolderError> for Failure {
+    fn from(error: FolderError) -> Self {
+        match error {
+            FolderError::Build(error) => error.into(),
+            FolderError::Load { .. } => Failure::system(error),
+        }
+    }
+}
 
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {

@@ -40,6 +40,9 @@ use std::process::ExitCode;
                   written; 3 a simulation stopped early and what was computed is written."
 )]
 struct Arguments {
+    /// Refuse models from folders: a scene that names one runs its model.py and the code made from it
+    #[arg(long, global = true)]
+    no_build: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -72,7 +75,11 @@ enum Command {
 
 /// Runs the command of the process's arguments.
 pub fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
+    let arguments = Arguments::parse();
+    if arguments.no_build {
+        folders::refuse();
+    }
+    let result = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Precision(arguments) => precision::precision(&arguments),

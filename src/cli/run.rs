@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::outputs::{NotReplayed, Outputs};
 use super::{print, room, warnings};
 use crate::hybrid::{Invalid, Problem, Reason, Replay, check_same, resume_with, simulate_with};
-use crate::model::models;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
 use crate::record::{Earlier, Layout, OutputFolder, ProgressLine, Report, Run, Sketch, Stream};
@@ -60,7 +60,11 @@ pub fn run(arguments: &RunArguments) -> Result {
              its start, without --resume",
         ));
     }
-    let scene = Scene::load(&arguments.scene, &arguments.overrides, models())?;
+    let scene = Scene::load(
+        &arguments.scene,
+        &arguments.overrides,
+        &folders::models(Needs::One),
+    )?;
     let problem = &scene.problem;
     let earlier = match &arguments.resume {
         Some(folder) => {

@@ -138,7 +138,8 @@ pub struct Record {
 }
 
 impl Problem {
-    /// A model with its default parameters and choices, at rest at zero without inputs, for 1 s at
+    /// A model with its default parameters and choices (the first there are of a model from a folder that was asked for
+    /// others), at rest at zero without inputs, for 1 s at
     /// a relative tolerance of 1e-8, recording the events, the ledger, the extremes and the end.
     pub fn new(model: &Arc<Model>) -> Self {
         let mut variants = model.variants.iter();
@@ -146,7 +147,7 @@ impl Problem {
         let n = model.coordinates.len();
         let mut problem = Problem {
             model: model.clone(),
-            chosen: variant.expect("codegen makes a variant of the defaults"),
+            chosen: variant.unwrap_or(0),
             title: None,
             parameters: model.parameters.iter().map(|p| p.default).collect(),
             signals: Signals::new(

@@ -96,6 +96,9 @@ impl Reader<'_> {
             variants: at.get("variants", |at| {
                 at.list(|at| self.variant(at, choices.len(), inputs.len()))
             })?,
+            combinations: at.get("combinations", |at| {
+                at.list(|at| at.list_of(choices.len(), text))
+            })?,
             inputs,
             choices,
             constants,

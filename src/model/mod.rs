@@ -8,7 +8,7 @@ mod registry;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
-pub use registry::{Models, models};
+pub use registry::{FolderRefused, FromFolder, Models, models};
 
 use crate::jets::Tape;
 use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
@@ -40,12 +40,13 @@ pub struct Model {
     pub choices: Box<[Choice]>,
     /// What depends on parameters alone; evaluated once a run.
     pub constants: ConstantsKernel,
-    /// One variant per combination of choices.
+    /// One variant per combination of choices; of a model from a folder those that were asked for.
     pub variants: Box<[Variant]>,
+    /// All combinations, whether or not there is a variant of them: the options, in the order of the choices.
+    pub combinations: Box<[Box<[&'static str]>]>,
     /// True for models that exist for the test suite alone.
     pub for_tests: bool,
     /// The library that its functions are in, if it was loaded: it stays as long as they may be called.
-    #[expect(dead_code, reason = "it is there so that the library is not unloaded")]
     pub(crate) library: Option<crate::kernel::Library>,
 }
 
@@ -353,6 +354,11 @@ pub struct Requirement {
 }
 
 impl Model {
+    /// Whether it was loaded from a library, not linked into the program.
+    pub fn is_loaded(&self) -> bool {
+        self.library.is_some()
+    }
+
     /// Number of signals that the inputs fill.
     pub fn signal_count(&self) -> usize {
         self.inputs.iter().map(|i| i.kind.signals()).sum()

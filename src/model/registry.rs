@@ -4,12 +4,29 @@ use super::Model;
 use crate::kernel::{self, ContractError, RawModel};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// Models by name; each is read when it is first asked for.
+/// Models by name, each read when it is first asked for; and, if somebody makes them, models from folders.
 pub struct Models {
     linked: BTreeMap<&'static str, &'static RawModel>,
     read: Mutex<BTreeMap<&'static str, Arc<Model>>>,
+    folders: Option<Box<FromFolder>>,
+}
+
+/// Makes the model of a folder. The second argument holds what a scene may mean for its choices, by name: options of those
+/// that it has.
+pub type FromFolder =
+    dyn Fn(&Path, &BTreeMap<String, String>) -> Result<Arc<Model>, FolderRefused> + Send + Sync;
+
+/// Why there is no model of a folder.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct FolderRefused {
+    /// What is wrong, and where.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
 }
 
 /// The models that come with this crate.
@@ -18,13 +35,56 @@ pub struct Models {
 /// If the program was put together from parts of different versions.
 pub fn models() -> &'static Models {
     static MODELS: OnceLock<Models> = OnceLock::new();
-    MODELS.get_or_init(|| {
-        let models = Models::of(kernel::linked_models());
-        models.unwrap_or_else(|error| panic!("a model that is linked into the program: {error}"))
-    })
+    MODELS.get_or_init(Models::linked)
 }
 
 impl Models {
+    /// As [`models`], to which more can be added.
+    ///
+    /// # Panics
+    /// As [`models`].
+    pub fn linked() -> Models {
+        let models = Models::of(kernel::linked_models());
+        models.unwrap_or_else(|error| panic!("a model that is linked into the program: {error}"))
+    }
+
+    /// The same, with models from folders.
+    pub fn with_folders(
+        self,
+        make: impl Fn(&Path, &BTreeMap<String, String>) -> Result<Arc<Model>, FolderRefused>
+        + Send
+        + Sync
+        + 'static,
+    ) -> Models {
+        Models {
+            folders: Some(Box::new(make)),
+            ..self
+        }
+    }
+
+    /// Whether a name is that of a folder: anything with a slash is.
+    pub fn is_folder(name: &str) -> bool {
+        name.contains('/') || cfg!(windows) && name.contains('\\')
+    }
+
+    /// The model of a folder.
+    ///
+    /// # Errors
+    /// [`FolderRefused`] if it has none, or nobody here makes models from folders.
+    pub fn from_folder(
+        &self,
+        folder: &Path,
+        named: &BTreeMap<String, String>,
+    ) -> Result<Arc<Model>, FolderRefused> {
+        let Some(make) = &self.folders else {
+            return Err(FolderRefused {
+                message: "models from folders are not built here".to_owned(),
+                help: Some("name a model that is linked into the program".to_owned()),
+            });
+        };
+        make(folder, named)
+    }
+
     /// What a build linked.
     ///
     /// # Errors
@@ -36,6 +96,7 @@ impl Models {
         Ok(Models {
             linked: named.collect::<Result<_, _>>()?,
             read: Mutex::default(),
+            folders: None,
         })
     }
 

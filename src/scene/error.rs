@@ -35,6 +35,14 @@ pub enum SceneErrorKind {
         /// What the system says.
         reason: String,
     },
+    /// There is no model of a folder.
+    #[error("no model from `{folder}`: {reason}")]
+    NoModel {
+        /// The folder, as the scene names it.
+        folder: String,
+        /// Why not.
+        reason: String,
+    },
     /// The text is not JSON, or not UTF-8.
     #[error("{message}")]
     Syntax {

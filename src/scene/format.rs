@@ -27,6 +27,8 @@ pub(crate) const CONTINUE: &str = "continue";
 /// The shape of a scene of a model; of any model, with less detail, for `None`.
 pub(crate) fn scene(model: Option<&Model>) -> Object {
     let name = match model {
+        // The path of a folder was read before, and is not its name.
+        Some(model) if model.is_loaded() => Shape::Text,
         Some(model) => Shape::Choice("model", vec![model.name]),
         None => Shape::Text,
     };
@@ -36,7 +38,7 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
             "JSON Schema of this file, for editors",
             Shape::Text,
         ),
-        Key::new("model", "name of the model", name).required(),
+        Key::new("model", "name of the model, or path of a model folder, relative to the scene: anything with a slash is one", name).required(),
         Key::new("title", "what the scene shows", Shape::Line),
         Key::new(
             "parameters",

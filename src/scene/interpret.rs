@@ -1,5 +1,6 @@
 //! From a checked tree to a [`Scene`]: what no table of keys can say.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,7 +23,7 @@ pub(crate) fn scene(
     folder: &Path,
 ) -> Result<Scene, SceneErrors> {
     let mut errors = Errors::default();
-    let owned = model(&root, models)?;
+    let owned = model(&root, models, folder)?;
     let model = &*owned;
     let checked = check(
         &root,
@@ -75,7 +76,7 @@ pub(crate) fn scene(
     Ok(Scene { problem, source })
 }
 
-fn model(root: &Node, models: &Models) -> Result<Arc<Model>, SceneError> {
+fn model(root: &Node, models: &Models, folder: &Path) -> Result<Arc<Model>, SceneError> {
     let known: Vec<&str> = models.names().collect();
     let wrong_type = |node: &Node, expected: &str| {
         let (expected, found) = (expected.to_owned(), node.type_name().to_owned());
@@ -92,11 +93,40 @@ fn model(root: &Node, models: &Models) -> Result<Arc<Model>, SceneError> {
         return Err(SceneError::new(kind, &root.place()).help(help));
     };
     let Value::Text(name) = &node.value else {
-        return Err(wrong_type(node, "the name of a model"));
+        return Err(wrong_type(
+            node,
+            "the name of a model, or the path of a model folder",
+        ));
     };
+    if Models::is_folder(name) {
+        let made = models.from_folder(&folder.join(name), &texts(root));
+        return made.map_err(|refused| {
+            let kind = SceneErrorKind::NoModel {
+                folder: name.clone(),
+                reason: refused.message,
+            };
+            let error = SceneError::new(kind, &node.place());
+            match refused.help {
+                Some(help) => error.help(help),
+                None => error,
+            }
+        });
+    }
     models
         .find(name)
         .ok_or_else(|| unknown_name("model", name, &known, &node.place()))
+}
+
+/// What a scene may mean for choices of its model, which is not known yet: all texts by their keys.
+fn texts(root: &Node) -> BTreeMap<String, String> {
+    let Value::Object(entries) = &root.value else {
+        return BTreeMap::new();
+    };
+    let texts = entries.iter().filter_map(|entry| match &entry.node.value {
+        Value::Text(text) => Some((entry.key.clone(), text.clone())),
+        _ => None,
+    });
+    texts.collect()
 }
 
 /// The variant that has the options the scene names, and the defaults for the others.
@@ -127,7 +157,11 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
             .flatten()
             .last()
             .map_or(&scene.place, |name| &name.place);
-        let offered: Vec<String> = model.variants.iter().map(|v| pairs(&v.options)).collect();
+        let offered: Vec<String> = model
+            .combinations
+            .iter()
+            .map(|options| pairs(options))
+            .collect();
         let kind = SceneErrorKind::NoVariant {
             chosen: chosen.join(", "),
         };

@@ -4,6 +4,7 @@ mod cache;
 mod check;
 mod compare;
 mod describe;
+mod folders;
 mod input;
 mod interrupt;
 mod limits;

@@ -8,13 +8,13 @@ use std::path::PathBuf;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::run::refusal;
 use super::{models, print, room};
 use crate::hybrid::simulate;
 use crate::model::Model;
-use crate::model::models;
 use crate::record::{OutputFolder, Run, Silent};
 use crate::scene::Scene;
 
@@ -65,7 +65,11 @@ impl Case {
 }
 
 pub fn compare(arguments: &CompareArguments) -> Result {
-    let scene = Scene::load(&arguments.scene, &arguments.overrides, models())?;
+    let scene = Scene::load(
+        &arguments.scene,
+        &arguments.overrides,
+        &folders::models(Needs::All),
+    )?;
     let model = &*scene.problem.model;
     let varied = varied(model, &arguments.vary)?;
     let folder = arguments
@@ -155,7 +159,7 @@ fn case(
         .cloned()
         .chain(settings)
         .collect();
-    let run = Scene::load(&arguments.scene, &overrides, models())
+    let run = Scene::load(&arguments.scene, &overrides, &folders::models(Needs::All))
         .map_err(|errors| errors.to_string())
         .and_then(|scene| {
             room::check_memory(&scene, variants).map_err(|error| error.to_string())?;

@@ -4,13 +4,13 @@ mod description;
 mod text;
 
 use super::outcome::{Failure, Outcome, Result};
-use super::{models, print};
+use super::{folders, models, print};
 use crate::model::{Model, Variant};
 use description::Description;
 
 #[derive(Debug, clap::Args)]
 pub struct DescribeArguments {
-    /// Name of the model
+    /// Name of the model, or a model folder: anything with a slash is one
     model: String,
     /// Choose an option, such as `rules=paper`; other choices keep their defaults
     #[arg(long = "set", value_name = "CHOICE=OPTION")]
@@ -21,7 +21,12 @@ pub struct DescribeArguments {
 }
 
 pub fn describe(arguments: &DescribeArguments) -> Result {
-    let model = models::find(&arguments.model)?;
+    let pairs = arguments
+        .choices
+        .iter()
+        .filter_map(|pair| pair.split_once('='));
+    let named = pairs.map(|(choice, option)| (choice.to_owned(), option.to_owned()));
+    let model = folders::find(&arguments.model, named.collect())?;
     let variant = choose(&model, &arguments.choices)?;
     let description = Description::new(&model, variant);
     if arguments.json {

@@ -7,11 +7,11 @@ use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Outcome, Result};
 use super::print;
 use super::run::refusal;
-use crate::model::models;
 use crate::precision::Study;
 use crate::record::{OutputFolder, Silent};
 use crate::scene::Scene;
@@ -80,7 +80,11 @@ struct Precision {
 }
 
 pub fn precision(arguments: &PrecisionArguments) -> Result {
-    let scene = Scene::load(&arguments.scene, &arguments.overrides, models())?;
+    let scene = Scene::load(
+        &arguments.scene,
+        &arguments.overrides,
+        &folders::models(Needs::One),
+    )?;
     let problem = &scene.problem;
     let folder = arguments.out.as_deref().map(OutputFolder::new);
     let folder = folder.transpose()?;

@@ -218,7 +218,7 @@ fn types() {
     );
     expect(
         &tank("\"walking_tank\"", "7"),
-        "expected the name of a model, found a number",
+        "expected the name of a model, or the path of a model folder, found a number",
         "2:12",
         "",
     );
