@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::failure::Stoppable;
 use super::guards::{self, Conditions};
-use super::locate::{Landing, land, land_later, rate_at, value_at};
+use super::locate::{Landing, TAYLOR, land, land_later, rate_at, value_at};
 use super::plan::Watched;
 use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
@@ -28,6 +28,8 @@ pub(super) struct Signs {
     waits: bool,
     /// Those that turned within rounding in the step and are not positive at its end.
     below: Vec<usize>,
+    /// Whether the event of the step is that of a guard that was never seen to be positive.
+    unseen: bool,
 }
 
 /// Result of [`cut`].
@@ -64,6 +66,12 @@ impl Signs {
     /// Whether one of them is searched only from some time on.
     pub fn waits(&self) -> bool {
         self.waits
+    }
+
+    /// Whether the event of the last step is that of a guard that was never seen to be positive: of what is less than
+    /// the errors of the step.
+    pub fn unseen(&self) -> bool {
+        self.unseen
     }
 
     /// Searches each from the start of a step, or from the time until which it is positive.
@@ -127,6 +135,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 ) -> Stoppable<Cut> {
     let start = method.start().t;
     signs.search_from(start);
+    signs.unseen = false;
     if signs.waits {
         wake(method, equations, (mode, watched), signs);
     }
@@ -168,7 +177,13 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
                 signs.below = below(equations, conditions, (mode, watched), signs, landed);
             }
             return Ok(match signs.waits {
-                true => fallen(equations, conditions, (mode, watched), signs, landed),
+                true => fallen(
+                    method,
+                    equations,
+                    conditions,
+                    (mode, watched),
+                    (signs, landed),
+                )?,
                 false => Cut::Nothing,
             });
         };
@@ -261,29 +276,52 @@ fn below<const F: usize>(
 
 /// The event of a guard that was zero at the start of the segment, or came to zero within rounding, and rose from it by
 /// less than the dense output shows, so that it never was seen to be positive: it is negative at the end of the step, and
-/// falls.
+/// falls. It has fallen where it first is negative after it was known to be positive; and it is in doubt, having turned at
+/// zero.
 #[cold]
-fn fallen<const F: usize>(
-    equations: &mut Equations<F>,
+fn fallen<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+    method: &mut M,
+    equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     (mode, watched): (&Mode, &[Watched]),
-    signs: &Signs,
-    end: &State<F>,
-) -> Cut {
+    (signs, landed): (&mut Signs, &mut State<F>),
+) -> Stoppable<Cut> {
+    let (start, end) = (method.start().t, method.end());
     for (i, &watched) in watched.iter().enumerate() {
         let guard = (&mode.guards[watched.guard], watched);
-        if signs.away[i] > 0.0
+        let is_below = signs.away[i] > 0.0
             && signs.found[i].watch == Watch::Violated
-            && value_at(equations, conditions, guard, end) < 0.0
-            && rate_at(equations, guard.0, end) < 0.0
-        {
-            return Cut::Event {
-                guard: watched.guard,
-                beyond: 0.0,
-            };
+            && value_at(equations, conditions, guard, landed) < 0.0
+            && rate_at(equations, guard.0, landed) < 0.0;
+        if !is_below {
+            continue;
         }
+        let mut length = (signs.away[i] - start).max(TAYLOR * (end - start));
+        loop {
+            if start + length < end {
+                method.step_exactly(equations, length)?;
+            } else if method.end() < end {
+                method.step_exactly(equations, end - start)?;
+            }
+            *landed = *method.state();
+            if value_at(equations, conditions, guard, landed) < 0.0 || start + length >= end {
+                break;
+            }
+            length *= 2.0;
+        }
+        signs.found[i].crossing = Some(Crossing {
+            inside: method.end(),
+            outside: method.end(),
+            kind: Kind::Fall,
+        });
+        signs.found[i].turn = 0.0;
+        signs.unseen = true;
+        return Ok(Cut::Event {
+            guard: watched.guard,
+            beyond: 0.0,
+        });
     }
-    Cut::Nothing
+    Ok(Cut::Nothing)
 }
 
 /// Searches a guard, unless the window from which it is searched is empty.

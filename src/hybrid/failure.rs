@@ -117,6 +117,28 @@ pub enum Reason {
         /// What stands in the way.
         why: &'static str,
     },
+    /// The Taylor method was asked for, and the coefficients of the series leave the range of doubles.
+    #[error(
+        "method `taylor`: in mode `{mode}` the coefficients of the motion's series leave the range of doubles (rates are too fast); `auto` goes on by `radau` there"
+    )]
+    SeriesOverflows {
+        /// Mode.
+        mode: &'static str,
+    },
+    /// The Taylor method was asked for where the equations are too stiff for it.
+    #[error(
+        "method `taylor`: mode `{mode}` is stiff: a decay at {rate:.1e} 1/s, which is over, holds steps to {step:.1e} s, {steps:.1e} of them to the end; `radau` and `auto` follow the motion itself"
+    )]
+    Stiff {
+        /// Mode.
+        mode: &'static str,
+        /// Rate of the fastest decay, 1/s.
+        rate: f64,
+        /// Length of a step, s.
+        step: f64,
+        /// Number of such steps to the end of the run.
+        steps: f64,
+    },
     /// The initial state fits no mode.
     #[error("the initial state does not fit mode `{mode}`: {why}")]
     Initial {

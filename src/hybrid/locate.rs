@@ -30,7 +30,7 @@ pub(super) enum Landing {
 
 /// A Taylor polynomial of second order over this fraction of a step is exact to rounding: what it
 /// leaves out is of the order of its cube, 2⁻⁵⁴ (cube root of the unit roundoff, rounded down).
-const TAYLOR: f64 = 3.8e-6;
+pub(super) const TAYLOR: f64 = 3.8e-6;
 
 /// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
 ///
@@ -237,6 +237,9 @@ fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     };
     let passed = passed.max(TAYLOR * elapsed);
     let mut place = (f64::EPSILON * passed.max(correction.abs())).max(f64::MIN_POSITIVE);
+    // A guard that rounding kept from falling at the end of the step before may have its root there: it falls in this
+    // step, at its start at the earliest.
+    let correction = correction.max(-elapsed);
     // At the very root the guard is zero as often as not.
     let mut beyond = correction + place;
     loop {

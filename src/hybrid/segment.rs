@@ -12,7 +12,10 @@ use super::observe::{Step, copy_drifting};
 use super::problem::{Method, Problem};
 use super::simulation::{Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
-use crate::integrate::{Node, OneStep, Radau, State, Taylor, Tolerances, determinant_sign, stages};
+use crate::integrate::{
+    Motion, Node, OneStep, Radau, SERIES, State, StepError, Taylor, Tolerances, determinant_sign,
+    stages,
+};
 use crate::kernel::{Context, ModeKernel, copy_few};
 use crate::model::Mode;
 use crate::record::Progress;
@@ -172,6 +175,11 @@ impl<'p> Simulation<'p> {
                         return Ok(Stop::Fired);
                     }
                     has_accelerations = needs_accelerations;
+                    if stay.chooses
+                        && self.stiffness[self.here.mode].prefers_implicit() == is_explicit
+                    {
+                        return Ok(Stop::Fired);
+                    }
                 }
                 stop => return Ok(stop),
             }
@@ -237,7 +245,7 @@ impl<'p> Simulation<'p> {
         };
         let watches = self.margins.watches(mode);
         let stiffness = &mut self.stiffness[self.here.mode];
-        if chooses {
+        if chooses || is_explicit {
             stiffness.begin();
         }
         // The end of the step, or of what its first event leaves of it.
@@ -250,6 +258,10 @@ impl<'p> Simulation<'p> {
                     // What no series reaches the other method may.
                     stiffness.explicit_failure();
                     return Ok(Stop::Method);
+                }
+                if is_explicit && matches!(error, StepError::NonFinite { what: SERIES, .. }) {
+                    let mode = mode.name;
+                    return Err(Box::new(Reason::SeriesOverflows { mode }));
                 }
                 let mass = vanished(equations.context, method.state()).filter(|_| mass_changes);
                 return Err(mass.map_or_else(|| error.into(), Box::new));
@@ -310,6 +322,7 @@ impl<'p> Simulation<'p> {
 
             let end = method.end();
             let dense = method.dense().expect("a step was made");
+            let length = dense.length();
 
             let mut work = None;
             if <M as OneStep<F, Equations<F>>>::HAS_QUADRATURE
@@ -375,6 +388,29 @@ impl<'p> Simulation<'p> {
             }
 
             let h = end - method.start().t;
+            let unseen = event.is_some() && self.signs.unseen();
+            if is_explicit && (event.is_none() || unseen) {
+                let h = if unseen { length } else { h };
+                let rate = || equations.decay_rate(at);
+                if chooses {
+                    stiffness.explicit_step(h, |least| method.lag(&equations, least), rate);
+                } else {
+                    let left = problem.end.time - self.here.now.seconds();
+                    if let Some(rate) = stiffness.explicit_step_alone(h, left, rate) {
+                        let mode = mode.name;
+                        let (steps, step) = (left / h, h);
+                        return Err(Box::new(Reason::Stiff {
+                            mode,
+                            rate,
+                            step,
+                            steps,
+                        }));
+                    }
+                }
+                if unseen {
+                    stiffness.go_on();
+                }
+            }
             if let Some(guard) = event {
                 if chooses && !is_explicit {
                     stiffness.implicit_step(h);
@@ -382,10 +418,7 @@ impl<'p> Simulation<'p> {
                 return Ok(Stop::Event(guard));
             }
             self.signs.go_on();
-            if chooses && is_explicit {
-                let lag = |least| method.lag(&equations, least);
-                stiffness.explicit_step(h, lag, || equations.decay_rate(at));
-            } else if chooses {
+            if chooses && !is_explicit {
                 stiffness.implicit_step(h);
             }
             if end >= until {

@@ -34,6 +34,10 @@ const TERM: u32 = 1024;
 /// Steps of a segment between two looks at the rate of its fastest decay.
 const LOOK: u32 = 8;
 
+/// Steps still to be made, from which on a run by the explicit method alone is refused where decays that are over set
+/// their length: it would take minutes to years, and the implicit method a second.
+const HOPELESS: f64 = 1.0e7;
+
 /// What was found out about a mode so far, and the signs of stiffness in the present segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stiffness {
@@ -51,6 +55,8 @@ pub(super) struct Stiffness {
     decayed: f64,
     /// Steps of the explicit method.
     steps: u32,
+    /// Whether the next segment has no transients of its own.
+    goes_on: bool,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -78,6 +84,7 @@ impl Default for Stiffness {
             rate: 0.0,
             decayed: 0.0,
             steps: 0,
+            goes_on: false,
         }
     }
 }
@@ -85,6 +92,9 @@ impl Default for Stiffness {
 impl Stiffness {
     /// A segment begins, with new transients.
     pub fn begin(&mut self) {
+        if std::mem::take(&mut self.goes_on) {
+            return;
+        }
         *self = Stiffness {
             verdict: self.verdict,
             before: self.before,
@@ -92,6 +102,11 @@ impl Stiffness {
             left: self.left,
             ..Stiffness::default()
         };
+    }
+
+    /// The next segment has no transients of its own: the event before it is of what is less than the errors of a step.
+    pub fn go_on(&mut self) {
+        self.goes_on = true;
     }
 
     /// Comes to a verdict.
@@ -144,21 +159,39 @@ impl Stiffness {
             Verdict::NotStiff => return self.serve(),
             _ => return,
         }
-        self.steps += 1;
-        if self.steps % LOOK == LOOK / 2 {
-            self.rate = rate();
-        }
+        self.decay(h, rate);
         // Where nothing is lost, less than nothing is not either.
         let least = if self.lost == 0.0 { COST } else { 0.0 };
         self.lost = (self.lost + 1.0 - COST / lag(least)).max(0.0);
-        self.decayed = match self.rate * h >= 1.0 {
-            true => self.decayed + self.rate * h,
-            false => 0.0,
-        };
         if self.lost >= PATIENCE || self.decayed >= DECAYED {
             let (length, left) = (COST * h, TRIAL);
             self.verdict = Verdict::Trial { length, left };
         }
+    }
+
+    /// Counts the time constants of the fastest decay in a row of steps that are longer than it.
+    fn decay(&mut self, h: f64, rate: impl FnOnce() -> f64) {
+        self.steps = self.steps.wrapping_add(1);
+        if self.steps % LOOK == LOOK / 2 {
+            self.rate = rate();
+        }
+        self.decayed = match self.rate * h >= 1.0 {
+            true => self.decayed + self.rate * h,
+            false => 0.0,
+        };
+    }
+
+    /// Takes note of a step of the explicit method where no other is allowed, with a time `left` to the end of the run, s.
+    /// Gives the rate of the fastest decay, 1/s, where it is over and holds the steps to lengths by which the end is out
+    /// of reach.
+    pub fn explicit_step_alone(
+        &mut self,
+        h: f64,
+        left: f64,
+        rate: impl FnOnce() -> f64,
+    ) -> Option<f64> {
+        self.decay(h, rate);
+        (left > HOPELESS * h && self.decayed >= DECAYED).then_some(self.rate)
     }
 
     /// The explicit method can make no step: until its term is over the verdict is the implicit one, however short

@@ -50,5 +50,5 @@ pub use state::{Node, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};
 pub use taylor::{Analytic, ORDERS, Series, SeriesKind, Taylor, TaylorDense};
-pub(crate) use taylor::{LaneTaylor, stretch};
+pub(crate) use taylor::{LaneTaylor, SERIES, stretch};
 pub use tolerances::{ToleranceError, Tolerances};

@@ -28,6 +28,9 @@ use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances};
 use nalgebra::{SMatrix, SVector};
 
+/// What is not finite where the coefficients of a series leave the range of doubles.
+pub(crate) const SERIES: &str = "the Taylor series of the motion";
+
 /// Error estimate of Radau IIA: that of a velocity with the term c·τ^`power` is `error`·c·h^`power`, in
 /// units of the tolerance.
 #[derive(Debug, Clone, Copy)]
@@ -312,7 +315,7 @@ impl<const F: usize> Taylor<F> {
                 return Err(StepError::NonFinite {
                     t,
                     h: 0.0,
-                    what: "the Taylor series of the motion",
+                    what: SERIES,
                 });
             }
         }
