@@ -5,7 +5,7 @@ import json
 from .emit_c import CONTRACT
 
 LEVELS = ("v1", "v3", "v4")
-"""Levels of the processor for which lanes are compiled, as in build/compile.rs: the first for any, the others for x86-64."""
+"""Levels of the processor for which lanes are compiled, as in codegen/build/compile.rs: the first for any, the others for x86-64."""
 
 
 def model_text(name, description, tables, has_lanes):

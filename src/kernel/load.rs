@@ -81,7 +81,7 @@ pub(crate) fn name_of_linked(raw: &'static RawModel) -> Result<&'static str, Con
 }
 
 unsafe extern "C" {
-    /// The models that the build of this crate linked, and null after them: `build/registry.rs`.
+    /// The models that the build of this crate linked, and null after them: `codegen/build/registry.rs`.
     static dalembert_models: [Option<&'static RawModel>; 1];
 }
 
