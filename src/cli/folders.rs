@@ -77,7 +77,7 @@ impl From<FolderError> for Failure {
     fn from(error: FolderError) -> Self {
         match error {
             FolderError::Build(error) => error.into(),
-            FolderError::Load { .. } => Failure::system(error),
+            FolderError::Load { .. } => Failure::wrong_input(error),
         }
     }
 }
@@ -85,10 +85,9 @@ impl From<FolderError> for Failure {
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error {
-            Error::Models(_) | Error::Folder { .. } | Error::ModelName { .. } => {
-                Failure::wrong_input(error)
-            }
-            _ => Failure::system(error),
+            // What the system refused; all others say what is to be changed, or installed.
+            Error::Io { .. } | Error::NoCache => Failure::system(error),
+            _ => Failure::wrong_input(error),
         }
     }
 }

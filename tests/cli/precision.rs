@@ -172,25 +172,31 @@ fn the_tolerance_that_is_advised_reaches_the_error() {
 #[test]
 fn a_method_that_is_hopeless_is_given_up_and_a_failing_scene_says_so() {
     let home = tempfile::tempdir().unwrap();
-    let stiff = [
-        "precision",
-        &scene("sliding_oscillator"),
-        "--out",
-        "out",
-        "--set",
-        "parameters.k=1.05e16",
-        "--set",
-        "parameters.c=6.42e12",
-        "--set",
-        "end=0.05",
-    ];
-    let output = ends_with(0, home.path(), &stiff);
-    let text = stdout(&output);
+    let stiff = |end: &str| {
+        let run = [
+            "precision",
+            &scene("sliding_oscillator"),
+            "--out",
+            "out",
+            "--set",
+            "parameters.k=1.05e16",
+            "--set",
+            "parameters.c=6.42e12",
+            "--set",
+            end,
+        ];
+        stdout(&ends_with(0, home.path(), &run))
+    };
+    // Some millions of steps.
+    let text = stiff("end=3e-4");
     assert!(text.contains("given up"), "{text}");
     assert!(
         text.contains("taylor did not come to its end in 2 s"),
         "{text}"
     );
+    // So many that the method refuses them.
+    let text = stiff("end=0.05");
+    assert!(text.contains("mode `sticks` is stiff"), "{text}");
 }
 
 #[test]
