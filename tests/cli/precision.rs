@@ -185,7 +185,7 @@ fn a_method_that_is_hopeless_is_given_up_and_a_failing_scene_says_so() {
             "--set",
             end,
         ];
-        stdout(&ends_with(0, home.path(), &run))
+        stdout(&ends_with(0, home.path(), &run)).to_owned()
     };
     // Some millions of steps.
     let text = stiff("end=3e-4");
