@@ -259,12 +259,16 @@ impl<'p> Simulation<'p> {
                     stiffness.explicit_failure();
                     return Ok(Stop::Method);
                 }
+                let mass = vanished(equations.context, method.state()).filter(|_| mass_changes);
+                if let Some(reason) = mass {
+                    return Err(Box::new(reason));
+                }
+                // Rates that are too fast, and not a mass that goes to zero, where they grow as well.
                 if is_explicit && matches!(error, StepError::NonFinite { what: SERIES, .. }) {
                     let mode = mode.name;
                     return Err(Box::new(Reason::SeriesOverflows { mode }));
                 }
-                let mass = vanished(equations.context, method.state()).filter(|_| mass_changes);
-                return Err(mass.map_or_else(|| error.into(), Box::new));
+                return Err(error.into());
             }
 
             let mut found = cut(
