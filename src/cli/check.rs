@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
 
@@ -86,22 +85,10 @@ fn rendered(error: &Value, styled: bool) -> String {
     let message = error["message"].as_str().unwrap_or_default();
     let file = error["file"].as_str().unwrap_or_default();
     let source = fs::read_to_string(file).unwrap_or_default();
-    let mut group = Group::with_title(Level::ERROR.primary_title(message));
-    if let Some(range) = range(&source, error) {
-        let mark = AnnotationKind::Primary.span(range);
-        group = group.element(Snippet::source(&source).path(file).annotation(mark));
-    } else if !file.is_empty() {
-        group = group.element(annotate_snippets::Origin::path(file));
-    }
-    if let Some(help) = error["help"].as_str().filter(|help| !help.is_empty()) {
-        group = group.element(Level::HELP.message(help));
-    }
-    let renderer = if styled {
-        Renderer::styled()
-    } else {
-        Renderer::plain()
-    };
-    renderer.render(&[group])
+    let place = range(&source, error);
+    let about = (!file.is_empty()).then_some((file, &*source, place));
+    let help = error["help"].as_str().filter(|help| !help.is_empty());
+    crate::scene::rendered(message, about, help, styled)
 }
 
 /// The bytes of a source that an error is about: its columns, or its whole line.

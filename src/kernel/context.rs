@@ -2,7 +2,7 @@
 
 use super::few::copy_few;
 use super::lanes::LaneRows;
-use super::{Array, RawContext};
+use super::raw::{Array, RawContext};
 use crate::input::{LaneSignals, Side, Signals};
 use crate::integrate::ORDERS;
 use crate::model::Model;

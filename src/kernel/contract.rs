@@ -1,6 +1,6 @@
 //! The contract as C lays it out (codegen/contract.h), and what is wrong with something that is not it.
 
-use super::{Raw, RawRun, RawStart};
+use super::raw::{Raw, RawRun, RawStart};
 use thiserror::Error;
 
 /// Version of the contract that this engine speaks: `DALEMBERT_CONTRACT_VERSION`.

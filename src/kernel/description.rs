@@ -2,12 +2,13 @@
 //! field and index of it is checked here.
 
 use super::contract::{ContractError, Functions, Parts};
+use super::raw::Raw;
 use super::reader::{At, count, number, text, truth};
 use super::tables::{
     ConstantsKernel, GuardKernel, LaneKernel, MOST_FREE, ModeKernel, ModeKernels, SeriesKernel,
     TransitionKernel,
 };
-use super::{Dimensions, Library, Raw};
+use super::{Dimensions, Library};
 use crate::jets::{Instruction, Name, Pick, Tape};
 use crate::model::name::intern;
 use crate::model::{
@@ -27,6 +28,19 @@ pub(super) fn model(parts: &Parts, library: Option<Library>) -> Read<Model> {
             found: error.to_string(),
             expected: "JSON".to_owned(),
         })?;
+    let length = |of: &Functions| (of.values.len(), of.series.len());
+    if let Some(other) = parts
+        .lanes
+        .iter()
+        .find(|of| length(of) != length(&parts.functions))
+    {
+        let text = |of: (usize, usize)| format!("tables of {} functions and {} series", of.0, of.1);
+        return Err(ContractError::Description {
+            place: "the functions for lanes".to_owned(),
+            found: text(length(other)),
+            expected: text(length(&parts.functions)),
+        });
+    }
     let root = At::root(&value);
     let dimensions = Arc::new(root.get("dimensions", dimensions)?);
     let reader = Reader {
@@ -289,7 +303,7 @@ impl Reader<'_> {
             true => self.lanes,
             false => &[],
         };
-        let lanes = lanes.iter().enumerate().map(|(level, functions)| {
+        let lanes = lanes.iter().map(|functions| {
             let series = |key: &str| at.get(key, |at| self.series(at, functions));
             Ok(LaneKernel {
                 series: series("series")?,
@@ -297,13 +311,6 @@ impl Reader<'_> {
                 requirement_bounds: at.get("requirement_bounds", |at| {
                     in_lanes(at, self.functions, functions)
                 })?,
-                guards: guards.iter().map(|g| g.kernel.in_lanes[level]).collect(),
-                resets: (guards.iter())
-                    .map(|g| {
-                        let resets = g.transitions.iter().map(|t| &t.kernel.in_lanes);
-                        resets.map(|r| r.get(level).copied().flatten()).collect()
-                    })
-                    .collect(),
             })
         });
         Ok(ModeKernel {

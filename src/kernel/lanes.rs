@@ -1,7 +1,8 @@
 //! What generated functions need, and give, for trajectories side by side.
 
 use super::context::{Context, Dimensions};
-use super::{LaneFunctions, ModeKernel};
+use super::lane_functions::LaneFunctions;
+use super::tables::ModeKernel;
 use crate::integrate::{LaneMask, Lanes, ORDERS};
 use std::cell::Cell;
 use std::sync::Arc;

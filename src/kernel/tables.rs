@@ -1,7 +1,8 @@
 //! What the tables of a model hold: functions, typed by the numbers of coordinates, and what is known of
 //! them without a call.
 
-use super::{Context, Dimensions, LaneLevel, Raw, RawRun, RawStart};
+use super::raw::{Raw, RawRun, RawStart};
+use super::{Context, Dimensions, LaneLevel};
 use crate::integrate::{ORDERS, SeriesKind};
 use nalgebra::{SMatrix, SVector};
 use std::sync::Arc;
@@ -80,10 +81,6 @@ pub struct LaneKernel {
     /// The same where no input acts.
     pub(super) quiet_series: SeriesKernel,
     pub(super) requirement_bounds: Raw,
-    pub(super) guards: Box<[Option<Raw>]>,
-    /// Of each guard the resets of its transitions: of those that lead to the same mode, change nothing
-    /// that it holds, and depend on no signal.
-    pub(super) resets: Box<[Box<[Option<Raw>]>]>,
 }
 
 /// The generated Taylor series of a mode.
@@ -171,12 +168,6 @@ impl<const F: usize> ModeKernel<F> {
         !self.lanes.is_empty()
     }
 
-    /// Whether a transition of a guard, by their indices, can be taken in lanes.
-    pub fn stays_in_lanes(&self, guard: usize, transition: usize) -> bool {
-        let resets = self.lanes.first().map(|lanes| &lanes.resets);
-        resets.is_some_and(|resets| resets[guard][transition].is_some())
-    }
-
     #[inline]
     pub(super) fn lane_kernel<const W: usize>(&self, level: LaneLevel<W>) -> &LaneKernel {
         &self.lanes[level.index]
@@ -184,6 +175,11 @@ impl<const F: usize> ModeKernel<F> {
 }
 
 impl TransitionKernel {
+    /// Whether it can be taken in lanes, if its mode goes in them.
+    pub fn stays_in_lanes(&self) -> bool {
+        self.in_lanes.iter().any(Option::is_some)
+    }
+
     /// Number of conditions.
     pub fn conditions(&self) -> usize {
         self.condition.map_or(0, |(_, _, count)| count)

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use super::source::{Position, Span};
 use super::wording::shown;
@@ -221,24 +221,40 @@ impl SceneError {
     /// The error as the terminal shows it, in colours if `styled`.
     pub fn render(&self, styled: bool) -> String {
         let Detail { kind, span, help } = &*self.0;
-        let mut group =
-            annotate_snippets::Group::with_title(Level::ERROR.primary_title(kind.to_string()));
-        if let Some(span) = span {
-            let snippet = Snippet::source(&span.source.text)
-                .path(&span.source.name)
-                .annotation(AnnotationKind::Primary.span(span.range.clone()));
-            group = group.element(snippet);
-        }
-        if let Some(help) = help {
-            group = group.element(Level::HELP.message(help));
-        }
-        let renderer = if styled {
-            Renderer::styled()
-        } else {
-            Renderer::plain()
-        };
-        renderer.render(&[group])
+        let about = span.as_ref().map(|span| {
+            let source = &span.source;
+            (&*source.name, &*source.text, Some(span.range.clone()))
+        });
+        rendered(&kind.to_string(), about, help.as_deref(), styled)
     }
+}
+
+/// An error as the terminal shows it: what is wrong, the file that it is about with its text and the place in it, and
+/// what to do.
+pub(crate) fn rendered(
+    message: &str,
+    about: Option<(&str, &str, Option<std::ops::Range<usize>>)>,
+    help: Option<&str>,
+    styled: bool,
+) -> String {
+    let mut group = Group::with_title(Level::ERROR.primary_title(message));
+    group = match about {
+        Some((name, text, Some(range))) => {
+            let mark = AnnotationKind::Primary.span(range);
+            group.element(Snippet::source(text).path(name).annotation(mark))
+        }
+        Some((name, _, None)) => group.element(Origin::path(name)),
+        None => group,
+    };
+    if let Some(help) = help {
+        group = group.element(Level::HELP.message(help));
+    }
+    let renderer = if styled {
+        Renderer::styled()
+    } else {
+        Renderer::plain()
+    };
+    renderer.render(&[group])
 }
 
 impl fmt::Display for SceneError {

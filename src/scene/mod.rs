@@ -28,6 +28,7 @@ use std::sync::Arc;
 
 pub(crate) use format::METHODS;
 
+pub(crate) use error::rendered;
 pub use error::{SceneError, SceneErrorKind, SceneErrors};
 pub use files::{Disk, Files};
 pub(crate) use record::Record;

@@ -160,7 +160,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 starts_at_zero: LaneMask::NONE,
             };
             let own = &mode.guards[watched.guard];
-            let transition = transition_in_lanes(kernel, like, watched.guard);
+            let transition = transition_in_lanes(like, watched.guard);
             let signature = Signature {
                 guard: watched.guard,
                 transition: transition.unwrap_or_default(),
@@ -362,16 +362,13 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
 }
 
 /// The transition that a guard of the present mode takes, if lanes can take it side by side.
-fn transition_in_lanes<const F: usize>(
-    kernel: &ModeKernel<F>,
-    of: &Simulation,
-    guard: usize,
-) -> Option<usize> {
+fn transition_in_lanes(of: &Simulation, guard: usize) -> Option<usize> {
     let transitions = &of.mode().guards[guard].transitions;
     let first = transitions.iter().position(|t| of.plan.allowed[t.target])?;
     // Where it ends the run its number is counted.
     let ends = |(name, _)| name == transitions[first].name;
-    let stays = !of.problem.end.after.is_some_and(ends) && kernel.stays_in_lanes(guard, first);
+    let stays =
+        !of.problem.end.after.is_some_and(ends) && transitions[first].kernel.stays_in_lanes();
     stays.then_some(first)
 }
 

@@ -154,7 +154,8 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         for guard in &self.guards {
             let at = [&self.next.q, &self.next.v, &self.next.a];
             let (kernel, context) = (self.kernel, &self.context);
-            let value = kernel.lane_guard(self.level, context, guard.guard, at);
+            let own = &self.mode.guards[guard.guard].kernel;
+            let value = kernel.lane_guard(self.level, context, own, at);
             // Beyond the rounding of the polynomial there is no such state.
             let crossed = lane_crossed(self.level, [&value, tau, h]);
             unclear = unclear | guard.falls & !crossed;

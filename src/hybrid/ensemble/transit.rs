@@ -28,10 +28,11 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
     fn take(&mut self, number: usize, transition: usize) -> [LaneMask; 2] {
         let (level, kernel) = (self.level, self.kernel);
         let guard = &mut self.guards[number];
-        let (event, lanes) = (guard.guard, guard.falls);
+        let lanes = guard.falls;
+        let transition = &self.mode.guards[guard.guard].transitions[transition].kernel;
         let mut reset = std::mem::take(&mut guard.reset);
         let at = [&self.here.q, &self.here.v, &self.here.a];
-        kernel.lane_reset(level, &self.context, (event, transition), at, &mut reset);
+        kernel.lane_reset(level, &self.context, transition, at, &mut reset);
         let [apart, may_rest] = lane_is_apart(level, &self.past, &self.here, &reset, &self.last);
         let tried = lanes & apart;
         let plain = match tried.any() {
@@ -65,7 +66,8 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             if guard.offset {
                 let zero = [Lanes::of(0.0); F];
                 let (context, origin) = (&self.context, [&zero; 3]);
-                guard.after.offset = kernel.lane_guard(level, context, guard.guard, origin);
+                let own = &self.mode.guards[guard.guard].kernel;
+                guard.after.offset = kernel.lane_guard(level, context, own, origin);
             }
             let (factor, discrete) = (guard.factor.0, guard.factor.1.map(|d| &discrete[d]));
             plain = plain & lane_departs(level, of, factor, discrete, &mut guard.after);

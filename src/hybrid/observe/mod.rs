@@ -9,11 +9,13 @@
 //! follows from the decay of their coefficients. One such representation gives the energies, by its
 //! integral, and the extremes, of which most steps are told from a bound that they have none.
 
+mod crests;
 mod extremes;
 mod interpolants;
 mod ledger;
 mod observer;
 mod recording;
+mod represent;
 mod samples;
 mod summit;
 
@@ -22,15 +24,13 @@ use super::guards;
 use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
-use crate::kernel::Free;
 use crate::model::Mode;
 use crate::record::{Layout, Ledger, Peak};
 use extremes::Extremes;
-use interpolants::{DEGREES, Interpolants, MOST, Polynomial, place};
+use interpolants::{Interpolants, MOST};
 use ledger::RunningLedger;
 pub use observer::{Collected, MadeStep, Observer};
 pub(super) use recording::Recording;
-use samples::Row;
 pub(super) use samples::{Samples, sample_time};
 use std::ops::ControlFlow;
 
@@ -255,12 +255,6 @@ impl<'o> Observers<'o> {
         self.extremes.as_ref().map_or(Vec::new(), Extremes::finish)
     }
 
-    /// Local time of the next sample, if it is due up to local time `to`.
-    fn due<const F: usize>(&self, equations: &Equations<F>, to: f64) -> Option<f64> {
-        let tau = super::instant::Instant::new(self.samples.next()).since(equations.clock.start);
-        (tau <= to).then_some(tau)
-    }
-
     /// Looks at a step: its samples, its extremes, its energies. `Break`: the run ends at a sample, whose time (s) is
     /// given and whose state is in `step.here`.
     #[inline]
@@ -398,115 +392,6 @@ impl<'o> Observers<'o> {
         ControlFlow::Continue(())
     }
 
-    /// Fits polynomials to all functions in a part of a step; false: they do not represent them.
-    fn represent<const F: usize, M: Motion<F>>(
-        &mut self,
-        step: &mut Step<F, M>,
-        part: Part,
-        (columns, powers): (usize, bool),
-    ) -> bool {
-        // Where nothing moves and nothing acts all nodes have the same values.
-        let stands =
-            F == 0 && step.equations.context.quiet && step.equations.clock.drift.is_empty();
-        if !self.joined {
-            self.evaluate(step, part.from, 0, (columns, powers));
-        }
-        let mut before = MOST + 1;
-        for degree in DEGREES {
-            let stride = MOST / degree;
-            for node in (stride..=MOST).step_by(stride) {
-                // Those of the degree before are known.
-                if node % before == 0 {
-                    continue;
-                }
-                match stands {
-                    true => self.interpolants.copy_values(0, node),
-                    false => self.evaluate(step, part.time(place(node)), node, (columns, powers)),
-                }
-            }
-            before = stride;
-            self.interpolants.fit(degree);
-            if self.is_resolved(part, (columns, powers)) {
-                return true;
-            }
-        }
-        // Extremes are not worth smaller parts: their values are those of the motion in any case.
-        !powers || self.work_is_resolved(part, columns)
-    }
-
-    fn is_resolved(&self, part: Part, (columns, powers): (usize, bool)) -> bool {
-        let open = self.extremes.as_ref().is_some_and(|extremes| {
-            let mut of = self.functions.columns.iter().enumerate();
-            of.any(|(f, &column)| {
-                let rate = self.functions.rate_of(f);
-                // The stored energy is a sum of two, which may be far larger.
-                let scale = match column == extremes.energies.start {
-                    true => self.energy,
-                    false => 0.0,
-                };
-                let of = (rate, scale);
-                extremes.is_open(&self.interpolants, f, column, self.tolerance, of)
-            })
-        });
-        !open && (!powers || self.work_is_resolved(part, columns))
-    }
-
-    /// Whether the powers are represented to the tolerance, or their work to the rounding of the energies.
-    fn work_is_resolved(&self, part: Part, columns: usize) -> bool {
-        let of = &self.interpolants;
-        let least = f64::EPSILON * self.energy;
-        (columns..columns + 2).all(|f| {
-            let error = of.error(f);
-            error <= self.tolerance * of.size(f) || error * (part.to - part.from) <= least
-        })
-    }
-
-    /// Evaluates all functions at local time `tau` of the step, into the values at `node`.
-    fn evaluate<const F: usize, M: Motion<F>>(
-        &mut self,
-        step: &mut Step<F, M>,
-        tau: f64,
-        node: usize,
-        (columns, powers): (usize, bool),
-    ) {
-        let Functions {
-            reactions,
-            stored,
-            room,
-            ..
-        } = &mut self.functions;
-        let accelerated = powers || columns > 0 && !reactions.is_empty();
-        let [q, v, a] = guards::motion(step.equations, step.motion, tau, accelerated);
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
-        };
-        let (kernel, context) = (step.equations.kernel, &*step.equations.context);
-        let row = self.interpolants.values_mut(node);
-        if columns > 0 {
-            row[..F].copy_from_slice(q.as_slice());
-            row[F..2 * F].copy_from_slice(v.as_slice());
-            if !reactions.is_empty() {
-                kernel.reactions(context, at, room);
-                for (value, &i) in row[2 * F..].iter_mut().zip(&*reactions) {
-                    *value = room[i];
-                }
-            }
-        }
-        let first = node == 0;
-        if columns > 0 && *stored || powers && first {
-            let [kinetic, potential] = kernel.energies(context, at);
-            if columns > 0 && *stored {
-                row[columns - 1] = kinetic + potential;
-            }
-            self.energy = self.energy.max(kinetic.abs() + potential.abs());
-        }
-        if powers {
-            row[columns..].copy_from_slice(&kernel.powers(context, at));
-        }
-    }
-
     /// Takes what there is in a part of a step that is represented; gives its work [dissipated, input], J.
     fn take<const F: usize, M: Motion<F>>(
         &mut self,
@@ -547,154 +432,6 @@ impl<'o> Observers<'o> {
         }
         ControlFlow::Continue(whole)
     }
-
-    /// Looks for extremes of all that is represented in a part of a step.
-    fn look_for_extremes<const F: usize, M: Motion<F>>(
-        &mut self,
-        extremes: &mut Extremes,
-        step: &mut Step<F, M>,
-        part: Part,
-        columns: usize,
-    ) {
-        let clock = step.equations.clock;
-        let seconds = |tau: f64| clock.start.plus(tau).seconds();
-        for f in 0..columns {
-            let (column, rate) = (self.functions.columns[f], self.functions.rate_of(f));
-            let time = |place: f64| seconds(part.time(place));
-            let summits = extremes.look(&self.interpolants, f, column, rate, time);
-            for place in summits.into_iter().flatten() {
-                let tau = polish(step.motion, part, f, part.time(place));
-                self.evaluate(step, tau, Interpolants::SPARE, (columns, false));
-                let value = self.interpolants.value_at(Interpolants::SPARE, f);
-                extremes.note(column, seconds(tau), value);
-            }
-        }
-    }
-
-    /// Looks for extremes of what was dissipated and of the work of the inputs: their ends, and where a power
-    /// changes its sign.
-    fn look_for_extremes_of_work<const F: usize, M: Motion<F>>(
-        &self,
-        extremes: &mut Extremes,
-        step: &Step<F, M>,
-        part: Part,
-        (columns, (work, whole)): (usize, (Option<&[Polynomial; 2]>, [f64; 2])),
-    ) {
-        let Some(ledger) = &self.ledger else {
-            return;
-        };
-        let energies = extremes.energies.start;
-        let [_, input, dissipated, _] = ledger.row(0.0, [0.0; 2]);
-        let of = [(dissipated, energies + 2), (input, energies + 1)];
-        let clock = step.equations.clock;
-        for (i, (so_far, column)) in of.into_iter().enumerate() {
-            let mut note = |place: f64, work: f64| {
-                let t = clock.start.plus(part.time(place)).seconds();
-                extremes.note(column, t, so_far + work);
-            };
-            if let Some(work) = work
-                && self.interpolants.changes_sign(columns + i)
-            {
-                let mut found = |place: f64| note(place, work[i].value(place));
-                self.interpolants.sign_changes(columns + i, &mut found);
-            }
-            note(1.0, whole[i]);
-        }
-    }
-
-    /// Records the samples that are due in a part of a step.
-    fn sample<const F: usize, M: Motion<F>>(
-        &mut self,
-        step: &mut Step<F, M>,
-        part: Part,
-        work: Option<&[Polynomial; 2]>,
-    ) -> ControlFlow<Sampled> {
-        let to = match part.is_last {
-            true => step.end + step.beyond,
-            false => part.to,
-        };
-        while let Some(tau) = self.due(step.equations, to) {
-            let equations = &mut *step.equations;
-            let [q, v, a] =
-                guards::motion(equations, step.motion, tau, self.record.columns.reactions);
-            let (mode, here) = (step.mode, &mut *step.here);
-            here.set_free(&mode.free, [&q, &v, &a]);
-            if !equations.clock.drift.is_empty() {
-                copy_drifting(&mut here.q, &mode.drifts, equations.context.held());
-            }
-            let place = (tau - part.from) / (part.to - part.from);
-            let work = work.map_or([0.0; 2], |work| work.each_ref().map(|w| w.value(place)));
-            let row = Row {
-                layout: &self.layout,
-                q: &here.q,
-                v: &here.v,
-                ledger: samples::row_of(self.ledger.as_ref(), work),
-            };
-            let at = Free {
-                q: &q,
-                v: &v,
-                a: &a,
-            };
-            let (kernel, context) = (equations.kernel, &*equations.context);
-            let t = self.samples.next();
-            let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
-            let flow = self.recording.row(t, here.mode, fill);
-            self.samples.pass();
-            if flow.is_break() {
-                let from = part.from;
-                return ControlFlow::Break(Sampled { from, tau, t });
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    /// Records the state at the end of a step, whose time the context is set for.
-    pub fn sample_end<const F: usize>(
-        &mut self,
-        equations: &Equations<F>,
-        here: &Here,
-        at: Free<F>,
-    ) -> ControlFlow<()> {
-        let row = Row {
-            layout: &self.layout,
-            q: &here.q,
-            v: &here.v,
-            ledger: samples::row_of(self.ledger.as_ref(), [0.0; 2]),
-        };
-        let (kernel, context) = (equations.kernel, &*equations.context);
-        let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
-        self.recording.row(here.now.seconds(), here.mode, fill)
-    }
-}
-
-/// Goes from a place near an extremum of a function to it, where its derivative is that of the motion: by the
-/// secant method, from a place that is off by less than a thousandth of the part, until a step is as short as places
-/// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again.
-fn polish<const F: usize, M: Motion<F>>(motion: &M, part: Part, f: usize, tau: f64) -> f64 {
-    let rate = |tau: f64| {
-        let (_, v, a) = motion.at(tau);
-        if f < F { v[f] } else { a[f - F] }
-    };
-    if f >= 2 * F {
-        return tau;
-    }
-    let clamp = |tau: f64| tau.clamp(part.from, part.to);
-    let (mut last, mut next) = (clamp(tau + 1e-3 * (part.to - part.from)), tau);
-    let (mut rate_last, mut rate_next) = (rate(last), rate(next));
-    // The number of right digits grows by 1.6 times each.
-    for _ in 0..6 {
-        let step = (next - last) * (rate_next / (rate_next - rate_last));
-        if !step.is_finite() || step == 0.0 {
-            break;
-        }
-        (last, rate_last) = (next, rate_next);
-        next = clamp(next - step);
-        if step.abs() <= Interpolants::CLOSE * (part.to - part.from) {
-            break;
-        }
-        rate_next = rate(next);
-    }
-    next
 }
 
 /// Drifting coordinates move although they are frozen.

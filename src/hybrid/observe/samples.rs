@@ -1,8 +1,14 @@
 //! Samples of the trajectory.
 
-use super::super::failure::{Reason, Stoppable};
-use super::super::simulation::Simulation;
+use super::interpolants::Polynomial;
 use super::ledger::RunningLedger;
+use super::{Observers, Part, Sampled, Step, copy_drifting};
+use crate::hybrid::equations::Equations;
+use crate::hybrid::failure::{Reason, Stoppable};
+use crate::hybrid::guards;
+use crate::hybrid::instant::Instant;
+use crate::hybrid::simulation::{Here, Simulation};
+use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::record::{Group, Layout};
@@ -95,6 +101,78 @@ impl Samples {
     /// Back to the first.
     pub fn rewind(&mut self) {
         *self = Samples::from(self.every, 0);
+    }
+}
+
+impl Observers<'_> {
+    /// Local time of the next sample, if it is due up to local time `to`.
+    pub(super) fn due<const F: usize>(&self, equations: &Equations<F>, to: f64) -> Option<f64> {
+        let tau = Instant::new(self.samples.next()).since(equations.clock.start);
+        (tau <= to).then_some(tau)
+    }
+
+    /// Records the samples that are due in a part of a step.
+    pub(super) fn sample<const F: usize, M: Motion<F>>(
+        &mut self,
+        step: &mut Step<F, M>,
+        part: Part,
+        work: Option<&[Polynomial; 2]>,
+    ) -> ControlFlow<Sampled> {
+        let to = match part.is_last {
+            true => step.end + step.beyond,
+            false => part.to,
+        };
+        while let Some(tau) = self.due(step.equations, to) {
+            let equations = &mut *step.equations;
+            let [q, v, a] =
+                guards::motion(equations, step.motion, tau, self.record.columns.reactions);
+            let (mode, here) = (step.mode, &mut *step.here);
+            here.set_free(&mode.free, [&q, &v, &a]);
+            if !equations.clock.drift.is_empty() {
+                copy_drifting(&mut here.q, &mode.drifts, equations.context.held());
+            }
+            let place = (tau - part.from) / (part.to - part.from);
+            let work = work.map_or([0.0; 2], |work| work.each_ref().map(|w| w.value(place)));
+            let row = Row {
+                layout: &self.layout,
+                q: &here.q,
+                v: &here.v,
+                ledger: row_of(self.ledger.as_ref(), work),
+            };
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            let (kernel, context) = (equations.kernel, &*equations.context);
+            let t = self.samples.next();
+            let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
+            let flow = self.recording.row(t, here.mode, fill);
+            self.samples.pass();
+            if flow.is_break() {
+                let from = part.from;
+                return ControlFlow::Break(Sampled { from, tau, t });
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Records the state at the end of a step, whose time the context is set for.
+    pub fn sample_end<const F: usize>(
+        &mut self,
+        equations: &Equations<F>,
+        here: &Here,
+        at: Free<F>,
+    ) -> ControlFlow<()> {
+        let row = Row {
+            layout: &self.layout,
+            q: &here.q,
+            v: &here.v,
+            ledger: row_of(self.ledger.as_ref(), [0.0; 2]),
+        };
+        let (kernel, context) = (equations.kernel, &*equations.context);
+        let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
+        self.recording.row(here.now.seconds(), here.mode, fill)
     }
 }
 

@@ -1,0 +1,487 @@
+//! Calls into the generated C of a model, for one trajectory.
+
+use super::context::{Context, Dimensions, KeptAngle};
+use super::raw::{Raw, RawContext};
+use super::tables::{
+    ConstantsKernel, Free, GuardKernel, LinearSystem, ModeKernel, TransitionKernel,
+};
+use crate::integrate::{ORDERS, Series};
+use nalgebra::{SMatrix, SVector};
+use std::sync::Arc;
+
+unsafe extern "C" {
+    /// Takes so many coefficients a row of q, v and a, of which so many rows are read, filled up to fours and to
+    /// eight; a time; and room for three times as many middles and radii.
+    fn dalembert_ranges(
+        free: usize,
+        rows: usize,
+        q: *const f64,
+        v: *const f64,
+        a: *const f64,
+        tau: f64,
+        middles: *mut f64,
+        radii: *mut f64,
+    );
+}
+
+impl Context {
+    /// Calls a generated function.
+    ///
+    /// # Safety
+    /// `q`, `v`, `a` must have the length of the function's free coordinates (where it reads them), it must
+    /// not read jerks, and `out` must have room for its outputs.
+    #[inline(always)]
+    unsafe fn call(
+        &self,
+        function: Raw,
+        dimensions: &Arc<Dimensions>,
+        [q, v, a]: [*const f64; 3],
+        out: *mut f64,
+    ) {
+        // SAFETY: the context is of the function's model, the rest is the caller's.
+        unsafe { function(q, v, a, self.raw(dimensions), out) }
+    }
+
+    /// The context as C sees it.
+    ///
+    /// # Panics
+    /// If it was made for another model. Its arrays have their lengths since it was made.
+    #[inline(always)]
+    fn raw(&self, dimensions: &Arc<Dimensions>) -> &RawContext {
+        assert!(
+            Arc::ptr_eq(&self.dimensions, dimensions),
+            "a context is used with the functions of the model it was made for"
+        );
+        &self.raw
+    }
+}
+
+impl ConstantsKernel {
+    /// Values at the parameters of a model, in its order.
+    ///
+    /// # Panics
+    /// If the number of parameters is not the model's, or `out` has not one entry a value.
+    pub fn evaluate(&self, parameters: &[f64], out: &mut [f64]) {
+        assert_eq!(
+            parameters.len(),
+            self.dimensions.parameters,
+            "number of parameters"
+        );
+        assert_eq!(out.len(), self.count);
+        let mut angles = vec![KeptAngle::ZERO; self.dimensions.angles];
+        let raw = RawContext {
+            u: std::ptr::null(),
+            u_dot: std::ptr::null(),
+            d: std::ptr::null(),
+            h: std::ptr::null(),
+            c: std::ptr::null(),
+            j: std::ptr::null(),
+            angles: angles.as_mut_ptr(),
+        };
+        let none = std::ptr::null();
+        // SAFETY: the function reads `parameters` only and writes `count` outputs.
+        unsafe { (self.function)(parameters.as_ptr(), none, none, &raw, out.as_mut_ptr()) }
+    }
+}
+
+impl<const F: usize> Free<'_, F> {
+    #[inline(always)]
+    fn pointers(&self) -> [*const f64; 3] {
+        [self.q.as_ptr(), self.v.as_ptr(), self.a.as_ptr()]
+    }
+}
+
+impl<const F: usize> ModeKernel<F> {
+    /// r(q, v, a, u): generalized forces that are missing for equilibrium, one a free coordinate.
+    #[inline]
+    pub fn residual(&self, x: &Context, at: Free<F>, r: &mut SVector<f64, F>) {
+        // SAFETY: F outputs.
+        unsafe {
+            x.call(
+                self.residual,
+                &self.dimensions,
+                at.pointers(),
+                r.as_mut_ptr(),
+            )
+        }
+    }
+
+    /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
+    #[inline]
+    pub fn jacobian(&self, x: &Context, at: Free<F>, out: &mut [SMatrix<f64, F, F>; 3]) {
+        // SAFETY: three dense column-major F × F outputs, contiguous in the array.
+        unsafe {
+            x.call(
+                self.jacobian,
+                &self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr().cast(),
+            )
+        }
+    }
+
+    /// Mass matrix and load at (q, v).
+    #[inline]
+    pub fn system(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> LinearSystem<F> {
+        let mut out = LinearSystem {
+            mass: SMatrix::zeros(),
+            load: SVector::zeros(),
+        };
+        if F > 0 {
+            let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
+            // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
+            unsafe { x.call(self.system, &self.dimensions, at, (&raw mut out).cast()) }
+        }
+        out
+    }
+
+    /// Fills `Context::guard_series` with the Taylor coefficients of all guards, one row an order,
+    /// along a motion that is known to that order; false if an operation of theirs has no
+    /// recurrence.
+    ///
+    /// # Panics
+    /// If `orders` is more than [`ORDERS`].
+    pub fn guard_series(&self, x: &mut Context, orders: usize, at: &Series<F>) -> bool {
+        let Some(series) = &self.guard_series else {
+            return false;
+        };
+        assert!(orders <= ORDERS);
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
+        let out = x.guard_series.as_mut_ptr();
+        let raw = x.raw(&self.dimensions);
+        // SAFETY: F entries a row of q, v and a, which are only read, and all rows are there; one
+        // output a guard and order; guard series and workspace have room for every mode of the model.
+        unsafe {
+            (series.start)(q, v, a, u, raw, w, out);
+            (series.run)(orders, q, v, a, u, raw, w, out);
+        }
+        true
+    }
+
+    /// Begins a Taylor series: mass matrix and load at order 0 of q and v.
+    ///
+    /// # Panics
+    /// If the mode is not analytic.
+    #[inline]
+    pub fn series_start(&self, x: &mut Context, at: &Series<F>) -> LinearSystem<F> {
+        let mut out = LinearSystem {
+            mass: SMatrix::zeros(),
+            load: SVector::zeros(),
+        };
+        if F == 0 {
+            return out;
+        }
+        let series = self.motion_series(x).expect("the mode is analytic");
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
+        let raw = x.raw(&self.dimensions);
+        // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
+        // struct; the workspace has room for every mode of the model.
+        unsafe { (series.start)(q, v, a, u, raw, w, (&raw mut out).cast()) }
+        out
+    }
+
+    /// Goes on to the first `n` accelerations of the series begun by [`Self::series_start`], for the
+    /// same context: a_k with v_{k+1} and q_{k+2} for k < n. The inverse of M_0 is given, and a_0, v_1,
+    /// q_1 and q_2 are.
+    ///
+    /// # Panics
+    /// If the mode is not analytic, or `n` is more than [`ORDERS`] − 2.
+    #[inline]
+    pub fn series_run(
+        &self,
+        x: &mut Context,
+        n: usize,
+        inverse: &SMatrix<f64, F, F>,
+        at: &mut Series<F>,
+    ) {
+        if F == 0 {
+            return;
+        }
+        let series = self.motion_series(x).expect("the mode is analytic");
+        assert!(n <= ORDERS - 2);
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
+        let inverse = inverse.as_ptr().cast_mut();
+        let raw = x.raw(&self.dimensions);
+        // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the
+        // inverse are only read; the workspace has room for every mode of the model.
+        unsafe { (series.run)(n, q, v, a, u, raw, w, inverse) }
+    }
+
+    /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
+    pub fn inertia(
+        &self,
+        x: &Context,
+        q: &SVector<f64, F>,
+        v: &SVector<f64, F>,
+    ) -> SMatrix<f64, F, F> {
+        let mut out = SMatrix::<f64, F, F>::zeros();
+        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
+        // SAFETY: F × F outputs; `a` is not read.
+        unsafe { x.call(self.inertia, &self.dimensions, at, out.as_mut_ptr()) }
+        out
+    }
+
+    /// b with M j + b = 0 for the jerk j; needs the signals to be set.
+    pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
+        // SAFETY: F outputs.
+        unsafe { self.one_a_coordinate(self.jerk_load, x, at) }
+    }
+
+    /// Number of terms × sum of their magnitudes, per equation: times machine epsilon a bound of
+    /// the rounding error of the residual.
+    pub fn magnitude(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
+        // SAFETY: F outputs.
+        unsafe { self.one_a_coordinate(self.magnitude, x, at) }
+    }
+
+    /// What a function of the mode gives, one number a free coordinate.
+    ///
+    /// # Safety
+    /// The function must have F outputs.
+    unsafe fn one_a_coordinate(&self, function: Raw, x: &Context, at: Free<F>) -> SVector<f64, F> {
+        let mut out = SVector::<f64, F>::zeros();
+        if F > 0 {
+            // SAFETY: as the caller promises.
+            unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        }
+        out
+    }
+
+    /// Reactions of all coordinates (0 where free), then of the ground motions.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate and motion.
+    #[inline]
+    pub fn reactions(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(
+            out.len(),
+            self.dimensions.coordinates + self.dimensions.motions
+        );
+        // SAFETY: the length was checked.
+        unsafe {
+            x.call(
+                self.reactions,
+                &self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
+    }
+
+    /// [kinetic, potential] energy, J, in the inertial frame.
+    pub fn energies(&self, x: &Context, at: Free<F>) -> [f64; 2] {
+        let mut out = [0.0; 2];
+        // SAFETY: two outputs.
+        unsafe {
+            x.call(
+                self.energies,
+                &self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
+        out
+    }
+
+    /// [dissipated, input] power, W.
+    #[inline]
+    pub fn powers(&self, x: &Context, at: Free<F>) -> [f64; 2] {
+        let mut out = [0.0; 2];
+        // SAFETY: two outputs.
+        unsafe {
+            x.call(
+                self.powers,
+                &self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
+        out
+    }
+
+    /// ∂T/∂v of all coordinates, then of the ground motions.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate and motion.
+    pub fn momenta(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(
+            out.len(),
+            self.dimensions.coordinates + self.dimensions.motions
+        );
+        // SAFETY: the length was checked.
+        unsafe {
+            x.call(
+                self.momenta,
+                &self.dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
+    }
+
+    /// What must be positive in this mode.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a requirement.
+    #[inline]
+    pub fn requirements(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        let (function, count) = self.requirements;
+        assert_eq!(out.len(), count);
+        // SAFETY: the length was checked.
+        unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// Lower bounds of what must be positive, while time goes on by `tau` (s) from where the series of motion
+    /// and signals, of so many orders, were begun. Not positive or not a number where nothing is known.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a requirement, or `orders` is more than [`ORDERS`] − 2.
+    #[inline]
+    pub fn requirement_bounds(
+        &self,
+        x: &mut Context,
+        (at, orders): (&Series<F>, usize),
+        tau: f64,
+        out: &mut [f64],
+    ) {
+        assert_eq!(out.len(), self.requirements.1);
+        assert!(orders + 2 <= ORDERS);
+        let zero = [SVector::<f64, F>::zeros(); 3];
+        let (mut middles, mut radii) = (zero, zero);
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
+        let (to_middles, to_radii) = (middles.as_mut_ptr().cast(), radii.as_mut_ptr().cast());
+        // SAFETY: F entries a row, and all ORDERS rows are there, those beyond the order zero; room for three times F.
+        unsafe { dalembert_ranges(F, orders + 2, q, v, a, tau, to_middles, to_radii) };
+        x.set_signal_radii(orders, tau);
+        let u = match x.quiet {
+            true => x.arrays.signals.as_ptr(),
+            false => x.signal_series.as_ptr(),
+        };
+        let raw = RawContext {
+            u,
+            u_dot: x.signal_radii.as_ptr(),
+            j: radii.as_ptr().cast(),
+            ..*x.raw(&self.dimensions)
+        };
+        let [q, v, a] = middles.each_ref().map(|of| of.as_ptr());
+        // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
+        // radii.
+        unsafe { (self.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
+    }
+
+    /// Constant rates of the frozen coordinates (0 where one rests or is free).
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
+    pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
+        self.of_held(self.held_rates, x, out);
+    }
+
+    /// Coordinates as the mode holds them; those that it leaves free or holds wherever they were as the context has
+    /// them.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
+    pub fn held_values(&self, x: &Context, out: &mut [f64]) {
+        self.of_held(self.held_values, x, out);
+    }
+
+    /// What a function of the mode gives that has one output a coordinate and does not depend on those that are free.
+    fn of_held(&self, function: Raw, x: &Context, out: &mut [f64]) {
+        assert_eq!(out.len(), self.dimensions.coordinates);
+        let none = SVector::<f64, F>::zeros();
+        let at = Free {
+            q: &none,
+            v: &none,
+            a: &none,
+        };
+        // SAFETY: the length was checked.
+        unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
+    }
+
+    /// Value of a guard of this mode.
+    ///
+    /// # Panics
+    /// If it is one of another model, or of another number of free coordinates; so do the other
+    /// functions that are passed a guard or a transition.
+    #[inline]
+    pub fn guard(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
+        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        let mut out = 0.0;
+        // SAFETY: one output; the guard's number of free coordinates was checked.
+        unsafe { x.call(guard.value, &guard.dimensions, at.pointers(), &mut out) }
+        out
+    }
+
+    /// Derivative of a guard along the flow with jerk `j`; needs the signals to be set.
+    pub fn guard_rate(
+        &self,
+        x: &Context,
+        guard: &GuardKernel,
+        at: Free<F>,
+        j: &SVector<f64, F>,
+    ) -> f64 {
+        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        let mut out = 0.0;
+        let [q, v, a] = at.pointers();
+        let raw = RawContext {
+            j: j.as_ptr(),
+            ..*x.raw(&guard.dimensions)
+        };
+        // SAFETY: one output; the guard's number of free coordinates was checked.
+        unsafe { (guard.rate)(q, v, a, &raw, &mut out) }
+        out
+    }
+
+    /// Sum of the absolute values of the terms that a guard is the sum of, in its unit.
+    pub fn guard_magnitude(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
+        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        let mut out = 0.0;
+        // SAFETY: one output; the guard's number of free coordinates was checked.
+        unsafe { x.call(guard.magnitude, &guard.dimensions, at.pointers(), &mut out) }
+        out
+    }
+
+    /// The reset of a transition out of this mode: all q, all v, all discrete states after it.
+    ///
+    /// # Panics
+    /// If `out` has not two entries a coordinate and one a discrete state.
+    pub fn reset(&self, x: &Context, transition: &TransitionKernel, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(
+            transition.source_free, F,
+            "a reset is evaluated in its source mode"
+        );
+        let dimensions = &transition.dimensions;
+        assert_eq!(out.len(), 2 * dimensions.coordinates + dimensions.discretes);
+        // SAFETY: the lengths were checked.
+        unsafe {
+            x.call(
+                transition.reset,
+                dimensions,
+                at.pointers(),
+                out.as_mut_ptr(),
+            )
+        }
+    }
+
+    /// The conditions of a transition into this mode, which is taken only if none is negative; none
+    /// if the transition is unconditional.
+    pub fn conditions<'x>(
+        &self,
+        x: &'x mut Context,
+        transition: &TransitionKernel,
+        at: Free<F>,
+    ) -> &'x [f64] {
+        let Some((function, free, count)) = transition.condition else {
+            return &[];
+        };
+        assert_eq!(free, F, "a condition is evaluated in the target mode");
+        let out = x.conditions[..count].as_mut_ptr();
+        // SAFETY: room for `count` outputs; the number of free coordinates was checked.
+        unsafe { x.call(function, &transition.dimensions, at.pointers(), out) }
+        &x.conditions[..count]
+    }
+}
