@@ -24,6 +24,8 @@ pub(super) struct Margins<'p> {
     pub values: Box<[f64]>,
     /// The same at the start of a step.
     pub starts: Box<[f64]>,
+    /// Which of them bounds do not show to hold for the whole step.
+    pub open: Box<[bool]>,
     /// Room for the reactions, and for the rates of frozen coordinates.
     pub reactions: Box<[f64]>,
     pub rates: Box<[f64]>,
@@ -54,6 +56,7 @@ impl<'p> Margins<'p> {
             has_ended: false,
             values: zeros(room),
             starts: zeros(room),
+            open: vec![true; room].into(),
             reactions: zeros(model.coordinates.len() + model.motions.len()),
             rates: zeros(model.coordinates.len()),
         }

@@ -116,7 +116,7 @@ impl Margins<'_> {
     }
 
     /// Whether bounds show that nothing falls in the last step up to time `to`: far from zero they do. Those of the
-    /// Taylor method are bounds of its polynomials.
+    /// Taylor method are bounds of its polynomials. What they leave open is looked at by [`Self::cut_where_reached`].
     #[inline]
     pub fn hold_throughout<'a, const F: usize>(
         &mut self,
@@ -127,18 +127,25 @@ impl Margins<'_> {
     ) -> bool {
         let dense = method.dense().expect("a step was made");
         let Some(series) = dense.series() else {
+            self.open.fill(true);
             return false;
         };
         let (required, of_model) = (mode.requirements.len(), mode.margins.len());
         let bounds = &mut self.values[..required + of_model];
         let tau = to - dense.start();
         (equations.kernel).requirement_bounds(equations.context, series, tau, bounds);
-        let (required, margins) = self.values[..required + of_model].split_at(required);
-        let holds = |(margin, bound): (usize, &f64)| *bound >= 0.0 || !self.is_pending(margin);
-        required.iter().all(|bound| is_met(*bound))
-            && margins.iter().enumerate().all(holds)
-            && (of_model..self.ends.len())
-                .all(|margin| !self.is_pending(margin) || self.own_holds(mode, margin, series, tau))
+        let mut holds = true;
+        for row in 0..required + self.ends.len() {
+            let row_holds = match row.checked_sub(required) {
+                None => is_met(self.values[row]),
+                Some(margin) if !self.is_pending(margin) => true,
+                Some(margin) if margin < of_model => self.values[row] >= 0.0,
+                Some(margin) => self.own_holds(mode, margin, series, tau),
+            };
+            self.open[row] = !row_holds;
+            holds &= row_holds;
+        }
+        holds
     }
 
     /// Whether a margin of the problem is known to stay positive for `tau` (s) from where the series was begun.
@@ -195,6 +202,8 @@ impl Margins<'_> {
                 break true;
             }
             before = falls;
+            // Of another step nothing is known.
+            self.open.fill(true);
             // A step has a length.
             method.step_exactly(equations, falls.max(start.next_up()) - start)?;
             found = cut(
@@ -233,10 +242,12 @@ impl Margins<'_> {
         let mut window = (dense.start(), end.t);
         let mut first = None;
         for row in 0..self.count(mode) {
-            let counts = row
-                .checked_sub(required)
-                .is_none_or(|m| self.ends[m] && self.is_pending(m));
-            if counts && let Some(t) = self.falls(equations, mode, dense, end, (window, row)) {
+            let margin = row.checked_sub(required);
+            let counts = margin.is_none_or(|m| self.ends[m] && self.is_pending(m));
+            if counts
+                && self.open[row]
+                && let Some(t) = self.falls(equations, mode, dense, end, (window, row))
+            {
                 window.1 = t;
                 first = Some(t);
             }
@@ -257,6 +268,7 @@ impl Margins<'_> {
         for margin in 0..self.ends.len() {
             let row = mode.requirements.len() + margin;
             if !self.ends[margin]
+                && self.open[row]
                 && self.is_pending(margin)
                 && let Some(t) = self.falls(equations, mode, dense, end, (window, row))
             {
