@@ -67,7 +67,7 @@ impl Cache {
         }
     }
 
-    /// The cache shared by all builds of this user: the folder that [`SETTING`] names, else the
+    /// The cache shared by all builds of this user: the folder that `DALEMBERT_CACHE` names, else the
     /// platform's folder for caches if it is writable, else a folder in cargo's target directory,
     /// of which `out_dir` is a part.
     pub fn shared(out_dir: &Path) -> Result<Self, Error> {
