@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-pub use dalembert_build::{Choices, Error, Options, Stage};
+pub use dalembert_build::{Choices, Error, Options, Sources, Stage, sources};
 
 use crate::kernel::ContractError;
 use crate::model::Model;

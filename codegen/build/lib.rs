@@ -56,7 +56,7 @@ pub use generate::is_module_name as is_model_name;
 use generator::Bundle;
 use install::{Environment, Lock};
 pub use library::{Choices, Library, Options, Stage, library};
-pub use model::check;
+pub use model::{Sources, check, sources};
 
 /// Builds the models under `models/` of the crate whose build script calls it.
 ///

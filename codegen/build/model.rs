@@ -12,6 +12,7 @@ use super::files;
 use super::fingerprint::Fingerprint;
 use super::generate;
 use super::generator::Bundle;
+use super::index::Index;
 use super::install::Environment;
 use super::library::Stage;
 use super::link;
@@ -63,11 +64,17 @@ impl Model {
         })
     }
 
+    /// Its Python files, relative to the folder.
+    fn python(&self) -> Result<Vec<PathBuf>, Error> {
+        let mut files = files::sources(&self.absolute).map_err(Error::io("list", &self.folder))?;
+        files.retain(|file| file.extension().is_some_and(|ending| ending == "py"));
+        Ok(files)
+    }
+
     /// The key of what is known of the model before it was run. Of its files those in Python count: others, such as scenes
     /// and results, count if it reads them.
     pub fn key(&self, bundle: &Bundle) -> Result<String, Error> {
-        let mut files = files::sources(&self.absolute).map_err(Error::io("list", &self.folder))?;
-        files.retain(|file| file.extension().is_some_and(|ending| ending == "py"));
+        let files = self.python()?;
         let hash = Fingerprint::default()
             .with(link::TARGET)
             .with(&bundle.digest)
@@ -75,6 +82,33 @@ impl Model {
             .with_files(&self.absolute, files.iter().map(PathBuf::as_path))?;
         Ok(format!("{}-{}", self.name, hash.finish()))
     }
+}
+
+/// The files that make a model what it is.
+#[derive(Debug, Default)]
+pub struct Sources {
+    /// The Python files in its folder.
+    pub python: Vec<PathBuf>,
+    /// What the derivation of its present state read besides, if there was one.
+    pub read: Vec<PathBuf>,
+}
+
+/// The files that make the model in a folder what it is.
+pub fn sources(folder: &Path) -> Result<Sources, Error> {
+    let model = Model::at(folder)?;
+    let python = model.python()?;
+    let index = match Cache::of_user()? {
+        Some(cache) => Index::read(&cache, &model.key(&Bundle::open()?)?),
+        None => None,
+    };
+    let read = index.map_or(Vec::new(), |index| index.read);
+    let absolute = |files: Vec<PathBuf>| -> Vec<PathBuf> {
+        files.iter().map(|file| model.absolute.join(file)).collect()
+    };
+    Ok(Sources {
+        python: absolute(python),
+        read: absolute(read),
+    })
 }
 
 /// Judges the model in a folder, without compiling it: all errors that are independent of each other, else its modes, as

@@ -29,7 +29,13 @@ pub enum Needs {
 
 /// The models that scenes may name: those of the program, and folders.
 pub fn models(needs: Needs) -> Models {
+    models_seen(needs, |_| ())
+}
+
+/// The same; `seen` hears of every folder that is named, before it is read.
+pub fn models_seen(needs: Needs, seen: impl Fn(&Path) + Send + Sync + 'static) -> Models {
     Models::linked().with_folders(move |folder, named| {
+        seen(folder);
         let choices = match needs {
             Needs::One => Choices::Fitting(named.clone()),
             Needs::All => Choices::All,

@@ -1,4 +1,4 @@
-//! Ctrl-C: a simulation ends at its next step or row and keeps what it has.
+//! Ctrl-C, and inputs that change under a run: a simulation ends at its next step or row and keeps what it has.
 
 use std::ops::ControlFlow;
 use std::process;
@@ -10,6 +10,9 @@ use crate::record::Progress;
 /// Whether a signal asked the process to end.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
+/// Whether the run that goes on is of an input that has changed since.
+static OUTDATED: AtomicBool = AtomicBool::new(false);
+
 /// Whether no simulation goes on any more that could end early.
 static LEFT: AtomicBool = AtomicBool::new(false);
 
@@ -19,6 +22,11 @@ const ENDED_BY_SIGNAL: i32 = 130;
 /// From here on SIGINT (Ctrl-C), SIGTERM and SIGHUP end simulations early instead of the process.
 /// A second signal ends the process at once, and so does any after [`leave`].
 pub fn listen() -> Result<(), Failure> {
+    static LISTENS: AtomicBool = AtomicBool::new(false);
+    LEFT.store(false, Ordering::Relaxed);
+    if LISTENS.swap(true, Ordering::Relaxed) {
+        return Ok(());
+    }
     let on_signal = || {
         if ASKED.swap(true, Ordering::Relaxed) || LEFT.load(Ordering::Relaxed) {
             process::exit(ENDED_BY_SIGNAL);
@@ -33,17 +41,27 @@ pub fn leave() {
     LEFT.store(true, Ordering::Relaxed);
 }
 
+/// The input is read anew.
+pub fn up_to_date() {
+    OUTDATED.store(false, Ordering::Relaxed);
+}
+
+/// The input of the run that goes on has changed: it ends at its next step or row.
+pub fn outdate() {
+    OUTDATED.store(true, Ordering::Relaxed);
+}
+
 /// Whether a signal asked the process to end.
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// Progress that ends a simulation where a signal asks for it.
+/// Progress that ends a simulation where a signal asks for it, or its input has changed.
 pub struct Interruptible<P>(pub P);
 
 impl<P: Progress> Progress for Interruptible<P> {
     fn advance(&mut self, t: f64, events: u64) -> ControlFlow<()> {
-        if asked() {
+        if asked() || OUTDATED.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
         self.0.advance(t, events)

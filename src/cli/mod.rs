@@ -28,6 +28,7 @@ mod schema;
 mod table;
 mod verify;
 mod warnings;
+mod watch;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

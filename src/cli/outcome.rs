@@ -76,20 +76,20 @@ impl From<FolderError> for Failure {
     }
 }
 
-/// Says on the standard error what failed, if something did, and gives the exit status.
+/// Says on the standard error what failed, if something did.
+pub fn say(result: &Result) {
+    if let Err(Failure::WrongInput(message) | Failure::System(message)) = result {
+        print::error(message);
+    }
+}
+
+/// Says what failed, and gives the exit status.
 pub fn exit_code(result: Result) -> ExitCode {
-    let status = match result {
+    say(&result);
+    ExitCode::from(match result {
         Ok(Outcome::Done) => 0,
         Ok(Outcome::StoppedEarly) => 3,
-        Err(failure) => {
-            if let Failure::WrongInput(message) | Failure::System(message) = &failure {
-                print::error(message);
-            }
-            match failure {
-                Failure::WrongInput(_) | Failure::Reported { wrong_input: true } => 2,
-                Failure::System(_) | Failure::Reported { wrong_input: false } => 1,
-            }
-        }
-    };
-    ExitCode::from(status)
+        Err(Failure::WrongInput(_) | Failure::Reported { wrong_input: true }) => 2,
+        Err(Failure::System(_) | Failure::Reported { wrong_input: false }) => 1,
+    })
 }

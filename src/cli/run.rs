@@ -8,12 +8,13 @@ use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::outputs::{NotReplayed, Outputs};
-use super::{print, room, warnings};
+use super::{print, room, warnings, watch};
 use crate::hybrid::{Invalid, Problem, Reason, Replay, check_same, resume_with, simulate_with};
+use crate::model::Models;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
 use crate::record::{Earlier, Layout, OutputFolder, ProgressLine, Report, Run, Sketch, Stream};
-use crate::scene::Scene;
+use crate::scene::{Disk, Files, Scene};
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
@@ -50,9 +51,24 @@ pub struct RunArguments {
     /// Estimate the error of the run by a second, better one
     #[arg(long)]
     error_estimate: bool,
+    /// Run again whenever the scene, its tables or its model change, until Ctrl-C
+    #[arg(long, conflicts_with = "resume")]
+    watch: bool,
 }
 
 pub fn run(arguments: &RunArguments) -> Result {
+    if !arguments.watch {
+        return once(arguments, &Disk, folders::models(Needs::One));
+    }
+    watch::whenever_changed(|watched| {
+        let seen = watched.clone();
+        let models = folders::models_seen(Needs::One, move |folder| seen.note_model(folder));
+        once(arguments, watched, models)
+    })
+}
+
+/// A single run of a scene, read from `files`.
+fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     if arguments.error_estimate && arguments.resume.is_some() {
         return Err(Failure::wrong_input(
             "--error-estimate and --resume cannot be given together: the estimate compares a run with \
@@ -60,11 +76,7 @@ pub fn run(arguments: &RunArguments) -> Result {
              its start, without --resume",
         ));
     }
-    let scene = Scene::load(
-        &arguments.scene,
-        &arguments.overrides,
-        &folders::models(Needs::One),
-    )?;
+    let scene = Scene::load_from(files, &arguments.scene, &arguments.overrides, &models)?;
     let problem = &scene.problem;
     let earlier = match &arguments.resume {
         Some(folder) => {

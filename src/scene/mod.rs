@@ -54,10 +54,20 @@ impl Scene {
     /// Reads a scene file, applies the overrides (`path=value`) and checks the result. Tables are
     /// found relative to the folder of the scene.
     pub fn load(path: &Path, overrides: &[String], models: &Models) -> Result<Scene, SceneErrors> {
-        let bytes = Disk
+        Scene::load_from(&Disk, path, overrides, models)
+    }
+
+    /// As [`Scene::load`], with files from elsewhere.
+    pub fn load_from(
+        files: &dyn Files,
+        path: &Path,
+        overrides: &[String],
+        models: &Models,
+    ) -> Result<Scene, SceneErrors> {
+        let bytes = files
             .read(path)
             .map_err(|e| SceneError::unreadable(path.to_owned(), &e))?;
-        Scene::parse(&bytes, path, overrides, models, &Disk)
+        Scene::parse(&bytes, path, overrides, models, files)
     }
 
     /// As [`Scene::load`], with the contents of the scene file at hand; `path` names it in errors

@@ -15,6 +15,7 @@ mod page;
 mod precision;
 mod run;
 mod verify;
+mod watch;
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
