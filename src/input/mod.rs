@@ -125,9 +125,10 @@ impl Signals {
         }
     }
 
-    /// Whether an antiderivative is among the signals that are `wanted`.
+    /// Whether an antiderivative that can differ from zero is among the signals that are `wanted`.
     pub fn want_antiderivatives(&self, wanted: &[bool]) -> bool {
-        (self.channels.iter()).any(|c| wanted[c.antiderivatives()].contains(&true))
+        let wants = |c: &Channel| wanted[c.antiderivatives()].contains(&true);
+        (self.channels.iter()).any(|c| c.function != Function::zero() && wants(c))
     }
 
     /// The first time after `t` at which some input is not smooth (a jump, a kink, the start or
@@ -178,6 +179,13 @@ impl Signals {
     pub fn series(&self, t: f64, [u, u_dot]: [&[f64]; 2], wanted: &[bool], rows: &mut [f64]) {
         let width = u.len();
         for c in &self.channels {
+            if c.function == Function::zero() {
+                // So are its antiderivatives.
+                for row in rows.chunks_exact_mut(width) {
+                    row[c.signal..c.antiderivatives().end].fill(0.0);
+                }
+                continue;
+            }
             let known = [u[c.signal], u_dot[c.signal]];
             let column = &mut rows[c.signal..];
             c.function.series(t, Side::Right, known, width, column);
