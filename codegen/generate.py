@@ -1,5 +1,6 @@
 """One model folder → C, and a manifest."""
 
+import functools
 import hashlib
 import json
 import os
@@ -20,7 +21,8 @@ class Function:
     """A function to be emitted: where its arguments live and what it computes."""
 
     name: str
-    output: ca.SX
+    expression: ca.SX
+    """As it was derived."""
     equations: object
     slot: tuple = ()
     symbol: str = ""
@@ -30,6 +32,12 @@ class Function:
     workspace: tuple = ()
     stays: bool = False
     """A reset that leads to the same mode and changes nothing that the mode holds: see `_stays`."""
+
+    @functools.cached_property
+    def output(self):
+        """What is emitted: the expression, arranged for few operations. That takes longer than all the rest, and a judgement
+        can do without."""
+        return graph.arrange(self.expression, [p.symbol for p in self.equations.model.parameters])
 
 
 @dataclass
@@ -210,17 +218,29 @@ def _discretes(model):
 def variants_of(model):
     """The variant of a model with all motions of the ground that may be given, and in it the one without the optional ones
     among them."""
+    check_declarations(model)
+    variant = derive_variant(model)
+    optional = [m for m in model.motions if m.optional and m.available]
+    if optional:
+        variant.lean = _variant(model, _barred(model) + optional)
+    return variant
+
+
+def check_declarations(model):
+    """Everything that can be found wrong before the equations are derived."""
     check.check(model)
     dimensions.check(model)
     momentum.check(model)
-    barred = [m for m in model.motions if not m.available]
-    optional = [m for m in model.motions if m.optional and m.available]
-    if optional:
-        variant, lean = _variant(model, barred, "moved_"), _variant(model, barred + optional)
-        variant.lean = lean
-    else:
-        variant = _variant(model, barred)
-    return variant
+
+
+def derive_variant(model):
+    """The variant of a model that was checked, with all motions of the ground that may be given."""
+    moved = any(m.optional and m.available for m in model.motions)
+    return _variant(model, _barred(model), "moved_" if moved else "")
+
+
+def _barred(model):
+    return [m for m in model.motions if not m.available]
 
 
 def _variant(model, absent, kind=""):
@@ -271,9 +291,7 @@ def _tag(model):
 
 
 def _add(variant, name, output, equations, slot):
-    parameters = [p.symbol for p in variant.model.parameters]
-    arranged = graph.arrange(ca.densify(ca.vec(ca.SX(output))), parameters)
-    function = variant.functions[slot] = Function(name, arranged, equations, slot)
+    function = variant.functions[slot] = Function(name, ca.densify(ca.vec(ca.SX(output))), equations, slot)
     return function
 
 

@@ -2,6 +2,7 @@
 
 import ast
 import contextlib
+import multiprocessing
 import os
 import sys
 
@@ -98,33 +99,60 @@ def _follows(error, lost):
 def _variants(models):
     generate.check_same_declarations(models)
     found = []
-    for model in models:
-        with collected() as errors:
-            check.check(model)
-            dimensions.check(model)
-            if not errors:
-                momentum.check(model)
-            if not errors:
-                variant = generate.variants_of(model)
+    for errors, variant in _side_by_side(_judge, models):
         for error in errors:
             report(error)
-        if not errors:
-            found.append(_variant(model, variant))
+        found += [variant] if variant else []
     return found
 
 
+def _judge(model):
+    """The errors of a combination of choices, or what it is."""
+    with collected() as errors:
+        check.check(model)
+        dimensions.check(model)
+        if not errors:
+            momentum.check(model)
+        if not errors:
+            variant = _variant(model, generate.derive_variant(model))
+    return errors, None if errors else variant
+
+
+def _side_by_side(function, arguments):
+    """A function of each argument, by a process each where the system can copy this one: expressions cannot be sent."""
+    if len(arguments) < 2 or "fork" not in multiprocessing.get_all_start_methods():
+        return [function(argument) for argument in arguments]
+    context = multiprocessing.get_context("fork")
+    _WORK[:] = [function, arguments]
+    with context.Pool(min(len(arguments), os.cpu_count() or 1)) as pool:
+        return pool.map(_work, range(len(arguments)), chunksize=1)
+
+
+_WORK = []
+
+
+def _work(k):
+    function, arguments = _WORK
+    return function(arguments[k])
+
+
 def _variant(model, variant):
+    defaults = [c[3] == c[4] for c in model.choices]
     return {
-        "options": {c[0]: c[3] for c in model.choices}, "defaults": [c[3] == c[4] for c in model.choices],
-        "modes": [_mode(variant, i, equations) for i, equations in enumerate(variant.modes)]}
+        "options": {c[0]: c[3] for c in model.choices}, "defaults": defaults,
+        "modes": [_mode(variant, i, equations, all(defaults)) for i, equations in enumerate(variant.modes)]}
 
 
-def _mode(variant, i, equations):
+def _mode(variant, i, equations, counts):
+    """A mode; with the operations of its functions if they are to be counted, which takes longer than the derivation."""
     coordinates = variant.model.coordinates
-    return {
+    mode = {
         "name": equations.mode.name, "free": [coordinates[k].name for k in equations.free],
-        "guards": [" / ".join(dict.fromkeys(t.name for t in transitions)) for _, transitions in equations.guards],
-        "operations": {" ".join(map(str, slot[1:])): _operations(f.output) for slot, f in variant.functions.items() if slot[0] == i}}
+        "guards": [" / ".join(dict.fromkeys(t.name for t in transitions)) for _, transitions in equations.guards]}
+    if counts:
+        functions = {slot: f for slot, f in variant.functions.items() if slot[0] == i}
+        mode["operations"] = {" ".join(map(str, slot[1:])): _operations(f.output) for slot, f in functions.items()}
+    return mode
 
 
 def _operations(output):

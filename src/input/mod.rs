@@ -182,7 +182,10 @@ impl Signals {
             if c.function == Function::zero() {
                 // So are its antiderivatives.
                 for row in rows.chunks_exact_mut(width) {
-                    row[c.signal..c.antiderivatives().end].fill(0.0);
+                    match c.kind {
+                        InputKind::Acceleration => copy_few(&[0.0; 3], &mut row[c.signal..][..3]),
+                        InputKind::Value => row[c.signal] = 0.0,
+                    }
                 }
                 continue;
             }

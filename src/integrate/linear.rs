@@ -160,7 +160,7 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
 ///
 /// # Errors
 /// [`Singular`] if no pivot exceeds the rounding of its column, or an entry is not finite.
-#[inline]
+#[inline(always)]
 pub fn solve<const F: usize>(
     matrix: &SMatrix<f64, F, F>,
     right_side: &SVector<f64, F>,
