@@ -220,7 +220,18 @@ mod signals {
         panic!("the process does not listen to SIGINT");
     }
 
+    /// Whether some rows have come to a file in one of its folders, the hidden ones among them.
+    fn has_rows(folder: &Path) -> bool {
+        let tables = fs::read_dir(folder).unwrap();
+        let mut tables = tables.map(|entry| entry.unwrap().path().join("trajectory.csv"));
+        tables.any(|table| fs::metadata(table).is_ok_and(|data| data.len() > 0))
+    }
+
     fn interrupted(folder: &Path, arguments: &[&str]) -> Output {
+        interrupted_when(folder, arguments, || true)
+    }
+
+    fn interrupted_when(folder: &Path, arguments: &[&str], ready: impl Fn() -> bool) -> Output {
         let child = Command::new(env!("CARGO_BIN_EXE_dalembert"))
             .args(arguments)
             .current_dir(folder)
@@ -229,6 +240,9 @@ mod signals {
             .spawn()
             .unwrap();
         wait_until_it_listens(&child);
+        while !ready() {
+            thread::sleep(Duration::from_millis(1));
+        }
         let id = child.id().to_string();
         assert!(
             Command::new("kill")
@@ -285,7 +299,8 @@ mod signals {
         // A fall of 0.4 s is one step.
         let fall = ["run", &scene("bouncing_ball"), "--set", "record.every=2e-7"];
         let out = ["--set", "end=0.45", "--out", "out"];
-        let output = interrupted(home.path(), &[&fall[..], &out].concat());
+        let (home_of, arguments) = (home.path(), [&fall[..], &out].concat());
+        let output = interrupted_when(home_of, &arguments, || has_rows(home_of));
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
         let summary = json(&home.path().join("out/summary.json"));
         let t = summary["end"]["t"].as_f64().unwrap();
