@@ -1,7 +1,6 @@
 //! An accumulation comes to rest where its limit is, and nowhere else.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Problem, simulate};
 use dalembert::model::models;
 use dalembert::record::{Run, Silent};

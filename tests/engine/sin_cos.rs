@@ -12,7 +12,7 @@ fn error(value: f64, near: f64, rest: f64) -> f64 {
 
 #[test]
 fn golden_values_are_met_to_less_than_a_unit_in_the_last_place() {
-    let text = include_str!("data/sin_cos.csv");
+    let text = include_str!("../data/sin_cos.csv");
     let mut rows = csv::Reader::from_reader(text.as_bytes());
     let mut worst = 0.0_f64;
     let mut count = 0;

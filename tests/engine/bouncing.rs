@@ -1,7 +1,6 @@
 //! Bouncing ball and vibrating table against closed forms (tests/data/05_bouncing_ball.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::input::{Function, Sine};
 use serde_json::Value;
 

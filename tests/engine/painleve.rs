@@ -1,8 +1,7 @@
 //! A rod that slides on rough ground (tests/data/06_painleve_rod.json): contact, detachment, and
 //! the windows in which friction leaves the motion undetermined.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Problem, simulate};
 use dalembert::record::Silent;
 

@@ -1,8 +1,7 @@
 //! The Coulomb oscillator against Den Hartog's closed forms (tests/data/03_den_hartog.json), and as
 //! a two-way Newmark block (tests/data/04_newmark.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::Problem;
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::record::Event;

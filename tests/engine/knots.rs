@@ -1,9 +1,7 @@
 //! Knots of splines, where the third derivative of an input jumps: errors follow the tolerance across them,
 //! and steps end there without starting anew.
 
-mod common;
-
-use common::{at_end, problem, run, tighten};
+use crate::common::{at_end, problem, run, tighten};
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Interpolation, Outside, Side, Table};
 

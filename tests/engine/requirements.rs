@@ -1,8 +1,6 @@
 //! What a mode requires holds wherever a run says that it went: within steps too.
 
-mod common;
-
-use common::{lifted_slider, problem};
+use crate::common::{lifted_slider, problem};
 use dalembert::hybrid::{Method, simulate};
 use dalembert::input::Sine;
 use dalembert::record::Silent;

@@ -1,8 +1,7 @@
 //! Units of length, mass and time are arbitrary: a change of units changes rounding at most, and
 //! one by powers of two no bit.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
 use dalembert::record::{Run, Snapshot};

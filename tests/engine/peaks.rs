@@ -1,7 +1,6 @@
 //! Extremes and energies against closed forms: they are those of the motion, not of the rows.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
 use dalembert::record::{Peak, Recorded, Run};

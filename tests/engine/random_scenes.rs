@@ -2,11 +2,10 @@
 //! for what its model requires, no coordinate is below its minimum, what a mode holds is held, and both methods give
 //! the same events.
 //!
-//! The suite runs a share; `DALEMBERT_RANDOM_SCENES=10000 cargo test --release --test random_scenes` runs ten thousand,
+//! The suite runs a share; `DALEMBERT_RANDOM_SCENES=10000 cargo test --release --test engine random_scenes` runs ten thousand,
 //! `DALEMBERT_RANDOM_SCENE=17` one of them and shows its events.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::model::HeldAt;

@@ -1,7 +1,6 @@
 //! Random scenes: what must hold in every one of them.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::Sine;
 use dalembert::record::{Run, Silent};

@@ -1,9 +1,7 @@
 //! The least pulse that overturns a block (tests/data/02_overturning_spectrum.json): at the boundary the
 //! motion lingers at the unstable equilibrium, and the last digit of the pulse decides.
 
-mod common;
-
-use common::{number, problem, reference};
+use crate::common::{number, problem, reference};
 use dalembert::hybrid::{Method, Problem, Reason, Simulator};
 use dalembert::input::{Function, Sine};
 use dalembert::record::Silent;

@@ -1,8 +1,6 @@
 //! A model says where it ends, and a run which of that it leaves.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 
 /// A steel tank on the ground of radius 7.5 m, filled 10 m high, with a bottom plate of 8 mm:

@@ -1,7 +1,6 @@
 //! Housner's rocking block against closed forms (tests/data/01_rocking_free.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, simulate};
 use dalembert::record::Silent;
 

@@ -1,7 +1,6 @@
 //! What cannot be simulated stops with a reason that names it, and keeps the motion so far.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem, Reason, simulate};
 use dalembert::record::{Failure, Run, Silent};
 

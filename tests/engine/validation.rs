@@ -1,8 +1,6 @@
 //! Nothing inadmissible runs: a program's problem is held against the same bounds as a scene.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Ensemble, Invalid, Member, Method, Problem, Reason, Simulator, simulate};
 use dalembert::record::Silent;
 

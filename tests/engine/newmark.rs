@@ -1,7 +1,6 @@
 //! Newmark's sliding block that slips downhill only (tests/data/04_newmark.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::Problem;
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 

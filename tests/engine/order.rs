@@ -1,7 +1,6 @@
 //! Accuracy and steps of the implicit method through the whole engine, events included.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::Method;
 
 /// Error of the tenth impact of the damped rocking block, and the number of steps so far.

@@ -1,7 +1,6 @@
 //! What is zero at an instant, up to rounding: contacts that close together, forces that set in, a touch.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
 use dalembert::model::models;

@@ -1,7 +1,6 @@
 //! Hard cases at every tolerance from 1e-3 to 1e-13: no event is missed or doubled.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::Sine;
 use dalembert::record::{Event, Run};

@@ -1,7 +1,5 @@
 //! At every tolerance no event is missed or doubled, in every scene that ships.
 
-mod common;
-
 use dalembert::hybrid::{Method, Problem};
 use dalembert::model::models;
 use dalembert::precision::{Difference, TOLERANCES, match_events};
@@ -28,7 +26,7 @@ fn run(problem: &Problem, method: Method, tolerance: f64) -> Run {
         absolute.iter_mut().for_each(|absolute| *absolute *= factor);
     }
     problem.method = method;
-    common::run(&problem)
+    crate::common::run(&problem)
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! The choice of the method: explicit where that is faster, implicit where a mode is stiff.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
 use std::f64::consts::PI;

@@ -1,7 +1,6 @@
 //! The double pendulum against 50-digit solutions (tests/data/09_pendulums.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::record::Run;
 use serde_json::Value;
 

@@ -1,8 +1,7 @@
 //! Stiff springs: vibrations that must be followed without numerical damping, and ones that die out
 //! (tests/data/11_stiff_block.json and closed forms).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use std::f64::consts::PI;
 

@@ -1,8 +1,6 @@
 //! Limit states: found at their instants, and a run ends there or goes on.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{
     Ensemble, Member, Method, Observed, OwnLimit, Problem, Simulator, simulate,
 };

@@ -1,7 +1,6 @@
 //! A forced oscillation that just reaches a stop (tests/data/07_grazing.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::input::{Function, Sine};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

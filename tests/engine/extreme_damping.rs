@@ -1,7 +1,6 @@
 //! Oscillators with dry friction whose damping is far beyond what their motion shows: c/m from 1e6 to 1e16 1/s.
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::{Function, Sine};
 use dalembert::record::{Run, Silent};

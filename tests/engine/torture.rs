@@ -1,7 +1,6 @@
 //! Hard cases for an event engine, with exact answers (tests/data/10_event_engine.json).
 
-mod common;
-use common::*;
+use crate::common::*;
 use dalembert::hybrid::Problem;
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::record::{Doubt, Question, Run, Uncertain};

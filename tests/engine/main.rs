@@ -1,0 +1,37 @@
+//! The engine, one subject a file: references, events, stability, refusals. In one program, since every program takes
+//! seconds to link.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bouncing;
+mod coulomb;
+mod derivatives;
+mod extreme_damping;
+mod grazing;
+mod invariants;
+mod knots;
+mod limits;
+mod methods;
+mod newmark;
+mod onsets;
+mod order;
+mod overturning;
+mod painleve;
+mod peaks;
+mod pendulum;
+mod random_scenes;
+mod refusals;
+mod requirements;
+mod rest;
+mod rocking;
+mod roots_cases;
+mod roots_properties;
+mod sin_cos;
+mod stiff;
+mod tolerances;
+mod torture;
+mod torture_tolerances;
+mod units;
+mod validation;
+mod validity;
