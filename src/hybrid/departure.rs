@@ -107,7 +107,7 @@ impl<'p> Simulation<'p> {
         let mode = self.mode();
         let now = self.here.now.seconds();
         // The series of an input ends at its next knot, also where it goes on smoothly.
-        let knot = self.problem.signals.next_knot(now);
+        let knot = self.signals.next_knot(now);
         let question = Question {
             mode,
             tape: &mode.guard_values,
@@ -165,7 +165,7 @@ impl<'p> Simulation<'p> {
 
     /// The inputs as they go on from here.
     fn expand_signals(&mut self) {
-        let (context, signals) = (&self.context, &self.problem.signals);
+        let (context, signals) = (&self.context, &*self.signals);
         let t = self.here.now.seconds();
         self.expansion.set_signals(context, signals, t);
     }

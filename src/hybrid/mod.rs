@@ -6,6 +6,7 @@
 //! a run that was interrupted.
 
 mod accumulation;
+mod advance;
 mod crossing;
 mod departure;
 mod doubt;
@@ -20,6 +21,7 @@ mod instant;
 mod limits;
 mod locate;
 mod margins;
+mod moment;
 mod observe;
 mod plan;
 mod problem;
@@ -39,8 +41,10 @@ mod validate;
 mod visited;
 
 pub(crate) use accumulation::LONGEST_PATTERN;
+pub use advance::Stopped;
 pub use ensemble::{Ensemble, Finished, Member};
 pub use failure::Reason;
+pub use moment::{Moment, NotComputed};
 pub use observe::{Collected, MadeStep, Observer};
 pub use problem::{Accuracy, End, Initial, Limits, Method, Observed, OwnLimit, Problem, Record};
 pub use resume::{Replay, check_same, resume, resume_with};

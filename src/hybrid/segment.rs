@@ -1,5 +1,6 @@
 //! From one event to the next: steps and crossings on their dense output, which observers look at.
 
+use super::advance::MadeBy;
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, Piece, free_of};
@@ -52,11 +53,13 @@ impl<'p> Simulation<'p> {
         let (problem, mode) = (self.problem, self.mode());
         match stages(problem.accuracy.relative) {
             _ if self.is_explicit(kernel) => {
+                self.made_by = MadeBy::Taylor;
                 let make =
                     |x: &Context| Taylor::new(&tolerances(problem, mode), kernel.series_kind(x));
                 self.integrate(kernel, |slots| &mut slots.taylor, make, stays, progress)
             }
             5 => {
+                self.made_by = MadeBy::RadauOfFive;
                 let make = |_: &Context| Radau::new(&tolerances(problem, mode));
                 self.integrate(
                     kernel,
@@ -67,6 +70,7 @@ impl<'p> Simulation<'p> {
                 )
             }
             _ => {
+                self.made_by = MadeBy::RadauOfSeven;
                 let make = |_: &Context| Radau::new(&tolerances(problem, mode));
                 self.integrate(
                     kernel,
@@ -157,19 +161,23 @@ impl<'p> Simulation<'p> {
         let needs_accelerations =
             <M as OneStep<F, Equations<F>>>::NEEDS_ACCELERATIONS || !kernel.inertia_is_fixed();
         let mut has_accelerations = true;
+        let mut goes_on = self.stage.is_in_segment();
         loop {
-            let [q, v, a] = self.here.free::<F>(&mode.free);
-            method.restart(0.0, &q, &v, has_accelerations.then_some(&a));
+            if !goes_on {
+                let [q, v, a] = self.here.free::<F>(&mode.free);
+                method.restart(0.0, &q, &v, has_accelerations.then_some(&a));
+            }
             let now = self.here.now.seconds();
             if now >= self.smooth_until {
-                let breakpoint = problem.signals.next_breakpoint(now);
-                self.smooth_until = breakpoint.min(problem.end.time);
-                self.piece = match problem.signals.next_knot(now) == f64::INFINITY {
+                let breakpoint = self.signals.next_breakpoint(now);
+                let end = problem.end.time.min(self.pause.knot);
+                self.smooth_until = breakpoint.min(end);
+                self.piece = match self.signals.next_knot(now) == f64::INFINITY {
                     true => Piece::ENDLESS,
                     false => Piece::UNKNOWN,
                 };
             }
-            match self.follow(&stay, method, progress)? {
+            match self.follow(&stay, method, std::mem::take(&mut goes_on), progress)? {
                 Stop::Event(guard) if stays => {
                     if !self.fire_and_stay(kernel, guard, needs_accelerations)? {
                         return Ok(Stop::Fired);
@@ -186,11 +194,12 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Integrates until something happens.
+    /// Integrates until something happens, from the start of a segment, or from where it `goes_on` after a pause.
     fn follow<const F: usize, M>(
         &mut self,
         stay: &Stay<F>,
         method: &mut M,
+        goes_on: bool,
         progress: &mut dyn Progress,
     ) -> Stoppable<Stop>
     where
@@ -206,14 +215,17 @@ impl<'p> Simulation<'p> {
         } = stay;
         let problem = self.problem;
         let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
-        let (start, last) = (self.here.now, self.smooth_until);
-        let until = Instant::new(last).since(start);
-        if drifts {
-            copy_few(&self.here.q, &mut self.at_start);
+        if !goes_on {
+            self.began = self.here.now;
+            if drifts {
+                copy_few(&self.here.q, &mut self.at_start);
+            }
         }
+        let (start, last) = (self.began, self.smooth_until);
+        let until = Instant::new(last).since(start);
         let clock = Clock {
             start,
-            signals: &problem.signals,
+            signals: &self.signals,
             until: (until, last),
             held: &self.at_start,
             drift: if drifts { &self.drift } else { &[] },
@@ -234,7 +246,13 @@ impl<'p> Simulation<'p> {
             next: &mut self.next,
         };
         let mass_changes = !kernel.mass_is_constant();
-        let began = *method.state();
+        let began = match goes_on {
+            true => self.pause.began(&mode.free),
+            false => *method.state(),
+        };
+        if goes_on {
+            equations.at(method.end());
+        }
         let determinant = match mass_changes {
             true => determinant_sign(&kernel.system(equations.context, &began.q, &began.v).mass),
             false => 1,
@@ -245,12 +263,14 @@ impl<'p> Simulation<'p> {
         };
         let watches = self.margins.watches(mode);
         let stiffness = &mut self.stiffness[self.here.mode];
-        if chooses || is_explicit {
+        if (chooses || is_explicit) && !goes_on {
             stiffness.begin();
         }
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin();
-        self.observers.enter(mode, &self.here);
+        if !goes_on {
+            self.observers.enter(mode, &self.here);
+        }
 
         loop {
             if let Err(error) = method.step(&mut equations, until) {
@@ -427,14 +447,21 @@ impl<'p> Simulation<'p> {
             }
             if end >= until {
                 self.here.now = Instant::new(last);
-                return Ok(if last >= problem.end.time {
-                    Stop::End
-                } else {
-                    Stop::Breakpoint
-                });
+                if last >= problem.end.time {
+                    return Ok(Stop::End);
+                }
+                let breaks = last < self.pause.knot
+                    || clock.signals.next_breakpoint(start.seconds()) <= last;
+                if breaks {
+                    return Ok(Stop::Breakpoint);
+                }
             }
             if chooses && stiffness.prefers_implicit() == is_explicit {
                 return Ok(Stop::Method);
+            }
+            if self.here.now.seconds() >= self.pause.at {
+                self.pause.keep_start(&mode.free, &began);
+                return Ok(Stop::Pause);
             }
         }
     }

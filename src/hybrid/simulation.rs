@@ -1,6 +1,7 @@
 //! The run: settle, advance to the next event, apply it, and so on to the end.
 
 use super::accumulation::Accumulation;
+use super::advance::{MadeBy, Pause, Stage};
 use super::crossing::Signs;
 use super::doubt::Doubts;
 use super::ensemble::Member;
@@ -15,7 +16,7 @@ use super::solvers::Solvers;
 use super::stiffness::Stiffness;
 use super::validate::{check_initial, check_parameters};
 use super::visited::Visited;
-use crate::input::Side;
+use crate::input::{Side, Signals};
 use crate::jets::Expansion;
 use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
@@ -23,6 +24,7 @@ use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::record::{Failure, Place, Progress, Run, Snapshot, Solver, Subject};
 use nalgebra::SVector;
+use std::borrow::Cow;
 use std::time::Instant as WallClock;
 
 /// Simulates a problem to its end, or until something stops it; the run then says why.
@@ -105,6 +107,8 @@ pub(super) enum Stop {
     Event(usize),
     /// The same, and its transition was taken.
     Fired,
+    /// The time that is advanced to is reached; the segment goes on.
+    Pause,
     /// A guard that was zero at the segment's start leaves it downwards.
     Violated(Violation),
 }
@@ -113,6 +117,8 @@ pub(super) struct Simulation<'p> {
     pub problem: &'p Problem,
     /// Its initial state, or that of the member of an ensemble.
     pub initial: &'p Initial,
+    /// The inputs: those of the problem, until the caller commands one.
+    pub signals: Cow<'p, Signals>,
     /// The modes of the problem's variant.
     pub modes: &'p [Mode],
     pub plan: Plan,
@@ -140,6 +146,13 @@ pub(super) struct Simulation<'p> {
     pub smooth_until: f64,
     /// The piece of the inputs, where one without end is known.
     pub piece: Piece,
+    /// When the present segment began.
+    pub began: Instant,
+    /// Which method made the last step.
+    pub made_by: MadeBy,
+    /// Where an advance ends, and how far it is.
+    pub pause: Pause,
+    pub stage: Stage,
     /// Whether signals can be computed ahead.
     pub foresees: bool,
     /// Per mode: whether its inertia was found to be positive definite in this run.
@@ -187,6 +200,7 @@ impl<'p> Simulation<'p> {
         Ok(Simulation {
             problem,
             initial: &problem.initial,
+            signals: Cow::Borrowed(&problem.signals),
             modes,
             plan,
             context,
@@ -212,6 +226,10 @@ impl<'p> Simulation<'p> {
             stiffness: vec![Stiffness::default(); modes.len()].into(),
             smooth_until: f64::NEG_INFINITY,
             piece: Piece::UNKNOWN,
+            began: Instant::default(),
+            made_by: MadeBy::default(),
+            pause: Pause::new(n),
+            stage: Stage::Start,
             foresees,
             has_inertia: vec![false; modes.len()].into(),
             sizes: sizes(&accuracy.q_absolute),
@@ -260,6 +278,9 @@ impl<'p> Simulation<'p> {
         let initial = self.initial;
         self.here.now = Instant::default();
         self.smooth_until = f64::NEG_INFINITY;
+        self.forget_commands();
+        self.pause.never();
+        self.stage = Stage::Start;
         self.here.j = 0;
         self.here.mode = mode;
         self.here.q.copy_from_slice(&initial.q);
@@ -433,7 +454,7 @@ impl<'p> Simulation<'p> {
                 self.visited.clear();
                 self.fire(guard)?;
             }
-            Stop::Fired => {}
+            Stop::Fired | Stop::Pause => {}
             Stop::Violated(violation) => self.resolve(violation)?,
         }
         Ok(true)
@@ -465,13 +486,12 @@ impl<'p> Simulation<'p> {
     #[inline(always)]
     pub fn set_context(&mut self) {
         let t = self.here.now.seconds();
-        let signals = &self.problem.signals;
-        self.context.set_signals(signals, t, Side::Right);
+        self.context.set_signals(&self.signals, t, Side::Right);
         copy_few(&self.here.q, self.context.held_mut());
     }
 
     /// Where energies are kept they are finite.
-    fn check_energy(&self) -> Stoppable<()> {
+    pub fn check_energy(&self) -> Stoppable<()> {
         match &self.observers.ledger {
             Some(ledger) if !are_finite(&ledger.row(self.stored_energy(), [0.0; 2])) => {
                 let what = "an energy";

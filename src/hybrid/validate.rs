@@ -43,6 +43,22 @@ pub enum Invalid {
         /// The input.
         input: &'static str,
     },
+    /// An input is commanded whose function is given for all times.
+    #[error(
+        "input `{input}` cannot be commanded: its function was given for all times; give it `Function::commanded`, or a sum with that, before the run"
+    )]
+    NotCommanded {
+        /// The input.
+        input: &'static str,
+    },
+    /// A command that is none.
+    #[error("input `{input}`: {what}")]
+    Command {
+        /// The input.
+        input: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A list has not an entry for each thing that it is about.
     #[error("{what}: {found} values, expected {expected}")]
     Count {

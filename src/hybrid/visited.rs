@@ -21,6 +21,11 @@ impl Visited {
         self.states.clear();
     }
 
+    /// Names of the transitions since then.
+    pub fn transitions(&self) -> impl Iterator<Item = &'static str> {
+        self.steps.iter().map(|&(name, ..)| name)
+    }
+
     /// Leaves the present state by a transition. It is remembered if a step led there.
     pub fn leave(&mut self, state: [&[f64]; 3]) {
         if !self.steps.is_empty() {

@@ -1,5 +1,6 @@
 //! A function of time as a sum of simple terms.
 
+use super::commanded::{Command, Commanded};
 use super::lanes::LaneJet;
 use super::{Signals, Sine, Table};
 use crate::integrate::Lanes;
@@ -40,7 +41,8 @@ impl std::ops::Add for Jet {
     }
 }
 
-/// A prescribed function of time: a sum of constants, sines and tables. The empty sum is zero.
+/// A prescribed function of time: a sum of constants, sines, tables, and of what the caller commands while a run goes
+/// on. The empty sum is zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Function {
     terms: Vec<Term>,
@@ -51,6 +53,7 @@ enum Term {
     Constant(f64),
     Sine(Sine),
     Table(Table),
+    Commanded(Commanded),
 }
 
 impl Function {
@@ -63,6 +66,37 @@ impl Function {
     pub fn constant(value: f64) -> Self {
         Function {
             terms: vec![Term::Constant(value)],
+        }
+    }
+
+    /// A value that the caller changes while a run goes on, by [`crate::hybrid::Simulator::command`].
+    pub fn commanded(initial: f64) -> Self {
+        Function {
+            terms: vec![Term::Commanded(Commanded::new(initial))],
+        }
+    }
+
+    /// Whether the caller changes it while a run goes on.
+    pub fn is_commanded(&self) -> bool {
+        let is_commanded = |term: &Term| matches!(term, Term::Commanded(_));
+        self.terms.iter().any(is_commanded)
+    }
+
+    /// Commands the first of its terms that can be, from time `t` (s) on. Gives whether the function changes, or `None`
+    /// if it has no such term.
+    pub(super) fn command(&mut self, t: f64, command: Command) -> Option<bool> {
+        self.terms.iter_mut().find_map(|term| match term {
+            Term::Commanded(term) => Some(term.command(t, command)),
+            _ => None,
+        })
+    }
+
+    /// Forgets all commands.
+    pub(super) fn rewind(&mut self) {
+        for term in &mut self.terms {
+            if let Term::Commanded(term) = term {
+                term.rewind();
+            }
         }
     }
 
@@ -86,6 +120,10 @@ impl Function {
                 Term::Table(table) => {
                     put(2.0);
                     table.content(put);
+                }
+                Term::Commanded(commanded) => {
+                    put(3.0);
+                    commanded.content(put);
                 }
             }
         }
@@ -241,6 +279,7 @@ impl Term {
             },
             Term::Sine(sine) => sine.at(t, side),
             Term::Table(table) => table.at(t, side),
+            Term::Commanded(commanded) => commanded.at(t, side),
         }
     }
 
@@ -258,6 +297,7 @@ impl Term {
                 (out.iter_mut().zip(room)).for_each(|(out, c)| *out += c);
             }
             Term::Table(table) => table.add_series(t, side, out),
+            Term::Commanded(commanded) => commanded.add_series(t, side, out),
         }
     }
 
@@ -273,19 +313,20 @@ impl Term {
             Term::Constant(_) => f64::INFINITY,
             Term::Sine(sine) => sine.next_breakpoint(t),
             Term::Table(table) => table.next_breakpoint(t),
+            Term::Commanded(commanded) => commanded.next_knot(t),
         }
     }
 
     fn next_joint(&self, t: f64) -> f64 {
         match self {
-            Term::Constant(_) | Term::Sine(_) => f64::INFINITY,
+            Term::Constant(_) | Term::Sine(_) | Term::Commanded(_) => f64::INFINITY,
             Term::Table(table) => table.next_joint(t),
         }
     }
 
     fn resolution(&self, t: f64) -> f64 {
         match self {
-            Term::Constant(_) | Term::Table(_) => f64::INFINITY,
+            Term::Constant(_) | Term::Table(_) | Term::Commanded(_) => f64::INFINITY,
             Term::Sine(sine) => sine.resolution(t),
         }
     }

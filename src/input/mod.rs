@@ -9,12 +9,14 @@
 //! Over a segment `(t0, t1]` without a breakpoint inside, `evaluate` at `t0` and `evaluate_left`
 //! after it give the values of one smooth function.
 
+mod commanded;
 mod function;
 mod lanes;
 mod sine;
 mod spline;
 mod table;
 
+pub use commanded::Command;
 pub use function::{Function, Jet, Side};
 pub(crate) use lanes::LaneSignals;
 pub use sine::Sine;
@@ -70,6 +72,24 @@ impl Signals {
     /// The functions, one for each input of the model.
     pub fn functions(&self) -> impl Iterator<Item = &Function> {
         self.channels.iter().map(|c| &c.function)
+    }
+
+    /// Whether the function of some input is set by the caller while a run goes on.
+    pub fn are_commanded(&self) -> bool {
+        self.functions().any(Function::is_commanded)
+    }
+
+    /// Commands an input, by its index, from time `t` (s) on. Gives whether its function changes, or `None` if it cannot
+    /// be commanded.
+    pub(crate) fn command(&mut self, input: usize, t: f64, command: Command) -> Option<bool> {
+        self.channels[input].function.command(t, command)
+    }
+
+    /// Forgets all commands.
+    pub(crate) fn rewind(&mut self) {
+        for channel in &mut self.channels {
+            channel.function.rewind();
+        }
     }
 
     /// Whether no function ever differs from zero.

@@ -85,7 +85,7 @@ pub struct Table {
 
 /// c₀ + c₁ s + c₂ s² + c₃ s³ with s = t − origin, and the antiderivatives at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
+pub(super) struct Piece {
     origin: f64,
     coefficients: [f64; 4],
     integral: f64,
@@ -173,13 +173,7 @@ impl Table {
 
     /// Adds the coefficients of the piece about `t`.
     pub(super) fn add_series(&self, t: f64, side: Side, out: &mut [f64]) {
-        let piece = &self.pieces[self.piece_index(t, side)];
-        let [_, _, c2, c3] = piece.coefficients;
-        let Jet { rate, value, .. } = piece.at(t);
-        let about_t = [value, rate, c2 + 3.0 * c3 * (t - piece.origin), c3];
-        for (out, c) in out.iter_mut().zip(about_t) {
-            *out += c;
-        }
+        self.pieces[self.piece_index(t, side)].add_series(t, out);
     }
 
     /// The first row after `t`.
@@ -251,22 +245,23 @@ impl Table {
     /// t = 0, where both are zero.
     fn integrate(&mut self) {
         let base = self.piece_index(0.0, Side::Right);
-        // Both integrals of the base piece, taken from its origin, are zero at the origin.
-        let from_origin = self.pieces[base].at(0.0);
-        self.pieces[base].integral = -from_origin.integral;
-        self.pieces[base].double_integral = -self.pieces[base].at(0.0).double_integral;
-
-        let start = (
-            self.pieces[base].integral,
-            self.pieces[base].double_integral,
-        );
-        let (mut integral, mut double) = (Sum::new(start.0), Sum::new(start.1));
+        let Piece {
+            origin,
+            coefficients,
+            ..
+        } = self.pieces[base];
+        self.pieces[base] = Piece::from_zero(origin, coefficients);
+        let start = self.pieces[base].sums();
+        let mut sums = start;
         for i in base..self.knots.len() {
-            let increment = self.pieces[i].increment(self.knots[i]);
-            self.pieces[i + 1].integral = integral.add(increment.0);
-            self.pieces[i + 1].double_integral = double.add(increment.1);
+            let Piece {
+                origin,
+                coefficients,
+                ..
+            } = self.pieces[i + 1];
+            self.pieces[i + 1] = self.pieces[i].next(origin, coefficients, &mut sums);
         }
-        (integral, double) = (Sum::new(start.0), Sum::new(start.1));
+        let [mut integral, mut double] = start;
         for i in (0..base).rev() {
             // The first piece has the origin of the second.
             let end = self.pieces[i + 1].origin;
@@ -277,6 +272,46 @@ impl Table {
 }
 
 impl Piece {
+    /// A piece whose antiderivatives are zero at t = 0.
+    pub(super) fn from_zero(origin: f64, coefficients: [f64; 4]) -> Self {
+        let mut piece = Piece::new(origin, coefficients);
+        // Both integrals, taken from its origin, are zero at the origin.
+        piece.integral = -piece.at(0.0).integral;
+        piece.double_integral = -piece.at(0.0).double_integral;
+        piece
+    }
+
+    /// The sums that the antiderivatives of pieces after this one, or before it, go on with.
+    pub(super) fn sums(&self) -> [Sum; 2] {
+        [self.integral, self.double_integral].map(Sum::new)
+    }
+
+    /// The piece that follows this one; `sums` are those up to the origin of this one, and go on to that of the next.
+    pub(super) fn next(&self, origin: f64, coefficients: [f64; 4], sums: &mut [Sum; 2]) -> Self {
+        let (integral, double_integral) = self.increment(origin);
+        Piece {
+            integral: sums[0].add(integral),
+            double_integral: sums[1].add(double_integral),
+            ..Piece::new(origin, coefficients)
+        }
+    }
+
+    /// Whether this piece and another are the same constant.
+    pub(super) fn is_same_constant(&self, other: &Piece) -> bool {
+        let [_, slopes @ ..] = self.coefficients;
+        slopes == [0.0; 3] && self.coefficients == other.coefficients
+    }
+
+    /// Adds the coefficients of the function in powers of the time after `t` (s).
+    pub(super) fn add_series(&self, t: f64, out: &mut [f64]) {
+        let [_, _, c2, c3] = self.coefficients;
+        let Jet { rate, value, .. } = self.at(t);
+        let about_t = [value, rate, c2 + 3.0 * c3 * (t - self.origin), c3];
+        for (out, c) in out.iter_mut().zip(about_t) {
+            *out += c;
+        }
+    }
+
     fn new(origin: f64, coefficients: [f64; 4]) -> Self {
         Piece {
             origin,
@@ -286,7 +321,7 @@ impl Piece {
         }
     }
 
-    fn at(&self, t: f64) -> Jet {
+    pub(super) fn at(&self, t: f64) -> Jet {
         let [c0, c1, c2, c3] = self.coefficients;
         let s = t - self.origin;
         let (integral, double_integral) = self.increment(t);
@@ -312,7 +347,8 @@ impl Piece {
 
 /// A compensated sum (Neumaier 1974): a record has thousands of rows, and its antiderivatives are
 /// to be as good as the rows.
-struct Sum {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sum {
     sum: f64,
     compensation: f64,
 }

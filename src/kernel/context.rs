@@ -203,6 +203,11 @@ impl Context {
         [&mut self.arrays.signals, &mut self.arrays.signal_rates]
     }
 
+    /// The functions of the signals are others now.
+    pub fn forget_signals(&mut self) {
+        self.signals_at.0 = f64::NAN;
+    }
+
     /// Sets signals and their rates to those at time `t` (s), as they are on that side.
     #[inline]
     pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {

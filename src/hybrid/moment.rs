@@ -1,0 +1,254 @@
+//! A run at an instant: state, and what follows from it.
+
+use super::advance::MadeBy;
+use super::equations::{Clock, Equations};
+use super::guards::motion;
+use super::instant::Instant;
+use super::observe::copy_drifting;
+use super::simulation::Simulation;
+use super::solvers::{SlotsOf, Solvers};
+use crate::integrate::Motion;
+use crate::kernel::{Context, Free, ModeKernel, copy_few, with_kernel};
+use crate::model::{Mode, Model};
+use nalgebra::SVector;
+
+/// A time at which the motion is not known: it is before the last step that was made, or after the present time.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "the motion at {asked} s is not at hand: it is from {from} s to {to} s; advance to a later time before, or let an observer see every step"
+)]
+pub struct NotComputed {
+    /// The time that was asked for, s.
+    pub asked: f64,
+    /// The first that is known, s.
+    pub from: f64,
+    /// The last that is known, s.
+    pub to: f64,
+}
+
+/// State at a time, in room that is made once.
+#[derive(Debug)]
+pub(super) struct View {
+    pub t: f64,
+    pub q: Box<[f64]>,
+    pub v: Box<[f64]>,
+    pub a: Box<[f64]>,
+}
+
+impl View {
+    /// With so many coordinates.
+    pub fn new(coordinates: usize) -> Self {
+        let zeros = || vec![0.0; coordinates].into();
+        View {
+            t: 0.0,
+            q: zeros(),
+            v: zeros(),
+            a: zeros(),
+        }
+    }
+}
+
+/// A run at an instant: see [`super::Simulator::at`].
+#[derive(Debug)]
+pub struct Moment<'s> {
+    model: &'s Model,
+    mode: &'s Mode,
+    context: &'s Context,
+    view: &'s View,
+}
+
+impl<'s> Moment<'s> {
+    pub(super) fn new(simulation: &'s Simulation, view: &'s View) -> Self {
+        Moment {
+            model: &simulation.problem.model,
+            mode: simulation.mode(),
+            context: &simulation.context,
+            view,
+        }
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.view.t
+    }
+
+    /// Name of the mode.
+    pub fn mode(&self) -> &'static str {
+        self.mode.name
+    }
+
+    /// All coordinates, in their units.
+    pub fn q(&self) -> &'s [f64] {
+        &self.view.q
+    }
+
+    /// All velocities, in the units of the coordinates over s.
+    pub fn v(&self) -> &'s [f64] {
+        &self.view.v
+    }
+
+    /// All accelerations, from the equations of motion, in the units of the coordinates over s²; 0 where the mode holds a
+    /// coordinate.
+    pub fn a(&self) -> &'s [f64] {
+        &self.view.a
+    }
+
+    /// All discrete states.
+    pub fn discrete(&self) -> &'s [f64] {
+        self.context.discrete()
+    }
+
+    /// A coordinate (`theta`), a rate (`theta.rate`) or a discrete state, by its name.
+    pub fn state(&self, name: &str) -> Option<f64> {
+        let coordinate = |name: &str| self.model.coordinate(name);
+        let rate = name.strip_suffix(".rate").and_then(coordinate);
+        let discrete = || self.model.discretes.iter().position(|d| d.name == name);
+        rate.map(|i| self.view.v[i])
+            .or_else(|| coordinate(name).map(|i| self.view.q[i]))
+            .or_else(|| discrete().map(|i| self.discrete()[i]))
+    }
+
+    /// Value of an input by its name, in its unit; at a breakpoint as it goes on.
+    pub fn input(&self, name: &str) -> Option<f64> {
+        let input = self.model.inputs.iter().find(|i| i.name == name)?;
+        Some(self.context.signals()[input.signal])
+    }
+
+    /// Writes all reactions: of the coordinates, 0 where one is free, then of the motions of the ground, in the order of
+    /// the model.
+    ///
+    /// # Panics
+    /// If `out` has another length.
+    pub fn reactions(&self, out: &mut [f64]) {
+        with_kernel!(&self.mode.kernels, k => self.with(|at| k.reactions(self.context, at, out)));
+    }
+
+    /// Kinetic and potential energy, J.
+    pub fn energies(&self) -> [f64; 2] {
+        with_kernel!(&self.mode.kernels, k => self.with(|at| k.energies(self.context, at)))
+    }
+
+    /// Value of a guard of the present mode by its name, in its unit: positive where the mode is admissible.
+    pub fn guard(&self, name: &str) -> Option<f64> {
+        let guard = self.mode.guards.iter().find(|guard| guard.name == name)?;
+        Some(with_kernel!(&self.mode.kernels, k => {
+            self.with(|at| k.guard(self.context, &guard.kernel, at))
+        }))
+    }
+
+    /// Does something with the free coordinates.
+    fn with<const F: usize, R>(&self, evaluate: impl FnOnce(Free<F>) -> R) -> R {
+        let gather = |full: &[f64]| SVector::from_fn(|i, _| full[self.mode.free[i]]);
+        let [q, v, a] = [&self.view.q, &self.view.v, &self.view.a].map(|full| gather(full));
+        evaluate(Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        })
+    }
+}
+
+impl<'p> Simulation<'p> {
+    /// Looks at the run at time `t`, s: at the present time, or within the last step. Leaves the context set to it.
+    pub fn look_at(&mut self, t: f64, view: &mut View) -> Result<(), NotComputed> {
+        let mode = self.mode();
+        with_kernel!(&mode.kernels, k => self.look_by(k, t, view))
+    }
+
+    fn look_by<const F: usize>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        t: f64,
+        view: &mut View,
+    ) -> Result<(), NotComputed>
+    where
+        Solvers: SlotsOf<F>,
+    {
+        let (mode, index) = (self.mode(), self.here.mode);
+        let now = self.here.now.seconds();
+        view.q.copy_from_slice(&self.here.q);
+        view.v.copy_from_slice(&self.here.v);
+        view.a.fill(0.0);
+        view.t = t;
+        let drifts = self.plan.drifts[index];
+        if t == now {
+            self.set_context();
+            let [q, v, _] = self.here.free::<F>(&mode.free);
+            let system = kernel.system(&self.context, &q, &v);
+            let a = crate::integrate::solve(&system.mass, &-system.load, &self.scale());
+            let a = a.unwrap_or(SVector::repeat(f64::NAN));
+            (mode.free.iter().zip(a.iter())).for_each(|(&full, &a)| view.a[full] = a);
+            return Ok(());
+        }
+        let scale = self.scale();
+        let is_after_step = self.stage.is_after_step();
+        let slots = self.solvers.slots();
+        let last = self.smooth_until;
+        if !drifts {
+            copy_few(&self.here.q, self.context.held_mut());
+        }
+        let mut equations = Equations::new(
+            kernel,
+            &mut self.context,
+            Clock {
+                start: self.began,
+                signals: &self.signals,
+                until: (Instant::new(last).since(self.began), last),
+                held: &self.at_start,
+                drift: if drifts { &self.drift } else { &[] },
+            },
+            self.problem.accuracy.relative,
+            scale,
+            self.foresees,
+            self.piece,
+        );
+        let to = self.here.now.since(self.began);
+        let found = match self.made_by {
+            _ if !is_after_step => Err(now),
+            MadeBy::Taylor => {
+                let method = slots.taylor[index].as_deref();
+                within(&mut equations, method.and_then(|m| m.dense()), to, t)
+            }
+            MadeBy::RadauOfFive => {
+                let method = slots.radau_of_five[index].as_deref();
+                within(&mut equations, method.and_then(|m| m.dense()), to, t)
+            }
+            MadeBy::RadauOfSeven => {
+                let method = slots.radau_of_seven[index].as_deref();
+                within(&mut equations, method.and_then(|m| m.dense()), to, t)
+            }
+        };
+        let [q, v, a] = found.map_err(|from| NotComputed {
+            asked: t,
+            from,
+            to: now,
+        })?;
+        if drifts {
+            copy_drifting(&mut view.q, &mode.drifts, equations.context.held());
+        }
+        for (i, &full) in mode.free.iter().enumerate() {
+            (view.q[full], view.v[full], view.a[full]) = (q[i], v[i], a[i]);
+        }
+        Ok(())
+    }
+}
+
+/// The motion at time `t`, s, if it is within a step that ends at local time `to`; else when that begins, s.
+fn within<const F: usize, M: Motion<F>>(
+    equations: &mut Equations<F>,
+    dense: Option<&M>,
+    to: f64,
+    t: f64,
+) -> Result<[SVector<f64, F>; 3], f64> {
+    let began = equations.clock.start;
+    let seconds = |tau: f64| began.plus(tau).seconds();
+    let dense = dense.ok_or(seconds(to))?;
+    let from = dense.start();
+    match seconds(from) <= t && t <= seconds(to) {
+        true => {
+            let tau = Instant::new(t).since(began).clamp(from, to);
+            Ok(motion(equations, dense, tau, true))
+        }
+        false => Err(seconds(from)),
+    }
+}

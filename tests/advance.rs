@@ -1,0 +1,266 @@
+//! Runs in parts: the same bits as the whole, inputs that are commanded on the way, and why an advance stops.
+
+mod common;
+
+use common::problem;
+use dalembert::hybrid::{Invalid, Method, Problem, Reason, Simulator, Stopped, simulate};
+use dalembert::input::{Command, Function, Interpolation, Outside, Table};
+use dalembert::model::models;
+use dalembert::record::{Group, Jump, Silent};
+use dalembert::scene::{Disk, Scene};
+use std::path::{Path, PathBuf};
+
+const METHODS: [Method; 2] = [Method::Auto, Method::Radau];
+
+/// The shipped scenes, by name, by both methods.
+fn scenes() -> Vec<(String, Problem)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let entries = std::fs::read_dir(folder).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> = paths
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .collect();
+    paths.sort();
+    let each = |path: &PathBuf| {
+        let text = std::fs::read(path).unwrap();
+        let scene = Scene::parse(&text, path, &[], models(), &Disk);
+        let problem = scene.unwrap().problem;
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        METHODS.map(|method| {
+            let problem = Problem {
+                method,
+                ..problem.clone()
+            };
+            (format!("{name} by {method:?}"), problem)
+        })
+    };
+    paths.iter().flat_map(each).collect()
+}
+
+/// State and discrete state by their bits, and the transitions.
+fn bits(simulator: &Simulator) -> (Vec<u64>, Vec<Jump>) {
+    let state = [simulator.q(), simulator.v(), simulator.discrete()].concat();
+    let state = state.into_iter().map(f64::to_bits).collect();
+    (state, simulator.events().to_vec())
+}
+
+/// Irregular parts of a duration, the same in every run: a logistic map (Ulam and von Neumann 1947).
+fn parts(duration: f64, count: usize) -> impl Iterator<Item = f64> {
+    let chaos = std::iter::successors(Some(0.3), |&x| Some(4.0 * x * (1.0 - x)));
+    let mean = duration / count as f64;
+    let times = chaos.scan(0.0, move |t, x| {
+        *t += 2.0 * mean * x;
+        Some(*t)
+    });
+    times.take_while(move |&t| t < duration)
+}
+
+#[test]
+fn the_times_at_which_a_run_is_stopped_change_no_bit_of_it() {
+    for (name, problem) in scenes() {
+        let mut whole = Simulator::new(&problem).unwrap();
+        whole.run(&mut Silent).unwrap();
+        let mut in_parts = Simulator::new(&problem).unwrap();
+        let (mut stopped, mut events) = (0, 0);
+        for (i, t) in parts(problem.end.time, 300).enumerate() {
+            let why = match i % 3 {
+                0 => in_parts.advance_to_event(t).unwrap(),
+                _ => in_parts.advance_to(t).unwrap(),
+            };
+            match why {
+                Stopped::Time => assert_eq!(in_parts.time(), t, "{name}"),
+                Stopped::Event | Stopped::Rest => events += 1,
+                Stopped::End => assert_eq!(in_parts.time(), whole.time(), "{name}"),
+                Stopped::Limit => panic!("{name}: no scene ends at a limit"),
+            }
+            // Looking disturbs nothing.
+            let now = in_parts.moment();
+            let mut reactions = vec![0.0; now.q().len() + problem.model.motions.len()];
+            now.reactions(&mut reactions);
+            let all = [now.q(), now.v(), now.a(), &reactions, &now.energies()].concat();
+            assert!(all.iter().all(|x| x.is_finite()), "{name} at {t} s");
+            stopped += 1;
+        }
+        let last = in_parts.advance_to(f64::INFINITY).unwrap();
+        assert_eq!(last, Stopped::End, "{name}");
+        assert_eq!(in_parts.time(), whole.time(), "{name}");
+        assert_eq!(bits(&in_parts), bits(&whole), "{name}");
+        assert_eq!(in_parts.mode(), whole.mode(), "{name}");
+        assert_eq!(in_parts.solver(), whole.solver(), "{name}");
+        assert!(stopped > 100, "{name}: {stopped} stops, {events} events");
+        in_parts.rewind();
+        assert_eq!(in_parts.time(), 0.0);
+        in_parts.run(&mut Silent).unwrap();
+        assert_eq!(bits(&in_parts), bits(&whole), "{name} again");
+    }
+}
+
+#[test]
+fn what_is_seen_on_the_way_is_what_a_run_records() {
+    for (name, mut problem) in scenes() {
+        problem.record.columns.reactions = true;
+        problem.record.every = Some(problem.end.time / 64.0);
+        let run = simulate(&problem, &mut Silent).unwrap();
+        let mut simulator = Simulator::new(&problem).unwrap();
+        let n = run.layout.coordinates.len();
+        let mut compared = 0;
+        for (row, &t) in run.trajectory.t.iter().enumerate() {
+            simulator.advance_to(t).unwrap();
+            // At its very end a step is not the polynomial but what it was made for.
+            if simulator.at(f64::INFINITY).unwrap_err().to == t {
+                continue;
+            }
+            compared += 1;
+            let now = simulator.moment();
+            let mut reactions = vec![0.0; n + problem.model.motions.len()];
+            now.reactions(&mut reactions);
+            let recorded = run.trajectory.row(row);
+            let [state, held] =
+                [0..2 * n, run.layout.range(Group::Reaction)].map(|range| &recorded[range]);
+            assert_eq!(state, [now.q(), now.v()].concat(), "{name} at {t} s");
+            assert_eq!(held, reactions, "{name} at {t} s");
+        }
+        assert!(compared > 50, "{name}: {compared} rows are within steps");
+    }
+}
+
+/// A table of holds or ramps, and the commands that say the same; both at multiples of 0.25 s, of a problem up to 5 s.
+fn commanded(of: &Problem, input: &str, size: f64, ramps: bool) {
+    let times: Vec<f64> = (0..20).map(|i| 0.25 * f64::from(i)).collect();
+    let values: Vec<f64> = parts(20.0, 40)
+        .map(|t| size * (t - t.floor() - 0.5))
+        .take(20)
+        .collect();
+    let interpolation = match ramps {
+        true => Interpolation::Linear,
+        false => Interpolation::Previous,
+    };
+    let table = Table::new(&times, &values, interpolation, Outside::Hold).unwrap();
+    let (mut given, mut commanded) = (of.clone(), of.clone());
+    (given.end.time, commanded.end.time) = (5.0, 5.0);
+    given.set_input(input, table.into()).unwrap();
+    commanded
+        .set_input(input, Function::commanded(values[0]))
+        .unwrap();
+    for method in METHODS {
+        (given.method, commanded.method) = (method, method);
+        let mut whole = Simulator::new(&given).unwrap();
+        whole.run(&mut Silent).unwrap();
+        let mut in_parts = Simulator::new(&commanded).unwrap();
+        for _ in 0..2 {
+            for (i, &t) in times.iter().enumerate() {
+                // An event may be where it is stopped first.
+                while in_parts.advance_to_event(t).unwrap() != Stopped::Time {}
+                assert_eq!(in_parts.time(), t);
+                let command = match (ramps, times.get(i + 1)) {
+                    (true, Some(&until)) => Command::Ramp {
+                        to: values[i + 1],
+                        until,
+                    },
+                    _ => Command::Hold(values[i]),
+                };
+                in_parts.command(input, command).unwrap();
+                assert_eq!(in_parts.moment().input(input), Some(values[i]));
+            }
+            assert_eq!(in_parts.advance_to(5.0).unwrap(), Stopped::End);
+            let name = given.model.name;
+            assert!(!whole.events().is_empty(), "{name}: nothing happens");
+            assert_eq!(
+                bits(&in_parts),
+                bits(&whole),
+                "{name} by {method:?}, ramps: {ramps}"
+            );
+            in_parts.rewind();
+        }
+    }
+}
+
+#[test]
+fn a_commanded_input_moves_as_the_table_that_says_the_same() {
+    let slider = problem("coulomb_oscillator", &[]);
+    let mut block = problem("rocking_block", &[]);
+    block.set_initial("theta", 0.01).unwrap();
+    for ramps in [false, true] {
+        commanded(&slider, "force", 2.0, ramps);
+        commanded(&block, "ground_acceleration", 4.0, ramps);
+    }
+}
+
+#[test]
+fn an_advance_says_why_it_stops() {
+    let mut ball = problem("bouncing_ball", &[]);
+    ball.set_initial("h", 1.0).unwrap();
+    ball.end.time = 10.0;
+    let mut simulator = Simulator::new(&ball).unwrap();
+    assert_eq!(simulator.advance_to(0.1).unwrap(), Stopped::Time);
+    assert_eq!(simulator.advance_to(0.1).unwrap(), Stopped::Time);
+    assert_eq!(simulator.time(), 0.1);
+    let height = simulator.q()[0];
+    assert!(height < 1.0 && simulator.at(0.1).unwrap().q()[0] == height);
+    assert_eq!(simulator.advance_to_event(5.0).unwrap(), Stopped::Event);
+    assert_eq!(simulator.events().len(), 1);
+    assert_eq!(simulator.time(), simulator.events()[0].t);
+    assert!(simulator.v()[0] > 0.0, "the state is that after the impact");
+    let beyond = simulator.at(20.0).unwrap_err();
+    assert_eq!(beyond.to, simulator.time());
+    while simulator.advance_to_event(9.0).unwrap() == Stopped::Event {}
+    assert_eq!(simulator.events().last().unwrap().transition, "rest");
+    assert_eq!(simulator.q(), [0.0]);
+    assert_eq!(simulator.advance_to_event(9.0).unwrap(), Stopped::Time);
+    assert_eq!(simulator.advance_to(11.0).unwrap(), Stopped::End);
+    assert_eq!(simulator.advance_to(12.0).unwrap(), Stopped::End);
+    assert_eq!(simulator.time(), 10.0);
+}
+
+#[test]
+fn a_run_that_cannot_go_on_says_so_each_time_and_keeps_its_state() {
+    let mut block = problem("rocking_block", &[]);
+    block
+        .set_input("ground_acceleration", Function::commanded(0.0))
+        .unwrap();
+    block.set_initial("theta", 0.01).unwrap();
+    let mut simulator = Simulator::new(&block).unwrap();
+    simulator.advance_to(0.01).unwrap();
+    simulator
+        .command("ground_acceleration", Command::Hold(1e4))
+        .unwrap();
+    let why = simulator.advance_to(0.5).unwrap_err();
+    assert!(matches!(why, Reason::Requirement { .. }), "{why}");
+    assert_eq!(simulator.advance_to(0.6).unwrap_err(), why);
+    assert!(simulator.time() < 0.5 && simulator.q().iter().all(|q| q.is_finite()));
+    simulator.rewind();
+    assert_eq!(simulator.advance_to(0.01).unwrap(), Stopped::Time);
+}
+
+#[test]
+fn commands_that_are_none_are_refused() {
+    let mut slider = problem("coulomb_oscillator", &[]);
+    let refused = |problem: &Problem, input: &str, command| {
+        let mut simulator = Simulator::new(problem).unwrap();
+        simulator.advance_to(0.5).unwrap();
+        simulator.command(input, command).unwrap_err()
+    };
+    let not = refused(&slider, "force", Command::Hold(1.0));
+    assert_eq!(not, Invalid::NotCommanded { input: "force" });
+    slider.set_input("force", Function::commanded(1.0)).unwrap();
+    let unknown = refused(&slider, "torque", Command::Hold(1.0));
+    assert!(matches!(unknown, Invalid::Unknown(_)), "{unknown}");
+    for command in [
+        Command::Hold(f64::NAN),
+        Command::Ramp {
+            to: f64::INFINITY,
+            until: 1.0,
+        },
+        Command::Ramp {
+            to: 1.0,
+            until: 0.5,
+        },
+        Command::Ramp {
+            to: 1.0,
+            until: f64::INFINITY,
+        },
+    ] {
+        let wrong = refused(&slider, "force", command);
+        assert!(matches!(wrong, Invalid::Command { .. }), "{wrong}");
+    }
+}
