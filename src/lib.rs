@@ -40,9 +40,11 @@ pub mod jets;
 pub mod kernel;
 pub mod model;
 pub mod motion;
+pub mod numerics;
 pub mod page;
 pub mod precision;
 pub mod record;
+pub mod run;
 pub mod scene;
 
 /// Compiles and runs the examples of the README.

@@ -93,3 +93,102 @@ fn every_folder_and_every_module_is_named() {
         "ARCHITECTURE.md does not name {missing:?}"
     );
 }
+
+/// The modules of the crate, from the bottom up: each may import those above it in this list, none below it.
+const LAYERS: [&str; 15] = [
+    "numerics",
+    "kernel",
+    "model",
+    "input",
+    "jets",
+    "integrate",
+    "run",
+    "hybrid",
+    "motion",
+    "record",
+    "scene",
+    "precision",
+    "page",
+    "folders",
+    "cli",
+];
+
+/// The layers that a file imports. Its tests may import what they like.
+fn imports(source: &str) -> BTreeSet<String> {
+    let source = source.split("#[cfg(test)]\nmod tests {").next();
+    let lines = source.into_iter().flat_map(str::lines).map(str::trim_start);
+    let code = lines.filter(|line| !line.starts_with("//"));
+    let code: Vec<&str> = code.collect();
+    let mut found = BTreeSet::new();
+    for rest in code.join(" ").split("crate::").skip(1) {
+        // `crate::a::…` or `crate::{a::…, b}`
+        let list = match rest.strip_prefix('{') {
+            Some(list) => list.split('}').next().unwrap_or(list),
+            None => rest,
+        };
+        let count = if rest.starts_with('{') { usize::MAX } else { 1 };
+        for item in list.split(',').take(count) {
+            let end = |c: char| !(c.is_ascii_alphanumeric() || c == '_');
+            let name = item.trim_start().split(end).next().unwrap_or(item);
+            found.insert(name.to_owned());
+        }
+    }
+    found.retain(|name| LAYERS.contains(&name.as_str()));
+    found
+}
+
+/// The Rust files below a folder, or the file itself, without those of tests.
+fn files(path: &Path) -> Vec<std::path::PathBuf> {
+    let is_tests = path.file_stem().is_some_and(|name| name == "tests");
+    if is_tests {
+        return Vec::new();
+    }
+    if !path.is_dir() {
+        return vec![path.to_owned()];
+    }
+    let entries = fs::read_dir(path).expect("it can be listed");
+    let mut found: Vec<_> = (entries.map(|e| e.expect("it can be listed").path()))
+        .filter(|path| path.is_dir() || path.extension().is_some_and(|e| e == "rs"))
+        .flat_map(|path| files(&path))
+        .collect();
+    found.sort();
+    found
+}
+
+#[test]
+fn no_layer_imports_one_above_it() {
+    let source = root().join("src");
+    let mut modules: Vec<String> = (contents("src").into_iter())
+        .map(|name| name.trim_end_matches(".rs").to_owned())
+        .filter(|name| name != "lib" && name != "main")
+        .collect();
+    let mut layers = LAYERS.map(str::to_owned).to_vec();
+    modules.sort();
+    layers.sort();
+    assert_eq!(modules, layers, "every module is a layer");
+    let mut wrong = Vec::new();
+    for (place, layer) in LAYERS.iter().enumerate() {
+        let folder = source.join(layer);
+        let path = match folder.is_dir() {
+            true => folder,
+            false => folder.with_extension("rs"),
+        };
+        for file in files(&path) {
+            let text = fs::read_to_string(&file).expect("a module is a text");
+            for name in imports(&text) {
+                if LAYERS.iter().position(|l| *l == name) > Some(place) {
+                    wrong.push(format!("{} imports {name}", file.display()));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn imports_are_recognised() {
+    let source = "use crate::scene::Scene;\n// crate::cli\nuse crate::{page, record::Run};\nfn f() { crate::hybrid::g() }\n\
+                  #[cfg(test)]\nmod tests {\n use crate::cli;\n}";
+    let found: Vec<_> = imports(source).into_iter().collect();
+    assert_eq!(found, ["hybrid", "page", "record", "scene"]);
+}

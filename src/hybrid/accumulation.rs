@@ -7,7 +7,7 @@
 //! the run.
 
 use super::instant::Instant;
-use crate::kernel::copy_few;
+use crate::numerics::copy_few;
 use std::sync::atomic::{Ordering, compiler_fence};
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).

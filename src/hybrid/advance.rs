@@ -9,7 +9,7 @@ use super::simulation::{Simulation, Stop};
 use crate::input::Command;
 use crate::integrate::State;
 use crate::kernel::with_kernel;
-use crate::record::Progress;
+use crate::run::Progress;
 use nalgebra::SVector;
 
 /// Why an advance ended where it did.

@@ -17,7 +17,7 @@ use super::roots::{Search, Watch};
 use super::sensitivity::WatchedGuard;
 use crate::integrate::OneStep;
 use crate::model::{Guard, Mode};
-use crate::record::{Doubt, Question, Uncertain};
+use crate::run::{Doubt, Question, Uncertain};
 
 /// What was found out about the errors of guards, and the doubts.
 #[derive(Debug, Default)]

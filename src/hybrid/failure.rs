@@ -14,7 +14,7 @@ impl From<StepError> for Box<Reason> {
 }
 
 /// Reason of an early stop; the place (hybrid time, mode, state) and the trajectory so far are in
-/// the [`crate::record::Run`].
+/// the [`crate::run::Run`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {

@@ -3,10 +3,10 @@
 use super::accumulation::Signature;
 use super::failure::{Reason, Stoppable};
 use super::simulation::Simulation;
-use crate::kernel::copy_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
-use crate::record::{EnergyJump, Jump};
+use crate::numerics::copy_few;
+use crate::run::{EnergyJump, Jump};
 use nalgebra::SVector;
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.

@@ -3,10 +3,10 @@
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
 use crate::integrate::{Motion, solve};
-use crate::kernel::swap_few;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, Mode, Transition};
+use crate::numerics::swap_few;
 use nalgebra::SVector;
 
 /// What the conditions of transitions are evaluated with.

@@ -6,7 +6,7 @@ use super::problem::{Observed, OwnLimit, Problem};
 use super::start::ROUNDING;
 use super::validate::{Invalid, Unknown, within};
 use crate::model::{Bounds, GuardShape, Mode, Model, Variant, shown};
-use crate::record::{Left, LimitState, Reached};
+use crate::run::{Left, LimitState, Reached};
 
 /// What is watched in a run, and when it was reached.
 #[derive(Debug)]

@@ -8,8 +8,9 @@ use super::observe::copy_drifting;
 use super::simulation::Simulation;
 use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::Motion;
-use crate::kernel::{Context, Free, ModeKernel, copy_few, with_kernel};
+use crate::kernel::{Context, Free, ModeKernel, with_kernel};
 use crate::model::{Mode, Model};
+use crate::numerics::copy_few;
 use nalgebra::SVector;
 
 /// A time at which the motion is not known: it is before the last step that was made, or after the present time.

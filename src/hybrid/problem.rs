@@ -3,7 +3,7 @@
 use super::validate::{Invalid, Unknown, check_initial, within};
 use crate::input::{Function, Signals};
 use crate::model::{Model, Variant};
-use crate::record::Recorded;
+use crate::run::Recorded;
 use std::sync::Arc;
 
 /// A complete initial-value problem of a model.

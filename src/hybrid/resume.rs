@@ -5,8 +5,8 @@ use super::instant::Instant;
 use super::observe::{Collected, Observer, Samples, sample_time};
 use super::problem::{Method, Problem};
 use super::simulation::Simulation;
-use crate::record::digest::digest;
-use crate::record::{Event, Progress, Recorder, Run};
+use crate::run::digest;
+use crate::run::{Event, Progress, Recorder, Run};
 use std::time::Instant as WallClock;
 
 /// Continues a run from its end to the end of the problem, and gives the whole: tables, counters

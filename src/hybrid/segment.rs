@@ -17,9 +17,10 @@ use crate::integrate::{
     Motion, Node, OneStep, Radau, SERIES, State, StepError, Taylor, Tolerances, determinant_sign,
     stages,
 };
-use crate::kernel::{Context, ModeKernel, copy_few};
+use crate::kernel::{Context, ModeKernel};
 use crate::model::Mode;
-use crate::record::Progress;
+use crate::numerics::copy_few;
+use crate::run::Progress;
 use nalgebra::SVector;
 use std::ops::ControlFlow;
 

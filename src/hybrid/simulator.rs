@@ -8,13 +8,13 @@ use super::problem::Problem;
 use super::simulation::Simulation;
 use super::validate::{Invalid, Unknown};
 use crate::input::Command;
-use crate::record::{Jump, Progress, Reached, Silent, Solver};
+use crate::run::{Jump, Progress, Reached, Silent, Solver};
 
 /// A problem made ready to run, as a whole or in parts: tables, room and the initial mode. Runs after the first allocate
 /// nothing, as long as the record does not grow.
 ///
 /// What it gives is what [`super::simulate`] gives, without the trajectory, the extremes and the names of
-/// a [`crate::record::Run`].
+/// a [`crate::run::Run`].
 ///
 /// # In parts
 /// [`Simulator::advance_to`] and [`Simulator::advance_to_event`] go on from where the run is, and

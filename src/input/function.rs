@@ -3,17 +3,8 @@
 use super::commanded::{Command, Commanded};
 use super::lanes::LaneJet;
 use super::{Signals, Sine, Table};
-use crate::integrate::Lanes;
 use crate::kernel::LaneLevel;
-
-/// Which one-sided limit is meant at a breakpoint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// The limit from earlier times.
-    Left,
-    /// The limit from later times.
-    Right,
-}
+use crate::numerics::{Lanes, Side};
 
 /// A function of time and what is needed of it at one instant. Units: those of the function f,
 /// per second, times second and times second squared.

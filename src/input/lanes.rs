@@ -1,9 +1,9 @@
 //! Signals of trajectories side by side.
 
 use super::{INVERSES, Jet, Signals};
-use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{LaneLevel, lane_antiderivative, lane_take};
 use crate::model::InputKind;
+use crate::numerics::{LaneMask, Lanes};
 
 /// Value, rate and antiderivatives of a function at times of its own for each lane.
 #[derive(Debug, Clone, Copy)]

@@ -10,20 +10,22 @@
 //! after it give the values of one smooth function.
 
 mod commanded;
+mod context;
 mod function;
 mod lanes;
 mod sine;
 mod spline;
 mod table;
 
+pub use crate::numerics::Side;
 pub use commanded::Command;
-pub use function::{Function, Jet, Side};
+pub use function::{Function, Jet};
 pub(crate) use lanes::LaneSignals;
 pub use sine::Sine;
 pub use table::{Interpolation, Outside, Table, TableError};
 
-use crate::kernel::copy_few;
 use crate::model::{Input, InputKind};
+use crate::numerics::copy_few;
 
 /// All inputs of a model, as functions of the absolute time of a run.
 ///

@@ -2,8 +2,8 @@
 
 use super::lanes::LaneJet;
 use super::{Jet, Side, Signals};
-use crate::integrate::Lanes;
 use crate::kernel::{LaneLevel, lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
+use crate::numerics::Lanes;
 
 /// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
 const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {

@@ -29,7 +29,7 @@ fn inverse_power(x: f64) -> f64 {
 }
 
 /// Largest n of [`root`].
-const MOST: usize = super::ORDERS - 1;
+const MOST: usize = crate::numerics::ORDERS - 1;
 
 /// ⌈2³⁶/n⌉: times a number below 2¹⁸ it is 2³⁶ times the quotient by n, and less than 2³⁶/n more, so that
 /// the whole part is right.

@@ -11,7 +11,7 @@
 //! so all linear algebra is F × F. Nothing is allocated, and only +, −, ×, ÷ and square roots are
 //! used, so that results have the same bits on every processor.
 //!
-//! Files: `tableau` (coefficients), `linear` (LU), `newton` (stage equations), `estimate` (local
+//! Files: `tableau` (coefficients), `newton` (stage equations), `estimate` (local
 //! error), `controller` (step sizes), `first_step`, `dense`, `radau` (the step), `state`, `tolerances`,
 //! `stages` (how many are the fastest), `logarithm` (cheap roots), `system` (the interface to the
 //! equations), `report` (counters and errors).
@@ -24,8 +24,6 @@ mod controller;
 mod dense;
 mod estimate;
 mod first_step;
-mod lanes;
-mod linear;
 mod logarithm;
 mod newton;
 mod one_step;
@@ -38,10 +36,9 @@ mod tableau;
 mod taylor;
 mod tolerances;
 
+pub(crate) use crate::numerics::{LaneMask, Lanes, determinant_sign};
+pub use crate::numerics::{ORDERS, Series, SeriesKind, Singular, solve};
 pub use dense::Dense;
-pub(crate) use lanes::{LaneMask, Lanes};
-pub(crate) use linear::determinant_sign;
-pub use linear::{Singular, solve};
 pub use one_step::{Motion, OneStep};
 pub use radau::Radau;
 pub use report::{Counters, StepError, StepReport};
@@ -49,6 +46,6 @@ pub use stages::stages;
 pub use state::{Node, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};
-pub use taylor::{Analytic, ORDERS, Series, SeriesKind, Taylor, TaylorDense};
+pub use taylor::{Analytic, Taylor, TaylorDense};
 pub(crate) use taylor::{LaneTaylor, SERIES, stretch};
 pub use tolerances::{ToleranceError, Tolerances};

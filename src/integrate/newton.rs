@@ -4,12 +4,12 @@
 //! (S − 1)/2 complex systems M + hλC + h²λ²K of size F, λ the eigenvalues of A (Hairer & Wanner 1996,
 //! IV.8, with q̇ = v eliminated).
 
-use super::linear::{Lu, Singular};
 use super::report::Counters;
 use super::state::State;
 use super::system::System;
 use super::tableau::{Coefficients, MAX_PAIRS, RadauIia, Tableau};
 use super::tolerances::Weights;
+use crate::numerics::{Lu, Singular};
 use nalgebra::{Complex, SMatrix, SVector};
 
 /// A contraction above this is no convergence (RADAU5).

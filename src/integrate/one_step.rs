@@ -6,7 +6,8 @@ use super::report::{Counters, StepError, StepReport};
 use super::state::{Node, State};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
-use super::taylor::{Analytic, Series, Taylor, TaylorDense};
+use super::taylor::{Analytic, Taylor, TaylorDense};
+use crate::numerics::Series;
 use nalgebra::SVector;
 
 /// A one-step method with dense output, for systems of type `Y`.

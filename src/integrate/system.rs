@@ -1,6 +1,6 @@
 //! What the integrator asks of a mechanical system.
 
-use super::linear::{Singular, solve};
+use crate::numerics::{Singular, solve};
 use nalgebra::{SMatrix, SVector};
 
 /// A second-order system r(t, q, v, a) = 0 with q̇ = v, v̇ = a, where r is linear in a:

@@ -1,11 +1,10 @@
 //! The motion of a mode from a state, and what depends on it, order by order.
 
-use super::tape::{Operands, Row};
-use super::{Bounded, ORDERS, Tape};
+use super::ORDERS;
 use crate::input::Signals;
-use crate::integrate;
 use crate::kernel::{Context, MOST_FREE};
-use crate::model::Mode;
+use crate::model::{Mode, Operands, Row, Tape};
+use crate::numerics::{self, Bounded};
 
 /// Where an expansion starts.
 #[derive(Debug, Clone, Copy)]
@@ -92,7 +91,7 @@ impl Expansion {
             let known = |value: f64, of: usize| match sizes {
                 _ if !mode.free.contains(&i) => Bounded::exact(value),
                 None => Bounded::rounded(value, 1.0, 0.0),
-                Some(sizes) => Bounded::of_polynomial(value, integrate::ORDERS, sizes[of][i]),
+                Some(sizes) => Bounded::of_polynomial(value, numerics::ORDERS, sizes[of][i]),
             };
             given.q[i] = Row::default();
             given.v[i] = Row::default();

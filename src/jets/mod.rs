@@ -6,15 +6,9 @@
 //! along the exact motion, each with a [`Bounded`] error. That does not depend on the method of integration, and needs
 //! no recurrence in C. It is interpreted, so it is for the few states where nothing else tells.
 
-mod bounded;
 mod expansion;
-mod tape;
 
-pub use bounded::Bounded;
+pub(crate) use crate::model::JET_ORDERS as ORDERS;
+pub use crate::model::Tape;
+pub use crate::numerics::Bounded;
 pub(crate) use expansion::{Expansion, Point};
-pub use tape::{Instruction, Name, Pick, Tape};
-
-/// Coefficients of an expansion, that of order 0 included. A guard of a mechanical system leaves zero with one of its
-/// first six derivatives as a rule (a force that sets in with a cubic input moves a coordinate by its fifth); as many
-/// again tell how long they decide.
-pub const ORDERS: usize = 12;

@@ -5,7 +5,7 @@ use super::raw::{Raw, RawContext};
 use super::tables::{
     ConstantsKernel, Free, GuardKernel, LinearSystem, ModeKernel, TransitionKernel,
 };
-use crate::integrate::{ORDERS, Series};
+use crate::numerics::{ORDERS, Series};
 use nalgebra::{SMatrix, SVector};
 use std::sync::Arc;
 

@@ -1,12 +1,9 @@
 //! What generated functions need besides the free coordinates.
 
-use super::few::copy_few;
 use super::lanes::LaneRows;
 use super::raw::{Array, RawContext};
-use crate::input::{LaneSignals, Side, Signals};
-use crate::integrate::ORDERS;
-use crate::model::Model;
-use crate::with_kernel;
+use super::tables::ConstantsKernel;
+use crate::numerics::{ORDERS, Side};
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -98,7 +95,7 @@ impl Clone for Context {
 /// An angle (rad) with its sine and cosine, as C keeps them.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
-pub(super) struct KeptAngle {
+pub(crate) struct KeptAngle {
     angle: f64,
     sin: f64,
     cos: f64,
@@ -113,32 +110,53 @@ impl KeptAngle {
     };
 }
 
+/// Room that the functions of a model need besides its dimensions.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Rooms {
+    /// Numbers that the longest series carries from one order to the next.
+    pub workspace: usize,
+    /// Most guards of a mode.
+    pub guards: usize,
+    /// Most conditions of a transition.
+    pub conditions: usize,
+}
+
+/// Where the signals are kept, to be filled.
+pub(crate) struct SignalRooms<'c> {
+    /// Signals and their rates.
+    pub now: [&'c mut [f64]; 2],
+    /// Time and side that they are set for, s; NaN: none.
+    pub at: &'c mut (f64, Side),
+    /// Taylor coefficients, one row an order.
+    pub series: &'c mut [f64],
+    /// Of each signal, whether its series is wanted.
+    pub expanded: &'c [bool],
+    /// Signals at instants that will be asked for soon, a row each; antiderivatives are not among them.
+    pub ahead: &'c mut [f64],
+}
+
 impl Context {
-    /// A context for `model` with the constants of `parameters` (in the order of the model).
+    /// A context for the model with these dimensions.
     ///
     /// # Panics
-    /// If the number of parameters is not the model's.
-    pub fn new(model: &Model, parameters: &[f64]) -> Self {
-        let dimensions = model.constants.dimensions.clone();
-        let modes = model.automata().flat_map(|variant| &variant.modes);
-        let rooms = modes.map(|mode| with_kernel!(&mode.kernels, k => (k.workspace(), k.guards)));
-        let (workspace, guards) = rooms.fold((0, 0), |most, room| {
-            (most.0.max(room.0), most.1.max(room.1))
-        });
-        let modes = model.automata().flat_map(|variant| &variant.modes);
-        let transitions = modes
-            .flat_map(|mode| &mode.guards)
-            .flat_map(|guard| &guard.transitions);
-        let conditions = transitions.map(|t| t.kernel.conditions()).max();
-        let mut constants = vec![0.0; dimensions.constants];
-        model.constants.evaluate(parameters, &mut constants);
+    /// If the number of discrete states or parameters is not the model's.
+    pub(crate) fn with(
+        constants: &ConstantsKernel,
+        rooms: Rooms,
+        discrete: Vec<f64>,
+        parameters: &[f64],
+    ) -> Self {
+        let dimensions = constants.dimensions.clone();
+        assert_eq!(discrete.len(), dimensions.discretes);
+        let mut values = vec![0.0; dimensions.constants];
+        constants.evaluate(parameters, &mut values);
         let zeros = |count| Array::of(vec![0.0; count]);
         let arrays = Arrays {
             signals: zeros(dimensions.signals),
             signal_rates: zeros(dimensions.signals),
-            discrete: Array::of(model.discretes.iter().map(|d| d.values[0]).collect()),
+            discrete: Array::of(discrete),
             held: zeros(dimensions.coordinates),
-            constants: Array::of(constants),
+            constants: Array::of(values),
             angles: Array::of(vec![Cell::new(KeptAngle::ZERO); dimensions.angles]),
         };
         Context {
@@ -149,22 +167,20 @@ impl Context {
             ahead: vec![0.0; Self::MOST_AHEAD * dimensions.signals].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             signal_radii: vec![0.0; dimensions.signals].into(),
-            guard_series: vec![0.0; ORDERS * guards].into(),
-            conditions: vec![0.0; conditions.unwrap_or(0)].into(),
-            workspace: LaneRows::zeros(workspace.div_ceil(2)),
+            guard_series: vec![0.0; ORDERS * rooms.guards].into(),
+            conditions: vec![0.0; rooms.conditions].into(),
+            workspace: LaneRows::zeros(rooms.workspace.div_ceil(2)),
             dimensions,
         }
     }
 
-    /// Goes over to other parameters.
+    /// Goes over to other constants: those of the same model at these parameters.
     ///
     /// # Panics
-    /// As [`Context::new`], and if it is another model.
-    pub fn set_parameters(&mut self, model: &Model, parameters: &[f64]) {
-        assert!(Arc::ptr_eq(&self.dimensions, &model.constants.dimensions));
-        model
-            .constants
-            .evaluate(parameters, &mut self.arrays.constants);
+    /// As [`Context::with`], and if it is another model.
+    pub(crate) fn set_constants(&mut self, constants: &ConstantsKernel, parameters: &[f64]) {
+        assert!(Arc::ptr_eq(&self.dimensions, &constants.dimensions));
+        constants.evaluate(parameters, &mut self.arrays.constants);
     }
 
     /// Discrete states.
@@ -203,74 +219,18 @@ impl Context {
         [&mut self.arrays.signals, &mut self.arrays.signal_rates]
     }
 
-    /// The functions of the signals are others now.
-    pub fn forget_signals(&mut self) {
-        self.signals_at.0 = f64::NAN;
-    }
+    /// Most instants whose signals are foreseen.
+    pub(crate) const MOST_AHEAD: usize = 8;
 
-    /// Sets signals and their rates to those at time `t` (s), as they are on that side.
-    #[inline]
-    pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
-        if !self.quiet && self.signals_at != (t, side) {
-            signals.jets(
-                t,
-                side,
-                &mut self.arrays.signals,
-                &mut self.arrays.signal_rates,
-            );
-            self.signals_at = (t, side);
-        }
-    }
-
-    /// Most instants of [`Context::foresee_signals`].
-    pub const MOST_AHEAD: usize = 8;
-
-    /// Whether [`Context::foresee_signals`] gives all that the equations of motion need: they depend on
-    /// no antiderivative of an input, and on some input at all.
-    pub fn can_foresee(&self, signals: &Signals) -> bool {
-        !self.quiet && !signals.want_antiderivatives(&self.dimensions.expanded)
-    }
-
-    /// Computes the signals at up to [`Context::MOST_AHEAD`] instants side by side, for
-    /// [`Context::set_foreseen_signals`]; antiderivatives are left out.
-    pub fn foresee_signals(&mut self, signals: &Signals, at: &[(f64, Side)]) {
-        signals.values(at, self.arrays.signals.len(), &mut self.ahead);
-    }
-
-    /// Sets the signals to those of an instant that was foreseen, by its index: enough for the equations
-    /// of motion, and for nothing else.
-    #[inline]
-    pub fn set_foreseen_signals(&mut self, index: usize) {
-        let width = self.arrays.signals.len();
-        let row = &self.ahead[index * width..][..width];
-        copy_few(row, &mut self.arrays.signals);
-        self.signals_at.0 = f64::NAN;
-    }
-
-    /// Sets signals and their rates to those of a lane, as they are right after its time.
-    pub(crate) fn set_signals_of_lane<const W: usize>(
-        &mut self,
-        of: &LaneSignals<W>,
-        lane: usize,
-        signals: &Signals,
-    ) {
-        of.of_lane(
-            lane,
-            signals,
-            &mut self.arrays.signals,
-            &mut self.arrays.signal_rates,
-        );
-        self.signals_at = (of.time(lane), Side::Right);
-    }
-
-    /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
-    #[inline]
-    pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
-        if !self.quiet {
-            self.set_signals(signals, t, Side::Right);
-            let rows = &mut self.signal_series[..orders * self.arrays.signals.len()];
-            let known = [&*self.arrays.signals, &self.arrays.signal_rates];
-            signals.series(t, known, &self.dimensions.expanded, rows);
+    /// Where the signals are kept, to be filled.
+    #[inline(always)]
+    pub(crate) fn signal_rooms(&mut self) -> SignalRooms<'_> {
+        SignalRooms {
+            now: [&mut self.arrays.signals, &mut self.arrays.signal_rates],
+            at: &mut self.signals_at,
+            series: &mut self.signal_series,
+            expanded: &self.dimensions.expanded,
+            ahead: &mut self.ahead,
         }
     }
 

@@ -7,35 +7,35 @@ use thiserror::Error;
 pub const CONTRACT_VERSION: u32 = 1;
 
 /// What a model begins with: `DALEMBERT_CONTRACT_MARK`.
-pub(super) const MARK: [u8; 8] = *b"dalembrt";
+pub(crate) const MARK: [u8; 8] = *b"dalembrt";
 
 /// Levels of the processor for which a model may have functions for lanes: `DALEMBERT_LEVELS`.
-pub(super) const LEVELS: usize = 3;
+pub(crate) const LEVELS: usize = 3;
 
 /// `struct dalembert_functions`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RawFunctions {
-    pub(super) values: usize,
-    pub(super) value: *const Option<Raw>,
-    pub(super) series: usize,
-    pub(super) start: *const Option<RawStart>,
-    pub(super) run: *const Option<RawRun>,
+    pub(crate) values: usize,
+    pub(crate) value: *const Option<Raw>,
+    pub(crate) series: usize,
+    pub(crate) start: *const Option<RawStart>,
+    pub(crate) run: *const Option<RawRun>,
 }
 
 /// `struct dalembert_model`: what a compiled model exports.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct RawModel {
-    pub(super) mark: [u8; 8],
-    pub(super) version: u32,
-    pub(super) size: u32,
-    pub(super) digest: [u8; 64],
-    pub(super) name: *const std::ffi::c_char,
-    pub(super) description_length: usize,
-    pub(super) description: *const u8,
-    pub(super) functions: RawFunctions,
-    pub(super) lanes: [*const RawFunctions; LEVELS],
+    pub(crate) mark: [u8; 8],
+    pub(crate) version: u32,
+    pub(crate) size: u32,
+    pub(crate) digest: [u8; 64],
+    pub(crate) name: *const std::ffi::c_char,
+    pub(crate) description_length: usize,
+    pub(crate) description: *const u8,
+    pub(crate) functions: RawFunctions,
+    pub(crate) lanes: [*const RawFunctions; LEVELS],
 }
 
 // SAFETY: it is a constant, and so is all that it refers to.
@@ -43,14 +43,14 @@ unsafe impl Sync for RawModel {}
 
 /// Functions by the places that the description tells.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Functions {
+pub(crate) struct Functions {
     pub values: Vec<Option<Raw>>,
     pub series: Vec<Option<(RawStart, RawRun)>>,
 }
 
 /// What a model has in it besides its mark.
 #[derive(Debug, Clone)]
-pub(super) struct Parts {
+pub(crate) struct Parts {
     /// Of what the model was made from.
     pub digest: String,
     /// JSON.

@@ -4,7 +4,7 @@ use super::context::Dimensions;
 use super::lanes::{LaneContext, LaneLevel, LaneSeries, LaneSystem};
 use super::raw::RawContext;
 use super::tables::{GuardKernel, ModeKernel, TransitionKernel};
-use crate::integrate::{Lanes, ORDERS};
+use crate::numerics::{Lanes, ORDERS};
 use std::sync::Arc;
 
 impl<const W: usize> LaneContext<W> {

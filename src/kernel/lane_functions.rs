@@ -5,7 +5,7 @@ use super::lanes::{
     LANE_ROWS, LANES_OF_LEVELS, LaneGuard, LaneLevel, LaneLimits, LanePast, LanePoint, LaneRows,
     LaneSeries, LaneSystem, processor_level,
 };
-use crate::integrate::{LaneMask, Lanes, ORDERS};
+use crate::numerics::{LaneMask, Lanes, ORDERS};
 use std::ops::{Deref, DerefMut};
 
 /// What codegen/lanes.c has for every mode, at each level of the processor.

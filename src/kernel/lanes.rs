@@ -3,7 +3,7 @@
 use super::context::{Context, Dimensions};
 use super::lane_functions::LaneFunctions;
 use super::tables::ModeKernel;
-use crate::integrate::{LaneMask, Lanes, ORDERS};
+use crate::numerics::{LaneMask, Lanes, ORDERS};
 use std::cell::Cell;
 use std::sync::Arc;
 

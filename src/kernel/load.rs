@@ -1,10 +1,8 @@
-//! From what a compiled model exports to a [`Model`]: linked into the program, or loaded from a shared library.
+//! What a compiled model exports: linked into the program, or loaded from a shared library.
 
 use super::contract::{
     CONTRACT_VERSION, ContractError, Functions, MARK, Parts, RawFunctions, RawModel,
 };
-use super::description;
-use crate::model::Model;
 use std::ffi::CStr;
 use std::mem::size_of;
 use std::path::Path;
@@ -19,51 +17,43 @@ pub struct Library {
 /// Name of the constant that the shared library of a model exports: `DALEMBERT_SYMBOL` as it is compiled.
 const SYMBOL: &CStr = c"dalembert_model";
 
-impl Model {
-    /// Loads a model from a shared library.
-    ///
-    /// The library is code: what it does when it is loaded, and what its functions do, no check can tell. Mark,
-    /// version and digest are compared before anything in it is called. The caller answers for the file being the one that was
-    /// compiled from generated code: a cache compares its digest.
-    ///
-    /// # Errors
-    /// [`ContractError`] if it is no library of this system, no model, of another version, or not made from what
-    /// `digest` tells, if that is given.
-    pub fn load(file: &Path, digest: Option<&str>) -> Result<Model, ContractError> {
-        let refused = |error: libloading::Error| ContractError::Library {
-            message: error.to_string(),
-        };
-        // SAFETY: a library of generated code has no initializers; that it is one the caller answers for.
-        let loaded = unsafe { libloading::Library::new(file) }.map_err(refused)?;
-        // SAFETY: the constant is only read once its mark, version and size were compared, and then is what they say.
-        let parts = unsafe {
-            let symbol = loaded
-                .get::<*const RawModel>(SYMBOL.to_bytes_with_nul())
-                .map_err(refused)?;
-            parts(*symbol)?
-        };
-        if let Some(expected) = digest
-            && parts.digest != expected
-        {
-            return Err(ContractError::Digest {
-                found: parts.digest,
-                expected: expected.to_owned(),
-            });
-        }
-        description::model(&parts, Some(Library { loaded }))
+/// Opens the shared library of a model and copies what is in it.
+///
+/// The library is code: what it does when it is loaded, and what its functions do, no check can tell. Mark, version and
+/// digest are compared before anything in it is called.
+///
+/// # Errors
+/// [`ContractError`] if it is no library of this system, no model, of another version, or not made from what
+/// `digest` tells, if that is given.
+pub(crate) fn open(file: &Path, digest: Option<&str>) -> Result<(Parts, Library), ContractError> {
+    let refused = |error: libloading::Error| ContractError::Library {
+        message: error.to_string(),
+    };
+    // SAFETY: a library of generated code has no initializers; that it is one the caller answers for.
+    let loaded = unsafe { libloading::Library::new(file) }.map_err(refused)?;
+    // SAFETY: the constant is only read once its mark, version and size were compared, and then is what they say.
+    let parts = unsafe {
+        let symbol = loaded
+            .get::<*const RawModel>(SYMBOL.to_bytes_with_nul())
+            .map_err(refused)?;
+        parts(*symbol)?
+    };
+    if let Some(expected) = digest
+        && parts.digest != expected
+    {
+        return Err(ContractError::Digest {
+            found: parts.digest,
+            expected: expected.to_owned(),
+        });
     }
+    Ok((parts, Library { loaded }))
 }
 
-/// A model that is linked into the program.
+/// What is in a model that is linked into the program.
 ///
 /// # Errors
 /// [`ContractError`] if it is of another version.
-pub(crate) fn linked(raw: &'static RawModel) -> Result<Model, ContractError> {
-    description::model(&parts_of_linked(raw)?, None)
-}
-
-/// What is in it.
-pub(super) fn parts_of_linked(raw: &'static RawModel) -> Result<Parts, ContractError> {
+pub(crate) fn parts_of_linked(raw: &'static RawModel) -> Result<Parts, ContractError> {
     // SAFETY: only generated C makes one, and what is linked stays.
     unsafe { parts(raw) }
 }
@@ -71,9 +61,9 @@ pub(super) fn parts_of_linked(raw: &'static RawModel) -> Result<Parts, ContractE
 /// The name of a model that is linked into the program.
 ///
 /// # Errors
-/// As [`linked`].
+/// As [`parts_of_linked`].
 pub(crate) fn name_of_linked(raw: &'static RawModel) -> Result<&'static str, ContractError> {
-    // SAFETY: as in `linked`; a name ends with a zero.
+    // SAFETY: as in `parts_of_linked`; a name ends with a zero.
     unsafe {
         check(raw)?;
         Ok(CStr::from_ptr(raw.name).to_str().unwrap_or_default())

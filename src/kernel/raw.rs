@@ -8,7 +8,7 @@ use std::ptr::NonNull;
 /// constants, jerks.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RawContext {
+pub(crate) struct RawContext {
     pub(super) u: *const f64,
     pub(super) u_dot: *const f64,
     pub(super) d: *const f64,
@@ -86,12 +86,12 @@ impl Arrays {
 }
 
 /// A generated C function.
-pub(super) type Raw =
+pub(crate) type Raw =
     unsafe extern "C" fn(*const f64, *const f64, *const f64, *const RawContext, *mut f64);
 
 /// Generated C functions that expand the motion in time: coefficients of order 0, and of the orders
 /// 1 … n − 1. The arrays q, v, a and u hold one row an order.
-pub(super) type RawStart = unsafe extern "C" fn(
+pub(crate) type RawStart = unsafe extern "C" fn(
     *mut f64,
     *mut f64,
     *mut f64,
@@ -100,7 +100,7 @@ pub(super) type RawStart = unsafe extern "C" fn(
     *mut f64,
     *mut f64,
 );
-pub(super) type RawRun = unsafe extern "C" fn(
+pub(crate) type RawRun = unsafe extern "C" fn(
     usize,
     *mut f64,
     *mut f64,

@@ -3,16 +3,16 @@
 
 use super::raw::{Raw, RawRun, RawStart};
 use super::{Context, Dimensions, LaneLevel};
-use crate::integrate::{ORDERS, SeriesKind};
+use crate::numerics::{ORDERS, SeriesKind};
 use nalgebra::{SMatrix, SVector};
 use std::sync::Arc;
 
 /// What depends on parameters alone.
 #[derive(Debug)]
 pub struct ConstantsKernel {
-    pub(super) dimensions: Arc<Dimensions>,
-    pub(super) function: Raw,
-    pub(super) count: usize,
+    pub(crate) dimensions: Arc<Dimensions>,
+    pub(crate) function: Raw,
+    pub(crate) count: usize,
 }
 
 impl ConstantsKernel {
@@ -46,56 +46,56 @@ pub struct LinearSystem<const F: usize> {
 /// The generated functions of one mode with F free coordinates.
 #[derive(Debug)]
 pub struct ModeKernel<const F: usize> {
-    pub(super) dimensions: Arc<Dimensions>,
-    pub(super) residual: Raw,
-    pub(super) jacobian: Raw,
-    pub(super) system: Raw,
-    pub(super) inertia: Raw,
-    pub(super) jerk_load: Raw,
-    pub(super) magnitude: Raw,
-    pub(super) reactions: Raw,
-    pub(super) energies: Raw,
-    pub(super) powers: Raw,
-    pub(super) momenta: Raw,
-    pub(super) requirements: (Raw, usize),
+    pub(crate) dimensions: Arc<Dimensions>,
+    pub(crate) residual: Raw,
+    pub(crate) jacobian: Raw,
+    pub(crate) system: Raw,
+    pub(crate) inertia: Raw,
+    pub(crate) jerk_load: Raw,
+    pub(crate) magnitude: Raw,
+    pub(crate) reactions: Raw,
+    pub(crate) energies: Raw,
+    pub(crate) powers: Raw,
+    pub(crate) momenta: Raw,
+    pub(crate) requirements: (Raw, usize),
     /// In place of rates of signals and of jerks it takes radii.
-    pub(super) requirement_bounds: Raw,
-    pub(super) series: Option<SeriesKernel>,
+    pub(crate) requirement_bounds: Raw,
+    pub(crate) series: Option<SeriesKernel>,
     /// The same where no input acts.
-    pub(super) quiet_series: Option<SeriesKernel>,
-    pub(super) guard_series: Option<SeriesKernel>,
-    pub(super) guards: usize,
-    pub(super) mass_is_constant: bool,
-    pub(super) inertia_is_fixed: bool,
-    pub(super) is_linear: bool,
-    pub(super) held_rates: Raw,
-    pub(super) held_values: Raw,
+    pub(crate) quiet_series: Option<SeriesKernel>,
+    pub(crate) guard_series: Option<SeriesKernel>,
+    pub(crate) guards: usize,
+    pub(crate) mass_is_constant: bool,
+    pub(crate) inertia_is_fixed: bool,
+    pub(crate) is_linear: bool,
+    pub(crate) held_rates: Raw,
+    pub(crate) held_values: Raw,
     /// By level of the processor; none where the mode does not go in lanes.
-    pub(super) lanes: Box<[LaneKernel]>,
+    pub(crate) lanes: Box<[LaneKernel]>,
 }
 
 /// The generated functions of a mode for trajectories side by side, at a level of the processor.
 #[derive(Debug)]
 pub struct LaneKernel {
-    pub(super) series: SeriesKernel,
+    pub(crate) series: SeriesKernel,
     /// The same where no input acts.
-    pub(super) quiet_series: SeriesKernel,
-    pub(super) requirement_bounds: Raw,
+    pub(crate) quiet_series: SeriesKernel,
+    pub(crate) requirement_bounds: Raw,
 }
 
 /// The generated Taylor series of a mode.
 #[derive(Debug)]
 pub struct SeriesKernel {
-    pub(super) start: RawStart,
-    pub(super) run: RawRun,
+    pub(crate) start: RawStart,
+    pub(crate) run: RawRun,
     /// Doubles of the workspace that do not grow with the order.
-    pub(super) lead: usize,
+    pub(crate) lead: usize,
     /// Doubles of the workspace for each order.
-    pub(super) row: usize,
+    pub(crate) row: usize,
     /// Convolutions that an order takes.
-    pub(super) convolutions: usize,
+    pub(crate) convolutions: usize,
     /// Whether all coefficients vanish beyond order 0, or of guards beyond the orders of the motion.
-    pub(super) ends: bool,
+    pub(crate) ends: bool,
 }
 
 impl<const F: usize> ModeKernel<F> {
@@ -142,7 +142,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     #[inline]
-    pub(super) fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
+    pub(crate) fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
         match x.quiet {
             true => self.quiet_series.as_ref(),
             false => self.series.as_ref(),
@@ -150,7 +150,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// Doubles of workspace that the series of this mode need.
-    pub(super) fn workspace(&self) -> usize {
+    pub(crate) fn workspace(&self) -> usize {
         let all = [&self.series, &self.quiet_series, &self.guard_series];
         let all = all.into_iter().flatten();
         all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
@@ -169,7 +169,7 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     #[inline]
-    pub(super) fn lane_kernel<const W: usize>(&self, level: LaneLevel<W>) -> &LaneKernel {
+    pub(crate) fn lane_kernel<const W: usize>(&self, level: LaneLevel<W>) -> &LaneKernel {
         &self.lanes[level.index]
     }
 }
@@ -190,13 +190,13 @@ impl TransitionKernel {
 #[derive(Debug)]
 pub struct GuardKernel {
     /// Of its model.
-    pub(super) dimensions: Arc<Dimensions>,
-    pub(super) free: usize,
-    pub(super) value: Raw,
-    pub(super) rate: Raw,
-    pub(super) magnitude: Raw,
+    pub(crate) dimensions: Arc<Dimensions>,
+    pub(crate) free: usize,
+    pub(crate) value: Raw,
+    pub(crate) rate: Raw,
+    pub(crate) magnitude: Raw,
     /// The value in lanes, by level of the processor.
-    pub(super) in_lanes: Box<[Option<Raw>]>,
+    pub(crate) in_lanes: Box<[Option<Raw>]>,
 }
 
 /// A generated transition: its reset, and the conditions with the target's number of
@@ -204,12 +204,12 @@ pub struct GuardKernel {
 #[derive(Debug)]
 pub struct TransitionKernel {
     /// Of its model.
-    pub(super) dimensions: Arc<Dimensions>,
-    pub(super) source_free: usize,
-    pub(super) reset: Raw,
-    pub(super) condition: Option<(Raw, usize, usize)>,
+    pub(crate) dimensions: Arc<Dimensions>,
+    pub(crate) source_free: usize,
+    pub(crate) reset: Raw,
+    pub(crate) condition: Option<(Raw, usize, usize)>,
     /// The reset in lanes, by level of the processor, if it leads to the same mode and changes nothing that it holds.
-    pub(super) in_lanes: Box<[Option<Raw>]>,
+    pub(crate) in_lanes: Box<[Option<Raw>]>,
 }
 
 /// The functions of a mode, typed by its number of free coordinates: the event engine is compiled for each.

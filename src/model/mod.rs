@@ -3,14 +3,22 @@
 //! or loaded ([`crate::kernel`]), and owns all that it holds; names are interned ([`name::intern`]).
 
 mod bounds;
+mod context;
+mod description;
+mod load;
 pub mod name;
+mod reader;
 mod registry;
+mod tape;
+#[cfg(test)]
+mod tests;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
 pub use registry::{FolderRefused, FromFolder, Models, models};
+pub use tape::{Instruction, JET_ORDERS, Name, Pick, Tape};
+pub(crate) use tape::{Operands, Row};
 
-use crate::jets::Tape;
 use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
 
 /// A model: one folder under `models/`.

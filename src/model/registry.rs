@@ -1,6 +1,7 @@
 //! The models that are linked into a program, by name.
 
 use super::Model;
+use super::load;
 use crate::kernel::{self, ContractError, RawModel};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -113,7 +114,7 @@ impl Models {
         let (name, raw) = self.linked.get_key_value(name)?;
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         let model = read.entry(name).or_insert_with(|| {
-            let model = kernel::linked(raw);
+            let model = load::linked(raw);
             Arc::new(model.unwrap_or_else(|error| panic!("the model `{name}`: {error}")))
         });
         Some(model.clone())

@@ -16,18 +16,10 @@ use std::rc::Rc;
 
 use sha2::{Digest, Sha256};
 
+use crate::run::hexadecimal;
+
 /// Digests in a row of the file.
 const IN_A_ROW: usize = 64;
-
-/// A digest in hexadecimal digits, cut to 64 bits: it tells that something was changed, and need not resist an
-/// attacker.
-pub(crate) fn digest(content: impl AsRef<[u8]>) -> String {
-    hexadecimal(&Sha256::digest(content.as_ref())[..8])
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
 
 /// Digests of the lines of one file, as they come.
 #[derive(Debug, Clone, Default)]

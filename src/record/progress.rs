@@ -1,4 +1,4 @@
-//! The progress of a simulation.
+//! The progress of a simulation as a line on the terminal.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -6,23 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::looks::Looks;
-
-/// Hears now and then how far a simulation is.
-pub trait Progress {
-    /// The simulation has reached time `t` (s) after `events` transitions. It is called after every
-    /// step, so it must be cheap; `Break` stops the run, which keeps what it has.
-    fn advance(&mut self, t: f64, events: u64) -> ControlFlow<()>;
-}
-
-/// Hears and says nothing.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Silent;
-
-impl Progress for Silent {
-    fn advance(&mut self, _t: f64, _events: u64) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
+use crate::run::Progress;
 
 /// A line on the standard error that shows the progress; nothing where that is no terminal. The
 /// line goes away with the value.

@@ -11,18 +11,18 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::folder::check;
-use super::layout::{Layout, Quantity, Recorded};
-use super::peaks::Peak;
-use super::reached::Reached;
-use super::recorder::Recorder;
-use super::run::{
-    EnergyJump, Event, Jump, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory,
-};
 use super::summary::SUMMARY;
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
-use super::tally::Tally;
-use super::uncertain::Uncertain;
 use crate::model::{Model, Variant};
+use crate::run::Peak;
+use crate::run::Reached;
+use crate::run::Recorder;
+use crate::run::Tally;
+use crate::run::Uncertain;
+use crate::run::{
+    EnergyJump, Event, Jump, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory,
+};
+use crate::run::{Layout, Quantity, Recorded};
 
 /// Why a run cannot be read.
 #[derive(Debug, thiserror::Error)]

@@ -5,8 +5,8 @@
 //! each column stay. Intervals of a larger k are made of whole ones of a smaller k, so that the extremes are those of
 //! all rows, however often it happens.
 
-use super::layout::Layout;
-use super::run::{Column, Event, Jump, Run, Snapshot};
+use crate::run::Layout;
+use crate::run::{Column, Event, Jump, Run, Snapshot};
 use std::ops::Range;
 
 /// Most numbers that are kept of the rows: 32 MB, some thousand intervals of a model with twenty columns.

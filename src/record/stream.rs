@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use super::folder::{StagedFile, Staging, io_error};
 use super::plot::{overview_of, phase_portraits_of};
-use super::run::{Jump, Run, Snapshot};
 use super::sketch::Sketch;
 use super::summary::SUMMARY;
 use super::table::{EVENTS, EventsTable, METADATA, TRAJECTORY, TrajectoryTable, write_metadata};
 use super::{FolderError, Layout, OutputFolder, Summary};
+use crate::run::{Jump, Run, Snapshot};
 
 /// File name of the picture of everything over time.
 pub const OVERVIEW: &str = "overview.svg";

@@ -6,10 +6,10 @@ use std::io::{self, Write};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 
-use super::layout::Quantity;
 use super::number::push_exact;
-use super::run::{Place, Run};
-use super::tally::{Gain, Impacts};
+use crate::run::Quantity;
+use crate::run::{Gain, Impacts};
+use crate::run::{Place, Run};
 
 /// File name of the summary.
 pub const SUMMARY: &str = "summary.json";

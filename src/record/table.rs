@@ -8,9 +8,9 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::layout::Layout;
 use super::number::push_exact;
-use super::run::{Column, EnergyJump, Group, Jump, Run};
+use crate::run::Layout;
+use crate::run::{Column, EnergyJump, Group, Jump, Run};
 
 /// File name of the samples.
 pub const TRAJECTORY: &str = "trajectory.csv";

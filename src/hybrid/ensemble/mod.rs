@@ -19,7 +19,7 @@ use super::failure::Reason;
 use super::problem::{Initial, Method, Problem};
 use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
-use crate::record::{Jump, Reached, Recorded, Silent};
+use crate::run::{Jump, Reached, Recorded, Silent};
 use rayon::prelude::*;
 use worker::Worker;
 

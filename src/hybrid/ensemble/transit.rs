@@ -5,7 +5,7 @@ use super::super::simulation::Simulation;
 use super::group::{Group, WatchedGuard};
 use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{lane_departs, lane_is_apart, lane_leap, lane_take};
-use crate::record::Jump;
+use crate::run::Jump;
 
 impl<const F: usize, const W: usize> Group<'_, F, W> {
     /// Takes the transitions of lanes that have just come to an event, where they are plain; gives these

@@ -7,7 +7,7 @@ use super::{Ensemble, Finished, Member};
 use crate::input::Signals;
 use crate::integrate::LaneMask;
 use crate::kernel::{LaneLevel, with_kernel};
-use crate::record::Silent;
+use crate::run::Silent;
 
 /// A group, whatever its number of free coordinates.
 trait AnyGroup<const W: usize> {

@@ -1,7 +1,7 @@
 //! Largest and smallest values of what a run records, and when it first takes them.
 
 use super::interpolants::{Interpolants, place};
-use crate::record::{Group, Layout, Peak};
+use crate::run::{Group, Layout, Peak};
 use std::ops::Range;
 
 /// The extremes so far, one of each column that has one.

@@ -1,6 +1,6 @@
 //! The running energy ledger, in the inertial frame.
 
-use crate::record::{EnergyJump, Ledger};
+use crate::run::{EnergyJump, Ledger};
 
 /// Sentence about the frame, for the summary.
 const FRAME: &str = "inertial frame in which the ground is at rest at t = 0; a landing on moving \

@@ -25,7 +25,7 @@ use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
 use crate::model::Mode;
-use crate::record::{Layout, Ledger, Peak};
+use crate::run::{Layout, Ledger, Peak};
 use extremes::Extremes;
 use interpolants::{Interpolants, MOST};
 use ledger::RunningLedger;

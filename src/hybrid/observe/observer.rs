@@ -1,7 +1,7 @@
 //! What is told of a run while it is computed, and to whom.
 
 use super::super::problem::Problem;
-use crate::record::{Jump, Layout, Recorder, Snapshot, Trajectory};
+use crate::run::{Jump, Layout, Recorder, Snapshot, Trajectory};
 use std::ops::ControlFlow;
 
 /// Hears of a run as it goes on: of rows of samples and of transitions, and, if it wants, of every step with its

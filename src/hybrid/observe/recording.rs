@@ -3,7 +3,7 @@
 use super::super::accumulation::Accumulation;
 use super::super::problem::Problem;
 use super::observer::{Collected, MadeStep, Observer};
-use crate::record::{Event, Jump, Layout, Snapshot, Tally, Trajectory};
+use crate::run::{Event, Jump, Layout, Snapshot, Tally, Trajectory};
 use std::ops::ControlFlow;
 
 /// What rows and transitions are told to, one of them.

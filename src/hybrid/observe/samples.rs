@@ -11,7 +11,7 @@ use crate::hybrid::simulation::{Here, Simulation};
 use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::record::{Group, Layout};
+use crate::run::{Group, Layout};
 use std::ops::ControlFlow;
 
 /// What a row needs besides the state.

@@ -1,6 +1,6 @@
 //! Dense output: the series itself.
 
-use super::series::Series;
+use crate::numerics::Series;
 use nalgebra::SVector;
 
 /// The motion within a step as the Taylor series about its start, which is what the method computed:

@@ -1,13 +1,12 @@
 //! The Taylor method for trajectories side by side: the formulas of [`super::Taylor`], lane by lane.
 
-use super::super::lanes::{LaneMask, Lanes};
 use super::super::tolerances::Tolerances;
 use super::length::{self, Terms};
-use super::series::{ORDERS, SeriesKind};
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
     lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
 };
+use crate::numerics::{LaneMask, Lanes, ORDERS, SeriesKind};
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
 pub(crate) struct LaneTaylor<const F: usize, const W: usize> {

@@ -4,7 +4,7 @@ use super::super::logarithm::{
     BIAS, PLACES, binary_logarithm, natural_logarithm, part, places, power_of_two, reciprocal,
 };
 use super::super::stages;
-use super::series::{ORDERS, SeriesKind};
+use crate::numerics::{ORDERS, SeriesKind};
 
 /// What a step costs besides its series (search for events and the engine's loop), what an order
 /// costs for each coordinate, and what a product in a convolution costs, in ns. Their ratios decide, and these

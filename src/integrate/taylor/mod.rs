@@ -18,14 +18,14 @@ use length::Terms;
 pub use dense::TaylorDense;
 pub(crate) use dense::stretch;
 pub(crate) use lanes::LaneTaylor;
-pub use series::{Analytic, ORDERS, Series, SeriesKind};
+pub use series::Analytic;
 
-use super::linear::Lu;
 use super::logarithm::root;
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances};
+use crate::numerics::{Lu, Series, SeriesKind};
 use nalgebra::{SMatrix, SVector};
 
 /// What is not finite where the coefficients of a series leave the range of doubles.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::run::{Column, Group};
+use super::result::{Column, Group};
 use crate::model::{InputKind, Model, Variant};
 
 /// Which columns a scene records besides coordinates, velocities, discrete states and the mode.

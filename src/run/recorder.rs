@@ -1,7 +1,7 @@
 //! Collects samples without allocating in the step loop.
 
 use super::Layout;
-use super::run::Trajectory;
+use super::result::Trajectory;
 
 /// Fills a [`Trajectory`] row by row.
 #[derive(Debug, Clone)]

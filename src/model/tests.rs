@@ -1,8 +1,11 @@
 //! What is not as the contract says is refused, with its place and both values.
 
-use super::contract::{CONTRACT_VERSION, ContractError, Parts, RawModel};
-use super::load::parts_of_linked;
-use super::{description, linked, linked_models, name_of_linked};
+use super::description;
+use super::load::linked;
+use crate::kernel::{
+    CONTRACT_VERSION, ContractError, Parts, RawModel, linked_models, name_of_linked,
+    parts_of_linked,
+};
 use serde_json::{Value, json};
 
 fn raw(name: &str) -> &'static RawModel {

@@ -1,7 +1,12 @@
 //! Expressions as lists of instructions, written by `codegen/tape.py`, and their expansion order by order.
 
-use super::{Bounded, ORDERS};
 use crate::kernel::sin_cos;
+use crate::numerics::Bounded;
+
+/// Coefficients of an expansion, that of order 0 included. A guard of a mechanical system leaves zero with one of its
+/// first six derivatives as a rule (a force that sets in with a cubic input moves a coordinate by its fifth); as many
+/// again tell how long they decide.
+pub const JET_ORDERS: usize = 12;
 
 /// A column of expressions.
 #[derive(Debug)]
@@ -85,11 +90,11 @@ pub enum Pick {
 }
 
 /// Coefficients of powers of time.
-pub(super) type Row = [Bounded; ORDERS];
+pub(crate) type Row = [Bounded; JET_ORDERS];
 
 /// What an expression is made of: rows of coefficients, one a coordinate, signal and so on.
 #[derive(Debug)]
-pub(super) struct Operands {
+pub(crate) struct Operands {
     pub q: Vec<Row>,
     pub v: Vec<Row>,
     pub a: Vec<Row>,
@@ -101,7 +106,7 @@ pub(super) struct Operands {
 impl Tape {
     /// Appends the coefficients of order `k` of all instructions, given those below. Accelerations that a result does
     /// not depend on need not be known.
-    pub(super) fn expand(&self, k: usize, given: &Operands, rows: &mut [Row]) {
+    pub(crate) fn expand(&self, k: usize, given: &Operands, rows: &mut [Row]) {
         let still = |value: f64| match k {
             0 => Bounded::exact(value),
             _ => Bounded::default(),

@@ -1,20 +1,16 @@
 //! From the description and the functions of a compiled model to a [`Model`]: codegen/description.py wrote it, and every
 //! field and index of it is checked here.
 
-use super::contract::{ContractError, Functions, Parts};
-use super::raw::Raw;
+use super::name::intern;
 use super::reader::{At, count, number, text, truth};
-use super::tables::{
-    ConstantsKernel, GuardKernel, LaneKernel, MOST_FREE, ModeKernel, ModeKernels, SeriesKernel,
-    TransitionKernel,
+use super::{
+    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Instruction, Limit,
+    Mode, Model, Motion, Name, Parameter, ParameterSet, ParametricBound, Pick, Requirement, Rest,
+    Tape, Transition, Validity, Variant,
 };
-use super::{Dimensions, Library};
-use crate::jets::{Instruction, Name, Pick, Tape};
-use crate::model::name::intern;
-use crate::model::{
-    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Limit, Mode, Model,
-    Motion, Parameter, ParameterSet, ParametricBound, Requirement, Rest, Transition, Validity,
-    Variant,
+use crate::kernel::{
+    ConstantsKernel, ContractError, Dimensions, Functions, GuardKernel, LaneKernel, Library,
+    MOST_FREE, ModeKernel, ModeKernels, Parts, Raw, SeriesKernel, TransitionKernel,
 };
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Extremes of a quantity, and its curve as far as it is recorded.
 
-use super::run::Run;
+use super::result::Run;
 
 /// Smallest and largest value of a quantity, and when it first took them.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]

@@ -1,6 +1,6 @@
 //! How often transitions happened, and what impacts did to the energy: kept while a run goes on.
 
-use super::run::Jump;
+use super::result::Jump;
 
 /// Counts of transitions and sums of impacts, in bounded memory.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -16,7 +16,7 @@ pub struct Singular {
 }
 
 /// Entries of a matrix: real or complex.
-pub(super) trait Scalar: Copy + Default + Mul<Output = Self> + Sub<Output = Self> {
+pub(crate) trait Scalar: Copy + Default + Mul<Output = Self> + Sub<Output = Self> {
     /// Size for the choice of a pivot; for complex numbers |Re| + |Im|, within √2 of the modulus.
     fn size(self) -> f64;
     /// 1 / self. Complex: |self| in 1e-154 … 1e154, where its square is a normal number.
@@ -48,7 +48,7 @@ impl Scalar for Complex<f64> {
 
 /// P A = L U of an F × F matrix.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lu<T, const F: usize> {
+pub(crate) struct Lu<T, const F: usize> {
     /// L below the diagonal, U above.
     rows: [[T; F]; F],
     /// Reciprocals of the diagonal of U.

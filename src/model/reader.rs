@@ -1,6 +1,6 @@
 //! Reading the description of a model: every value with its place, every index against what it counts.
 
-use super::contract::ContractError;
+use crate::kernel::ContractError;
 use crate::model::name::intern;
 use serde_json::Value;
 use std::fmt::Write;
