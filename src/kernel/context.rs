@@ -220,7 +220,7 @@ impl Context {
     }
 
     /// Most instants whose signals are foreseen.
-    pub(crate) const MOST_AHEAD: usize = 8;
+    pub const MOST_AHEAD: usize = 8;
 
     /// Where the signals are kept, to be filled.
     #[inline(always)]

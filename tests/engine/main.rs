@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod advance;
 mod bouncing;
 mod coulomb;
 mod derivatives;

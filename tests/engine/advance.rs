@@ -1,8 +1,6 @@
 //! Runs in parts: the same bits as the whole, inputs that are commanded on the way, and why an advance stops.
 
-mod common;
-
-use common::problem;
+use crate::common::problem;
 use dalembert::hybrid::{Invalid, Method, Problem, Reason, Simulator, Stopped, simulate};
 use dalembert::input::{Command, Function, Interpolation, Outside, Table};
 use dalembert::model::models;
