@@ -164,6 +164,13 @@ def _apply(op, dims, values):
 
 
 def short(expression, limit=90):
-    """A term as text, cut where it is long."""
-    line = str(expression)
+    """A term as text, its numbers with all their digits, cut where it is long."""
+    precision = ca.SX.get_precision()
+    ca.SX.set_precision(17)
+    try:
+        line = str(expression)
+    finally:
+        ca.SX.set_precision(precision)
+    # The fewest digits that give the same number.
+    line = re.sub(r"\b\d+\.\d+(e[+-]?\d+)?", lambda number: repr(float(number[0])), line)
     return line if len(line) <= limit else line[: limit - 1] + "…"

@@ -182,6 +182,15 @@ fn no_layer_imports_one_above_it() {
             }
         }
     }
+    // Of the engine, what runs one trajectory knows nothing of many at once.
+    for file in files(&source.join("hybrid")) {
+        let text = fs::read_to_string(&file).expect("a module is a text");
+        let is_root = file.ends_with("hybrid/mod.rs");
+        let is_of_many = file.components().any(|c| c.as_os_str() == "ensemble");
+        if !is_root && !is_of_many && text.contains("ensemble::") {
+            wrong.push(format!("{} imports ensemble", file.display()));
+        }
+    }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

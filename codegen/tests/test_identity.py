@@ -5,6 +5,7 @@ import unittest
 
 import casadi as ca
 
+from codegen import units
 from codegen.graph import structure
 from codegen.tests.scratch import BODY, HEAD, MODE, ScratchTest
 
@@ -17,6 +18,12 @@ class Structure(unittest.TestCase):
         self.assertEqual(str(one), str(other))
         self.assertNotEqual(structure(one), structure(other))
         self.assertNotEqual(structure(X + 1), structure(X + (1 + 2**-52)))
+
+    def test_texts_have_all_digits(self):
+        x = ca.SX.sym("x")
+        self.assertEqual(units.short(1.00000001 * x + 0.1), "((1.00000001*x)+0.1)")
+        self.assertEqual(units.short(1e-300 * x - 2), "((1e-300*x)-2)")
+        self.assertEqual(units.short(x / 3), "(x/3)")
 
     def test_symbols_of_one_name_are_told_apart(self):
         self.assertNotEqual(structure(X + Y), structure(X + ca.SX.sym("y")))

@@ -21,6 +21,7 @@ mod instant;
 mod limits;
 mod locate;
 mod margins;
+mod member;
 mod moment;
 mod observe;
 mod plan;
@@ -42,8 +43,9 @@ mod visited;
 
 pub(crate) use accumulation::LONGEST_PATTERN;
 pub use advance::Stopped;
-pub use ensemble::{Ensemble, Finished, Member};
+pub use ensemble::{Ensemble, Finished};
 pub use failure::Reason;
+pub use member::Member;
 pub use moment::{Moment, NotComputed};
 pub use observe::{Collected, MadeStep, Observer};
 pub use problem::{Accuracy, End, Initial, Limits, Method, Observed, OwnLimit, Problem, Record};

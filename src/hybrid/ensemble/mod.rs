@@ -16,31 +16,13 @@ mod transit;
 mod worker;
 
 use super::failure::Reason;
-use super::problem::{Initial, Method, Problem};
+use super::member::Member;
+use super::problem::{Method, Problem};
 use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
 use crate::run::{Jump, Reached, Recorded, Silent};
 use rayon::prelude::*;
 use worker::Worker;
-
-/// One trajectory of an ensemble: what is its own.
-#[derive(Debug, Clone, Copy)]
-pub struct Member<'a> {
-    /// Parameters in the order and the units of the model.
-    pub parameters: &'a [f64],
-    /// Where it starts.
-    pub initial: &'a Initial,
-}
-
-impl<'a> From<&'a Problem> for Member<'a> {
-    /// Parameters and initial state of a problem.
-    fn from(problem: &'a Problem) -> Self {
-        Member {
-            parameters: &problem.parameters,
-            initial: &problem.initial,
-        }
-    }
-}
 
 /// A scene made ready for many runs.
 pub struct Ensemble {

@@ -1,9 +1,10 @@
 //! The members of an ensemble that a thread runs: which of them is in which lane.
 
 use super::super::failure::Stoppable;
+use super::super::member::Member;
 use super::super::simulation::{Simulation, Stop};
 use super::group::{Group, Outcome};
-use super::{Ensemble, Finished, Member};
+use super::{Ensemble, Finished};
 use crate::input::Signals;
 use crate::integrate::LaneMask;
 use crate::kernel::{LaneLevel, with_kernel};
