@@ -4,8 +4,8 @@
 
 mod common;
 use common::*;
-use dalembert::hybrid::{Problem, simulate};
-use dalembert::input::{Function, Sine};
+use dalembert::hybrid::{Problem, Simulator, simulate};
+use dalembert::input::{Command, Function, Sine};
 use dalembert::record::Silent;
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
 use std::cell::Cell;
@@ -92,4 +92,34 @@ fn samples_are_allocated_up_front() {
         cost(&problem).0
     });
     assert_eq!(few, many);
+}
+
+#[test]
+fn a_control_loop_allocates_nothing_once_it_runs() {
+    let mut slider = problem("coulomb_oscillator", &[]);
+    slider.set_input("force", Function::commanded(0.0)).unwrap();
+    slider.end.time = 100.0;
+    slider.record.event_states = false;
+    slider.record.ledger = false;
+    let mut simulator = Simulator::new(&slider).unwrap();
+    let mut tick = 0;
+    let mut drive = |ticks: i32| {
+        let (before, transitions) = (ALLOCATIONS.get(), simulator.events().len());
+        for _ in 0..ticks {
+            tick += 1;
+            let x = simulator.moment().q()[0];
+            let force = (0.7 * f64::from(tick)).sin() - x;
+            simulator.command("force", Command::Hold(force)).unwrap();
+            simulator.advance_to(0.05 * f64::from(tick)).unwrap();
+        }
+        (
+            ALLOCATIONS.get() - before,
+            simulator.events().len() - transitions,
+        )
+    };
+    drive(1000);
+    let (allocations, transitions) = drive(500);
+    assert!(transitions > 10, "{transitions} transitions");
+    // The list of transitions is all that grows.
+    assert!(allocations <= 2, "{allocations} allocations");
 }

@@ -8,6 +8,7 @@
 
 use super::instant::Instant;
 use crate::numerics::copy_few;
+use crate::numerics::{Memory, Persist};
 use std::sync::atomic::{Ordering, compiler_fence};
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
@@ -100,6 +101,17 @@ pub struct Accumulation {
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
+}
+
+impl Persist for Accumulation {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.times.persist(memory)?;
+        self.keys.persist(memory)?;
+        // Where the first begins is a matter of this process.
+        memory.slice(&mut self.records[self.first..][..ROOM * self.stride])?;
+        self.count.persist(memory)?;
+        self.still.persist(memory)
+    }
 }
 
 impl Accumulation {

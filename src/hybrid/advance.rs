@@ -9,6 +9,7 @@ use super::simulation::{Simulation, Stop};
 use crate::input::Command;
 use crate::integrate::State;
 use crate::kernel::with_kernel;
+use crate::numerics::{Memory, Persist};
 use crate::run::Progress;
 use nalgebra::SVector;
 
@@ -82,6 +83,15 @@ pub(super) struct Pause {
     pub knot: f64,
     /// Coordinates and velocities with which the segment that is left has begun; of free ones alone.
     began: [Box<[f64]>; 2],
+}
+
+/// The state with which the segment has begun; where the next advance ends it says itself.
+impl Persist for Pause {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        let [q, v] = &mut self.began;
+        memory.slice(q)?;
+        memory.slice(v)
+    }
 }
 
 impl Pause {

@@ -12,6 +12,7 @@ use super::search::search;
 use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
 use crate::model::{Guard, Mode};
+use crate::numerics::{Memory, Persist};
 
 /// Remembered signs of what is watched in a mode.
 #[derive(Debug, Default)]
@@ -30,6 +31,23 @@ pub(super) struct Signs {
     below: Vec<usize>,
     /// Whether the event of the step is that of a guard that was never seen to be positive.
     unseen: bool,
+}
+
+/// What was found in a step is found again in the next.
+impl Persist for Signs {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        memory.list(&mut self.watches, || Watch::Dormant)?;
+        memory.list(&mut self.away, f64::default)?;
+        self.waits.persist(memory)?;
+        memory.list(&mut self.below, usize::default)?;
+        self.unseen.persist(memory)
+    }
+}
+
+impl Persist for Watch {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        memory.one_of(self, &[Watch::Armed, Watch::Dormant, Watch::Violated])
+    }
 }
 
 /// Result of [`cut`].

@@ -16,7 +16,9 @@ use super::problem::Accuracy;
 use super::roots::{Search, Watch};
 use super::sensitivity::WatchedGuard;
 use crate::integrate::OneStep;
+use crate::model::name::intern;
 use crate::model::{Guard, Mode};
+use crate::numerics::{Blank, Memory, Persist, persist};
 use crate::run::{Doubt, Question, Uncertain};
 
 /// What was found out about the errors of guards, and the doubts.
@@ -34,6 +36,51 @@ pub(super) struct Doubts {
     left: Vec<(&'static str, Option<Doubt>)>,
     /// The doubts.
     pub uncertain: Uncertain,
+}
+
+impl Persist for Doubts {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.steps.persist(memory)?;
+        self.most_tolerances.persist(memory)?;
+        (self.errors.iter_mut()).try_for_each(|errors| memory.list(errors, f64::default))?;
+        let named = |(name, doubt): &(&str, Option<Doubt>)| (String::from(*name), doubt.clone());
+        let mut left: Vec<(String, Option<Doubt>)> = self.left.iter().map(named).collect();
+        memory.list(&mut left, || (String::new(), None))?;
+        self.left = (left.into_iter().map(|(name, doubt)| (intern(&name), doubt))).collect();
+        self.uncertain.total.persist(memory)?;
+        memory.list(&mut self.uncertain.first, Doubt::blank)
+    }
+}
+
+persist!(Doubt {
+    t,
+    mode,
+    guard,
+    what,
+    value,
+    error,
+    unit
+});
+
+impl Blank for Doubt {
+    fn blank() -> Self {
+        Doubt {
+            t: 0.0,
+            mode: String::new(),
+            guard: String::new(),
+            what: Question::Graze,
+            value: 0.0,
+            error: 0.0,
+            unit: String::new(),
+        }
+    }
+}
+
+impl Persist for Question {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        let all = [Question::Graze, Question::NearMiss, Question::Unresolved];
+        memory.one_of(self, &all)
+    }
 }
 
 /// A step and what was found of the guards in it.

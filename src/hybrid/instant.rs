@@ -3,12 +3,16 @@
 //! Hops of an accumulation become shorter than one unit in the last place of t, and their ratio
 //! decides where they end: so an instant is an unevaluated sum of two doubles (Dekker 1971).
 
+use crate::numerics::persist;
+
 /// An instant of time, s, as `hi + lo` with |lo| ≤ ulp(hi)/2.
 #[derive(Debug, Clone, Copy, Default, PartialEq, PartialOrd)]
 pub struct Instant {
     hi: f64,
     lo: f64,
 }
+
+persist!(Instant { hi, lo });
 
 impl Instant {
     /// An instant that is a double.

@@ -6,6 +6,7 @@ use super::problem::{Observed, OwnLimit, Problem};
 use super::start::ROUNDING;
 use super::validate::{Invalid, Unknown, within};
 use crate::model::{Bounds, GuardShape, Mode, Model, Variant, shown};
+use crate::numerics::{Memory, Persist};
 use crate::run::{Left, LimitState, Reached};
 
 /// What is watched in a run, and when it was reached.
@@ -29,6 +30,13 @@ pub(super) struct Margins<'p> {
     /// Room for the reactions, and for the rates of frozen coordinates.
     pub reactions: Box<[f64]>,
     pub rates: Box<[f64]>,
+}
+
+impl Persist for Margins<'_> {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        memory.slice(&mut self.reached)?;
+        self.has_ended.persist(memory)
+    }
 }
 
 impl<'p> Margins<'p> {

@@ -7,6 +7,7 @@
 
 mod accumulation;
 mod advance;
+mod checkpoint;
 mod crossing;
 mod departure;
 mod doubt;
@@ -43,6 +44,7 @@ mod visited;
 
 pub(crate) use accumulation::LONGEST_PATTERN;
 pub use advance::Stopped;
+pub use checkpoint::{Checkpoint, Misfit};
 pub use ensemble::{Ensemble, Finished};
 pub use failure::Reason;
 pub use member::Member;

@@ -1,6 +1,7 @@
 //! A simulation that is prepared once, and run as often as wanted, as a whole or in parts.
 
 use super::advance::{Stage, Stopped};
+use super::checkpoint::{Checkpoint, Misfit};
 use super::failure::Reason;
 use super::moment::{Moment, NotComputed, View};
 use super::observe::Observer;
@@ -225,6 +226,52 @@ impl<'p> Simulator<'p> {
                 input: inputs[index].name,
             });
         }
+        self.look();
+        Ok(())
+    }
+
+    /// The run as it is, to go on from here later, or elsewhere: see [`Checkpoint`].
+    ///
+    /// ```
+    /// use dalembert::hybrid::{Checkpoint, Problem, Simulator};
+    /// use dalembert::model::models;
+    ///
+    /// let model = models().find("bouncing_ball").expect("a model of the toolkit");
+    /// let mut problem = Problem::new(&model);
+    /// problem.set_initial("h", 1.0)?;
+    /// let mut simulator = Simulator::new(&problem)?;
+    /// simulator.advance_to(0.7)?;
+    /// let text = serde_json::to_string(&simulator.snapshot()?)?;
+    /// simulator.advance_to(1.0)?;
+    ///
+    /// let checkpoint: Checkpoint = serde_json::from_str(&text)?;
+    /// let mut other = Simulator::new(&problem)?;
+    /// other.restore(&checkpoint)?;
+    /// other.advance_to(1.0)?;
+    /// assert_eq!(other.q()[0].to_bits(), simulator.q()[0].to_bits());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Reason`] why the run has failed, if it has: it does not go on.
+    pub fn snapshot(&mut self) -> Result<Checkpoint, Reason> {
+        self.simulation.checkpoint(self.view.t)
+    }
+
+    /// Goes to where a checkpoint was taken, of a run of this problem; its end may be another one.
+    /// [`Simulator::events`] holds what happens from there on.
+    ///
+    /// # Errors
+    /// [`Misfit`] with what differs; the run is then where it was, or, if a checkpoint is damaged that has its digest
+    /// nevertheless, at its start.
+    pub fn restore(&mut self, from: &Checkpoint) -> Result<(), Misfit> {
+        let words = from.words(self.simulation.problem)?;
+        if self.simulation.take_over(&words).is_none() {
+            self.rewind();
+            let why = "its words do not fit the model";
+            return Err(Misfit::Damaged { why });
+        }
+        self.view.t = from.time();
         self.look();
         Ok(())
     }

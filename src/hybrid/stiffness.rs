@@ -9,6 +9,8 @@
 //! is given up as soon as a row of its steps, of one segment or of several short ones, is no longer than what
 //! the explicit method makes at the same cost.
 
+use crate::numerics::{Memory, Persist, persist};
+
 /// Cost of a step of Radau IIA in steps of the Taylor method. Measured on the benchmark problems: 1.5 (one
 /// coordinate, linear equations) to 4 (the walking tank at loose tolerances); stiffness exceeds that by far.
 const COST: f64 = 3.0;
@@ -59,6 +61,18 @@ pub(super) struct Stiffness {
     goes_on: bool,
 }
 
+persist!(Stiffness {
+    verdict,
+    before,
+    term,
+    left,
+    lost,
+    rate,
+    decayed,
+    steps,
+    goes_on
+});
+
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 enum Verdict {
     /// The explicit method, as long as nothing speaks against it.
@@ -71,6 +85,34 @@ enum Verdict {
     NotStiff,
     /// The implicit method; so many steps in a row were not longer than `length`.
     Stiff { length: f64, idle: u32 },
+}
+
+impl Persist for Verdict {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        let (mut place, mut length, mut count) = match *self {
+            Verdict::Open => (0_usize, 0.0, 0),
+            Verdict::Trial { length, left } => (1, length, left),
+            Verdict::NotStiff => (2, 0.0, 0),
+            Verdict::Stiff { length, idle } => (3, length, idle),
+        };
+        place.persist(memory)?;
+        length.persist(memory)?;
+        count.persist(memory)?;
+        *self = match place {
+            0 => Verdict::Open,
+            1 => Verdict::Trial {
+                length,
+                left: count,
+            },
+            2 => Verdict::NotStiff,
+            3 => Verdict::Stiff {
+                length,
+                idle: count,
+            },
+            _ => return None,
+        };
+        Some(())
+    }
 }
 
 impl Default for Stiffness {

@@ -1,6 +1,8 @@
 //! Where a run has been since the time last advanced.
 
 use crate::model::Mode;
+use crate::model::name::intern;
+use crate::numerics::{Memory, Persist};
 
 /// A transition taken: its name, the mode left, the mode entered.
 type Step = (&'static str, usize, usize);
@@ -12,6 +14,17 @@ pub(super) struct Visited {
     steps: Vec<Step>,
     /// A state a step, of equal widths; that of the last step is still the present one.
     states: Vec<f64>,
+}
+
+impl Persist for Visited {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        let named = |&(name, from, to): &Step| (String::from(name), (from, to));
+        let mut steps: Vec<(String, (usize, usize))> = self.steps.iter().map(named).collect();
+        memory.list(&mut steps, Default::default)?;
+        let interned = (steps.into_iter()).map(|(name, (from, to))| (intern(&name), from, to));
+        self.steps = interned.collect();
+        memory.list(&mut self.states, f64::default)
+    }
 }
 
 impl Visited {

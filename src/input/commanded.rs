@@ -2,6 +2,7 @@
 
 use super::table::{Piece, Sum};
 use super::{Jet, Side};
+use crate::numerics::persist;
 
 /// What an input does from the present time of a run on: see [`crate::hybrid::Simulator::command`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +24,8 @@ struct Span {
     piece: Piece,
     sums: [Sum; 2],
 }
+
+persist!(Span { piece, sums });
 
 impl Span {
     /// A piece that holds t = 0, where both antiderivatives are zero.
@@ -57,6 +60,12 @@ pub(super) struct Commanded {
     /// When the last command was given, and when its line ends, s.
     knots: [f64; 2],
 }
+
+persist!(Commanded {
+    initial,
+    spans,
+    knots
+});
 
 impl Commanded {
     /// A value, until something is commanded.

@@ -5,6 +5,7 @@ use super::lanes::LaneJet;
 use super::{Signals, Sine, Table};
 use crate::kernel::LaneLevel;
 use crate::numerics::{Lanes, Side};
+use crate::numerics::{Memory, Persist};
 
 /// A function of time and what is needed of it at one instant. Units: those of the function f,
 /// per second, times second and times second squared.
@@ -79,6 +80,14 @@ impl Function {
         self.terms.iter_mut().find_map(|term| match term {
             Term::Commanded(term) => Some(term.command(t, command)),
             _ => None,
+        })
+    }
+
+    /// What was commanded, written or read.
+    pub(super) fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.terms.iter_mut().try_for_each(|term| match term {
+            Term::Commanded(term) => term.persist(memory),
+            _ => Some(()),
         })
     }
 

@@ -25,6 +25,7 @@ pub use sine::Sine;
 pub use table::{Interpolation, Outside, Table, TableError};
 
 use crate::model::{Input, InputKind};
+use crate::numerics::Memory;
 use crate::numerics::copy_few;
 
 /// All inputs of a model, as functions of the absolute time of a run.
@@ -85,6 +86,11 @@ impl Signals {
     /// be commanded.
     pub(crate) fn command(&mut self, input: usize, t: f64, command: Command) -> Option<bool> {
         self.channels[input].function.command(t, command)
+    }
+
+    /// What was commanded, written or read.
+    pub(crate) fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        (self.channels.iter_mut()).try_for_each(|channel| channel.function.persist(memory))
     }
 
     /// Forgets all commands.

@@ -2,6 +2,7 @@
 
 use super::{Jet, Side};
 use crate::input::spline;
+use crate::numerics::persist;
 
 /// How a table is read between its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,6 +92,13 @@ pub(super) struct Piece {
     integral: f64,
     double_integral: f64,
 }
+
+persist!(Piece {
+    origin,
+    coefficients,
+    integral,
+    double_integral
+});
 
 impl Table {
     /// Hands on the numbers that decide it.
@@ -352,6 +360,8 @@ pub(super) struct Sum {
     sum: f64,
     compensation: f64,
 }
+
+persist!(Sum { sum, compensation });
 
 impl Sum {
     fn new(start: f64) -> Self {

@@ -3,6 +3,7 @@
 
 use super::logarithm::root;
 use super::report::StepError;
+use crate::numerics::persist;
 
 /// Aim below the tolerance by this factor in h, so that few steps are rejected (RADAU5).
 const SAFETY: f64 = 0.9;
@@ -37,6 +38,8 @@ pub(super) struct Controller {
     /// Length and error of the last accepted step since the start or a restart.
     last: Option<(f64, f64)>,
 }
+
+persist!(Controller { last });
 
 impl Controller {
     pub fn new() -> Self {

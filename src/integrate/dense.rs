@@ -2,6 +2,7 @@
 
 use super::state::State;
 use super::tableau::{Coefficients, RadauIia};
+use crate::numerics::{Blank, persist};
 use nalgebra::SVector;
 
 /// The motion within a step, from its start at time t₀ over a length h. With τ = t − t₀, s = τ/h,
@@ -32,6 +33,23 @@ pub struct Dense<const S: usize, const F: usize> {
     pub(super) p0: SVector<f64, F>,
     /// p₁ … p_S.
     pub(super) p: [SVector<f64, F>; S],
+}
+
+persist!([const S: usize, const F: usize] Dense<S, F> { t0, h, t_end, q0, v0, p0, p });
+
+impl<const S: usize, const F: usize> Blank for Dense<S, F> {
+    fn blank() -> Self {
+        let zero = SVector::zeros();
+        Dense {
+            t0: 0.0,
+            h: 0.0,
+            t_end: 0.0,
+            q0: zero,
+            v0: zero,
+            p0: zero,
+            p: [zero; S],
+        }
+    }
 }
 
 impl<const S: usize, const F: usize> Dense<S, F> {

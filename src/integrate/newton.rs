@@ -9,6 +9,7 @@ use super::state::State;
 use super::system::System;
 use super::tableau::{Coefficients, MAX_PAIRS, RadauIia, Tableau};
 use super::tolerances::Weights;
+use crate::numerics::persist;
 use crate::numerics::{Lu, Singular};
 use nalgebra::{Complex, SMatrix, SVector};
 
@@ -30,6 +31,8 @@ pub(super) struct Stages<const S: usize, const F: usize> {
     pub q_change: SVector<f64, F>,
 }
 
+persist!([const S: usize, const F: usize] Stages<S, F> { a, v, q, v_change, q_change });
+
 /// How an attempt to solve the stage equations ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Outcome {
@@ -45,6 +48,8 @@ pub(super) struct Linearization<const F: usize> {
     pub c: SMatrix<f64, F, F>,
     pub k: SMatrix<f64, F, F>,
 }
+
+persist!([const F: usize] Linearization<F> { m, c, k });
 
 impl<const F: usize> Linearization<F> {
     /// True if no entry is NaN or infinite.
@@ -70,6 +75,8 @@ pub(super) struct Newton<const S: usize, const F: usize> {
     /// while no step shows a contraction.
     remaining: f64,
 }
+
+persist!([const S: usize, const F: usize] Newton<S, F> { matrices, real, complex, h, rate, remaining });
 
 impl<const S: usize, const F: usize> Newton<S, F>
 where

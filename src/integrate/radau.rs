@@ -10,6 +10,7 @@ use super::state::{Lost, Node, State, add, fit};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances, Weights};
+use crate::numerics::{Blank, Memory, Persist, persist};
 use nalgebra::SVector;
 
 /// A Jacobian with which Newton's iteration contracted at least this fast serves the next step too.
@@ -54,6 +55,22 @@ pub struct Radau<const S: usize, const F: usize> {
     /// Components that the last step did not resolve.
     unresolved: [bool; F],
     counters: Counters,
+}
+
+persist!([const S: usize, const F: usize] Radau<S, F> {
+    controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, counters
+} but { control });
+
+impl Blank for Linearized {
+    fn blank() -> Self {
+        Linearized::Now
+    }
+}
+
+impl Persist for Linearized {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        memory.one_of(self, &[Linearized::Now, Linearized::Before])
+    }
 }
 
 impl<const S: usize, const F: usize> Radau<S, F>

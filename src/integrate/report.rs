@@ -1,5 +1,7 @@
 //! What the integrator tells about its work and its failures.
 
+use crate::numerics::persist;
+
 /// Work done since construction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counters {
@@ -21,6 +23,17 @@ pub struct Counters {
     /// Newton iterations.
     pub newton_iterations: u64,
 }
+
+persist!(Counters {
+    steps,
+    retaken,
+    rejected,
+    newton_failures,
+    residual_evaluations,
+    jacobian_evaluations,
+    factorizations,
+    newton_iterations
+});
 
 /// An accepted step.
 #[derive(Debug, Clone, Copy, PartialEq)]

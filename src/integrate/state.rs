@@ -1,5 +1,6 @@
 //! Points of the motion, and what every one-step method does with them.
 
+use crate::numerics::persist;
 use nalgebra::SVector;
 
 /// A point of the motion.
@@ -14,6 +15,8 @@ pub struct State<const F: usize> {
     /// Time, s.
     pub t: f64,
 }
+
+persist!([const F: usize] State<F> { q, v, a, t });
 
 impl<const F: usize> State<F> {
     /// At rest at zero.
@@ -58,6 +61,8 @@ pub(super) struct Lost<const F: usize> {
     pub q: SVector<f64, F>,
     pub v: SVector<f64, F>,
 }
+
+persist!([const F: usize] Lost<F> { t, q, v });
 
 impl<const F: usize> Lost<F> {
     pub fn nothing() -> Self {

@@ -5,6 +5,7 @@
 //! have the same unit. The choice of pivots, and with it every bit of the result, does not depend on
 //! the units of the coordinates.
 
+use super::persist::{Persist, persist};
 use nalgebra::{Complex, SMatrix, SVector};
 use std::ops::{Mul, Sub};
 
@@ -56,6 +57,8 @@ pub(crate) struct Lu<T, const F: usize> {
     /// Row of A that became row i.
     order: [usize; F],
 }
+
+persist!([T: Persist, const F: usize] Lu<T, F> { rows, reciprocals, order });
 
 impl<T: Scalar, const F: usize> Lu<T, F> {
     /// Placeholder until the first factorization.

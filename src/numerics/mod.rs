@@ -4,6 +4,7 @@ mod bounded;
 mod few;
 mod lanes;
 mod linear;
+mod persist;
 mod series;
 mod side;
 
@@ -12,5 +13,7 @@ pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{LaneMask, Lanes};
 pub(crate) use linear::{Lu, determinant_sign};
 pub use linear::{Singular, solve};
+pub(crate) use persist::persist;
+pub use persist::{Blank, Memory, Persist};
 pub use series::{ORDERS, Series, SeriesKind};
 pub use side::Side;

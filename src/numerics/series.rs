@@ -1,5 +1,6 @@
 //! The motion as a power series in time.
 
+use super::persist::persist;
 use nalgebra::SVector;
 
 /// Most coefficients of a series, the one of order 0 included. Order 34 serves the smallest relative
@@ -27,6 +28,8 @@ pub struct Series<const F: usize> {
     /// Of the accelerations.
     pub a: [SVector<f64, F>; ORDERS],
 }
+
+persist!([const F: usize] Series<F> { q, v, a });
 
 impl<const F: usize> Series<F> {
     /// All coefficients zero.

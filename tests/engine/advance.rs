@@ -1,7 +1,9 @@
 //! Runs in parts: the same bits as the whole, inputs that are commanded on the way, and why an advance stops.
 
 use crate::common::problem;
-use dalembert::hybrid::{Invalid, Method, Problem, Reason, Simulator, Stopped, simulate};
+use dalembert::hybrid::{
+    Checkpoint, Invalid, Method, Misfit, Problem, Reason, Simulator, Stopped, simulate,
+};
 use dalembert::input::{Command, Function, Interpolation, Outside, Table};
 use dalembert::model::models;
 use dalembert::record::{Group, Jump, Silent};
@@ -261,4 +263,167 @@ fn commands_that_are_none_are_refused() {
         let wrong = refused(&slider, "force", command);
         assert!(matches!(wrong, Invalid::Command { .. }), "{wrong}");
     }
+}
+
+/// Through text and back.
+fn kept(checkpoint: &Checkpoint) -> Checkpoint {
+    let text = serde_json::to_string(checkpoint).unwrap();
+    let back = serde_json::from_str(&text).unwrap();
+    assert_eq!(checkpoint, &back);
+    back
+}
+
+#[test]
+fn a_run_that_was_saved_and_restored_anywhere_gives_the_same_bits() {
+    for (name, mut problem) in scenes() {
+        problem.record.columns.energies = true;
+        let end = problem.end.time;
+        let mut whole = Simulator::new(&problem).unwrap();
+        assert_eq!(whole.advance_to(end).unwrap(), Stopped::End);
+        let mut first = Simulator::new(&problem).unwrap();
+        let mut other = Simulator::new(&problem).unwrap();
+        let mut events = Vec::new();
+        for (i, t) in parts(end, 60).enumerate() {
+            // Each part by another simulator than the one before, which has gone on meanwhile.
+            match i % 2 {
+                0 => first.advance_to(t).map(|_| ()).unwrap(),
+                _ => first.advance_to_event(t).map(|_| ()).unwrap(),
+            }
+            let checkpoint = kept(&first.snapshot().unwrap());
+            assert_eq!(checkpoint.time(), first.time());
+            events.extend_from_slice(first.events());
+            other.restore(&checkpoint).unwrap();
+            assert!(other.events().is_empty());
+            let [one, two] = [&mut first, &mut other].map(|run| {
+                let now = run.moment();
+                let mut reactions = vec![0.0; now.q().len() + problem.model.motions.len()];
+                now.reactions(&mut reactions);
+                ([now.q(), now.v(), now.a(), &reactions].concat(), now.mode())
+            });
+            assert_eq!(one, two, "{name} at {t} s");
+            assert!(
+                kept(&other.snapshot().unwrap()) == checkpoint,
+                "{name} at {t} s"
+            );
+            first.advance_to(t + 0.1 * end).unwrap();
+            std::mem::swap(&mut first, &mut other);
+        }
+        assert_eq!(first.advance_to(end).unwrap(), Stopped::End);
+        events.extend_from_slice(first.events());
+        assert_eq!(bits(&first).0, bits(&whole).0, "{name}");
+        assert_eq!(events, whole.events(), "{name}");
+        assert_eq!(first.solver(), whole.solver(), "{name}");
+        assert_eq!(first.reached(), whole.reached(), "{name}");
+        // Ledger, doubts and all else, too.
+        assert!(
+            first.snapshot().unwrap() == whole.snapshot().unwrap(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn a_run_is_restored_inside_of_an_accumulation_and_between_commands() {
+    let mut ball = problem("bouncing_ball", &[]);
+    ball.set_initial("h", 1.0).unwrap();
+    ball.end.time = 10.0;
+    for method in METHODS {
+        ball.method = method;
+        let mut whole = Simulator::new(&ball).unwrap();
+        whole.advance_to(10.0).unwrap();
+        let mut simulator = Simulator::new(&ball).unwrap();
+        let (mut events, mut stopped) = (Vec::new(), Stopped::Event);
+        while stopped == Stopped::Event {
+            stopped = simulator.advance_to_event(10.0).unwrap();
+            let checkpoint = kept(&simulator.snapshot().unwrap());
+            events.extend_from_slice(simulator.events());
+            simulator = Simulator::new(&ball).unwrap();
+            simulator.restore(&checkpoint).unwrap();
+        }
+        assert_eq!(stopped, Stopped::Rest);
+        assert_eq!(events, whole.events());
+    }
+    let mut slider = problem("coulomb_oscillator", &[]);
+    slider.set_input("force", Function::commanded(0.5)).unwrap();
+    slider.end.time = 5.0;
+    let drive = |restores: bool| {
+        let mut simulator = Simulator::new(&slider).unwrap();
+        for i in 0..40_i32 {
+            let t = 0.125 * f64::from(i);
+            simulator.advance_to(t).unwrap();
+            let to = f64::from((7 * i) % 11 - 5);
+            let until = t + 0.3;
+            simulator
+                .command("force", Command::Ramp { to, until })
+                .unwrap();
+            if restores {
+                let checkpoint = kept(&simulator.snapshot().unwrap());
+                simulator = Simulator::new(&slider).unwrap();
+                simulator.restore(&checkpoint).unwrap();
+            }
+        }
+        simulator.advance_to(5.0).unwrap();
+        bits(&simulator).0
+    };
+    assert_eq!(drive(true), drive(false));
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused_with_what_differs() {
+    let mut slider = problem("coulomb_oscillator", &[]);
+    slider.set_initial("x.rate", 1.0).unwrap();
+    let mut simulator = Simulator::new(&slider).unwrap();
+    simulator.advance_to(0.3).unwrap();
+    let checkpoint = simulator.snapshot().unwrap();
+    let refused = |change: &dyn Fn(&mut Problem)| {
+        let mut problem = slider.clone();
+        change(&mut problem);
+        let mut simulator = Simulator::new(&problem).unwrap();
+        let why = simulator.restore(&checkpoint).unwrap_err();
+        assert_eq!(simulator.time(), 0.0, "{why}");
+        why.to_string()
+    };
+    let said = refused(&|problem| problem.set_parameter("m", 2.0).unwrap());
+    assert!(said.contains("`m` is 2 now and was 1"), "{said}");
+    let said = refused(&|problem| problem.set_tolerance(1e-7));
+    assert!(said.contains("`accuracy`"), "{said}");
+    let said = refused(&|problem| problem.set_input("force", Function::constant(1.0)).unwrap());
+    assert!(said.contains("`inputs`"), "{said}");
+    let said = refused(&|problem| problem.record.every = Some(0.5));
+    assert!(
+        said.contains("the interval of samples is every 0.5 s now"),
+        "{said}"
+    );
+    let said = refused(&|problem| problem.record.ledger = false);
+    assert!(
+        said.contains("the energy balance is not kept now and was kept"),
+        "{said}"
+    );
+    let said = refused(&|problem| problem.end.after = Some(("stick", 3)));
+    assert!(said.contains("is stick now and was none"), "{said}");
+    let ball = problem("bouncing_ball", &[]);
+    let why = Simulator::new(&ball)
+        .unwrap()
+        .restore(&checkpoint)
+        .unwrap_err();
+    assert!(why.to_string().contains("the model"), "{why}");
+    // Its end may be another one.
+    let mut longer = slider.clone();
+    longer.end.time = 2.0;
+    Simulator::new(&longer)
+        .unwrap()
+        .restore(&checkpoint)
+        .unwrap();
+
+    let text = serde_json::to_string(&checkpoint).unwrap();
+    let changed = |from: &str, to: &str| {
+        assert!(text.contains(from), "{text}");
+        let damaged = serde_json::from_str::<Checkpoint>(&text.replacen(from, to, 1)).unwrap();
+        let mut simulator = Simulator::new(&slider).unwrap();
+        simulator.restore(&damaged).unwrap_err()
+    };
+    let why = changed("\"version\":1", "\"version\":2");
+    assert_eq!(why, Misfit::Version { found: 2 });
+    let why = changed("\"words\":\"", "\"words\":\"0000000000000000");
+    assert!(matches!(why, Misfit::Damaged { .. }), "{why}");
 }

@@ -7,6 +7,7 @@
 //! value by no more than (π/n)²/8 Σ k²|cₖ|.
 
 use super::summit::Search;
+use crate::numerics::{Memory, Persist};
 use std::f64::consts::PI;
 
 /// Highest degree.
@@ -85,6 +86,15 @@ pub struct Interpolants {
     /// A row an order.
     coefficients: Box<[Four]>,
     shapes: Box<[Shape]>,
+}
+
+/// The values at the first node, where a step begins.
+impl Persist for Interpolants {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.count.persist(memory)?;
+        self.fours = self.count.div_ceil(4);
+        memory.slice(self.values.get_mut(..self.fours)?)
+    }
 }
 
 impl Interpolants {

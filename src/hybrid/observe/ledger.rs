@@ -1,5 +1,6 @@
 //! The running energy ledger, in the inertial frame.
 
+use crate::numerics::persist;
 use crate::run::{EnergyJump, Ledger};
 
 /// Sentence about the frame, for the summary.
@@ -13,6 +14,8 @@ struct Sum {
     total: f64,
     lost: f64,
 }
+
+persist!(Sum { total, lost });
 
 impl Sum {
     fn add(&mut self, x: f64) {
@@ -38,6 +41,13 @@ pub(in crate::hybrid) struct RunningLedger {
     dissipated: Sum,
     lost_at_impacts: Sum,
 }
+
+persist!(RunningLedger {
+    initial,
+    input_work,
+    dissipated,
+    lost_at_impacts
+});
 
 impl RunningLedger {
     pub fn starting_with(initial: f64) -> Self {

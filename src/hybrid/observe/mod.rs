@@ -25,6 +25,7 @@ use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
 use crate::model::Mode;
+use crate::numerics::{Memory, Persist};
 use crate::run::{Layout, Ledger, Peak};
 use extremes::Extremes;
 use interpolants::{Interpolants, MOST};
@@ -60,6 +61,20 @@ pub(super) struct Observers<'o> {
     energy: f64,
     /// Whether the values at the last node are those at the start of the next step.
     joined: bool,
+}
+
+/// All but extremes, which a run in parts is not watched for, and but rows and transitions that are past.
+impl Persist for Observers<'_> {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.recording.persist(memory)?;
+        self.samples.persist(memory)?;
+        self.ledger
+            .iter_mut()
+            .try_for_each(|ledger| ledger.persist(memory))?;
+        self.interpolants.persist(memory)?;
+        self.energy.persist(memory)?;
+        self.joined.persist(memory)
+    }
 }
 
 /// What is represented in the present mode, in this order: free coordinates, their rates, reactions, stored

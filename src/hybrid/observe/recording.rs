@@ -3,6 +3,8 @@
 use super::super::accumulation::Accumulation;
 use super::super::problem::Problem;
 use super::observer::{Collected, MadeStep, Observer};
+use crate::model::name::intern;
+use crate::numerics::{Memory, Persist};
 use crate::run::{Event, Jump, Layout, Snapshot, Tally, Trajectory};
 use std::ops::ControlFlow;
 
@@ -27,6 +29,22 @@ pub(in crate::hybrid) struct Recording<'o> {
     tally: Tally,
     /// The last of these, as many as an accumulation is recognised by.
     recent: Vec<&'static str>,
+}
+
+/// The time of the last row, and the names of the last transitions; those in memory are only the ones that follow.
+impl Persist for Recording<'_> {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.last.persist(memory)?;
+        let mut recent: Vec<String> = self.recent().into_iter().rev().map(String::from).collect();
+        memory.list(&mut recent, String::new)?;
+        if memory.is_read() {
+            if let To::Collected(collected) = &mut self.to {
+                collected.clear();
+            }
+            self.recent = recent.iter().map(|name| intern(name)).collect();
+        }
+        Some(())
+    }
 }
 
 impl<'o> Recording<'o> {
@@ -72,6 +90,7 @@ impl<'o> Recording<'o> {
         if let To::Collected(collected) = &mut self.to {
             collected.clear();
         }
+        self.recent.clear();
         self.last = None;
     }
 
@@ -133,7 +152,8 @@ impl<'o> Recording<'o> {
     pub fn recent(&self) -> Vec<&'static str> {
         let of_memory = self.jumps().iter().rev().take(Accumulation::MEMORY);
         let of_memory = of_memory.map(|jump| jump.transition);
-        of_memory.chain(self.recent.iter().rev().copied()).collect()
+        let all = of_memory.chain(self.recent.iter().rev().copied());
+        all.take(Accumulation::MEMORY).collect()
     }
 
     /// Rows and transitions as far as they are in memory, and the tally of all.

@@ -11,6 +11,7 @@ use crate::hybrid::simulation::{Here, Simulation};
 use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
+use crate::numerics::{Memory, Persist};
 use crate::run::{Group, Layout};
 use std::ops::ControlFlow;
 
@@ -75,6 +76,15 @@ pub(in crate::hybrid) struct Samples {
     index: u64,
     /// Its time, s: infinite without a grid, but for the first one.
     next: f64,
+}
+
+impl Persist for Samples {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        let Samples { every, index, .. } = self;
+        index.persist(memory)?;
+        *self = Samples::from(*every, *index);
+        Some(())
+    }
 }
 
 impl Samples {

@@ -1,6 +1,7 @@
 //! Dense output: the series itself.
 
 use crate::numerics::Series;
+use crate::numerics::persist;
 use nalgebra::SVector;
 
 /// The motion within a step as the Taylor series about its start, which is what the method computed:
@@ -20,6 +21,8 @@ pub struct TaylorDense<const F: usize> {
     pub(super) known: usize,
     pub(super) series: Series<F>,
 }
+
+persist!([const F: usize] TaylorDense<F> { t0, h, t_end, order, known, series });
 
 impl<const F: usize> TaylorDense<F> {
     /// Time at τ = 0, s.

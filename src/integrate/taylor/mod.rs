@@ -26,6 +26,7 @@ use super::state::{Lost, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances};
 use crate::numerics::{Lu, Series, SeriesKind};
+use crate::numerics::{Memory, Persist, persist};
 use nalgebra::{SMatrix, SVector};
 
 /// What is not finite where the coefficients of a series leave the range of doubles.
@@ -99,6 +100,17 @@ pub struct Taylor<const F: usize> {
     /// Length of the last step as far as accuracy limits it.
     length: f64,
     counters: Counters,
+}
+
+persist!([const F: usize] Taylor<F> {
+    start, end, lost_at_start, lost, dense, open, last, weights, inverse, accelerations_given, length, counters
+} but { tolerances, order, lower, terms, implicit });
+
+impl Persist for Last {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        let all = [Last::Restart, Last::FirstStep, Last::Step, Last::Failure];
+        memory.one_of(self, &all)
+    }
 }
 
 impl<const F: usize> Taylor<F> {
