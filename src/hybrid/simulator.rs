@@ -67,7 +67,8 @@ impl<'p> Simulator<'p> {
     }
 
     /// Prepares a problem; rows and transitions go to `observer` as they come, and if it wants them all steps with their
-    /// dense output. [`Simulator::events`] holds none of them.
+    /// dense output. [`Simulator::events`] holds none of them. It hears of a step when that is made, and with it of rows up to
+    /// its end, which may be after the time that is advanced to.
     ///
     /// ```
     /// use dalembert::hybrid::{MadeStep, Observer, Problem, Simulator};
@@ -346,7 +347,14 @@ impl<'p> Simulator<'p> {
 
     /// Limit states that were reached, and conditions on the motion under which the model is meant that were left.
     pub fn reached(&self) -> Reached {
-        self.simulation.margins.reached()
+        let mut reached = self.simulation.margins.reached();
+        // The last step may go beyond the time that was advanced to.
+        let now = self.view.t;
+        reached.limit_states.retain(|state| state.t <= now);
+        reached
+            .validity
+            .retain(|left| left.t.is_none_or(|t| t <= now));
+        reached
     }
 
     /// Work done by the integrator; the method is not named.

@@ -2,7 +2,8 @@
 
 use crate::common::problem;
 use dalembert::hybrid::{
-    Checkpoint, Invalid, Method, Misfit, Problem, Reason, Simulator, Stopped, simulate,
+    Checkpoint, Invalid, Method, Misfit, Observed, OwnLimit, Problem, Reason, Simulator, Stopped,
+    simulate,
 };
 use dalembert::input::{Command, Function, Interpolation, Outside, Table};
 use dalembert::model::models;
@@ -210,6 +211,40 @@ fn an_advance_says_why_it_stops() {
     assert_eq!(simulator.advance_to(11.0).unwrap(), Stopped::End);
     assert_eq!(simulator.advance_to(12.0).unwrap(), Stopped::End);
     assert_eq!(simulator.time(), 10.0);
+}
+
+#[test]
+fn an_advance_ends_at_a_limit_state_and_stays_there() {
+    let mut ball = problem("bouncing_ball", &[]);
+    ball.set_initial("h", 1.0).unwrap();
+    ball.limits.own.push(OwnLimit {
+        name: "low".into(),
+        message: "the ball is low".into(),
+        of: Observed::Coordinate(0),
+        above: false,
+        level: 0.5,
+        ends: true,
+    });
+    for method in METHODS {
+        ball.method = method;
+        let mut simulator = Simulator::new(&ball).unwrap();
+        assert_eq!(simulator.advance_to(0.3).unwrap(), Stopped::Time);
+        let checkpoint = kept(&simulator.snapshot().unwrap());
+        for _ in 0..2 {
+            assert_eq!(simulator.advance_to(0.5).unwrap(), Stopped::Limit);
+            let exact = (2.0 * 0.5 / 9.81_f64).sqrt();
+            assert!(
+                (simulator.time() - exact).abs() < 1e-7,
+                "{}",
+                simulator.time()
+            );
+            assert_eq!(simulator.advance_to_event(0.9).unwrap(), Stopped::Limit);
+            assert_eq!(simulator.reached().limit_states[0].name, "low");
+            simulator.restore(&checkpoint).unwrap();
+            assert_eq!(simulator.time(), 0.3);
+            assert!(simulator.reached().limit_states.is_empty());
+        }
+    }
 }
 
 #[test]
