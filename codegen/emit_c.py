@@ -82,6 +82,9 @@ _FACTORS = """\
   } while (0)
 """
 
+_LONG = 150_000
+"""Characters of functions that go into one file: about a second of compiling."""
+
 KEPT_ANGLES = 4
 """Angles whose sine and cosine a context keeps. A function may have more."""
 
@@ -211,9 +214,23 @@ class Source:
             self.functions[name] = f"{kind}{' ' if kind else ''}void {name}({signature}) {{\n{text}\n}}\n"
         return known
 
-    def text(self, title):
-        """The C file."""
-        return _file(title, _text("vectors.h") + HEADER, self.functions.values())
+    def texts(self, title):
+        """The C files: several where one would be long, since compilers work side by side. Functions that are inlined stand
+        in every file that calls them."""
+        inlined = {name for name, text in self.functions.items() if text.startswith("DALEMBERT_INLINE")}
+        groups, length = [[]], 0
+        for name, text in self.functions.items():
+            if name in inlined:
+                continue
+            called = {other for other in inlined if f" {other}(" in text}
+            size = len(text) + sum(len(self.functions[other]) for other in called)
+            if groups[-1] and length + size > _LONG:
+                groups.append([])
+                length = 0
+            groups[-1] += [*called, name]
+            length += size
+        chosen = [[name for name in self.functions if name in set(group)] for group in groups]
+        return [_file(title, _text("vectors.h") + HEADER, map(self.functions.get, names)) for names in chosen]
 
     def lanes_text(self, title, names, tables):
         """The C file of some of the functions, and of what they call, for lanes, with their tables at its end; None

@@ -121,27 +121,28 @@ def generate(folder, for_tests=False, named=None):
             f"{prefix}_{_tag(variant.model)}declared", [("q", own)], limits.of_parameters(variant.model))
         if variant.lean is not None:
             variant.lean.declared = variant.declared
-    c_text = source.text(name)
+    c_texts = source.texts(name)
+    sources = [f"{name}.c"] + [f"{name}_{k + 1}.c" for k in range(1, len(c_texts))]
     described, tables = description.describe(name, models, chosen, (constants_symbol, constants.values.numel()), for_tests)
     for_lanes = _lane_functions(variants)
     lanes_text = source.lanes_text(name, for_lanes, emit_model.lanes_text(name, tables, for_lanes))
     model_text = emit_model.model_text(name, described, tables, bool(lanes_text))
     manifest = {
         "name": name,
-        "sources": [f"{name}.c"],
+        "sources": sources,
         "tables": f"{name}_model.c",
         "lanes": [f"{name}_lanes.c"] if lanes_text else [],
         **combinations.table(models),
         "derived": [models.index(model) for model in derived],
         "casadi": ca.__version__,
-        "content": hashlib.sha256((c_text + (lanes_text or "") + model_text).encode()).hexdigest(),
+        "content": hashlib.sha256(("".join(c_texts) + (lanes_text or "") + model_text).encode()).hexdigest(),
         "operations": {
             f"{'/'.join(c[3] for c in v.model.choices)}:{f.name}" if v.model.choices else f.name: f.operations
             for v in variants for f in v.functions.values()
         },
     }
     files = {
-        f"{name}.c": c_text, f"{name}_model.c": model_text,
+        **dict(zip(sources, c_texts)), f"{name}_model.c": model_text,
         "description.json": json.dumps(described, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
         "manifest.json": json.dumps(manifest, indent=1) + "\n"}
     return files | ({f"{name}_lanes.c": lanes_text} if lanes_text else {})
