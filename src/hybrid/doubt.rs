@@ -9,15 +9,16 @@
 //! The search for the guard's zero bounds how near to zero it turns, at no cost. Only where this is within
 //! the error is the minimum looked for.
 
+use super::crossing::Signs;
 use super::equations::Equations;
-use super::guards::Conditions;
+use super::guards::{Conditions, slope};
 use super::plan::Watched;
-use super::problem::Accuracy;
+use super::problem::{Accuracy, Problem};
 use super::roots::{Search, Watch};
 use super::sensitivity::WatchedGuard;
-use crate::integrate::OneStep;
+use crate::integrate::{Motion, OneStep};
 use crate::model::name::intern;
-use crate::model::{Guard, Mode};
+use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::{Blank, Memory, Persist, persist};
 use crate::run::{Doubt, Question, Uncertain};
 
@@ -86,13 +87,13 @@ impl Persist for Question {
 /// A step and what was found of the guards in it.
 pub(super) struct Searched<'s> {
     /// Index of the mode.
-    pub index: usize,
-    pub mode: &'s Mode,
-    pub watched: &'s [Watched],
+    index: usize,
+    mode: &'s Mode,
+    watched: &'s [Watched],
     /// Signs at the start of the step.
-    pub watches: &'s [Watch],
-    pub found: &'s [Search],
-    pub accuracy: &'s Accuracy,
+    watches: &'s [Watch],
+    found: &'s [Search],
+    accuracy: &'s Accuracy,
 }
 
 impl Doubts {
@@ -228,6 +229,64 @@ impl Doubts {
         }
     }
 
+    /// The doubt about an event at the end of a step of the explicit method: whether its guard falls, where the step, as it
+    /// was before the cut, does not show it to fall by more than the error that one tolerance at the start and one of the
+    /// step make, and either never shows it to be positive by more, or outlasts the fastest decay. Such a step is as long
+    /// as it is because its last terms are less than the tolerance, as is all that the guard does in it.
+    #[inline(always)]
+    pub fn about_fall<'a, const F: usize>(
+        &mut self,
+        (step, outlasts): (&Searched, bool),
+        method: &impl OneStep<F, Equations<'a, F>>,
+        equations: &mut Equations<'a, F>,
+        conditions: &mut Conditions,
+    ) -> Option<Doubt> {
+        let fallen = step.found.iter().position(|f| f.crossing.is_some())?;
+        let watched = step.watched[fallen];
+        if let (
+            GuardShape::Linear {
+                index,
+                rate,
+                factor,
+                discrete,
+                ..
+            },
+            None,
+            Some(&error),
+        ) = (
+            step.mode.guards[watched.guard].shape,
+            watched.condition,
+            self.errors[step.index].get(fallen),
+        ) && !outlasts
+        {
+            let factor = slope((factor, discrete), equations.context);
+            let dense = method.dense().expect("a step was made");
+            let [_, moves] = dense.value_and_slope((index, rate), factor);
+            // It moves by far more, as most do.
+            if moves.abs() > 2.0 * tolerances(1) * error {
+                return None;
+            }
+        }
+        Self::about_small_fall((step, fallen, outlasts), method, equations, conditions)
+    }
+
+    /// The same of the guard of an index, where its slope does not tell at once.
+    #[inline(never)]
+    fn about_small_fall<'a, const F: usize>(
+        (step, fallen, outlasts): (&Searched, usize, bool),
+        method: &impl OneStep<F, Equations<'a, F>>,
+        equations: &mut Equations<'a, F>,
+        conditions: &mut Conditions,
+    ) -> Option<Doubt> {
+        let mut guard = step.guard(step.watched[fallen], equations, conditions);
+        let (t, value) = guard.deepest(method);
+        let error = tolerances(1) * guard.error_at(t, method);
+        let start = method.start();
+        let is_small =
+            -value <= error && (outlasts || guard.value(start.t, &start.q, &start.v) <= error);
+        is_small.then(|| guard.doubt(t, Question::Graze, value, error))
+    }
+
     /// Takes note of a transition: what its guard fell to has happened.
     #[inline(always)]
     pub fn happened(&mut self, guard: &Guard) {
@@ -250,7 +309,24 @@ fn is_near(found: &Search, error: f64) -> bool {
     }
 }
 
-impl Searched<'_> {
+impl<'s> Searched<'s> {
+    /// The last step, in a mode with its index, of a problem.
+    pub fn of(
+        (index, mode): (usize, &'s Mode),
+        watched: &'s [Watched],
+        signs: &'s Signs,
+        problem: &'s Problem,
+    ) -> Self {
+        Searched {
+            index,
+            mode,
+            watched,
+            watches: &signs.watches,
+            found: signs.found(),
+            accuracy: &problem.accuracy,
+        }
+    }
+
     fn guard<'e, 'a, 'c, const F: usize>(
         &'e self,
         watched: Watched,

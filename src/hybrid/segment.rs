@@ -302,6 +302,28 @@ impl<'p> Simulation<'p> {
             if let Some(what) = state.not_finite() {
                 return Err(Box::new(Reason::NotFinite { what }));
             }
+            if is_explicit && matches!(found, Cut::Event { .. }) {
+                let h = method.dense().expect("a step was made").length();
+                let rate = || {
+                    equations.at(state.t);
+                    equations.decay_rate(free_of(&state))
+                };
+                let outlasts = stiffness.outlasts_decay(h, rate);
+                let searched = Searched::of((self.here.mode, mode), watched, &self.signs, problem);
+                let step = (&searched, outlasts);
+                if let Some(doubt) =
+                    (self.doubts).about_fall(step, method, &mut equations, &mut conditions)
+                {
+                    // Of a decay that is over the implicit method can tell.
+                    if !(chooses && outlasts) {
+                        self.doubts.uncertain.add(doubt);
+                    }
+                    if chooses {
+                        stiffness.explicit_step_is_blind(h);
+                        return Ok(Stop::Method);
+                    }
+                }
+            }
             let mut ended = None;
             if watches && !(self.margins).hold_throughout(method, &mut equations, mode, state.t) {
                 (found, ended) = self.margins.cut_where_reached(
@@ -320,14 +342,7 @@ impl<'p> Simulation<'p> {
                     return Ok(Stop::Violated(Violation { guard, rests: true }));
                 }
             };
-            let searched = Searched {
-                index: self.here.mode,
-                mode,
-                watched,
-                watches: &self.signs.watches,
-                found: self.signs.found(),
-                accuracy: &problem.accuracy,
-            };
+            let searched = Searched::of((self.here.mode, mode), watched, &self.signs, problem);
             self.doubts
                 .look(&searched, method, &mut equations, &mut conditions);
 

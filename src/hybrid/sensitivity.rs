@@ -164,6 +164,23 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         self.error(t, &q, &v)
     }
 
+    /// Where behind its fall at the end of the last step, which was cut there, it is least up to where the step led
+    /// before, local time, and its value.
+    pub fn deepest<M: OneStep<F, Equations<'a, F>>>(&mut self, method: &M) -> (f64, f64) {
+        let (from, dense) = (method.end(), dense_of(method));
+        let to = dense.start() + dense.length();
+        let mut deepest = (from, f64::INFINITY);
+        for k in 1..=PARTS {
+            let t = from + k as f64 / PARTS as f64 * (to - from);
+            let value = self.value_within(dense, t);
+            // What is not a number is no depth.
+            if value < deepest.1 {
+                deepest = (t, value);
+            }
+        }
+        deepest
+    }
+
     /// What it is off by at local time `t` because the dense output is not as accurate as the end of the
     /// step. There its accelerations differ from those that the equations ask for; the difference changes
     /// its sign as often as there are coefficients in them, and makes its rate and its change of a

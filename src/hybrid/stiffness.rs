@@ -59,6 +59,8 @@ pub(super) struct Stiffness {
     steps: u32,
     /// Whether the next segment has no transients of its own.
     goes_on: bool,
+    /// Fastest decay at one of the last events, 1/s, and their number.
+    at_events: (f64, u32),
 }
 
 persist!(Stiffness {
@@ -127,6 +129,7 @@ impl Default for Stiffness {
             decayed: 0.0,
             steps: 0,
             goes_on: false,
+            at_events: (0.0, 0),
         }
     }
 }
@@ -142,6 +145,7 @@ impl Stiffness {
             before: self.before,
             term: self.term,
             left: self.left,
+            at_events: self.at_events,
             ..Stiffness::default()
         };
     }
@@ -209,6 +213,28 @@ impl Stiffness {
             let (length, left) = (COST * h, TRIAL);
             self.verdict = Verdict::Trial { length, left };
         }
+    }
+
+    /// Whether a step of the explicit method of length `h` with an event is longer than the fastest decay, whose `rate`
+    /// (1/s) is looked at where that may be: what the motion falls to in such a step is told to its tolerance only, and
+    /// the terms that make up the polynomial there are larger than the motion.
+    #[inline(always)]
+    pub fn outlasts_decay(&mut self, h: f64, rate: impl FnOnce() -> f64) -> bool {
+        let (known, events) = &mut self.at_events;
+        let looks = *known * h >= 1.0 || *events % LOOK == 0;
+        *events = events.wrapping_add(1);
+        if looks {
+            *known = rate();
+        }
+        looks && *known * h >= 1.0
+    }
+
+    /// A step of the explicit method of length `h` cannot tell whether a guard falls, since it is longer than the fastest
+    /// decay: the implicit one is tried.
+    #[cold]
+    pub fn explicit_step_is_blind(&mut self, h: f64) {
+        let (length, left) = (COST * h, TRIAL);
+        self.verdict = Verdict::Trial { length, left };
     }
 
     /// Counts the time constants of the fastest decay in a row of steps that are longer than it.

@@ -71,6 +71,74 @@ fn the_load_decides_when_it_slips_however_strong_the_damping() {
     }
 }
 
+/// The names of what happens, and whether the run says that it cannot tell.
+fn outcome(run: &Run) -> (Vec<&'static str>, bool) {
+    (transitions(run), run.uncertain.total > 0)
+}
+
+#[test]
+fn a_motion_below_the_tolerance_makes_no_reversals_of_its_own() {
+    // The velocity is F/c, and the velocity's tolerance is more than that from c = 1e3 on at 1e-3: the error of an explicit
+    // step carries its polynomial through zero, some 120,000 times at c = 1e6 and 1e-6.
+    for relative in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+        for power in 3..=16 {
+            for friction in [0.6, 0.1, 0.0] {
+                let c = 10f64.powi(power);
+                let runs = [Method::Auto, Method::Radau]
+                    .map(|method| run(&oscillator(method, c, friction, relative)));
+                let [auto, radau] = &runs;
+                let what = format!("c = {c:e}, friction {friction}, {relative:e}");
+                assert_eq!(transitions(auto), transitions(radau), "{what}");
+                let ends = match friction {
+                    0.0 => times(auto, "reversal"),
+                    _ => times(auto, "stick"),
+                };
+                assert_eq!(ends.len(), 7, "{what}");
+                assert!(
+                    auto.solver.steps < 100,
+                    "{what}: {} steps",
+                    auto.solver.steps
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_taylor_method_alone_says_that_reversals_below_its_tolerance_are_uncertain() {
+    for (c, relative) in [(1e3, 1e-3), (1e4, 1e-3), (1e4, 1e-4)] {
+        for friction in [0.6, 0.0] {
+            let [taylor, radau] = [Method::Taylor, Method::Radau]
+                .map(|method| outcome(&run(&oscillator(method, c, friction, relative))));
+            let what = format!("c = {c:e}, friction {friction}, {relative:e}");
+            assert!(taylor.0 == radau.0 || taylor.1, "{what}");
+        }
+    }
+}
+
+#[test]
+fn an_oscillation_below_the_tolerance_is_said_to_be_uncertain() {
+    // 1000 rad/s at a velocity of 2e-7 m/s, which comes to within 0.3 % of zero once a period and decays as exp(-ct/2).
+    for (c, relative) in [(1.0, 1e-3), (1.0, 1e-6), (10.0, 1e-3), (10.0, 1e-6)] {
+        for friction in [0.1, 0.0] {
+            let mut problem = oscillator(Method::Auto, c, friction, relative);
+            problem.set_parameter("k", 1e6).unwrap();
+            let run = run(&problem);
+            let what = format!("c = {c}, friction {friction}, {relative:e}");
+            let count = run.events.len();
+            assert!(
+                run.uncertain.total > 0,
+                "{what}: {count} events are certain"
+            );
+            assert!(
+                run.solver.steps < 1000,
+                "{what}: {} steps",
+                run.solver.steps
+            );
+        }
+    }
+}
+
 #[test]
 fn the_taylor_method_alone_says_that_it_cannot_reach_the_end() {
     for power in 6..=16 {
