@@ -80,25 +80,26 @@ fn outcome(run: &Run) -> (Vec<&'static str>, bool) {
 fn a_motion_below_the_tolerance_makes_no_reversals_of_its_own() {
     // The velocity is F/c, and the velocity's tolerance is more than that from c = 1e3 on at 1e-3: the error of an explicit
     // step carries its polynomial through zero, some 120,000 times at c = 1e6 and 1e-6.
+    // Beyond c = 1e14 the velocity is of the size of the rounding of its terms.
     for relative in [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-        for power in 3..=16 {
+        for power in 3..=14 {
             for friction in [0.6, 0.1, 0.0] {
                 let c = 10f64.powi(power);
                 let runs = [Method::Auto, Method::Radau]
                     .map(|method| run(&oscillator(method, c, friction, relative)));
                 let [auto, radau] = &runs;
                 let what = format!("c = {c:e}, friction {friction}, {relative:e}");
+                assert!(
+                    auto.solver.steps < 100,
+                    "{what}: {} steps",
+                    auto.solver.steps
+                );
                 assert_eq!(transitions(auto), transitions(radau), "{what}");
                 let ends = match friction {
                     0.0 => times(auto, "reversal"),
                     _ => times(auto, "stick"),
                 };
                 assert_eq!(ends.len(), 7, "{what}");
-                assert!(
-                    auto.solver.steps < 100,
-                    "{what}: {} steps",
-                    auto.solver.steps
-                );
             }
         }
     }
