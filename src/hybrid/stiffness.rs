@@ -60,7 +60,8 @@ pub(super) struct Stiffness {
     /// Whether the next segment has no transients of its own.
     goes_on: bool,
     /// Fastest decay at one of the last events, 1/s, and their number.
-    at_events: (f64, u32),
+    rate_at_events: f64,
+    events: u32,
 }
 
 persist!(Stiffness {
@@ -72,7 +73,9 @@ persist!(Stiffness {
     rate,
     decayed,
     steps,
-    goes_on
+    goes_on,
+    rate_at_events,
+    events
 });
 
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -129,7 +132,8 @@ impl Default for Stiffness {
             decayed: 0.0,
             steps: 0,
             goes_on: false,
-            at_events: (0.0, 0),
+            rate_at_events: 0.0,
+            events: 0,
         }
     }
 }
@@ -145,7 +149,8 @@ impl Stiffness {
             before: self.before,
             term: self.term,
             left: self.left,
-            at_events: self.at_events,
+            rate_at_events: self.rate_at_events,
+            events: self.events,
             ..Stiffness::default()
         };
     }
@@ -220,7 +225,7 @@ impl Stiffness {
     /// the terms that make up the polynomial there are larger than the motion.
     #[inline(always)]
     pub fn outlasts_decay(&mut self, h: f64, rate: impl FnOnce() -> f64) -> bool {
-        let (known, events) = &mut self.at_events;
+        let (known, events) = (&mut self.rate_at_events, &mut self.events);
         let looks = *known * h >= 1.0 || *events % LOOK == 0;
         *events = events.wrapping_add(1);
         if looks {
