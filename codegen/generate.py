@@ -219,19 +219,14 @@ def _discretes(model):
 def variants_of(model):
     """The variant of a model with all motions of the ground that may be given, and in it the one without the optional ones
     among them."""
-    check_declarations(model)
+    check.check(model)
+    dimensions.check(model)
+    momentum.check(model)
     variant = derive_variant(model)
     optional = [m for m in model.motions if m.optional and m.available]
     if optional:
         variant.lean = _variant(model, _barred(model) + optional)
     return variant
-
-
-def check_declarations(model):
-    """Everything that can be found wrong before the equations are derived."""
-    check.check(model)
-    dimensions.check(model)
-    momentum.check(model)
 
 
 def derive_variant(model):

@@ -89,7 +89,7 @@ impl<'s> Moment<'s> {
     }
 
     /// All accelerations, from the equations of motion, in the units of the coordinates over s²; 0 where the mode holds a
-    /// coordinate.
+    /// coordinate, NaN where the mass matrix is singular.
     pub fn a(&self) -> &'s [f64] {
         &self.view.a
     }

@@ -22,43 +22,9 @@ use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::numerics::copy_few;
-use crate::run::{Failure, Place, Progress, Run, Snapshot, Solver, Subject};
+use crate::run::{Progress, Snapshot, Solver};
 use nalgebra::SVector;
 use std::borrow::Cow;
-use std::time::Instant as WallClock;
-
-/// Simulates a problem to its end, or until something stops it; the run then says why.
-///
-/// # Errors
-/// [`Reason`] if the problem cannot even be started: its initial state fits no mode, or the scene
-/// froze what every mode needs.
-pub fn simulate(problem: &Problem, progress: &mut dyn Progress) -> Result<Run, Reason> {
-    simulate_and_tell(problem, None, progress)
-}
-
-/// The same; rows and transitions go to an observer as they come, and the run holds none of them.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_with(
-    problem: &Problem,
-    observer: &mut dyn Observer,
-    progress: &mut dyn Progress,
-) -> Result<Run, Reason> {
-    simulate_and_tell(problem, Some(observer), progress)
-}
-
-fn simulate_and_tell<'p>(
-    problem: &'p Problem,
-    observer: Option<&'p mut dyn Observer>,
-    progress: &mut dyn Progress,
-) -> Result<Run, Reason> {
-    let clock = WallClock::now();
-    let mut simulation = Simulation::observed(problem, observer)?;
-    simulation.begin()?;
-    let outcome = simulation.run(progress);
-    Ok(simulation.finish(outcome.err(), clock))
-}
 
 /// Where the run is: everything but the discrete states, which live in the context.
 #[derive(Debug)]
@@ -72,17 +38,6 @@ pub(super) struct Here {
     pub v: Box<[f64]>,
     /// All accelerations; those of frozen coordinates are 0.
     pub a: Box<[f64]>,
-}
-
-/// What does not fit a mode, of a coordinate by its index.
-#[derive(Debug, Clone, Copy)]
-enum Misfit {
-    /// It is below its minimum.
-    Below(usize, f64),
-    /// The mode holds it at another value.
-    HeldAt(usize, f64),
-    /// The mode holds its rate at another value.
-    HeldRate(usize, f64),
 }
 
 /// A guard that is not respected at the start of a segment.
@@ -309,98 +264,6 @@ impl<'p> Simulation<'p> {
         &self.modes[self.here.mode]
     }
 
-    /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
-    fn choose_initial_mode(&mut self) -> Result<(), Reason> {
-        let modes = self.modes;
-        if let Some(chosen) = self.initial.mode {
-            self.here.mode = chosen;
-            self.apply_drift();
-            return match self.misfit(&modes[chosen]) {
-                None if self.plan.allowed[chosen] => Ok(()),
-                None => Err(Reason::Initial {
-                    mode: modes[chosen].name,
-                    why: "the scene freezes a coordinate that is free in it".into(),
-                }),
-                Some(misfit) => Err(Reason::Initial {
-                    mode: modes[chosen].name,
-                    why: self.in_words(misfit),
-                }),
-            };
-        }
-        let mut best: Option<usize> = None;
-        for m in 0..modes.len() {
-            self.here.mode = m;
-            let fewer = best.is_none_or(|b| modes[m].free.len() < modes[b].free.len());
-            if self.plan.allowed[m] && fewer && self.misfit(&modes[m]).is_none() {
-                best = Some(m);
-            }
-        }
-        let fallback = self.plan.allowed.iter().position(|&a| a).unwrap_or(0);
-        match best {
-            Some(m) => {
-                self.here.mode = m;
-                Ok(())
-            }
-            None => {
-                let misfit = self.misfit(&modes[fallback]);
-                Err(Reason::Initial {
-                    mode: modes[fallback].name,
-                    why: misfit.map_or_else(String::new, |misfit| self.in_words(misfit)),
-                })
-            }
-        }
-    }
-
-    /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
-    fn misfit(&mut self, mode: &Mode) -> Option<Misfit> {
-        let model = &self.problem.model;
-        let held = &mut self.next[..self.here.q.len()];
-        with_kernel!(&mode.kernels, k => {
-            k.held_rates(&self.context, &mut self.drift);
-            k.held_values(&self.context, held);
-        });
-        model.coordinates.iter().enumerate().find_map(|(i, c)| {
-            if let Some(minimum) = c.minimum
-                && self.here.q[i] < minimum
-            {
-                return Some(Misfit::Below(i, minimum));
-            }
-            if mode.free.contains(&i) {
-                return None;
-            }
-            match mode.held_at[i] {
-                Some(_) if self.here.q[i] != held[i] => Some(Misfit::HeldAt(i, held[i])),
-                _ if self.here.v[i] != self.drift[i] => Some(Misfit::HeldRate(i, self.drift[i])),
-                _ => None,
-            }
-        })
-    }
-
-    /// A misfit in words.
-    fn in_words(&self, misfit: Misfit) -> String {
-        let coordinates = &self.problem.model.coordinates;
-        let (Misfit::Below(i, value) | Misfit::HeldAt(i, value) | Misfit::HeldRate(i, value)) =
-            misfit;
-        let (name, unit) = (coordinates[i].name, coordinates[i].unit);
-        match misfit {
-            Misfit::Below(..) => format!("`{name}` is below {value} {unit}"),
-            Misfit::HeldAt(..) => format!("it holds `{name}` at {value} {unit}"),
-            Misfit::HeldRate(..) => format!("it holds `{name}.rate` at {value} {unit}/s"),
-        }
-    }
-
-    /// A scene that names a drifting mode need not state the drift's rate.
-    fn apply_drift(&mut self) {
-        let mode = self.mode();
-        let mut rates = vec![0.0; self.here.v.len()];
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
-        for (i, &drifts) in mode.drifts.iter().enumerate() {
-            if drifts && self.here.v[i] == 0.0 {
-                self.here.v[i] = rates[i];
-            }
-        }
-    }
-
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
         let mut run = || -> Stoppable<()> {
@@ -526,95 +389,6 @@ impl<'p> Simulation<'p> {
             v: self.here.v.to_vec(),
             discrete: self.context.discrete().to_vec(),
             reactions,
-        }
-    }
-
-    /// Names the methods in the account of the work, after those of the run that was resumed.
-    fn name_methods(&mut self) {
-        let mut named = std::mem::take(&mut self.solver.method);
-        for (name, order) in &self.methods {
-            let method = format!("{name}, order {order}");
-            if !named.split("; ").any(|known| known == method) {
-                let separator = if named.is_empty() { "" } else { "; " };
-                named = format!("{named}{separator}{method}");
-            }
-        }
-        self.solver.method = named;
-    }
-
-    fn place(&self) -> Place {
-        Place {
-            t: self.here.now.seconds(),
-            j: self.here.j,
-            mode: self.here.mode,
-            state: self.snapshot(),
-        }
-    }
-
-    /// Everything that was recorded, as far as it came.
-    pub fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
-        self.set_context();
-        let last = self.observers.recording.last_row();
-        if last.is_none_or(|t| t < self.here.now.seconds()) {
-            // It is the last one in any case.
-            let _ = self.sample_here();
-        }
-        if reason.is_some() {
-            // A mode that goes on after an event has none before its first step; where the equations have none,
-            // those before stay.
-            let mode = self.mode();
-            let _ = with_kernel!(&mode.kernels, k => self.set_accelerations(k));
-        }
-        let problem = self.problem;
-        let end = self.place();
-        if self.observers.watch_steps() {
-            let stored = self.stored_energy();
-            self.observers.jump(&self.here, &[], Some(stored));
-        }
-        let energy = self
-            .observers
-            .ledger
-            .as_ref()
-            .map(|l| l.close(self.stored_energy()));
-        self.name_methods();
-        let wall = clock.elapsed();
-        let peaks = self.observers.peaks();
-        let Observers {
-            layout, recording, ..
-        } = self.observers;
-        let (trajectory, events, tally) = recording.finish(&layout);
-        Run {
-            subject: Subject {
-                model: problem.model.name.into(),
-                title: problem.title.clone().unwrap_or_default(),
-                choices: (problem.model.choices.iter().zip(&problem.variant().options))
-                    .map(|(choice, option)| (choice.name.into(), (*option).into()))
-                    .collect(),
-                parameters: (problem.model.parameters.iter().zip(&problem.parameters))
-                    .map(|(p, &value)| (p.name.into(), value))
-                    .collect(),
-                digests: super::resume::digests(problem),
-            },
-            peaks,
-            layout,
-            trajectory,
-            events,
-            tally,
-            failure: reason.map(|reason| Failure {
-                reason: reason.to_string(),
-                at: end.clone(),
-            }),
-            end,
-            solver: self.solver,
-            energy,
-            error: None,
-            uncertain: self.doubts.uncertain,
-            reached: {
-                let mut reached = self.margins.reached();
-                reached.validity.splice(..0, problem.invalid_parameters());
-                reached
-            },
-            wall,
         }
     }
 }

@@ -1,10 +1,21 @@
-//! An initial state must be one that the model can be in: not beyond a stop.
+//! The mode that a run starts in, and whether its initial state is one that the model can be in: not beyond a stop.
 
 use super::failure::Reason;
 use super::limits::check_bounds;
 use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
-use crate::model::GuardShape;
+use crate::model::{GuardShape, Mode};
+
+/// What does not fit a mode, of a coordinate by its index.
+#[derive(Debug, Clone, Copy)]
+enum Misfit {
+    /// It is below its minimum.
+    Below(usize, f64),
+    /// The mode holds it at another value.
+    HeldAt(usize, f64),
+    /// The mode holds its rate at another value.
+    HeldRate(usize, f64),
+}
 
 /// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -87,5 +98,99 @@ impl<'p> Simulation<'p> {
         }
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
         Some(Ok(transition.target))
+    }
+}
+
+impl Simulation<'_> {
+    /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
+    pub fn choose_initial_mode(&mut self) -> Result<(), Reason> {
+        let modes = self.modes;
+        if let Some(chosen) = self.initial.mode {
+            self.here.mode = chosen;
+            self.apply_drift();
+            return match self.misfit(&modes[chosen]) {
+                None if self.plan.allowed[chosen] => Ok(()),
+                None => Err(Reason::Initial {
+                    mode: modes[chosen].name,
+                    why: "the scene freezes a coordinate that is free in it".into(),
+                }),
+                Some(misfit) => Err(Reason::Initial {
+                    mode: modes[chosen].name,
+                    why: self.in_words(misfit),
+                }),
+            };
+        }
+        let mut best: Option<usize> = None;
+        for m in 0..modes.len() {
+            self.here.mode = m;
+            let fewer = best.is_none_or(|b| modes[m].free.len() < modes[b].free.len());
+            if self.plan.allowed[m] && fewer && self.misfit(&modes[m]).is_none() {
+                best = Some(m);
+            }
+        }
+        let fallback = self.plan.allowed.iter().position(|&a| a).unwrap_or(0);
+        match best {
+            Some(m) => {
+                self.here.mode = m;
+                Ok(())
+            }
+            None => {
+                let misfit = self.misfit(&modes[fallback]);
+                Err(Reason::Initial {
+                    mode: modes[fallback].name,
+                    why: misfit.map_or_else(String::new, |misfit| self.in_words(misfit)),
+                })
+            }
+        }
+    }
+
+    /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
+    fn misfit(&mut self, mode: &Mode) -> Option<Misfit> {
+        let model = &self.problem.model;
+        let held = &mut self.next[..self.here.q.len()];
+        with_kernel!(&mode.kernels, k => {
+            k.held_rates(&self.context, &mut self.drift);
+            k.held_values(&self.context, held);
+        });
+        model.coordinates.iter().enumerate().find_map(|(i, c)| {
+            if let Some(minimum) = c.minimum
+                && self.here.q[i] < minimum
+            {
+                return Some(Misfit::Below(i, minimum));
+            }
+            if mode.free.contains(&i) {
+                return None;
+            }
+            match mode.held_at[i] {
+                Some(_) if self.here.q[i] != held[i] => Some(Misfit::HeldAt(i, held[i])),
+                _ if self.here.v[i] != self.drift[i] => Some(Misfit::HeldRate(i, self.drift[i])),
+                _ => None,
+            }
+        })
+    }
+
+    /// A misfit in words.
+    fn in_words(&self, misfit: Misfit) -> String {
+        let coordinates = &self.problem.model.coordinates;
+        let (Misfit::Below(i, value) | Misfit::HeldAt(i, value) | Misfit::HeldRate(i, value)) =
+            misfit;
+        let (name, unit) = (coordinates[i].name, coordinates[i].unit);
+        match misfit {
+            Misfit::Below(..) => format!("`{name}` is below {value} {unit}"),
+            Misfit::HeldAt(..) => format!("it holds `{name}` at {value} {unit}"),
+            Misfit::HeldRate(..) => format!("it holds `{name}.rate` at {value} {unit}/s"),
+        }
+    }
+
+    /// A scene that names a drifting mode need not state the drift's rate.
+    pub fn apply_drift(&mut self) {
+        let mode = self.mode();
+        let mut rates = vec![0.0; self.here.v.len()];
+        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
+        for (i, &drifts) in mode.drifts.iter().enumerate() {
+            if drifts && self.here.v[i] == 0.0 {
+                self.here.v[i] = rates[i];
+            }
+        }
     }
 }

@@ -26,8 +26,8 @@ impl Context {
 
     /// Whether [`Context::foresee_signals`] gives all that the equations of motion need: they depend on
     /// no antiderivative of an input, and on some input at all.
-    pub fn can_foresee(&mut self, signals: &Signals) -> bool {
-        !self.quiet && !signals.want_antiderivatives(self.signal_rooms().expanded)
+    pub fn can_foresee(&self, signals: &Signals) -> bool {
+        !self.quiet && !signals.want_antiderivatives(self.expanded())
     }
 
     /// Computes the signals at up to [`Context::MOST_AHEAD`] instants side by side, for

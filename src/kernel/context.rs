@@ -222,6 +222,11 @@ impl Context {
     /// Most instants whose signals are foreseen.
     pub const MOST_AHEAD: usize = 8;
 
+    /// Of each signal, whether its series is wanted.
+    pub(crate) fn expanded(&self) -> &[bool] {
+        &self.dimensions.expanded
+    }
+
     /// Where the signals are kept, to be filled.
     #[inline(always)]
     pub(crate) fn signal_rooms(&mut self) -> SignalRooms<'_> {
