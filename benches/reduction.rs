@@ -16,6 +16,7 @@ use dalembert::model::models;
 use dalembert::record::{Event, Recorded, Silent, Snapshot};
 use dalembert::scene::Scene;
 use dalembert::with_kernel;
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector};
 use std::path::Path;
 use std::time::Instant;
@@ -154,14 +155,14 @@ fn stretches(problem: &Problem) -> Vec<Stretch> {
 
 /// A mode's equations over a stretch.
 struct Reduced<'a, const F: usize> {
-    kernel: &'a ModeKernel<F>,
+    kernel: &'a ModeKernel<Const<F>>,
     context: Context,
     signals: &'a Signals,
     start: f64,
 }
 
 impl<'a, const F: usize> Reduced<'a, F> {
-    fn new(problem: &'a Problem, stretch: &Stretch, kernel: &'a ModeKernel<F>) -> Self {
+    fn new(problem: &'a Problem, stretch: &Stretch, kernel: &'a ModeKernel<Const<F>>) -> Self {
         let mut context = Context::new(&problem.model, &problem.parameters);
         context
             .discrete_mut()
@@ -184,7 +185,7 @@ impl<'a, const F: usize> Reduced<'a, F> {
 type Vector<const F: usize> = SVector<f64, F>;
 type Matrix<const F: usize> = SMatrix<f64, F, F>;
 
-impl<const F: usize> System<F> for Reduced<'_, F> {
+impl<const F: usize> System<Const<F>> for Reduced<'_, F> {
     fn residual(&mut self, t: f64, q: &Vector<F>, v: &Vector<F>, a: &Vector<F>, r: &mut Vector<F>) {
         self.at(t);
         self.kernel.residual(&self.context, Free { q, v, a }, r);
@@ -214,7 +215,7 @@ struct Whole<'a> {
     held: [bool; ALL],
 }
 
-impl System<ALL> for Whole<'_> {
+impl System<Const<ALL>> for Whole<'_> {
     fn residual(
         &mut self,
         t: f64,
@@ -250,7 +251,7 @@ impl System<ALL> for Whole<'_> {
 }
 
 /// Integrates a stretch; the coordinates `free` at its end are put into those of all.
-fn integrate<const F: usize, Y: System<F>>(
+fn integrate<const F: usize, Y: System<Const<F>>>(
     problem: &Problem,
     stretch: &Stretch,
     free: &[usize],
@@ -266,7 +267,7 @@ fn integrate<const F: usize, Y: System<F>>(
     system
         .acceleration(0.0, &q, &v, &mut a)
         .expect("a regular mass matrix");
-    let mut radau = Radau::<3, F>::new(&tolerances);
+    let mut radau = Radau::<3, Const<F>>::new(&tolerances);
     radau.restart(0.0, &q, &v, &a);
     while radau.state().t < stretch.duration {
         let longest = problem.signals.resolution(stretch.start + radau.state().t);
@@ -283,9 +284,10 @@ fn integrate<const F: usize, Y: System<F>>(
 
 fn integrate_free(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {
     let mode = &problem.variant().modes[stretch.mode];
-    with_kernel!(&mode.kernels, kernel => {
-        integrate(problem, stretch, &mode.free, &mut Reduced::new(problem, stretch, kernel))
-    })
+    with_kernel!(&mode.kernels,
+        kernel => integrate(problem, stretch, &mode.free, &mut Reduced::new(problem, stretch, kernel)),
+        _any => unreachable!("few are free")
+    )
 }
 
 fn integrate_all(problem: &Problem, stretch: &Stretch) -> Vector<ALL> {

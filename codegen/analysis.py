@@ -10,17 +10,20 @@ SERIES = ("series", "quiet_series", "guard_series")
 LANES = ("series", "quiet_series", "requirement_bounds", "guard")
 """What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and resets that stay in the mode."""
 
+MOST_IN_LANES = 6
+"""Most free coordinates of modes that go in lanes; `FREE` in codegen/lanes.c tells so many apart."""
+
 
 def goes_in_lanes(variant, i):
     """Whether trajectories in a mode can go side by side: it is analytic, nothing drifts, and its guards
-    are coordinates or rates that fall without further conditions."""
+    are coordinates or rates that fall without further conditions; and few coordinates are free."""
     equations = variant.modes[i]
     analytic = all(variant.functions[i, what].symbol for what in ("series", "quiet_series"))
     guards = [
         linear_shape(variant.model, equations, equations.place(expression)) is not None
         and all(t.condition is None for t in transitions)
         for expression, transitions in equations.guards]
-    return bool(equations.free) and analytic and not equations.mode.drift and all(guards)
+    return 0 < len(equations.free) <= MOST_IN_LANES and analytic and not equations.mode.drift and all(guards)
 
 
 def is_for_lanes(variant, slot, function):

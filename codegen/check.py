@@ -9,9 +9,6 @@ from . import graph, units
 from .arguments import shown
 from .errors import ModelError, each
 
-MOST_FREE = 6
-"""Most free coordinates a mode may have; `ModeKernels` in src/kernel/tables.rs has one case for each."""
-
 
 def check(model):
     """Refuses a model whose parts contradict each other."""
@@ -25,15 +22,7 @@ def check(model):
 
 def check_equations(model, modes):
     """Refuses modes whose equations do not determine the accelerations."""
-    each(lambda equations: _check_mode(model, equations), modes)
-
-
-def _check_mode(model, equations):
-    mode = equations.mode
-    if len(equations.free) > MOST_FREE:
-        raise ModelError(f"mode `{mode.name}` has {len(equations.free)} free coordinates; at most {MOST_FREE} are supported",
-                         mode.location)
-    _check_inertia(model, equations)
+    each(lambda equations: _check_inertia(model, equations), modes)
 
 
 # ---- symbols ------------------------------------------------------------------------------------

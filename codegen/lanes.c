@@ -81,7 +81,7 @@ DALEMBERT_INLINE real two_sum_of(real a, real b, real *sum) {
   return (a - from_a) + (b - from_b);
 }
 
-/* Numbers of free coordinates that are told apart: MOST_FREE in src/kernel/mod.rs. */
+/* Numbers of free coordinates that are told apart: up to MOST_IN_LANES in codegen/analysis.py. */
 #define FREE(with) with(0) with(1) with(2) with(3) with(4) with(5) with(6)
 
 void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine);

@@ -41,6 +41,7 @@ class Node:
 
 VARIABLE = re.compile(r"\bt\d+\b")
 _MOTION = re.compile(r"([qv])\[(\d+) \* k \+ (\d+)\]")
+_NAME = re.compile(r"\b[A-Za-z]")
 _DEFINITION = re.compile(r"\s*const (?:real|struct \w+) (t\d+) = ")
 
 ONE = Node("1.0")
@@ -64,6 +65,8 @@ class Graph:
     def zeroth(self, text):
         """A node that is constant in time."""
         name = self._name()
+        # Of numbers alone C makes one number, not one a lane.
+        text = text if _NAME.search(text) else f"REAL({text})"
         self.start.append(f"  const real {name} = {text};")
         return Node(name)
 

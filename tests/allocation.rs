@@ -3,6 +3,7 @@
 //! This test binary is a program of its own because its allocator counts.
 
 use dalembert::integrate::{Radau, System, Tolerances};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector, matrix, vector};
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -30,7 +31,7 @@ static COUNTING: Counting = Counting;
 /// Two masses on nonlinear springs.
 struct Springs;
 
-impl System<2> for Springs {
+impl System<Const<2>> for Springs {
     fn residual(
         &mut self,
         t: f64,
@@ -63,7 +64,7 @@ impl System<2> for Springs {
 #[test]
 fn steps_restarts_and_dense_output_allocate_nothing() {
     let absolute = SVector::repeat(1e-8);
-    let mut radau = Radau::<3, 2>::new(&Tolerances::new(1e-8, absolute, absolute).unwrap());
+    let mut radau = Radau::<3, Const<2>>::new(&Tolerances::new(1e-8, absolute, absolute).unwrap());
     let before = ALLOCATIONS.load(Ordering::Relaxed);
     let (q, v) = (vector![0.0, 1.0], vector![0.0, 0.0]);
     let mut a = SVector::zeros();

@@ -4,7 +4,7 @@
 
 mod common;
 use common::*;
-use dalembert::hybrid::{Problem, Simulator, simulate};
+use dalembert::hybrid::{Method, Problem, Simulator, simulate};
 use dalembert::input::{Command, Function, Sine};
 use dalembert::record::Silent;
 use std::alloc::{GlobalAlloc, Layout, System as Heap};
@@ -67,6 +67,20 @@ fn steps_of_a_smooth_motion_allocate_nothing() {
     problem.set_initial("theta_1", 2.0).unwrap();
     problem.set_initial("theta_2", 2.5).unwrap();
     check(problem, [1.0, 12.0]);
+}
+
+/// Of seven free coordinates the number is known when the program runs: what a step makes and drops is kept by the thread, and
+/// was made in the first steps.
+#[test]
+fn steps_of_any_number_of_free_coordinates_allocate_nothing() {
+    for method in [Method::Radau, Method::Taylor] {
+        let mut problem = problem("link_chain", &[]);
+        problem.method = method;
+        problem.initial.q.fill(1.0);
+        problem.end.time = 0.5;
+        cost(&problem);
+        check(problem, [0.5, 10.0]);
+    }
 }
 
 #[test]

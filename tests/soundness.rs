@@ -3,12 +3,11 @@
 
 #![forbid(unsafe_code)]
 
-use dalembert::integrate::{ORDERS, Series};
+use dalembert::integrate::{Matrix, ORDERS, Series, Size, Vector};
 use dalembert::kernel::{Context, Free, ModeKernel};
 use dalembert::model::models;
 use dalembert::model::{Guard, Mode, Model, Variant};
 use dalembert::with_kernel;
-use nalgebra::{SMatrix, SVector};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -43,8 +42,8 @@ fn room(model: &Model) -> Vec<f64> {
 
 /// What the functions of a kernel that are passed a guard, or a transition of it, make of those of another
 /// model: names of the functions that take it.
-fn taken<const F: usize>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<&'static str> {
-    let rest = SVector::<f64, F>::zeros();
+fn taken<F: Size>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<&'static str> {
+    let rest = kernel.size().zeros();
     let (q, v, a) = (&rest, &rest, &rest);
     let at = Free { q, v, a };
     let x = context(own.0);
@@ -106,7 +105,7 @@ fn a_kernel_takes_nothing_of_another_model() {
             }
             let of_another = context(model);
             let takes = with_kernel!(&own.1.kernels, k => {
-                let rest = SVector::zeros();
+                let rest = k.size().zeros();
                 let at = Free { q: &rest, v: &rest, a: &rest };
                 !refuses(|| k.energies(&of_another, at))
             });
@@ -126,7 +125,7 @@ fn a_kernel_takes_what_is_of_its_own_model() {
     for own in modes(&models) {
         let x = context(own.0);
         with_kernel!(&own.1.kernels, k => {
-            let rest = SVector::zeros();
+            let rest = k.size().zeros();
             let at = Free { q: &rest, v: &rest, a: &rest };
             for guard in &own.1.guards {
                 let _ = k.guard(&x, &guard.kernel, at);
@@ -153,11 +152,7 @@ fn is_written<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> bool {
 
 /// Calls all functions of a mode with arrays of exactly their sizes, each in memory of its own where a
 /// sanitizer sees who leaves it; names those that leave an output as it was.
-fn call_all<const F: usize>(
-    kernel: &ModeKernel<F>,
-    (model, mode): Of,
-    variant: &Variant,
-) -> Vec<String> {
+fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Variant) -> Vec<String> {
     let mut unfinished = Vec::new();
     let mut expect = |what: &str, written: bool| {
         if !written {
@@ -166,9 +161,10 @@ fn call_all<const F: usize>(
     };
     let mut x = context(model);
     // Somewhere near the beginning, moving a little.
+    let size = kernel.size();
     let numbers = |scale: f64| {
-        let number = |i: usize, _| scale * (1.0 + i as f64);
-        Box::new(SVector::<f64, F>::from_fn(number))
+        let number = |i: usize| scale * (1.0 + i as f64);
+        Box::new(size.vector(number))
     };
     let (q, v, a) = (numbers(0.01), numbers(0.1), numbers(1.0));
     let at = Free {
@@ -179,14 +175,18 @@ fn call_all<const F: usize>(
     let coordinates = model.coordinates.len();
     let forces = coordinates + model.motions.len();
 
-    let mut r = Box::new(SVector::from_element(f64::from_bits(UNWRITTEN)));
+    let mut r = Box::new(size.repeat(f64::from_bits(UNWRITTEN)));
     kernel.residual(&x, at, &mut r);
-    expect("residual", is_written(r.iter()));
-    let square = SMatrix::<f64, F, F>::from_element(f64::from_bits(UNWRITTEN));
-    let mut matrices = Box::new([square; 3]);
+    expect("residual", is_written(r.as_slice()));
+    let mut square = size.zero_matrix();
+    square.as_mut_slice().fill(f64::from_bits(UNWRITTEN));
+    let mut matrices = Box::new([(); 3].map(|()| square.clone()));
     kernel.jacobian(&x, at, &mut matrices);
-    expect("jacobian", is_written(matrices.iter().flatten()));
-    let system = kernel.system(&x, at.q, at.v);
+    expect(
+        "jacobian",
+        is_written(matrices.iter().flat_map(|matrix| matrix.as_slice())),
+    );
+    let _ = kernel.system(&x, at.q, at.v);
     let _ = kernel.inertia(&x, at.q, at.v);
     let _ = kernel.jerk_load(&x, at);
     let _ = kernel.magnitude(&x, at);
@@ -217,7 +217,7 @@ fn call_all<const F: usize>(
             expect(transition.name, is_written(&out));
             let target = &variant.modes[transition.target];
             with_kernel!(&target.kernels, target => {
-                let rest = SVector::zeros();
+                let rest = target.size().zeros();
                 let at = Free { q: &rest, v: &rest, a: &rest };
                 let _ = target.conditions(&mut x, &transition.kernel, at);
             });
@@ -225,10 +225,13 @@ fn call_all<const F: usize>(
     }
 
     if kernel.is_analytic() {
-        let mut series = Box::new(Series::<F>::zero());
-        (series.q[0], series.v[0], series.a[0]) = (*q, *v, *a);
-        (series.q[1], series.v[1], series.q[2]) = (*v, *a, *a / 2.0);
-        let inverse = system.mass.try_inverse().unwrap_or_else(SMatrix::identity);
+        let mut series = Box::new(Series::zero(size));
+        let mut inverse = size.zero_matrix();
+        for i in 0..size.get() {
+            (series.q[0][i], series.v[0][i], series.a[0][i]) = (q[i], v[i], a[i]);
+            (series.q[1][i], series.v[1][i], series.q[2][i]) = (v[i], a[i], a[i] / 2.0);
+            inverse[(i, i)] = 1.0;
+        }
         for quiet in [false, true] {
             x.quiet = quiet;
             for orders in 1..=ORDERS - 2 {

@@ -9,6 +9,7 @@ use dalembert::integrate::{Series, Taylor, Tolerances};
 use dalembert::kernel::{Context, Free, ModeKernel, with_kernel};
 use dalembert::model::{Guard, GuardShape, Mode};
 use dalembert::record::{Progress, Silent};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector};
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -51,7 +52,7 @@ fn row(name: &str, method: Method, tolerance: f64) {
     let own: f64 = (problem.variant().modes.iter().zip(&steps))
         .filter(|&(_, &steps)| steps > 0)
         .map(|(mode, &steps)| {
-            let cost = with_kernel!(&mode.kernels, k => functions(k, &problem, mode));
+            let cost = with_kernel!(&mode.kernels, k => functions(k, &problem, mode), _any => unreachable!("few are free"));
             let step = match method {
                 Method::Taylor => cost.series,
                 _ => residuals * cost.residual + jacobians * cost.jacobian,
@@ -112,7 +113,11 @@ struct Cost {
     checks: f64,
 }
 
-fn functions<const F: usize>(kernel: &ModeKernel<F>, problem: &Problem, mode: &Mode) -> Cost {
+fn functions<const F: usize>(
+    kernel: &ModeKernel<Const<F>>,
+    problem: &Problem,
+    mode: &Mode,
+) -> Cost {
     let mut context = Context::new(&problem.model, &problem.parameters);
     context.quiet = problem.signals.is_zero();
     // A state at which nothing is zero.
@@ -141,8 +146,8 @@ fn functions<const F: usize>(kernel: &ModeKernel<F>, problem: &Problem, mode: &M
     );
     let tolerances = Tolerances::new(accuracy.relative, q_absolute, v_absolute);
     let tolerances = tolerances.expect("they are those of the run");
-    let order = Taylor::<F>::new(&tolerances, kernel.series_kind(&context)).order();
-    let mut motion = Series::<F>::zero();
+    let order = Taylor::<Const<F>>::new(&tolerances, kernel.series_kind(&context)).order();
+    let mut motion = Series::zero(Const::<F>);
     (motion.q[0], motion.v[0], motion.a[0]) = (q, v, a);
     (motion.q[1], motion.v[1], motion.q[2]) = (v, a, a * 0.5);
     let mut series = seconds(|| {

@@ -9,9 +9,9 @@ use super::simulation::{Simulation, Stop};
 use crate::input::Command;
 use crate::integrate::State;
 use crate::kernel::with_kernel;
+use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::Progress;
-use nalgebra::SVector;
 
 /// Why an advance ended where it did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +110,7 @@ impl Pause {
     }
 
     /// Keeps the state with which the segment has begun.
-    pub fn keep_start<const F: usize>(&mut self, free: &[usize], began: &State<F>) {
+    pub fn keep_start<F: Size>(&mut self, free: &[usize], began: &State<F>) {
         let [q, v] = &mut self.began;
         for (i, &full) in free.iter().enumerate() {
             (q[full], v[full]) = (began.q[i], began.v[i]);
@@ -118,12 +118,12 @@ impl Pause {
     }
 
     /// That state, at the local time zero; without accelerations.
-    pub fn began<const F: usize>(&self, free: &[usize]) -> State<F> {
-        let [q, v] = (self.began.each_ref()).map(|full| SVector::from_fn(|i, _| full[free[i]]));
+    pub fn began<F: Size>(&self, size: F, free: &[usize]) -> State<F> {
+        let [q, v] = (self.began.each_ref()).map(|full| size.vector(|i| full[free[i]]));
         State {
             q,
             v,
-            ..State::origin()
+            ..State::origin(size)
         }
     }
 }

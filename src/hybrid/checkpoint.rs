@@ -11,6 +11,7 @@ use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::{Radau, Taylor};
 use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::name::intern;
+use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::digest;
 use serde::{Deserialize, Serialize};
@@ -297,7 +298,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// The memory of the methods of a mode, of those that were used.
-    fn persist_methods<const F: usize>(
+    fn persist_methods<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         index: usize,
@@ -306,7 +307,7 @@ impl<'p> Simulation<'p> {
     where
         Solvers: SlotsOf<F>,
     {
-        let tolerances = tolerances(self.problem, &self.modes[index]);
+        let tolerances = tolerances(kernel.size(), self.problem, &self.modes[index]);
         let context = &self.context;
         let slots = self.solvers.slots();
         let taylor = || Taylor::new(&tolerances, kernel.series_kind(context));

@@ -12,6 +12,7 @@ use super::search::search;
 use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
 use crate::model::{Guard, Mode};
+use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 
 /// Remembered signs of what is watched in a mode.
@@ -144,7 +145,7 @@ impl Signs {
 
 /// Cuts the last step at its first event, and writes the state there. The shortened step is searched again, since it
 /// is a better solution than the dense output of the longer one.
-pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
@@ -190,7 +191,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             }
         }
         let Some(first) = time.and_then(|_| found.iter().position(|f| f.crossing.is_some())) else {
-            *landed = *method.state();
+            landed.clone_from(method.state());
             if hides {
                 signs.below = below(equations, conditions, (mode, watched), signs, landed);
             }
@@ -209,7 +210,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let index = watched[first].guard;
         let guard = (&mode.guards[index], watched[first]);
         if crossing.kind == Kind::LeavesNegative && start == 0.0 && !watched[first].conditional {
-            *landed = *method.start();
+            landed.clone_from(method.start());
             return Ok(Cut::Violated { guard: index });
         }
         let is_event = crossing.kind != Kind::Pole
@@ -249,7 +250,7 @@ pub(super) fn cut<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 /// Guards that were zero at the start of the segment and are not searched before some time of the last step: one that its
 /// dense output does not show to be positive there, by its error, must show it before its fall counts.
 #[cold]
-fn wake<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+fn wake<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     (mode, watched): (&Mode, &[Watched]),
@@ -276,7 +277,7 @@ fn wake<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 
 /// Those of the guards that came to zero within rounding which are not positive at the end of the step.
 #[cold]
-fn below<const F: usize>(
+fn below<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     (mode, watched): (&Mode, &[Watched]),
@@ -297,7 +298,7 @@ fn below<const F: usize>(
 /// falls. It has fallen where it first is negative after it was known to be positive; and it is in doubt, having turned at
 /// zero.
 #[cold]
-fn fallen<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
@@ -321,7 +322,7 @@ fn fallen<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
             } else if method.end() < end {
                 method.step_exactly(equations, end - start)?;
             }
-            *landed = *method.state();
+            landed.clone_from(method.state());
             if value_at(equations, conditions, guard, landed) < 0.0 || start + length >= end {
                 break;
             }
@@ -344,7 +345,7 @@ fn fallen<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 
 /// Searches a guard, unless the window from which it is searched is empty.
 #[inline(never)]
-fn search_from<const F: usize>(
+fn search_from<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
@@ -363,7 +364,7 @@ fn search_from<const F: usize>(
 /// Time of the first events of a step up to `to`, where places near the events of several guards were found: where
 /// these may not be in order, all are isolated.
 #[cold]
-fn put_in_order<const F: usize>(
+fn put_in_order<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
@@ -393,7 +394,7 @@ fn put_in_order<const F: usize>(
 }
 
 /// Time of the first events of a step up to `to`, all of them isolated.
-fn search_all<const F: usize>(
+fn search_all<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
@@ -413,7 +414,7 @@ fn search_all<const F: usize>(
 /// Whether the other part of a conditional guard agrees where one part falls through zero: where the guard does, that
 /// the conditions of some transition hold; where a condition comes to hold, that the guard is violated and the others of
 /// its transition hold. The part that falls is not asked for its value, which rounding may keep at zero there.
-fn acts_together<const F: usize>(
+fn acts_together<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,

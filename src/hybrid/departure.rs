@@ -12,6 +12,7 @@ use super::simulation::Simulation;
 use crate::jets::{Expansion, ORDERS, Point};
 use crate::kernel::{Free, ModeKernel};
 use crate::model::{Mode, Transition};
+use crate::numerics::Size;
 
 /// How a number goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,7 +127,7 @@ impl<'p> Simulation<'p> {
     /// Whether a transition of a guard may be taken: none of its conditions is negative just after it, in the motion of
     /// its target. Leaves the reset in `next`.
     #[inline(always)]
-    pub fn may_take<const F: usize>(
+    pub fn may_take<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         transition: &'p Transition,

@@ -19,6 +19,7 @@ use super::sensitivity::WatchedGuard;
 use crate::integrate::{Motion, OneStep};
 use crate::model::name::intern;
 use crate::model::{Guard, GuardShape, Mode};
+use crate::numerics::Size;
 use crate::numerics::{Blank, Memory, Persist, persist};
 use crate::run::{Doubt, Question, Uncertain};
 
@@ -120,7 +121,7 @@ impl Doubts {
 
     /// Looks for doubts in a step that was searched, up to its end or its first event.
     #[inline]
-    pub fn look<'a, const F: usize>(
+    pub fn look<'a, F: Size>(
         &mut self,
         step: &Searched,
         method: &mut impl OneStep<F, Equations<'a, F>>,
@@ -148,7 +149,7 @@ impl Doubts {
 
     #[cold]
     #[inline(never)]
-    fn examine<'a, const F: usize>(
+    fn examine<'a, F: Size>(
         &mut self,
         step: &Searched,
         method: &mut impl OneStep<F, Equations<'a, F>>,
@@ -168,7 +169,7 @@ impl Doubts {
         let left = std::mem::take(&mut self.left);
         for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
             let mut guard = step.guard(watched, equations, conditions);
-            let end = *method.state();
+            let end = method.state().clone();
             if !found.resolved {
                 let value = guard.value(end.t, &end.q, &end.v);
                 let error = guard.error(end.t, &end.q, &end.v) * tolerances;
@@ -234,7 +235,7 @@ impl Doubts {
     /// step make, and either never shows it to be positive by more, or outlasts the fastest decay. Such a step is as long
     /// as it is because its last terms are less than the tolerance, as is all that the guard does in it.
     #[inline(always)]
-    pub fn about_fall<'a, const F: usize>(
+    pub fn about_fall<'a, F: Size>(
         &mut self,
         (step, outlasts): (&Searched, bool),
         method: &impl OneStep<F, Equations<'a, F>>,
@@ -272,7 +273,7 @@ impl Doubts {
 
     /// The same of the guard of an index, where its slope does not tell at once.
     #[inline(never)]
-    fn about_small_fall<'a, const F: usize>(
+    fn about_small_fall<'a, F: Size>(
         (step, fallen, outlasts): (&Searched, usize, bool),
         method: &impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
@@ -327,7 +328,7 @@ impl<'s> Searched<'s> {
         }
     }
 
-    fn guard<'e, 'a, 'c, const F: usize>(
+    fn guard<'e, 'a, 'c, F: Size>(
         &'e self,
         watched: Watched,
         equations: &'e mut Equations<'a, F>,
@@ -344,7 +345,7 @@ impl<'s> Searched<'s> {
     }
 }
 
-impl<const F: usize> WatchedGuard<'_, '_, '_, F> {
+impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     /// The doubt about it at local time `t`.
     fn doubt(&self, t: f64, what: Question, value: f64, error: f64) -> Doubt {
         let (guard, unit) = match self.watched.condition {

@@ -6,40 +6,38 @@ use super::guards::{Conditions, slope, watched_value};
 use super::inertia::pivots;
 use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
-use crate::integrate::{determinant_sign, solve};
+use crate::integrate::{Size, Vector, determinant_sign};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, GuardShape};
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::{Matrix, solve_for};
 
 /// Unit roundoff of a double.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 impl<'p> Simulation<'p> {
     /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.
-    pub fn scale<const F: usize>(&self) -> SVector<f64, F> {
+    pub fn scale<F: Size>(&self, size: F) -> F::Vector {
         let free = &self.mode().free;
-        SVector::from_fn(|i, _| self.sizes[free[i]])
+        size.vector(|i| self.sizes[free[i]])
     }
 
     /// Enters the present mode: sets accelerations and remembered signs, and gives the first guard
     /// that is not respected.
-    pub fn enter<const F: usize>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-    ) -> Stoppable<Option<Violation>> {
+    pub fn enter<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<Option<Violation>> {
         self.set_context();
         let mode = self.mode();
         if self.plan.drifts[self.here.mode] {
             kernel.held_rates(&self.context, &mut self.drift);
         }
-        let [q, v, _] = self.here.free::<F>(&mode.free);
+        let [q, v, _] = self.here.free(kernel.size(), &mode.free);
         self.check_inertia(kernel, [&q, &v])?;
         let system = kernel.system(&self.context, &q, &v);
         if determinant_sign(&system.mass) < 0 {
             return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
         }
-        let scale = self.scale::<F>();
-        let mut a = solve(&system.mass, &-system.load, &scale)
+        let scale = self.scale(kernel.size());
+        let mut a = system
+            .accelerations(&scale)
             .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
 
         let start = Start {
@@ -134,11 +132,11 @@ impl<'p> Simulation<'p> {
     /// ask for: guards that are positive, or zero and rise. Given free coordinates and velocities, sets the
     /// accelerations too where they are needed; false: the mode is to be entered as any other. What the mode requires
     /// is looked at in the first step.
-    pub fn enter_again<const F: usize>(
+    pub fn enter_again<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
-        q: SVector<f64, F>,
-        v: SVector<f64, F>,
+        q: F::Vector,
+        v: F::Vector,
         needs_accelerations: bool,
     ) -> Stoppable<bool> {
         let mode = self.mode();
@@ -146,6 +144,7 @@ impl<'p> Simulation<'p> {
             return Ok(false);
         }
         self.signs.clear();
+        let zero = kernel.size().zeros();
         for watched in &self.plan.watched[self.here.mode] {
             let guard = &mode.guards[watched.guard];
             let GuardShape::Linear {
@@ -161,7 +160,7 @@ impl<'p> Simulation<'p> {
             let at = Free {
                 q: &q,
                 v: &v,
-                a: &SVector::zeros(),
+                a: &zero,
             };
             let value = kernel.guard(&self.context, &guard.kernel, at);
             let factor = slope((factor, discrete), &self.context);
@@ -176,7 +175,7 @@ impl<'p> Simulation<'p> {
         self.signs.start();
         if needs_accelerations || self.has_sample_left() {
             let system = kernel.system(&self.context, &q, &v);
-            let a = solve(&system.mass, &-system.load, &self.scale::<F>());
+            let a = system.accelerations(&self.scale(kernel.size()));
             let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
                 return Ok(false);
             };
@@ -189,10 +188,10 @@ impl<'p> Simulation<'p> {
     /// The inertia of the present mode must be positive definite; one that follows from the parameters alone is looked
     /// at once.
     #[inline(always)]
-    fn check_inertia<const F: usize>(
+    fn check_inertia<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
-        [q, v]: [&SVector<f64, F>; 2],
+        [q, v]: [&F::Vector; 2],
     ) -> Stoppable<()> {
         if !(kernel.inertia_is_fixed() && self.has_inertia[self.here.mode]) {
             let mode = self.mode();
@@ -208,15 +207,15 @@ impl<'p> Simulation<'p> {
 }
 
 /// The state at the start of a segment, for guards that are exactly zero there.
-struct Start<'a, const F: usize> {
+struct Start<'a, F: Size> {
     kernel: &'a ModeKernel<F>,
-    mass: &'a SMatrix<f64, F, F>,
-    scale: &'a SVector<f64, F>,
+    mass: &'a F::Matrix,
+    scale: &'a F::Vector,
     /// Free coordinates and velocities.
-    at: [&'a SVector<f64, F>; 2],
+    at: [&'a F::Vector; 2],
 }
 
-impl<const F: usize> Start<'_, F> {
+impl<F: Size> Start<'_, F> {
     /// How a guard that is exactly zero leaves zero, where that takes no expansion: a coordinate by its rate, and what is
     /// linear by accelerations that are more than their rounding.
     ///
@@ -226,7 +225,7 @@ impl<const F: usize> Start<'_, F> {
         &self,
         context: &Context,
         guard: &Guard,
-        (a, is_explicit): (&SVector<f64, F>, bool),
+        (a, is_explicit): (&F::Vector, bool),
     ) -> Option<Departure> {
         let [q, v] = self.at;
         let GuardShape::Linear {
@@ -249,7 +248,7 @@ impl<const F: usize> Start<'_, F> {
         }
         let inverse = inverse(self.mass, self.scale);
         let size = self.kernel.magnitude(context, Free { q, v, a });
-        let noise: f64 = (0..F)
+        let noise: f64 = (0..size.size().get())
             .map(|j| inverse[(index, j)].abs() * size[j] * ROUNDOFF)
             .sum();
         let departure = leaves(a[index], if rate { 1 } else { 2 });
@@ -275,7 +274,7 @@ fn idle_acceleration(guard: &Guard, departure: Departure) -> Option<usize> {
 
 /// Whether a guard that leaves zero at once does so from rest: a coordinate without speed. Any other
 /// departure that is decided on entry has a rate.
-fn is_at_rest<const F: usize>(guard: &Guard, v: &SVector<f64, F>) -> bool {
+fn is_at_rest(guard: &Guard, v: &impl Vector) -> bool {
     match guard.shape {
         GuardShape::Linear {
             index, rate: false, ..
@@ -285,15 +284,13 @@ fn is_at_rest<const F: usize>(guard: &Guard, v: &SVector<f64, F>) -> bool {
 }
 
 /// The inverse of a mass matrix that was just solved with.
-fn inverse<const F: usize>(
-    mass: &SMatrix<f64, F, F>,
-    scale: &SVector<f64, F>,
-) -> SMatrix<f64, F, F> {
-    let mut inverse = SMatrix::<f64, F, F>::zeros();
-    for j in 0..F {
-        let unit = SVector::from_fn(|i, _| if i == j { 1.0 } else { 0.0 });
-        if let Ok(column) = solve(mass, &unit, scale) {
-            inverse.set_column(j, &column);
+fn inverse<M: Matrix>(mass: &M, scale: &<M::Size as Size>::Vector) -> M {
+    let size = mass.size();
+    let mut inverse = size.zero_matrix();
+    for j in 0..size.get() {
+        let unit = |i| if i == j { 1.0 } else { 0.0 };
+        if let Ok(column) = solve_for(mass, unit, scale) {
+            (0..size.get()).for_each(|i| inverse[(i, j)] = column[i]);
         }
     }
     inverse
@@ -317,7 +314,7 @@ mod tests {
         simulation.set_context();
         let mode = simulation.mode();
         let again = with_kernel!(&mode.kernels, k => {
-            let [q, v, _] = simulation.here.free(&mode.free);
+            let [q, v, _] = simulation.here.free(k.size(), &mode.free);
             simulation.enter_again(k, q, v, true).unwrap()
         });
         again.then(|| simulation.signs.watches[0])

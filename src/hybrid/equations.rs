@@ -2,9 +2,9 @@
 
 use super::instant::Instant;
 use crate::input::{Side, Signals};
-use crate::integrate::{Analytic, Series, Singular, State, System, solve};
+use crate::integrate::{Analytic, Series, Singular, Size, State, System};
 use crate::kernel::{Context, Free, ModeKernel};
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::solve_for;
 
 /// What a segment needs to know about time: where it starts, what the inputs do, what drifts.
 #[derive(Debug, Clone, Copy)]
@@ -109,14 +109,14 @@ impl Piece {
 }
 
 /// The reduced system of a mode.
-pub(super) struct Equations<'a, const F: usize> {
+pub(super) struct Equations<'a, F: Size> {
     pub kernel: &'a ModeKernel<F>,
     pub context: &'a mut Context,
     pub clock: Clock<'a>,
     /// Relative tolerance of the run.
     pub tolerance: f64,
     /// Typical sizes of the accelerations' coordinates, for the choice of pivots.
-    scale: SVector<f64, F>,
+    scale: F::Vector,
     /// Local time for which the context is set; NaN: none.
     set_for: f64,
     /// Whether all of it is set, and not only what the equations of motion need.
@@ -133,13 +133,13 @@ pub(super) struct Equations<'a, const F: usize> {
     piece: Piece,
 }
 
-impl<'a, const F: usize> Equations<'a, F> {
+impl<'a, F: Size> Equations<'a, F> {
     pub fn new(
         kernel: &'a ModeKernel<F>,
         context: &'a mut Context,
         clock: Clock<'a>,
         tolerance: f64,
-        scale: SVector<f64, F>,
+        scale: F::Vector,
         foresees: bool,
         piece: Piece,
     ) -> Self {
@@ -196,13 +196,10 @@ impl<'a, const F: usize> Equations<'a, F> {
 
     /// The accelerations at a point whose time the context is set for.
     #[inline]
-    pub fn acceleration_here(
-        &self,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-    ) -> Result<SVector<f64, F>, Singular> {
-        let system = self.kernel.system(self.context, q, v);
-        solve(&system.mass, &-system.load, &self.scale)
+    pub fn acceleration_here(&self, q: &F::Vector, v: &F::Vector) -> Result<F::Vector, Singular> {
+        self.kernel
+            .system(self.context, q, v)
+            .accelerations(&self.scale)
     }
 
     /// Expands the guards about the start of a step of the Taylor method, local time `tau`, unless
@@ -220,34 +217,33 @@ impl<'a, const F: usize> Equations<'a, F> {
     }
 
     /// The jerk at a point whose time the context and its signal rates are set for.
-    pub fn jerk(&self, at: Free<F>) -> Result<SVector<f64, F>, Singular> {
+    pub fn jerk(&self, at: Free<F>) -> Result<F::Vector, Singular> {
         let mass = self.kernel.system(self.context, at.q, at.v).mass;
-        solve(
-            &mass,
-            &-self.kernel.jerk_load(self.context, at),
-            &self.scale,
-        )
+        let load = self.kernel.jerk_load(self.context, at);
+        solve_for(&mass, |i| -load[i], &self.scale)
     }
 
     /// A bound of the fastest decay at a point whose time the context is set for, 1/s: the norm of M⁻¹C,
     /// rates measured by typical sizes. 0 where M is singular.
     pub fn decay_rate(&self, at: Free<F>) -> f64 {
-        let mut jacobian = [SMatrix::zeros(); 3];
+        let size = self.kernel.size();
+        let mut jacobian = std::array::from_fn(|_| size.zero_matrix());
         self.kernel.jacobian(self.context, at, &mut jacobian);
         let [mass, damping, _] = jacobian;
-        let mut sums = SVector::<f64, F>::zeros();
-        for j in 0..F {
-            let column = damping.column(j).into_owned();
-            let Ok(column) = solve(&mass, &column, &self.scale) else {
+        let mut sums = size.zeros();
+        for j in 0..size.get() {
+            let Ok(column) = solve_for(&mass, |i| damping[(i, j)], &self.scale) else {
                 return 0.0;
             };
-            sums += column.abs() * self.scale[j];
+            for i in 0..size.get() {
+                sums[i] += column[i].abs() * self.scale[j];
+            }
         }
-        (0..F).fold(0.0, |most, i| f64::max(most, sums[i] / self.scale[i]))
+        (0..size.get()).fold(0.0, |most, i| f64::max(most, sums[i] / self.scale[i]))
     }
 }
 
-impl<const F: usize> System<F> for Equations<'_, F> {
+impl<F: Size> System<F> for Equations<'_, F> {
     fn is_linear(&self) -> bool {
         self.kernel.is_linear()
     }
@@ -284,14 +280,7 @@ impl<const F: usize> System<F> for Equations<'_, F> {
     }
 
     #[inline]
-    fn residual(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
-        r: &mut SVector<f64, F>,
-    ) {
+    fn residual(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: &F::Vector, r: &mut F::Vector) {
         self.at_stage(t);
         self.kernel.residual(self.context, Free { q, v, a }, r);
     }
@@ -300,15 +289,15 @@ impl<const F: usize> System<F> for Equations<'_, F> {
     fn jacobian(
         &mut self,
         t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
-        m: &mut SMatrix<f64, F, F>,
-        c: &mut SMatrix<f64, F, F>,
-        k: &mut SMatrix<f64, F, F>,
+        q: &F::Vector,
+        v: &F::Vector,
+        a: &F::Vector,
+        m: &mut F::Matrix,
+        c: &mut F::Matrix,
+        k: &mut F::Matrix,
     ) {
         self.at(t);
-        let mut out = [SMatrix::zeros(); 3];
+        let mut out = std::array::from_fn(|_| self.kernel.size().zero_matrix());
         self.kernel
             .jacobian(self.context, Free { q, v, a }, &mut out);
         [*m, *c, *k] = out;
@@ -318,9 +307,9 @@ impl<const F: usize> System<F> for Equations<'_, F> {
     fn acceleration(
         &mut self,
         t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &mut SVector<f64, F>,
+        q: &F::Vector,
+        v: &F::Vector,
+        a: &mut F::Vector,
     ) -> Result<(), Singular> {
         self.at(t);
         *a = self.acceleration_here(q, v)?;
@@ -328,14 +317,9 @@ impl<const F: usize> System<F> for Equations<'_, F> {
     }
 }
 
-impl<const F: usize> Analytic<F> for Equations<'_, F> {
+impl<F: Size> Analytic<F> for Equations<'_, F> {
     #[inline]
-    fn start(
-        &mut self,
-        t: f64,
-        order: usize,
-        series: &Series<F>,
-    ) -> (SMatrix<f64, F, F>, SVector<f64, F>) {
+    fn start(&mut self, t: f64, order: usize, series: &Series<F>) -> (F::Matrix, F::Vector) {
         self.clock.set_held(t, self.context);
         if !self.context.quiet {
             let (from, piece) = self.clock.piece(t, self.piece);
@@ -349,7 +333,7 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
     }
 
     #[inline]
-    fn run(&mut self, n: usize, inverse: &SMatrix<f64, F, F>, series: &mut Series<F>) {
+    fn run(&mut self, n: usize, inverse: &F::Matrix, series: &mut Series<F>) {
         self.kernel.series_run(self.context, n, inverse, series)
     }
 
@@ -362,7 +346,7 @@ impl<const F: usize> Analytic<F> for Equations<'_, F> {
 }
 
 /// A state without its time.
-pub(super) fn free_of<const F: usize>(state: &State<F>) -> Free<'_, F> {
+pub(super) fn free_of<F: Size>(state: &State<F>) -> Free<'_, F> {
     Free {
         q: &state.q,
         v: &state.v,

@@ -5,9 +5,9 @@ use super::failure::{Reason, Stoppable};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
+use crate::numerics::Size;
 use crate::numerics::copy_few;
 use crate::run::{EnergyJump, Jump};
-use nalgebra::SVector;
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -19,11 +19,7 @@ impl<'p> Simulation<'p> {
         with_kernel!(&mode.kernels, k => self.fire_by(k, guard))
     }
 
-    fn fire_by<const F: usize>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        guard: usize,
-    ) -> Stoppable<()> {
+    fn fire_by<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<()> {
         let chosen = self.choose(kernel, guard);
         let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
@@ -48,7 +44,7 @@ impl<'p> Simulation<'p> {
 
     /// Takes a transition of a guard. Gives whether it has led to the same mode again, which goes on: with
     /// accelerations where they are needed.
-    pub fn fire_and_stay<const F: usize>(
+    pub fn fire_and_stay<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         guard: usize,
@@ -62,7 +58,8 @@ impl<'p> Simulation<'p> {
                 self.set_context();
                 // From what the reset has written: the copy of it waits for its way to memory.
                 let (n, free) = (self.here.q.len(), &self.mode().free);
-                let gather = |from: usize| SVector::from_fn(|i, _| self.next[from + free[i]]);
+                let size = kernel.size();
+                let gather = |from: usize| size.vector(|i| self.next[from + free[i]]);
                 let (q, v) = (gather(0), gather(n));
                 self.enter_again(kernel, q, v, needs_accelerations)
             }
@@ -72,14 +69,10 @@ impl<'p> Simulation<'p> {
 
     /// Index of the transition that is taken; its reset is left in `next`.
     #[inline(always)]
-    pub fn choose<const F: usize>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        guard: usize,
-    ) -> Option<usize> {
+    pub fn choose<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Option<usize> {
         self.set_context();
         let mode = self.mode();
-        let [q, v, a] = self.here.free::<F>(&mode.free);
+        let [q, v, a] = self.here.free(kernel.size(), &mode.free);
         let at = Free {
             q: &q,
             v: &v,
@@ -163,14 +156,12 @@ impl<'p> Simulation<'p> {
     }
 
     /// Sets the accelerations to those of the equations.
-    pub fn set_accelerations<const F: usize>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-    ) -> Stoppable<()> {
+    pub fn set_accelerations<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<()> {
         let mode = self.mode();
-        let [q, v, _] = self.here.free::<F>(&mode.free);
+        let [q, v, _] = self.here.free(kernel.size(), &mode.free);
         let system = kernel.system(&self.context, &q, &v);
-        let a = crate::integrate::solve(&system.mass, &-system.load, &self.scale())
+        let a = system
+            .accelerations(&self.scale(kernel.size()))
             .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
         self.here.a.fill(0.0);
         self.here.set_free(&mode.free, [&q, &v, &a]);
@@ -184,7 +175,7 @@ impl<'p> Simulation<'p> {
         let mut momenta = vec![0.0; n + model.motions.len()];
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = self.here.free(&mode.free);
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
             k.momenta(&self.context, Free { q: &q, v: &v, a: &a }, &mut momenta);
         });
         let rates = model.inputs.iter().filter(|i| i.kind.signals() == 3);

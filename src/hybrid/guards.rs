@@ -2,12 +2,11 @@
 
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
-use crate::integrate::{Motion, solve};
+use crate::integrate::{Motion, Size};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, Mode, Transition};
 use crate::numerics::swap_few;
-use nalgebra::SVector;
 
 /// What the conditions of transitions are evaluated with.
 pub(super) struct Conditions<'a> {
@@ -20,7 +19,7 @@ pub(super) struct Conditions<'a> {
 impl Conditions<'_> {
     /// The conditions of a transition out of the present mode, evaluated in its target after the
     /// reset, reduced by `reduce`. `next` holds the reset afterwards.
-    fn reduced<const F: usize>(
+    fn reduced<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &mut Context,
@@ -51,7 +50,7 @@ impl Conditions<'_> {
     }
 
     /// The smallest condition of a transition; +∞ if it has none.
-    pub fn least<const F: usize>(
+    pub fn least<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &mut Context,
@@ -63,7 +62,7 @@ impl Conditions<'_> {
     }
 
     /// The same of all but one of its conditions.
-    pub fn least_but<const F: usize>(
+    pub fn least_but<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &mut Context,
@@ -80,7 +79,7 @@ impl Conditions<'_> {
 
 /// The conditions in their target mode, whose coordinates and discrete states the context holds. NaN
 /// where the accelerations are not determined.
-fn conditions_in<const F: usize>(
+fn conditions_in<F: Size>(
     kernel: &ModeKernel<F>,
     context: &mut Context,
     transition: &Transition,
@@ -88,10 +87,11 @@ fn conditions_in<const F: usize>(
     rates: &[f64],
     reduce: impl Fn(&[f64]) -> f64,
 ) -> f64 {
-    let q = SVector::<f64, F>::from_fn(|i, _| context.held()[free[i]]);
-    let v = SVector::<f64, F>::from_fn(|i, _| rates[free[i]]);
+    let size = kernel.size();
+    let q = size.vector(|i| context.held()[free[i]]);
+    let v = size.vector(|i| rates[free[i]]);
     let system = kernel.system(context, &q, &v);
-    let Ok(a) = solve(&system.mass, &-system.load, &SVector::repeat(1.0)) else {
+    let Ok(a) = system.accelerations(&size.repeat(1.0)) else {
         return f64::NAN;
     };
     let at = Free {
@@ -104,7 +104,7 @@ fn conditions_in<const F: usize>(
 
 /// Value of what is watched, in the present mode.
 #[inline(always)]
-pub(super) fn watched_value<const F: usize>(
+pub(super) fn watched_value<F: Size>(
     kernel: &ModeKernel<F>,
     context: &mut Context,
     conditions: &mut Conditions,
@@ -124,7 +124,7 @@ pub(super) fn watched_value<const F: usize>(
 /// Value of a guard of the present mode; a conditional one is respected as well where none of its
 /// conditions holds.
 #[inline(always)]
-pub(super) fn value<const F: usize>(
+pub(super) fn value<F: Size>(
     kernel: &ModeKernel<F>,
     context: &mut Context,
     conditions: &mut Conditions,
@@ -148,23 +148,23 @@ pub(super) fn value<const F: usize>(
 
 /// Motion at local time `tau` of a step, with accelerations from the equations where asked for.
 #[inline(always)]
-pub(super) fn motion<const F: usize>(
+pub(super) fn motion<F: Size>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
     tau: f64,
     accelerations: bool,
-) -> [SVector<f64, F>; 3] {
+) -> [F::Vector; 3] {
     equations.at(tau);
     motion_at_stage(equations, dense, tau, accelerations)
 }
 
 /// The same, with the context set as far as the equations of motion need it.
-pub(super) fn motion_at_stage<const F: usize>(
+pub(super) fn motion_at_stage<F: Size>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
     tau: f64,
     accelerations: bool,
-) -> [SVector<f64, F>; 3] {
+) -> [F::Vector; 3] {
     if !accelerations {
         let (q, v, a) = dense.at(tau);
         equations.at_stage(tau);
@@ -173,7 +173,8 @@ pub(super) fn motion_at_stage<const F: usize>(
     let (q, v) = dense.state_at(tau);
     equations.at_stage(tau);
     let a = equations.acceleration_here(&q, &v);
-    [q, v, a.unwrap_or(SVector::repeat(f64::NAN))]
+    let a = a.unwrap_or_else(|_| equations.kernel.size().repeat(f64::NAN));
+    [q, v, a]
 }
 
 /// What a linear guard multiplies its coordinate or rate with: its factor and its discrete state, if any.

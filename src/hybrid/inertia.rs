@@ -4,7 +4,7 @@ use super::failure::Reason;
 use super::problem::Problem;
 use crate::kernel::{Context, ModeKernel};
 use crate::model::Mode;
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::{Matrix, Size};
 
 /// Unit roundoff of a double.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -22,19 +22,18 @@ pub(super) struct NotPositive {
 }
 
 /// The pivots D of the factors L D Lᵀ of the symmetric part of an inertia, all of which must be positive.
-pub(super) fn pivots<const F: usize>(
-    inertia: &SMatrix<f64, F, F>,
-) -> Result<SVector<f64, F>, NotPositive> {
+pub(super) fn pivots<M: Matrix>(inertia: &M) -> Result<<M::Size as Size>::Vector, NotPositive> {
+    let size = inertia.size();
     // L D below the diagonal, D on it.
-    let mut lower = SMatrix::<f64, F, F>::zeros();
-    for i in 0..F {
+    let mut lower = size.zero_matrix();
+    for i in 0..size.get() {
         for j in 0..=i {
             let symmetric = 0.5 * (inertia[(i, j)] + inertia[(j, i)]);
             let product = |k| lower[(i, k)] * (lower[(j, k)] / lower[(k, k)]);
             let rest = symmetric - (0..j).map(product).sum::<f64>();
             if i == j {
                 // A pivot within the rounding of its own sum is not told from zero.
-                let rounding = (F + 1) as f64 * ROUNDOFF * symmetric.abs();
+                let rounding = (size.get() + 1) as f64 * ROUNDOFF * symmetric.abs();
                 if rest.is_nan() || rest <= rounding {
                     return Err(NotPositive {
                         coordinate: i,
@@ -45,24 +44,25 @@ pub(super) fn pivots<const F: usize>(
             lower[(i, j)] = rest;
         }
     }
-    Ok(SVector::from_fn(|i, _| lower[(i, i)]))
+    Ok(size.vector(|i| lower[(i, i)]))
 }
 
 /// Whether an effective mass has vanished on the way from one state, coordinates and velocities, to another, or is
 /// beyond: which.
 #[cold]
-pub(super) fn vanished<const F: usize>(
+pub(super) fn vanished<F: Size>(
     kernel: &ModeKernel<F>,
     context: &Context,
     (problem, mode): (&Problem, &Mode),
-    [from, to]: [[&SVector<f64, F>; 2]; 2],
+    [from, to]: [[&F::Vector; 2]; 2],
 ) -> Option<Reason> {
-    let at = |[q, v]: [&SVector<f64, F>; 2]| pivots(&kernel.inertia(context, q, v));
+    let at = |[q, v]: [&F::Vector; 2]| pivots(&kernel.inertia(context, q, v));
     let before = at(from).ok()?;
     let (i, left) = match at(to) {
         Ok(after) => {
-            let left = after.component_div(&before);
-            let least = (0..F).min_by(|&i, &j| left[i].total_cmp(&left[j]))?;
+            let size = kernel.size();
+            let left = size.vector(|i| after[i] / before[i]);
+            let least = (0..size.get()).min_by(|&i, &j| left[i].total_cmp(&left[j]))?;
             (least, left[least])
         }
         Err(NotPositive { coordinate, pivot }) => (coordinate, pivot / before[coordinate]),

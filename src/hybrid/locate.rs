@@ -10,9 +10,9 @@ use super::failure::Stoppable;
 use super::guards::{self, Conditions};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind};
+use crate::integrate::Size;
 use crate::integrate::{ORDERS, OneStep, State, System};
 use crate::model::{Guard, GuardShape};
-use nalgebra::SVector;
 
 /// Result of [`land`].
 pub(super) enum Landing {
@@ -35,7 +35,7 @@ pub(super) const TAYLOR: f64 = 3.8e-6;
 /// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
 ///
 /// A guard that is no more negative there than rounding makes it, and rises, has turned: it does not fall.
-pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+pub(super) fn land<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
@@ -58,7 +58,7 @@ pub(super) fn land<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 
 /// Whether the value of a guard is no more than what rounding in a step's polynomials makes of it at its end.
 #[cold]
-fn is_rounding<const F: usize>(
+fn is_rounding<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
@@ -72,8 +72,8 @@ fn is_rounding<const F: usize>(
         (value_at(equations, conditions, guard, moved) - value).abs()
     };
     let mut sum = change(&mut end.clone());
-    for i in 0..F {
-        let (mut moved, mut faster) = (*end, *end);
+    for i in 0..end.size().get() {
+        let (mut moved, mut faster) = (end.clone(), end.clone());
         moved.q[i] += rounding(start.q[i], end.q[i]);
         faster.v[i] += rounding(start.v[i], end.v[i]);
         sum += change(&mut moved) + change(&mut faster);
@@ -81,7 +81,7 @@ fn is_rounding<const F: usize>(
     value.abs() <= sum
 }
 
-fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
@@ -104,14 +104,14 @@ fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let mut accelerated;
         let mut end = method.state();
         if !M::EXACT_ACCELERATIONS && depends_on_accelerations(guard) {
-            accelerated = *end;
+            accelerated = end.clone();
             accelerate(equations, &mut accelerated);
             end = &accelerated;
         }
         let value = value_at(equations, conditions, guard, end);
         if matches!(crossing.kind, Kind::Touch | Kind::Jump) {
             // There is no slope to follow: the place is as good as the dense output.
-            *landed = *end;
+            landed.clone_from(end);
             return Ok(match crossing.kind == Kind::Touch || value < 0.0 {
                 true => Landing::On { beyond: 0.0 },
                 false => Landing::Short,
@@ -119,7 +119,7 @@ fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         }
         if guard.1.conditional {
             // Guard and condition together have no slope of their own.
-            *landed = *end;
+            landed.clone_from(end);
             return Ok(match value < 0.0 {
                 true => Landing::On { beyond: 0.0 },
                 false => {
@@ -132,7 +132,7 @@ fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
         let correction = -value / rate;
         if rate.is_nan() || rate >= 0.0 || end.t + correction > window {
             // No fall here: either the shortened step has its crossing earlier, or none at all.
-            *landed = *end;
+            landed.clone_from(end);
             return Ok(match value < 0.0 && end.t == window {
                 true => Landing::On { beyond: 0.0 },
                 false => Landing::Short,
@@ -159,7 +159,7 @@ fn land_on<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 /// own value takes to see it, steps as short as the rounding of the start would go on for as long as that
 /// lasts: there the step is retaken in lengths that double until the guard is crossed, or no longer falls.
 #[cold]
-pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+pub(super) fn land_later<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
@@ -183,7 +183,7 @@ pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
     loop {
         let tau = (start + length).clamp(start.next_up(), window);
         method.step_exactly(equations, tau - start)?;
-        *landed = *method.state();
+        landed.clone_from(method.state());
         if !M::EXACT_ACCELERATIONS && depends_on_accelerations(guard) {
             accelerate(equations, landed);
         }
@@ -200,12 +200,14 @@ pub(super) fn land_later<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
 }
 
 /// Moves a state by its Taylor polynomial.
-fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
+fn moved<F: Size>(state: &State<F>, by: f64) -> State<F> {
+    let State { t, q, v, a } = state;
+    let size = state.size();
     State {
-        t: state.t + by,
-        q: state.q + (state.v + state.a * (0.5 * by)) * by,
-        v: state.v + state.a * by,
-        a: state.a,
+        t: t + by,
+        q: size.vector(|i| q[i] + (v[i] + a[i] * (0.5 * by)) * by),
+        v: size.vector(|i| v[i] + a[i] * by),
+        a: a.clone(),
     }
 }
 
@@ -218,7 +220,7 @@ fn moved<const F: usize>(state: &State<F>, by: f64) -> State<F> {
 /// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
 /// of all of that where the guard is no coordinate.
 #[inline(always)]
-fn beyond_the_crossing<'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
+fn beyond_the_crossing<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
@@ -280,8 +282,8 @@ fn depends_on_accelerations((guard, watched): (&Guard, Watched)) -> bool {
 }
 
 /// Sets the accelerations of a state by the equations, where they determine them.
-fn accelerate<const F: usize>(equations: &mut Equations<F>, state: &mut State<F>) {
-    let mut a = state.a;
+fn accelerate<F: Size>(equations: &mut Equations<F>, state: &mut State<F>) {
+    let mut a = state.a.clone();
     if equations
         .acceleration(state.t, &state.q, &state.v, &mut a)
         .is_ok()
@@ -292,7 +294,7 @@ fn accelerate<const F: usize>(equations: &mut Equations<F>, state: &mut State<F>
 
 /// Value of a guard at a state, with its conditions.
 #[inline(always)]
-pub(super) fn value_at<const F: usize>(
+pub(super) fn value_at<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
@@ -309,7 +311,7 @@ pub(super) fn value_at<const F: usize>(
 
 /// Derivative of a guard along the flow.
 #[inline(always)]
-pub(super) fn rate_at<const F: usize>(
+pub(super) fn rate_at<F: Size>(
     equations: &mut Equations<F>,
     guard: &Guard,
     state: &State<F>,
@@ -327,7 +329,8 @@ pub(super) fn rate_at<const F: usize>(
         return factor * if rate { state.a[index] } else { state.v[index] };
     }
     equations.at(state.t);
-    let jerk = equations.jerk(at).unwrap_or(SVector::repeat(f64::NAN));
+    let jerk = equations.jerk(at);
+    let jerk = jerk.unwrap_or_else(|_| equations.kernel.size().repeat(f64::NAN));
     equations
         .kernel
         .guard_rate(equations.context, &guard.kernel, at, &jerk)

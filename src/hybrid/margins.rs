@@ -14,6 +14,7 @@ use super::search::{Coefficients, search_function, search_polynomial};
 use crate::integrate::{Motion, OneStep, Series, State};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{GuardShape, Mode};
+use crate::numerics::Size;
 
 /// Why a run ends at the end of a step.
 pub(super) enum Ended {
@@ -52,7 +53,7 @@ impl Margins<'_> {
     }
 
     /// Sets the values at a state of the present mode.
-    fn evaluate<const F: usize>(
+    fn evaluate<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &Context,
@@ -87,7 +88,7 @@ impl Margins<'_> {
 
     /// What the mode requires must hold at the start of a segment, at `t` (s); what is reached there is noted.
     #[inline(always)]
-    pub fn look_at_start<const F: usize>(
+    pub fn look_at_start<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &Context,
@@ -118,7 +119,7 @@ impl Margins<'_> {
     /// Whether bounds show that nothing falls in the last step up to time `to`: far from zero they do. Those of the
     /// Taylor method are bounds of its polynomials. What they leave open is looked at by [`Self::cut_where_reached`].
     #[inline]
-    pub fn hold_throughout<'a, const F: usize>(
+    pub fn hold_throughout<'a, F: Size>(
         &mut self,
         method: &impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
@@ -149,7 +150,7 @@ impl Margins<'_> {
     }
 
     /// Whether a margin of the problem is known to stay positive for `tau` (s) from where the series was begun.
-    fn own_holds<const F: usize>(
+    fn own_holds<F: Size>(
         &self,
         mode: &Mode,
         margin: usize,
@@ -180,7 +181,7 @@ impl Margins<'_> {
     /// again, since it is a better solution than the dense output of the longer one. Notes what else is reached in
     /// what is left of the step, in a segment that began at `origin`.
     #[inline(never)]
-    pub fn cut_where_reached<'a, const F: usize>(
+    pub fn cut_where_reached<'a, F: Size>(
         &mut self,
         method: &mut impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
@@ -231,7 +232,7 @@ impl Margins<'_> {
     }
 
     /// When in the last step, up to the state `end`, something that ends the run happens first, local time.
-    fn first_end<const F: usize>(
+    fn first_end<F: Size>(
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
@@ -256,7 +257,7 @@ impl Margins<'_> {
     }
 
     /// Notes what is reached in a step and does not end the run.
-    fn note<const F: usize>(
+    fn note<F: Size>(
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
@@ -278,7 +279,7 @@ impl Margins<'_> {
     }
 
     /// Sets the values at the start of a step, from which it may be taken again.
-    fn start<const F: usize>(
+    fn start<F: Size>(
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
@@ -295,7 +296,7 @@ impl Margins<'_> {
     }
 
     /// When a row falls first in a window of the last step, which ends in a state: searched as a guard is.
-    fn falls<const F: usize>(
+    fn falls<F: Size>(
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
@@ -347,7 +348,7 @@ impl Margins<'_> {
             GuardShape::General { .. } => {
                 let value = |tau: f64| {
                     let [q, v, a] = match tau == end.t {
-                        true => [end.q, end.v, end.a],
+                        true => [end.q.clone(), end.v.clone(), end.a.clone()],
                         false => motion(equations, dense, tau, true),
                     };
                     equations.at(tau);

@@ -10,8 +10,9 @@ use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::Motion;
 use crate::kernel::{Context, Free, ModeKernel, with_kernel};
 use crate::model::{Mode, Model};
+use crate::numerics::Size;
+use crate::numerics::Vector;
 use crate::numerics::copy_few;
-use nalgebra::SVector;
 
 /// A time at which the motion is not known: it is before the last step that was made, or after the present time.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -121,25 +122,25 @@ impl<'s> Moment<'s> {
     /// # Panics
     /// If `out` has another length.
     pub fn reactions(&self, out: &mut [f64]) {
-        with_kernel!(&self.mode.kernels, k => self.with(|at| k.reactions(self.context, at, out)));
+        with_kernel!(&self.mode.kernels, k => self.with(k.size(), |at| k.reactions(self.context, at, out)));
     }
 
     /// Kinetic and potential energy, J.
     pub fn energies(&self) -> [f64; 2] {
-        with_kernel!(&self.mode.kernels, k => self.with(|at| k.energies(self.context, at)))
+        with_kernel!(&self.mode.kernels, k => self.with(k.size(), |at| k.energies(self.context, at)))
     }
 
     /// Value of a guard of the present mode by its name, in its unit: positive where the mode is admissible.
     pub fn guard(&self, name: &str) -> Option<f64> {
         let guard = self.mode.guards.iter().find(|guard| guard.name == name)?;
         Some(with_kernel!(&self.mode.kernels, k => {
-            self.with(|at| k.guard(self.context, &guard.kernel, at))
+            self.with(k.size(), |at| k.guard(self.context, &guard.kernel, at))
         }))
     }
 
     /// Does something with the free coordinates.
-    fn with<const F: usize, R>(&self, evaluate: impl FnOnce(Free<F>) -> R) -> R {
-        let gather = |full: &[f64]| SVector::from_fn(|i, _| full[self.mode.free[i]]);
+    fn with<F: Size, R>(&self, size: F, evaluate: impl FnOnce(Free<F>) -> R) -> R {
+        let gather = |full: &[f64]| size.vector(|i| full[self.mode.free[i]]);
         let [q, v, a] = [&self.view.q, &self.view.v, &self.view.a].map(|full| gather(full));
         evaluate(Free {
             q: &q,
@@ -156,7 +157,7 @@ impl<'p> Simulation<'p> {
         with_kernel!(&mode.kernels, k => self.look_by(k, t, view))
     }
 
-    fn look_by<const F: usize>(
+    fn look_by<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         t: f64,
@@ -174,14 +175,14 @@ impl<'p> Simulation<'p> {
         let drifts = self.plan.drifts[index];
         if t == now {
             self.set_context();
-            let [q, v, _] = self.here.free::<F>(&mode.free);
+            let [q, v, _] = self.here.free(kernel.size(), &mode.free);
             let system = kernel.system(&self.context, &q, &v);
-            let a = crate::integrate::solve(&system.mass, &-system.load, &self.scale());
-            let a = a.unwrap_or(SVector::repeat(f64::NAN));
-            (mode.free.iter().zip(a.iter())).for_each(|(&full, &a)| view.a[full] = a);
+            let a = system.accelerations(&self.scale(kernel.size()));
+            let a = a.unwrap_or_else(|_| kernel.size().repeat(f64::NAN));
+            (mode.free.iter().zip(a.as_slice())).for_each(|(&full, &a)| view.a[full] = a);
             return Ok(());
         }
-        let scale = self.scale();
+        let scale = self.scale(kernel.size());
         let is_after_step = self.stage.is_after_step();
         let slots = self.solvers.slots();
         if !drifts {
@@ -235,12 +236,12 @@ impl<'p> Simulation<'p> {
 }
 
 /// The motion at time `t`, s, if it is within a step that ends at local time `to`; else when that begins, s.
-fn within<const F: usize, M: Motion<F>>(
+fn within<F: Size, M: Motion<F>>(
     equations: &mut Equations<F>,
     dense: Option<&M>,
     to: f64,
     t: f64,
-) -> Result<[SVector<f64, F>; 3], f64> {
+) -> Result<[F::Vector; 3], f64> {
     let began = equations.clock.start;
     let seconds = |tau: f64| began.plus(tau).seconds();
     let dense = dense.ok_or(seconds(to))?;

@@ -7,11 +7,11 @@ use super::roots::{self, Isolation, Polynomial, Search, Watch, straight_fall, su
 use crate::integrate::{Motion, ORDERS, System, stretch};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape};
-use nalgebra::SVector;
+use crate::numerics::Size;
 
 /// Searches a guard on the window `from` < τ ≤ `to` of a step; writes what is found.
 #[inline(always)]
-pub(super) fn search<const F: usize>(
+pub(super) fn search<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     dense: &impl Motion<F>,
@@ -101,7 +101,7 @@ pub(super) fn search_function(
 
 /// A coordinate or a rate is a polynomial in s = (τ − start)/length of the step.
 #[inline(always)]
-fn search_linear<const F: usize>(
+fn search_linear<F: Size>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
     guard: &Guard,
@@ -126,7 +126,7 @@ fn search_linear<const F: usize>(
         true if watch == Watch::Dormant && window.0 == dense.start() => 0.0,
         true => {
             // What is added is what the guard is at the zero state.
-            let zero = SVector::<f64, F>::zeros();
+            let zero = equations.kernel.size().zeros();
             let at = Free {
                 q: &zero,
                 v: &zero,
@@ -165,7 +165,7 @@ const POWERS: [usize; ORDERS] = {
 /// False if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
 /// that the last terms are not small: two derivatives of the motion multiply its last term by order².
 #[inline(always)]
-fn search_series<const F: usize>(
+fn search_series<F: Size>(
     equations: &mut Equations<F>,
     dense: &impl Motion<F>,
     (guard, watched): (&Guard, Watched),
@@ -189,10 +189,12 @@ fn search_series<const F: usize>(
     if !is_known {
         // The guard's own value decides on which side of zero it starts: it may be rounded otherwise.
         equations.at(tau);
+        let rows = [&series.q, &series.v, &series.a];
+        let [q, v, a] = rows.map(|rows| kernel.size().vector(|i| rows[0][i]));
         let at = Free {
-            q: &series.q[0],
-            v: &series.v[0],
-            a: &series.a[0],
+            q: &q,
+            v: &v,
+            a: &a,
         };
         constant = kernel.guard(equations.context, &guard.kernel, at);
     }
@@ -251,7 +253,7 @@ pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
 
 /// Searches a polynomial in s = (τ − start)/length of the step.
 #[inline]
-pub(super) fn search_polynomial<const F: usize>(
+pub(super) fn search_polynomial<F: Size>(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
     dense: &impl Motion<F>,
     ((from, to), isolation): ((f64, f64), Isolation),

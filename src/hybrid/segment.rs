@@ -13,6 +13,7 @@ use super::observe::{Step, copy_drifting};
 use super::problem::{Method, Problem};
 use super::simulation::{Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
+use crate::integrate::Size;
 use crate::integrate::{
     Motion, Node, OneStep, Radau, SERIES, State, StepError, Taylor, Tolerances, determinant_sign,
     stages,
@@ -21,15 +22,14 @@ use crate::kernel::{Context, ModeKernel};
 use crate::model::Mode;
 use crate::numerics::copy_few;
 use crate::run::Progress;
-use nalgebra::SVector;
 use std::ops::ControlFlow;
 
 /// What does not change while a mode is followed.
-struct Stay<'p, const F: usize> {
+struct Stay<'p, F: Size> {
     kernel: &'p ModeKernel<F>,
     mode: &'p Mode,
     /// Typical sizes of the free coordinates.
-    scale: SVector<f64, F>,
+    scale: F::Vector,
     /// Whether some frozen coordinate drifts.
     drifts: bool,
     /// Whether the method follows from what is seen of the stiffness.
@@ -42,7 +42,7 @@ struct Stay<'p, const F: usize> {
 impl<'p> Simulation<'p> {
     /// Integrates the present mode until something happens; `stays`: not an event that leads to the same
     /// mode again.
-    pub fn advance<const F: usize>(
+    pub fn advance<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         stays: bool,
@@ -55,13 +55,17 @@ impl<'p> Simulation<'p> {
         match stages(problem.accuracy.relative) {
             _ if self.is_explicit(kernel) => {
                 self.made_by = MadeBy::Taylor;
-                let make =
-                    |x: &Context| Taylor::new(&tolerances(problem, mode), kernel.series_kind(x));
+                let make = |x: &Context| {
+                    Taylor::new(
+                        &tolerances(kernel.size(), problem, mode),
+                        kernel.series_kind(x),
+                    )
+                };
                 self.integrate(kernel, |slots| &mut slots.taylor, make, stays, progress)
             }
             5 => {
                 self.made_by = MadeBy::RadauOfFive;
-                let make = |_: &Context| Radau::new(&tolerances(problem, mode));
+                let make = |_: &Context| Radau::new(&tolerances(kernel.size(), problem, mode));
                 self.integrate(
                     kernel,
                     |slots| &mut slots.radau_of_five,
@@ -72,7 +76,7 @@ impl<'p> Simulation<'p> {
             }
             _ => {
                 self.made_by = MadeBy::RadauOfSeven;
-                let make = |_: &Context| Radau::new(&tolerances(problem, mode));
+                let make = |_: &Context| Radau::new(&tolerances(kernel.size(), problem, mode));
                 self.integrate(
                     kernel,
                     |slots| &mut slots.radau_of_seven,
@@ -85,7 +89,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Whether the present mode is followed by the Taylor method.
-    pub fn is_explicit<const F: usize>(&self, kernel: &ModeKernel<F>) -> bool {
+    pub fn is_explicit<F: Size>(&self, kernel: &ModeKernel<F>) -> bool {
         kernel.is_analytic()
             && match self.problem.method {
                 Method::Taylor => true,
@@ -96,7 +100,7 @@ impl<'p> Simulation<'p> {
 
     /// Takes the method of the present mode out of its slot, or makes it; follows the motion, and puts it back.
     #[inline(always)]
-    fn integrate<const F: usize, M>(
+    fn integrate<F: Size, M>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         slots: impl Fn(&mut Slots<F>) -> &mut [Option<Box<M>>],
@@ -120,7 +124,7 @@ impl<'p> Simulation<'p> {
 
     /// Notes the name of a new method.
     #[cold]
-    fn begin_with<const F: usize, M>(&mut self, method: M) -> Box<M>
+    fn begin_with<F: Size, M>(&mut self, method: M) -> Box<M>
     where
         M: for<'a> OneStep<F, Equations<'a, F>>,
     {
@@ -133,7 +137,7 @@ impl<'p> Simulation<'p> {
 
     /// Follows the motion from event to event, as long as they lead to the same mode again and it `stays`
     /// there.
-    fn stay<const F: usize, M>(
+    fn stay<F: Size, M>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         method: &mut M,
@@ -149,7 +153,7 @@ impl<'p> Simulation<'p> {
         let stay = Stay {
             kernel,
             mode,
-            scale: self.scale(),
+            scale: self.scale(kernel.size()),
             drifts,
             chooses: problem.method == Method::Auto && kernel.is_analytic(),
             looks_at_ends: is_explicit
@@ -165,7 +169,7 @@ impl<'p> Simulation<'p> {
         let mut goes_on = self.stage.is_in_segment();
         loop {
             if !goes_on {
-                let [q, v, a] = self.here.free::<F>(&mode.free);
+                let [q, v, a] = self.here.free(kernel.size(), &mode.free);
                 method.restart(0.0, &q, &v, has_accelerations.then_some(&a));
             }
             let now = self.here.now.seconds();
@@ -196,7 +200,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Integrates until something happens, from the start of a segment, or from where it `goes_on` after a pause.
-    fn follow<const F: usize, M>(
+    fn follow<F: Size, M>(
         &mut self,
         stay: &Stay<F>,
         method: &mut M,
@@ -236,7 +240,7 @@ impl<'p> Simulation<'p> {
             &mut self.context,
             clock,
             problem.accuracy.relative,
-            stay.scale,
+            stay.scale.clone(),
             self.foresees,
             self.piece,
         );
@@ -248,8 +252,8 @@ impl<'p> Simulation<'p> {
         };
         let mass_changes = !kernel.mass_is_constant();
         let began = match goes_on {
-            true => self.pause.began(&mode.free),
-            false => *method.state(),
+            true => self.pause.began(kernel.size(), &mode.free),
+            false => method.state().clone(),
         };
         if goes_on {
             equations.at(method.end());
@@ -268,7 +272,7 @@ impl<'p> Simulation<'p> {
             stiffness.begin();
         }
         // The end of the step, or of what its first event leaves of it.
-        let mut state = State::origin();
+        let mut state = State::origin(kernel.size());
         if !goes_on {
             self.observers.enter(mode, &self.here);
         }
@@ -366,7 +370,7 @@ impl<'p> Simulation<'p> {
 
             let mut work = None;
             if <M as OneStep<F, Equations<F>>>::HAS_QUADRATURE
-                && F > 0
+                && kernel.size().get() > 0
                 && self.observers.ledger.is_some()
             {
                 let mut sum = [0.0; 2];
@@ -484,9 +488,9 @@ impl<'p> Simulation<'p> {
 }
 
 /// Tolerances of the free coordinates of a mode.
-pub(super) fn tolerances<const F: usize>(problem: &Problem, mode: &Mode) -> Tolerances<F> {
+pub(super) fn tolerances<F: Size>(size: F, problem: &Problem, mode: &Mode) -> Tolerances<F> {
     let accuracy = &problem.accuracy;
-    let pick = |full: &[f64]| SVector::from_fn(|i, _| full[mode.free[i]]);
+    let pick = |full: &[f64]| size.vector(|i| full[mode.free[i]]);
     Tolerances::new(
         accuracy.relative,
         pick(&accuracy.q_absolute),

@@ -7,22 +7,20 @@ use super::plan::Watched;
 use super::problem::Accuracy;
 use super::roots::{Search, minimum};
 use crate::integrate::{Motion, ORDERS, OneStep, State, System};
+use crate::integrate::{Size, Vector};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
-use nalgebra::SVector;
 
 /// Parts of a step among which its least value is looked for: a step is a period at most, in which a guard
 /// turns twice.
 const PARTS: usize = 8;
 
-fn dense_of<'m, 'a, const F: usize, M: OneStep<F, Equations<'a, F>>>(
-    method: &'m M,
-) -> &'m M::Motion {
+fn dense_of<'m, 'a, F: Size, M: OneStep<F, Equations<'a, F>>>(method: &'m M) -> &'m M::Motion {
     method.dense().expect("a step was made")
 }
 
 /// What is watched, with what it is evaluated by.
-pub(super) struct WatchedGuard<'e, 'a, 'c, const F: usize> {
+pub(super) struct WatchedGuard<'e, 'a, 'c, F: Size> {
     pub mode: &'e Mode,
     pub accuracy: &'e Accuracy,
     pub guard: &'e Guard,
@@ -31,10 +29,10 @@ pub(super) struct WatchedGuard<'e, 'a, 'c, const F: usize> {
     pub conditions: &'e mut Conditions<'c>,
 }
 
-impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
+impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
     /// Its value in a state at local time `t`.
-    pub fn value(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>) -> f64 {
-        let mut a = SVector::zeros();
+    pub fn value(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
+        let mut a = q.size().zeros();
         if self.equations.acceleration(t, q, v, &mut a).is_err() {
             return f64::NAN;
         }
@@ -51,12 +49,12 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
     }
 
     /// What errors of one tolerance in every coordinate and rate change it by; 0 where it has no value.
-    pub fn error(&mut self, t: f64, q: &SVector<f64, F>, v: &SVector<f64, F>) -> f64 {
+    pub fn error(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
         let accuracy = self.accuracy;
         let value = self.value(t, q, v);
         let mut sum = 0.0;
         for (i, &full) in self.mode.free.iter().enumerate() {
-            let (mut moved, mut faster) = (*q, *v);
+            let (mut moved, mut faster) = (q.clone(), v.clone());
             moved[i] += accuracy.q_absolute[full] + accuracy.relative * q[i].abs();
             faster[i] += accuracy.v_absolute[full] + accuracy.relative * v[i].abs();
             sum += (self.value(t, &moved, v) - value).abs();
@@ -87,7 +85,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
 
     /// Place and value of its least value in the last step; `None` if that is at the start.
     pub fn least<M: OneStep<F, Equations<'a, F>>>(&mut self, method: &mut M) -> Option<(f64, f64)> {
-        let end = *method.state();
+        let end = method.state().clone();
         let (start, dense) = (method.start(), dense_of(method));
         let rate = |state, own: &mut Self| match own.watched.condition {
             None => rate_at(own.equations, own.guard, state),
@@ -191,25 +189,28 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         method: &impl OneStep<F, Equations<'a, F>>,
     ) -> f64 {
         let (start, end, dense) = (method.start().t, method.end(), dense_of(method));
-        let mut defect = SVector::<f64, F>::zeros();
+        let size = self.equations.kernel.size();
+        let mut defect = size.zeros();
         for k in 0..PARTS {
             let place = start + (k as f64 + 0.5) / PARTS as f64 * (end - start);
             let (q, v, a) = dense.at(place);
-            let mut exact = a;
+            let mut exact = a.clone();
             if self
                 .equations
                 .acceleration(place, &q, &v, &mut exact)
                 .is_ok()
             {
-                defect = defect.zip_map(&(exact - a), |most, part| most.max(part.abs()));
+                for i in 0..size.get() {
+                    defect[i] = defect[i].max((exact[i] - a[i]).abs());
+                }
             }
         }
         let time = dense.length() / (dense.coefficients(true) - 1) as f64;
         let [q, v, _] = motion(self.equations, dense, t, false);
         let value = self.value(t, &q, &v);
         let mut sum = 0.0;
-        for i in 0..F {
-            let (mut moved, mut faster) = (q, v);
+        for i in 0..size.get() {
+            let (mut moved, mut faster) = (q.clone(), v.clone());
             faster[i] += defect[i] * time;
             moved[i] += 0.5 * defect[i] * (time * time);
             sum += (self.value(t, &moved, &v) - value).abs();
@@ -225,7 +226,7 @@ impl<'a, const F: usize> WatchedGuard<'_, 'a, '_, F> {
         method: &mut impl OneStep<F, Equations<'a, F>>,
         found: &Search,
     ) -> f64 {
-        let end = *method.state();
+        let end = method.state().clone();
         let start = method.start();
         let touches = found.crossing.is_some() && found.turn == 0.0;
         if self.watched.condition.is_some() || touches {

@@ -21,9 +21,10 @@ use crate::jets::Expansion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free};
 use crate::model::Mode;
+use crate::numerics::Size;
+use crate::numerics::Vector;
 use crate::numerics::copy_few;
 use crate::run::{Progress, Snapshot, Solver};
-use nalgebra::SVector;
 use std::borrow::Cow;
 
 /// Where the run is: everything but the discrete states, which live in the context.
@@ -368,7 +369,7 @@ impl<'p> Simulation<'p> {
     pub fn stored_energy(&self) -> f64 {
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = self.here.free(&mode.free);
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
             let [kinetic, potential] = k.energies(&self.context, Free { q: &q, v: &v, a: &a });
             kinetic + potential
         })
@@ -380,7 +381,7 @@ impl<'p> Simulation<'p> {
         let mode = self.mode();
         if !reactions.is_empty() {
             with_kernel!(&mode.kernels, k => {
-                let [q, v, a] = self.here.free(&mode.free);
+                let [q, v, a] = self.here.free(k.size(), &mode.free);
                 k.reactions(&self.context, Free { q: &q, v: &v, a: &a }, &mut reactions)
             });
         }
@@ -400,14 +401,14 @@ fn are_finite(numbers: &[f64]) -> bool {
 impl Here {
     /// Free coordinates, velocities and accelerations.
     #[inline(always)]
-    pub fn free<const F: usize>(&self, free: &[usize]) -> [SVector<f64, F>; 3] {
-        let gather = |full: &[f64]| SVector::from_fn(|i, _| full[free[i]]);
+    pub fn free<F: Size>(&self, size: F, free: &[usize]) -> [F::Vector; 3] {
+        let gather = |full: &[f64]| size.vector(|i| full[free[i]]);
         [gather(&self.q), gather(&self.v), gather(&self.a)]
     }
 
     /// Sets the free coordinates.
     #[inline(always)]
-    pub fn set_free<const F: usize>(&mut self, free: &[usize], [q, v, a]: [&SVector<f64, F>; 3]) {
+    pub fn set_free<V: Vector>(&mut self, free: &[usize], [q, v, a]: [&V; 3]) {
         for (i, &full) in free.iter().enumerate() {
             (self.q[full], self.v[full], self.a[full]) = (q[i], v[i], a[i]);
         }

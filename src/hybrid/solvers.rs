@@ -1,20 +1,21 @@
 //! One-step methods, made once for each mode and kept.
 
-use crate::integrate::{Counters, Radau, Taylor};
+use crate::integrate::{Const, Counters, Dynamic, Radau, Size, Taylor};
+use crate::kernel::ModeKernels;
 use crate::model::Mode;
 
 /// The methods of modes with `F` free coordinates that were used so far, by mode; `None` while one is in use.
 /// Making one costs as much as many steps, and a method remembers what it has learnt.
-pub(super) struct Slots<const F: usize> {
+pub(super) struct Slots<F: Size> {
     pub taylor: Box<[Option<Box<Taylor<F>>>]>,
     pub radau_of_five: Box<[Option<Box<Radau<5, F>>>]>,
     pub radau_of_seven: Box<[Option<Box<Radau<7, F>>>]>,
 }
 
-impl<const F: usize> Slots<F> {
-    fn new(modes: &[Mode]) -> Self {
-        // Places by mode; none where no mode is of this kind.
-        let modes = match modes.iter().any(|mode| mode.free.len() == F) {
+impl<F: Size> Slots<F> {
+    /// Places by mode; none where no mode is of this kind.
+    fn new(modes: &[Mode], is_own: impl Fn(&ModeKernels) -> bool) -> Self {
+        let modes = match modes.iter().any(|mode| is_own(&mode.kernels)) {
             true => modes.len(),
             false => 0,
         };
@@ -38,13 +39,13 @@ impl<const F: usize> Slots<F> {
 }
 
 /// What has methods for `F` free coordinates.
-pub(super) trait SlotsOf<const F: usize> {
+pub(super) trait SlotsOf<F: Size> {
     fn slots(&mut self) -> &mut Slots<F>;
 }
 
 /// By the number of free coordinates: a type each, so that nothing has to be told from a pointer.
 macro_rules! solvers {
-    ($($name:ident: $free:literal),*) => {
+    ($($name:ident: $kernels:ident of $free:ty),*) => {
         /// The methods that were used so far.
         pub(super) struct Solvers {
             $($name: Slots<$free>,)*
@@ -53,7 +54,7 @@ macro_rules! solvers {
         impl Solvers {
             /// None yet.
             pub fn new(modes: &[Mode]) -> Self {
-                Solvers { $($name: Slots::new(modes),)* }
+                Solvers { $($name: Slots::new(modes, |of| matches!(of, ModeKernels::$kernels(_))),)* }
             }
 
             /// Work done since it was last taken, of each method.
@@ -70,8 +71,15 @@ macro_rules! solvers {
                 }
             }
         )*
-
-        const _: () = assert!([$($free),*].len() == crate::kernel::MOST_FREE + 1);
     };
 }
-solvers!(none: 0, one: 1, two: 2, three: 3, four: 4, five: 5, six: 6);
+solvers!(
+    none: F0 of Const<0>,
+    one: F1 of Const<1>,
+    two: F2 of Const<2>,
+    three: F3 of Const<3>,
+    four: F4 of Const<4>,
+    five: F5 of Const<5>,
+    six: F6 of Const<6>,
+    any: Any of Dynamic
+);

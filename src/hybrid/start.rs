@@ -5,6 +5,7 @@ use super::limits::check_bounds;
 use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{GuardShape, Mode};
+use crate::numerics::Size;
 
 /// What does not fit a mode, of a coordinate by its index.
 #[derive(Debug, Clone, Copy)]
@@ -54,7 +55,7 @@ impl<'p> Simulation<'p> {
 
     /// Takes the transition of a guard that is violated, if it is one of the mode and of discrete states alone: its
     /// target. `None`: there is nothing to refuse.
-    fn step_of_settling<const F: usize>(
+    fn step_of_settling<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
     ) -> Option<Result<usize, Reason>> {
@@ -62,7 +63,7 @@ impl<'p> Simulation<'p> {
         // What else is wrong with the mode is said when it is entered.
         let violation = self.enter(kernel).ok()??;
         let guard = &mode.guards[violation.guard];
-        let [q, v, a] = self.here.free::<F>(&mode.free);
+        let [q, v, a] = self.here.free(kernel.size(), &mode.free);
         let at = Free {
             q: &q,
             v: &v,

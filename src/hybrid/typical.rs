@@ -8,11 +8,10 @@
 use super::plan::Plan;
 use super::problem::Problem;
 use crate::input::Side;
-use crate::integrate::solve;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, GuardShape, Mode};
-use nalgebra::SVector;
+use crate::numerics::Size;
 
 impl Problem {
     /// Typical sizes of the coordinates and of their rates, in their units: those that the model states,
@@ -54,7 +53,7 @@ impl Problem {
 
 /// Limits the `sizes` of the free coordinates of a mode to what changes a guard by its own size; the
 /// change by the `stated` sizes tells how strongly it depends on them.
-fn limit<const F: usize>(
+fn limit<F: Size>(
     [of_q, of_v]: &mut [Vec<f64>; 2],
     [stated_q, stated_v]: &[Vec<f64>; 2],
     problem: &Problem,
@@ -63,14 +62,12 @@ fn limit<const F: usize>(
     kernel: &ModeKernel<F>,
     context: &Context,
 ) {
-    let free = |all: &[f64]| SVector::<f64, F>::from_fn(|i, _| all[mode.free[i]]);
+    let free = |all: &[f64]| kernel.size().vector(|i| all[mode.free[i]]);
     let (q, v) = (free(&problem.initial.q), free(&problem.initial.v));
     let scale = free(stated_q);
-    let accelerations = |q: &SVector<f64, F>, v: &SVector<f64, F>| {
-        let system = kernel.system(context, q, v);
-        solve(&system.mass, &-system.load, &scale).ok()
-    };
-    let value = |q: &SVector<f64, F>, v: &SVector<f64, F>| {
+    let accelerations =
+        |q: &F::Vector, v: &F::Vector| kernel.system(context, q, v).accelerations(&scale).ok();
+    let value = |q: &F::Vector, v: &F::Vector| {
         let a = accelerations(q, v)?;
         let at = Free { q, v, a: &a };
         Some(kernel.guard(context, &guard.kernel, at))
@@ -92,7 +89,7 @@ fn limit<const F: usize>(
         }
     };
     for (i, &full) in mode.free.iter().enumerate() {
-        let (mut moved, mut faster) = (q, v);
+        let (mut moved, mut faster) = (q.clone(), v.clone());
         moved[i] += stated_q[full];
         faster[i] += stated_v[full];
         of_q[full] = limited(of_q[full], stated_q[full], value(&moved, &v));

@@ -5,6 +5,7 @@ use super::plan::Plan;
 use super::problem::{Accuracy, Initial, Method, Problem};
 use crate::integrate::Tolerances;
 use crate::model::{Bounds, Model, shown};
+use crate::numerics::Const;
 use nalgebra::SVector;
 
 /// Something of a problem that is not admissible.
@@ -215,7 +216,7 @@ impl Problem {
         } = &self.accuracy;
         count("absolute tolerances of coordinates", q_absolute, n)?;
         count("absolute tolerances of velocities", v_absolute, n)?;
-        let least = Tolerances::<0>::SMALLEST_RELATIVE;
+        let least = Tolerances::<Const<0>>::SMALLEST_RELATIVE;
         if !(least..1.0).contains(relative) {
             return Err(Invalid::OutOfRange {
                 what: "the relative tolerance".into(),
@@ -230,7 +231,7 @@ impl Problem {
             .zip(q_absolute.iter().zip(v_absolute))
         {
             let [of_q, of_v] = [q, v].map(SVector::<f64, 1>::repeat);
-            if Tolerances::new(*relative, of_q, of_v).is_err() {
+            if Tolerances::<Const<1>>::new(*relative, of_q, of_v).is_err() {
                 return Err(Invalid::OutOfRange {
                     what: format!("an absolute tolerance of `{}`", c.name),
                     value: if v > 0.0 && v.is_finite() { q } else { v },

@@ -2,8 +2,7 @@
 
 use super::state::State;
 use super::tableau::{Coefficients, RadauIia};
-use crate::numerics::{Blank, persist};
-use nalgebra::SVector;
+use crate::numerics::{Size, Vector, persist};
 
 /// The motion within a step, from its start at time t₀ over a length h. With τ = t − t₀, s = τ/h,
 ///
@@ -22,37 +21,22 @@ use nalgebra::SVector;
 /// Order of the error at any time of a run (S ≥ 3): q min(2S − 1, S + 3), v min(2S − 1, S + 2), a
 /// S + 1; on the collocation polynomial one less, where that is below 2S − 1. For S = 3 that is 5, 5
 /// and 4.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dense<const S: usize, const F: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dense<const S: usize, F: Size> {
     pub(super) t0: f64,
     pub(super) h: f64,
     pub(super) t_end: f64,
-    pub(super) q0: SVector<f64, F>,
-    pub(super) v0: SVector<f64, F>,
+    pub(super) q0: F::Vector,
+    pub(super) v0: F::Vector,
     /// p₀ in the module's formula.
-    pub(super) p0: SVector<f64, F>,
+    pub(super) p0: F::Vector,
     /// p₁ … p_S.
-    pub(super) p: [SVector<f64, F>; S],
+    pub(super) p: [F::Vector; S],
 }
 
-persist!([const S: usize, const F: usize] Dense<S, F> { t0, h, t_end, q0, v0, p0, p });
+persist!([const S: usize, F: Size] Dense<S, F> { t0, h, t_end, q0, v0, p0, p });
 
-impl<const S: usize, const F: usize> Blank for Dense<S, F> {
-    fn blank() -> Self {
-        let zero = SVector::zeros();
-        Dense {
-            t0: 0.0,
-            h: 0.0,
-            t_end: 0.0,
-            q0: zero,
-            v0: zero,
-            p0: zero,
-            p: [zero; S],
-        }
-    }
-}
-
-impl<const S: usize, const F: usize> Dense<S, F> {
+impl<const S: usize, F: Size> Dense<S, F> {
     /// Degree in s of the polynomials of q.
     pub const DEGREE: usize = S + 2;
 
@@ -88,16 +72,17 @@ impl<const S: usize, const F: usize> Dense<S, F> {
 
     /// Coordinates, velocities and accelerations at time `t` of the window.
     #[inline]
-    pub fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+    pub fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector) {
         self.at_offset(t - self.t0)
     }
 
     /// The same at τ = t − start, which resolves times close to the start.
     #[inline]
-    pub fn at_offset(&self, tau: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+    pub fn at_offset(&self, tau: f64) -> (F::Vector, F::Vector, F::Vector) {
         let s = tau / self.h;
-        let (mut q, mut v, mut a) = (self.q0, self.v0, SVector::zeros());
-        for i in 0..F {
+        let size = self.q0.size();
+        let (mut q, mut v, mut a) = (self.q0.clone(), self.v0.clone(), size.zeros());
+        for i in 0..size.get() {
             // Horner's scheme for P and, with the powers' factors from differentiating τ²P once and
             // twice, for 2P + sP′ and 2P + 4sP′ + s²P″.
             let (mut value, mut first, mut second) = (0.0, 0.0, 0.0);
@@ -138,16 +123,15 @@ impl<const S: usize, const F: usize> Dense<S, F> {
         }
     }
 
-    pub(super) fn zero() -> Self {
-        let zero = SVector::zeros();
+    pub(super) fn zero(size: F) -> Self {
         Dense {
             t0: 0.0,
             h: 0.0,
             t_end: 0.0,
-            q0: zero,
-            v0: zero,
-            p0: zero,
-            p: [zero; S],
+            q0: size.zeros(),
+            v0: size.zeros(),
+            p0: size.zeros(),
+            p: std::array::from_fn(|_| size.zeros()),
         }
     }
 
@@ -159,16 +143,17 @@ impl<const S: usize, const F: usize> Dense<S, F> {
         &mut self,
         times: (f64, f64, f64),
         origin: &State<F>,
-        stages: &[SVector<f64, F>; S],
-        unresolved: &[bool; F],
+        stages: &[F::Vector; S],
+        unresolved: &F::List<bool>,
     ) where
         RadauIia<S>: Coefficients<S>,
     {
         let tableau = RadauIia::<S>::TABLEAU;
         (self.t0, self.h, self.t_end) = times;
-        (self.q0, self.v0) = (origin.q, origin.v);
+        self.q0.clone_from(&origin.q);
+        self.v0.clone_from(&origin.v);
         let a0 = &origin.a;
-        for i in 0..F {
+        for i in 0..origin.size().get() {
             // One stage does not make an interpolant that reaches the end point.
             if S > 1 && !unresolved[i] {
                 self.p0[i] = 0.5 * a0[i];
@@ -198,16 +183,14 @@ impl<const S: usize, const F: usize> Dense<S, F> {
 
     /// Accelerations at time t₀ + `tau`, inside or beyond the window, as starting values.
     #[inline]
-    pub(super) fn acceleration(&self, tau: f64) -> SVector<f64, F> {
+    pub(super) fn acceleration(&self, tau: f64) -> F::Vector {
         let s = tau / self.h;
-        let mut a = SVector::zeros();
-        for i in 0..F {
+        self.p0.size().vector(|i| {
             let mut second = 0.0;
             for k in (0..S).rev() {
                 second = second * s + ((k + 3) * (k + 2)) as f64 * self.p[k][i];
             }
-            a[i] = second * s + 2.0 * self.p0[i];
-        }
-        a
+            second * s + 2.0 * self.p0[i]
+        })
     }
 }

@@ -6,16 +6,16 @@ use super::newton::{Linearization, Newton, Stages};
 use super::state::State;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Weights, power};
-use nalgebra::SVector;
+use crate::numerics::{Size, Vector};
 
 /// Difference of the embedded formula and the step, in q and v.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Estimate<const F: usize> {
-    q: SVector<f64, F>,
-    v: SVector<f64, F>,
+#[derive(Debug, Clone)]
+pub(super) struct Estimate<F: Size> {
+    q: F::Vector,
+    v: F::Vector,
 }
 
-impl<const F: usize> Estimate<F> {
+impl<F: Size> Estimate<F> {
     /// d_v = h (γ a₀ + Σ e_i A_i), d_q = h (γ v₀ + Σ e_i V_i), both written without the parts that
     /// cancel exactly.
     #[inline]
@@ -24,11 +24,12 @@ impl<const F: usize> Estimate<F> {
         RadauIia<S>: Coefficients<S>,
     {
         let tableau = RadauIia::<S>::TABLEAU;
-        let mut raw = Estimate {
-            q: SVector::zeros(),
-            v: SVector::zeros(),
+        let size = start.size();
+        let mut raw = Estimate::<F> {
+            q: size.zeros(),
+            v: size.zeros(),
         };
-        for l in 0..F {
+        for l in 0..size.get() {
             let (mut first, mut second) = (0.0, 0.0);
             for i in 0..S {
                 first += tableau.e[i] * (stages.a[i][l] - start.a[l]);
@@ -49,16 +50,17 @@ impl<const F: usize> Estimate<F> {
     {
         let z = h * RadauIia::<S>::TABLEAU.gamma;
         let Linearization { m, k, .. } = &newton.matrices;
-        let v = SVector::from(newton.real.solve(|i| {
+        let size = self.q.size();
+        let v = newton.real.solve(|i| {
             let mut sum = 0.0;
-            for j in 0..F {
+            for j in 0..size.get() {
                 sum += m[(i, j)] * self.v[j] - z * k[(i, j)] * self.q[j];
             }
             sum
-        }));
+        });
         Estimate {
-            q: self.q + v * z,
-            v,
+            q: size.vector(|i| self.q[i] + v[i] * z),
+            v: size.vector(|i| v[i]),
         }
     }
 
@@ -86,21 +88,15 @@ impl<const F: usize> Estimate<F> {
         let factor = loosening * RadauIia::<S>::TABLEAU.error_quotient;
         // filtered − raw = hγJ filtered tells the size of γhλ without further work.
         let norm = self.norm(weights);
-        let mut difference = Estimate {
-            q: self.q - raw.q,
-            v: self.v - raw.v,
-        };
+        let mut difference = self.less(raw);
         let stiffness = difference.norm(weights) / norm;
         if norm == 0.0 || factor * power(stiffness, S - 1) < 1.0 {
             return norm; // no error, or that of the method is smaller
         }
-        difference = *self;
+        difference = self.clone();
         for _ in 1..S {
             let filtered = difference.filtered(h, newton);
-            difference = Estimate {
-                q: filtered.q - difference.q,
-                v: filtered.v - difference.v,
-            };
+            difference = filtered.less(&difference);
         }
         let error = factor * difference.norm(weights);
         // For the controller, which takes the (S + 1)-th root: this one grows with h^2S where it is
@@ -110,6 +106,16 @@ impl<const F: usize> Estimate<F> {
         } else {
             error
         })
+    }
+
+    /// The difference from another.
+    #[inline(always)]
+    fn less(&self, other: &Self) -> Self {
+        let size = self.q.size();
+        Estimate {
+            q: size.vector(|i| self.q[i] - other.q[i]),
+            v: size.vector(|i| self.v[i] - other.v[i]),
+        }
     }
 
     /// Size of component `i` in units of the tolerance.
@@ -125,7 +131,7 @@ impl<const F: usize> Estimate<F> {
     #[inline]
     pub fn norm(&self, weights: &Weights<F>) -> f64 {
         let (mut norm, mut sum) = (0.0_f64, 0.0);
-        for i in 0..F {
+        for i in 0..self.q.size().get() {
             let size = self.size(i, weights);
             norm = norm.max(size);
             sum += self.v[i];

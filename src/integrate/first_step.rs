@@ -6,7 +6,7 @@ use super::state::State;
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Weights};
-use nalgebra::SVector;
+use crate::numerics::{Lu, Size};
 
 /// Proposes a length that does not exceed `h_max`.
 ///
@@ -20,7 +20,7 @@ use nalgebra::SVector;
 /// The jerk comes from one residual a short time ahead on the parabola through the start. It passes
 /// the filter of an implicit Euler step: transients of stiff components that matter show in the
 /// acceleration; those that do not matter must not shorten the step.
-pub(super) fn estimate<const S: usize, const F: usize, Y: System<F>>(
+pub(super) fn estimate<const S: usize, F: Size, Y: System<F>>(
     system: &mut Y,
     start: &State<F>,
     h_max: f64,
@@ -32,8 +32,9 @@ pub(super) fn estimate<const S: usize, const F: usize, Y: System<F>>(
 where
     RadauIia<S>: Coefficients<S>,
 {
-    let per_size = |rate: &SVector<f64, F>, weight: &SVector<f64, F>| -> f64 {
-        (0..F).fold(0.0, |most, i| {
+    let size = start.size();
+    let per_size = |rate: &F::Vector, weight: &F::Vector| -> f64 {
+        (0..size.get()).fold(0.0, |most, i| {
             most.max(rate[i].abs() * weight[i] * control.relative)
         })
     };
@@ -43,16 +44,18 @@ where
     if !ahead.is_finite() {
         return ahead;
     }
-    let mut r = SVector::zeros();
-    let q = start.q + (start.v + start.a * (0.5 * ahead)) * ahead;
-    let v = start.v + start.a * ahead;
+    let mut r = size.zeros();
+    let q = size.vector(|i| start.q[i] + (start.v[i] + start.a[i] * (0.5 * ahead)) * ahead);
+    let v = size.vector(|i| start.v[i] + start.a[i] * ahead);
     system.residual(start.t + ahead, &q, &v, &start.a, &mut r);
     counters.residual_evaluations += 1;
     let Linearization { m, c, k } = &newton.matrices;
-    let filter = m + (c + k * ahead) * ahead;
-    let Ok(change) = super::solve(&filter, &r, control.row_scale()) else {
+    let entry = |i, j| m[(i, j)] + (c[(i, j)] + k[(i, j)] * ahead) * ahead;
+    let Ok(change) = Lu::<f64, F>::factorize(entry, control.row_scale()) else {
         return ahead; // the step itself finds out what is singular
     };
+    let change = change.solve(|i| r[i]);
+    let change = size.vector(|i| change[i]);
     let jerk = per_size(&change, &weights.v) / ahead;
     let scale = f64::min(1.0 / fastest, (2.0 / jerk).sqrt());
     (factor * scale).min(h_max)

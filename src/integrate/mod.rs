@@ -36,8 +36,11 @@ mod tableau;
 mod taylor;
 mod tolerances;
 
+pub(crate) use crate::numerics::stretch;
+pub use crate::numerics::{
+    Const, Dynamic, Matrix, ORDERS, Rows, Series, SeriesKind, Singular, Size, Vector, solve,
+};
 pub(crate) use crate::numerics::{LaneMask, Lanes, determinant_sign};
-pub use crate::numerics::{ORDERS, Series, SeriesKind, Singular, solve};
 pub use dense::Dense;
 pub use one_step::{Motion, OneStep};
 pub use radau::Radau;
@@ -47,5 +50,5 @@ pub use state::{Node, State};
 pub use system::{FirstOrder, FirstOrderProblem, System};
 pub use tableau::{Coefficients, RadauIia, Tableau};
 pub use taylor::{Analytic, Taylor, TaylorDense};
-pub(crate) use taylor::{LaneTaylor, SERIES, stretch};
+pub(crate) use taylor::{LaneTaylor, SERIES};
 pub use tolerances::{ToleranceError, Tolerances};

@@ -9,9 +9,8 @@ use super::state::State;
 use super::system::System;
 use super::tableau::{Coefficients, MAX_PAIRS, RadauIia, Tableau};
 use super::tolerances::Weights;
-use crate::numerics::persist;
-use crate::numerics::{Lu, Singular};
-use nalgebra::{Complex, SMatrix, SVector};
+use crate::numerics::{Lu, Matrix, Singular, Size, Vector, persist};
+use nalgebra::Complex;
 
 /// A contraction above this is no convergence (RADAU5).
 const DIVERGENCE: f64 = 0.99;
@@ -21,17 +20,17 @@ const DIVERGENCE: f64 = 0.99;
 const RESIDUAL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Stage values of one step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Stages<const S: usize, const F: usize> {
-    pub a: [SVector<f64, F>; S],
-    pub v: [SVector<f64, F>; S],
-    pub q: [SVector<f64, F>; S],
+#[derive(Debug, Clone)]
+pub(super) struct Stages<const S: usize, F: Size> {
+    pub a: [F::Vector; S],
+    pub v: [F::Vector; S],
+    pub q: [F::Vector; S],
     /// End of the step relative to its start: v₁ − v₀ and q₁ − q₀.
-    pub v_change: SVector<f64, F>,
-    pub q_change: SVector<f64, F>,
+    pub v_change: F::Vector,
+    pub q_change: F::Vector,
 }
 
-persist!([const S: usize, const F: usize] Stages<S, F> { a, v, q, v_change, q_change });
+persist!([const S: usize, F: Size] Stages<S, F> { a, v, q, v_change, q_change });
 
 /// How an attempt to solve the stage equations ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,28 +41,28 @@ pub(super) enum Outcome {
 }
 
 /// M, C, K at the linearization point.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Linearization<const F: usize> {
-    pub m: SMatrix<f64, F, F>,
-    pub c: SMatrix<f64, F, F>,
-    pub k: SMatrix<f64, F, F>,
+#[derive(Debug, Clone)]
+pub(super) struct Linearization<F: Size> {
+    pub m: F::Matrix,
+    pub c: F::Matrix,
+    pub k: F::Matrix,
 }
 
-persist!([const F: usize] Linearization<F> { m, c, k });
+persist!([F: Size] Linearization<F> { m, c, k });
 
-impl<const F: usize> Linearization<F> {
+impl<F: Size> Linearization<F> {
     /// True if no entry is NaN or infinite.
     pub fn is_finite(&self) -> bool {
         [&self.m, &self.c, &self.k]
             .into_iter()
-            .flatten()
+            .flat_map(|matrix| matrix.as_slice())
             .all(|x| x.is_finite())
     }
 }
 
 /// Newton's iteration with what it keeps from step to step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Newton<const S: usize, const F: usize> {
+#[derive(Debug, Clone)]
+pub(super) struct Newton<const S: usize, F: Size> {
     pub matrices: Linearization<F>,
     pub real: Lu<f64, F>,
     complex: [Lu<Complex<f64>, F>; MAX_PAIRS],
@@ -76,9 +75,9 @@ pub(super) struct Newton<const S: usize, const F: usize> {
     remaining: f64,
 }
 
-persist!([const S: usize, const F: usize] Newton<S, F> { matrices, real, complex, h, rate, remaining });
+persist!([const S: usize, F: Size] Newton<S, F> { matrices, real, complex, h, rate, remaining });
 
-impl<const S: usize, const F: usize> Newton<S, F>
+impl<const S: usize, F: Size> Newton<S, F>
 where
     RadauIia<S>: Coefficients<S>,
 {
@@ -90,16 +89,15 @@ where
     /// bit of a number.
     pub const PATIENCE: u32 = f64::MANTISSA_DIGITS;
 
-    pub fn new() -> Self {
-        let zero = SMatrix::zeros();
+    pub fn new(size: F) -> Self {
         Newton {
             matrices: Linearization {
-                m: zero,
-                c: zero,
-                k: zero,
+                m: size.zero_matrix(),
+                c: size.zero_matrix(),
+                k: size.zero_matrix(),
             },
-            real: Lu::empty(),
-            complex: [Lu::empty(); MAX_PAIRS],
+            real: Lu::empty(size),
+            complex: std::array::from_fn(|_| Lu::empty(size)),
             h: f64::NAN,
             rate: 1.0,
             remaining: 1.0,
@@ -136,7 +134,7 @@ where
     pub fn factorize(
         &mut self,
         h: f64,
-        row_scale: &SVector<f64, F>,
+        row_scale: &F::Vector,
         counters: &mut Counters,
     ) -> Result<(), Singular> {
         if self.h == h {
@@ -182,10 +180,8 @@ where
         counters: &mut Counters,
     ) -> Outcome {
         // A change of an acceleration changes v by at most h times it, and q by ½h² times it.
-        let mut weight = SVector::<f64, F>::zeros();
-        for i in 0..F {
-            weight[i] = h * f64::max(weights.v[i], 0.5 * h * weights.q[i]);
-        }
+        let size = start.size();
+        let weight = size.vector(|i| h * f64::max(weights.v[i], 0.5 * h * weights.q[i]));
         // Before two iterations have shown the contraction, the last step's stands in, raised to the
         // power 3/4 out of caution (RADAU5: 0.8; square roots are exact everywhere).
         self.remaining = match system.is_linear() {
@@ -197,7 +193,7 @@ where
         let times = Stages::<S, F>::times(start.t, h, t_end);
         system.foresee(&times);
         let (mut last_norm, mut last_quotient) = (0.0, 0.0);
-        let mut residual = [SVector::zeros(); S];
+        let mut residual = std::array::from_fn(|_| size.zeros());
         for iteration in 1..=limit {
             stages.residual(system, &times, &mut residual);
             counters.residual_evaluations += S as u64;
@@ -246,14 +242,16 @@ where
     #[inline]
     fn correct(
         &self,
-        residual: &[SVector<f64, F>; S],
+        residual: &[F::Vector; S],
         stages: &mut Stages<S, F>,
-        weight: &SVector<f64, F>,
+        weight: &F::Vector,
     ) -> f64 {
         let tableau = RadauIia::<S>::TABLEAU;
-        let mut w = [[0.0; F]; S];
+        let size = weight.size();
+        let n = size.get();
+        let mut w: [F::List<f64>; S] = std::array::from_fn(|_| size.list(0.0));
         for i in 0..S {
-            for l in 0..F {
+            for l in 0..n {
                 for j in 0..S {
                     w[i][l] += tableau.t_inverse[i][j] * residual[j][l];
                 }
@@ -263,7 +261,7 @@ where
         for pair in 0..Tableau::<S>::PAIRS {
             let (i, j) = (2 * pair + 1, 2 * pair + 2);
             let x = self.complex[pair].solve(|l| Complex::new(w[i][l], w[j][l]));
-            for l in 0..F {
+            for l in 0..n {
                 w[i][l] = x[l].re;
                 w[j][l] = x[l].im;
             }
@@ -271,7 +269,7 @@ where
         let mut norm = 0.0_f64;
         let mut sum = 0.0;
         for i in 0..S {
-            for l in 0..F {
+            for l in 0..n {
                 let mut change = 0.0;
                 for j in 0..S {
                     change += tableau.t[i][j] * w[j][l];
@@ -287,11 +285,12 @@ where
 
     /// True if no residual exceeds the rounding of its terms: there is nothing left to correct.
     #[cold]
-    fn is_rounding(&self, residual: &[SVector<f64, F>; S], stages: &Stages<S, F>) -> bool {
+    fn is_rounding(&self, residual: &[F::Vector; S], stages: &Stages<S, F>) -> bool {
         let Linearization { m, c, k } = &self.matrices;
+        let n = m.size().get();
         (0..S).all(|stage| {
-            (0..F).all(|i| {
-                let terms: f64 = (0..F)
+            (0..n).all(|i| {
+                let terms: f64 = (0..n)
                     .map(|j| {
                         (m[(i, j)] * stages.a[stage][j]).abs()
                             + (c[(i, j)] * stages.v[stage][j]).abs()
@@ -304,18 +303,18 @@ where
     }
 }
 
-impl<const S: usize, const F: usize> Stages<S, F>
+impl<const S: usize, F: Size> Stages<S, F>
 where
     RadauIia<S>: Coefficients<S>,
 {
-    pub fn zeros() -> Self {
-        let zero = SVector::zeros();
+    pub fn zeros(size: F) -> Self {
+        let zeros = || std::array::from_fn(|_| size.zeros());
         Stages {
-            a: [zero; S],
-            v: [zero; S],
-            q: [zero; S],
-            v_change: zero,
-            q_change: zero,
+            a: zeros(),
+            v: zeros(),
+            q: zeros(),
+            v_change: size.zeros(),
+            q_change: size.zeros(),
         }
     }
 
@@ -324,9 +323,9 @@ where
         let t = t0 + RadauIia::<S>::TABLEAU.c[i] * h;
         State {
             t,
-            q: self.q[i],
-            v: self.v[i],
-            a: self.a[i],
+            q: self.q[i].clone(),
+            v: self.v[i].clone(),
+            a: self.a[i].clone(),
         }
     }
 
@@ -335,9 +334,12 @@ where
     pub fn coast(&mut self, start: &State<F>, h: f64) {
         let tableau = RadauIia::<S>::TABLEAU;
         for i in 0..S {
-            self.a[i] = SVector::zeros();
-            self.v[i] = start.v;
-            self.q[i] = start.q + start.v * (tableau.c[i] * h);
+            let offset = tableau.c[i] * h;
+            for l in 0..start.size().get() {
+                self.a[i][l] = 0.0;
+                self.v[i][l] = start.v[l];
+                self.q[i][l] = start.q[l] + start.v[l] * offset;
+            }
         }
     }
 
@@ -346,7 +348,7 @@ where
     pub fn extend(&mut self, start: &State<F>, h: f64) {
         let tableau = RadauIia::<S>::TABLEAU;
         for i in 0..S {
-            for l in 0..F {
+            for l in 0..start.size().get() {
                 let (mut first, mut second) = (0.0, 0.0);
                 for j in 0..S {
                     first += tableau.a[i][j] * self.a[j][l];
@@ -374,12 +376,7 @@ where
 
     /// Writes the residuals of the stages where they are read: a copy right after them would wait.
     #[inline(always)]
-    fn residual<Y: System<F>>(
-        &self,
-        system: &mut Y,
-        times: &[f64; S],
-        r: &mut [SVector<f64, F>; S],
-    ) {
+    fn residual<Y: System<F>>(&self, system: &mut Y, times: &[f64; S], r: &mut [F::Vector; S]) {
         for i in 0..S {
             system.residual(times[i], &self.q[i], &self.v[i], &self.a[i], &mut r[i]);
         }

@@ -7,11 +7,10 @@ use super::state::{Node, State};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::taylor::{Analytic, Taylor, TaylorDense};
-use crate::numerics::Series;
-use nalgebra::SVector;
+use crate::numerics::{Series, Size};
 
 /// A one-step method with dense output, for systems of type `Y`.
-pub trait OneStep<const F: usize, Y> {
+pub trait OneStep<F: Size, Y> {
     /// Its dense output.
     type Motion: Motion<F>;
 
@@ -23,13 +22,7 @@ pub trait OneStep<const F: usize, Y> {
     ///
     /// # Panics
     /// If accelerations are needed and not given.
-    fn restart(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: Option<&SVector<f64, F>>,
-    );
+    fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>);
 
     /// Makes one step, not beyond `t_end`.
     ///
@@ -89,7 +82,7 @@ pub trait OneStep<const F: usize, Y> {
 }
 
 /// The motion within a step: each coordinate is a polynomial.
-pub trait Motion<const F: usize> {
+pub trait Motion<F: Size> {
     /// Start of the step, s.
     fn start(&self) -> f64;
 
@@ -97,11 +90,11 @@ pub trait Motion<const F: usize> {
     fn length(&self) -> f64;
 
     /// Coordinates, velocities and accelerations at time `t` of the step.
-    fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>);
+    fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector);
 
     /// Coordinates and velocities alone.
     #[inline]
-    fn state_at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>) {
+    fn state_at(&self, t: f64) -> (F::Vector, F::Vector) {
         let (q, v, _) = self.at(t);
         (q, v)
     }
@@ -129,7 +122,7 @@ pub trait Motion<const F: usize> {
     }
 }
 
-impl<const S: usize, const F: usize, Y: System<F>> OneStep<F, Y> for Radau<S, F>
+impl<const S: usize, F: Size, Y: System<F>> OneStep<F, Y> for Radau<S, F>
 where
     RadauIia<S>: Coefficients<S>,
 {
@@ -147,13 +140,7 @@ where
         ("Radau IIA", 2 * S - 1)
     }
 
-    fn restart(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: Option<&SVector<f64, F>>,
-    ) {
+    fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {
         let a = a.expect("accelerations are needed");
         self.restart(t, q, v, a);
     }
@@ -198,7 +185,7 @@ where
     }
 }
 
-impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
+impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     type Motion = TaylorDense<F>;
 
     const EXACT_ACCELERATIONS: bool = false;
@@ -217,20 +204,14 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
         ("Taylor", self.order())
     }
 
-    fn restart(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: Option<&SVector<f64, F>>,
-    ) {
+    fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {
         self.restart(t, q, v, a);
     }
 
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
         // The terms of the motion tell what the inputs do, unless nothing moves: guards on reactions
         // then swing with the inputs alone.
-        let h_max = match F {
+        let h_max = match self.start().size().get() {
             0 => system.resolution(self.end()),
             _ => f64::INFINITY,
         };
@@ -266,7 +247,7 @@ impl<const F: usize, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     }
 }
 
-impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
+impl<const S: usize, F: Size> Motion<F> for Dense<S, F> {
     fn start(&self) -> f64 {
         self.start()
     }
@@ -275,7 +256,7 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
         self.length()
     }
 
-    fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+    fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector) {
         self.at(t)
     }
 
@@ -295,7 +276,7 @@ impl<const S: usize, const F: usize> Motion<F> for Dense<S, F> {
     }
 }
 
-impl<const F: usize> Motion<F> for TaylorDense<F> {
+impl<F: Size> Motion<F> for TaylorDense<F> {
     fn start(&self) -> f64 {
         self.start()
     }
@@ -304,14 +285,13 @@ impl<const F: usize> Motion<F> for TaylorDense<F> {
         self.length()
     }
 
-    fn at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>, SVector<f64, F>) {
+    fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector) {
         self.at(t)
     }
 
     #[inline]
-    fn state_at(&self, t: f64) -> (SVector<f64, F>, SVector<f64, F>) {
-        let (dq, dv) = self.change(t - self.start());
-        (self.series().q[0] + dq, self.series().v[0] + dv)
+    fn state_at(&self, t: f64) -> (F::Vector, F::Vector) {
+        self.change_from_start(t - self.start())
     }
 
     fn series(&self) -> Option<(&Series<F>, usize)> {

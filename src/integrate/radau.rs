@@ -10,8 +10,7 @@ use super::state::{Lost, Node, State, add, fit};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances, Weights};
-use crate::numerics::{Blank, Memory, Persist, persist};
-use nalgebra::SVector;
+use crate::numerics::{Blank, Kept, Memory, Persist, Size, Vector, persist};
 
 /// A Jacobian with which Newton's iteration contracted at least this fast serves the next step too.
 const REUSE: f64 = 1e-3;
@@ -37,7 +36,7 @@ enum Linearized {
 /// the motion in it is [`Radau::dense`]. After an event [`Radau::step_exactly`] takes the same step
 /// again up to the event, and [`Radau::restart`] goes on from the state behind it.
 #[derive(Debug, Clone)]
-pub struct Radau<const S: usize, const F: usize> {
+pub struct Radau<const S: usize, F: Size> {
     control: Control<F>,
     controller: Controller,
     newton: Newton<S, F>,
@@ -51,13 +50,13 @@ pub struct Radau<const S: usize, const F: usize> {
     lost: Lost<F>,
     stages: Stages<S, F>,
     /// Motion in the last step; `None` after a restart.
-    dense: Option<Dense<S, F>>,
+    dense: Kept<Dense<S, F>>,
     /// Components that the last step did not resolve.
-    unresolved: [bool; F],
+    unresolved: F::List<bool>,
     counters: Counters,
 }
 
-persist!([const S: usize, const F: usize] Radau<S, F> {
+persist!([const S: usize, F: Size] Radau<S, F> {
     controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, counters
 } but { control });
 
@@ -73,32 +72,26 @@ impl Persist for Linearized {
     }
 }
 
-impl<const S: usize, const F: usize> Radau<S, F>
+impl<const S: usize, F: Size> Radau<S, F>
 where
     RadauIia<S>: Coefficients<S>,
 {
     /// An integrator at rest at zero; call [`Radau::restart`] before the first step.
     pub fn new(tolerances: &Tolerances<F>) -> Self {
-        let zero = SVector::zeros();
-        let origin = State {
-            t: 0.0,
-            q: zero,
-            v: zero,
-            a: zero,
-        };
+        let size = tolerances.size();
         Radau {
             control: Control::new::<S>(tolerances),
             controller: Controller::new(),
-            newton: Newton::new(),
+            newton: Newton::new(size),
             linearization: None,
             proposal: None,
-            start: origin,
-            end: origin,
-            lost_at_start: Lost::nothing(),
-            lost: Lost::nothing(),
-            stages: Stages::zeros(),
-            dense: None,
-            unresolved: [false; F],
+            start: State::origin(size),
+            end: State::origin(size),
+            lost_at_start: Lost::nothing(size),
+            lost: Lost::nothing(size),
+            stages: Stages::zeros(size),
+            dense: Kept::nothing(Dense::zero(size)),
+            unresolved: size.list(false),
             counters: Counters::default(),
         }
     }
@@ -107,28 +100,23 @@ where
     /// event. `a` are the accelerations at the state, r(t, q, v, a) = 0. The equations may be
     /// others than before. The length of the first step is estimated, unless
     /// [`Radau::suggest`] is called.
-    pub fn restart(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
-    ) {
+    pub fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
+        let size = q.size();
         self.end = State {
             t,
-            q: *q,
-            v: *v,
-            a: *a,
+            q: q.clone(),
+            v: v.clone(),
+            a: a.clone(),
         };
-        self.start = self.end;
-        self.lost = Lost::nothing();
-        self.lost_at_start = self.lost;
+        self.start = self.end.clone();
+        self.lost = Lost::nothing(size);
+        self.lost_at_start = self.lost.clone();
         self.controller = Controller::new();
         self.newton.forget();
         self.linearization = None;
         self.proposal = None;
-        self.dense = None;
-        self.unresolved = [false; F];
+        self.dense.clear();
+        self.unresolved = size.list(false);
     }
 
     /// Sets the length with which the next step is tried, s; positive.
@@ -158,21 +146,21 @@ where
 
     /// The motion within the last step; `None` after a restart.
     pub fn dense(&self) -> Option<&Dense<S, F>> {
-        self.dense.as_ref()
+        self.dense.get()
     }
 
     /// The stages of the last step, in the order of time; the last is its end. Meaningless after a
     /// restart or a failure.
     pub fn stages(&self) -> impl Iterator<Item = Node<F>> {
         let tableau = RadauIia::<S>::TABLEAU;
-        let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
+        let h = self.dense.get().map_or(0.0, |dense| dense.h);
         (0..S).map(move |i| Node {
             weight: h * tableau.a[S - 1][i],
             state: State {
                 t: self.start.t + tableau.c[i] * h,
-                q: self.stages.q[i],
-                v: self.stages.v[i],
-                a: self.stages.a[i],
+                q: self.stages.q[i].clone(),
+                v: self.stages.v[i].clone(),
+                a: self.stages.a[i].clone(),
             },
         })
     }
@@ -220,14 +208,14 @@ where
             self.end.t
         );
         assert!(h_max > 0.0, "h_max = {h_max} is not positive");
-        if let (None, Some(what)) = (&self.dense, self.end.not_finite()) {
+        if let (None, Some(what)) = (self.dense.get(), self.end.not_finite()) {
             return Err(StepError::NonFinite {
                 t: self.end.t,
                 h: 0.0,
                 what,
             });
         }
-        let origin = self.end;
+        let origin = self.end.clone();
         let weights = self.control.weights(&origin.q, &origin.v);
         let keep = system.is_linear() || self.newton.rate <= REUSE;
         self.linearization = match self.linearization {
@@ -261,7 +249,7 @@ where
             };
             match self.trial(system, &origin, (h, end.0), &weights) {
                 Ok(Trial { error, iterations }) => {
-                    self.accept(&origin, self.lost, h, end);
+                    self.accept(&origin, self.lost.clone(), h, end);
                     let rate = if iterations > 1 {
                         self.newton.rate
                     } else {
@@ -318,7 +306,7 @@ where
         if error >= 1.0 {
             return Err(StepError::Tolerance { t, h, error });
         }
-        for i in 0..F {
+        for i in 0..origin.size().get() {
             let size = raw.size(i, weights);
             self.unresolved[i] = size > 1.0 && filtered.size(i, weights) < 0.5 * size;
         }
@@ -361,7 +349,7 @@ where
         h: f64,
     ) -> Result<StepReport, StepError> {
         assert!(h > 0.0, "h = {h} is not positive");
-        let origin = self.start;
+        let origin = self.start.clone();
         let weights = self.control.weights(&origin.q, &origin.v);
         let end = add(origin.t, h, self.lost_at_start.t);
         let (step, limit) = ((h, end.0), Newton::<S, F>::PATIENCE);
@@ -371,7 +359,7 @@ where
             solved = self.attempt(system, &origin, step, &weights, limit);
         }
         let iterations = solved?;
-        self.accept(&origin, self.lost_at_start, h, end);
+        self.accept(&origin, self.lost_at_start.clone(), h, end);
         self.counters.retaken += 1;
         Ok(self.report(f64::NAN, iterations, 0))
     }
@@ -396,7 +384,7 @@ where
     ) -> Result<u32, StepError> {
         let t = origin.t;
         let tableau = RadauIia::<S>::TABLEAU;
-        match &self.dense {
+        match self.dense.get() {
             // The first iteration solves a linear system, wherever it starts from. Seven stages serve
             // tolerances at which rounding counts: there the correction is kept small.
             _ if S <= 5 && system.is_linear() => self.stages.coast(origin, h),
@@ -410,7 +398,7 @@ where
                 self.stages.extend(origin, h);
             }
             _ => {
-                self.stages.a = [origin.a; S];
+                self.stages.a.fill(origin.a.clone());
                 self.stages.extend(origin, h);
             }
         }
@@ -467,27 +455,28 @@ where
     #[inline]
     fn accept(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, (t, t_lost): (f64, f64)) {
         let mut end = State {
-            a: self.stages.a[S - 1],
-            ..*origin
+            a: self.stages.a[S - 1].clone(),
+            ..origin.clone()
         };
-        let mut now_lost = Lost::nothing();
+        let mut now_lost = Lost::nothing(origin.size());
         (end.t, now_lost.t) = (t, t_lost);
-        for l in 0..F {
+        for l in 0..origin.size().get() {
             (end.q[l], now_lost.q[l]) = add(origin.q[l], self.stages.q_change[l], lost.q[l]);
             (end.v[l], now_lost.v[l]) = add(origin.v[l], self.stages.v_change[l], lost.v[l]);
         }
-        self.start = *origin;
+        self.start.clone_from(origin);
         self.end = end;
         self.lost_at_start = lost;
         self.lost = now_lost;
-        let times = (origin.t, h, end.t);
-        let dense = self.dense.get_or_insert_with(Dense::zero);
-        dense.interpolate(times, origin, &self.stages.a, &self.unresolved);
+        let times = (origin.t, h, t);
+        self.dense
+            .write()
+            .interpolate(times, origin, &self.stages.a, &self.unresolved);
     }
 
     fn report(&self, error: f64, iterations: u32, discarded: u32) -> StepReport {
         let (t_start, t_end) = (self.start.t, self.end.t);
-        let h = self.dense.as_ref().map_or(0.0, |dense| dense.h);
+        let h = self.dense.get().map_or(0.0, |dense| dense.h);
         StepReport {
             t_start,
             t_end,

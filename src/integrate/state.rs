@@ -1,39 +1,45 @@
 //! Points of the motion, and what every one-step method does with them.
 
-use crate::numerics::persist;
-use nalgebra::SVector;
+use crate::numerics::{Size, Vector, persist};
 
 /// A point of the motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State<const F: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct State<F: Size> {
     /// Coordinates.
-    pub q: SVector<f64, F>,
+    pub q: F::Vector,
     /// Velocities.
-    pub v: SVector<f64, F>,
+    pub v: F::Vector,
     /// Accelerations.
-    pub a: SVector<f64, F>,
+    pub a: F::Vector,
     /// Time, s.
     pub t: f64,
 }
 
-persist!([const F: usize] State<F> { q, v, a, t });
+persist!([F: Size] State<F> { q, v, a, t });
 
-impl<const F: usize> State<F> {
+impl<F: Size> Copy for State<F> where F::Vector: Copy {}
+
+impl<F: Size> State<F> {
     /// At rest at zero.
-    pub(crate) fn origin() -> Self {
-        let zero = SVector::zeros();
+    pub(crate) fn origin(size: F) -> Self {
         State {
-            q: zero,
-            v: zero,
-            a: zero,
+            q: size.zeros(),
+            v: size.zeros(),
+            a: size.zeros(),
             t: 0.0,
         }
+    }
+
+    /// Number of coordinates.
+    #[inline(always)]
+    pub(crate) fn size(&self) -> F {
+        self.q.size()
     }
 
     /// Name of the part that is not finite, if any.
     #[inline]
     pub(crate) fn not_finite(&self) -> Option<&'static str> {
-        let finite = |x: &SVector<f64, F>| x.iter().all(|x| x.is_finite());
+        let finite = |x: &F::Vector| x.as_slice().iter().all(|x| x.is_finite());
         match self {
             state if !state.t.is_finite() => Some("time"),
             state if !finite(&state.q) => Some("a coordinate"),
@@ -46,8 +52,8 @@ impl<const F: usize> State<F> {
 
 /// A point at which an integral over the last step is sampled: Σ weight · f(state) is ∫ f dt over the
 /// step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node<const F: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node<F: Size> {
     /// Weight, s.
     pub weight: f64,
     /// Motion there.
@@ -55,21 +61,21 @@ pub struct Node<const F: usize> {
 }
 
 /// Sums that are carried on to the next step because they were lost in rounding t, q and v.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Lost<const F: usize> {
+#[derive(Debug, Clone)]
+pub(super) struct Lost<F: Size> {
     pub t: f64,
-    pub q: SVector<f64, F>,
-    pub v: SVector<f64, F>,
+    pub q: F::Vector,
+    pub v: F::Vector,
 }
 
-persist!([const F: usize] Lost<F> { t, q, v });
+persist!([F: Size] Lost<F> { t, q, v });
 
-impl<const F: usize> Lost<F> {
-    pub fn nothing() -> Self {
+impl<F: Size> Lost<F> {
+    pub fn nothing(size: F) -> Self {
         Lost {
             t: 0.0,
-            q: SVector::zeros(),
-            v: SVector::zeros(),
+            q: size.zeros(),
+            v: size.zeros(),
         }
     }
 }

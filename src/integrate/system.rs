@@ -1,7 +1,7 @@
 //! What the integrator asks of a mechanical system.
 
-use crate::numerics::{Singular, solve};
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::{Matrix, Size, Vector};
+use crate::numerics::{Singular, solve_for};
 
 /// A second-order system r(t, q, v, a) = 0 with q̇ = v, v̇ = a, where r is linear in a:
 /// r = M(t, q, v) a + b(t, q, v). M may be unsymmetric (Coulomb friction), and singular as long as
@@ -9,28 +9,21 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// `F` is the number of free coordinates; `F` = 0 is allowed. A function that meets an inadmissible
 /// state writes NaN; the integrator then tries a shorter step.
-pub trait System<const F: usize> {
+pub trait System<F: Size> {
     /// Writes the residual r(t, q, v, a), one generalized force a coordinate.
-    fn residual(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
-        r: &mut SVector<f64, F>,
-    );
+    fn residual(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: &F::Vector, r: &mut F::Vector);
 
     /// Writes m = ∂r/∂a, c = ∂r/∂v and k = ∂r/∂q.
     #[allow(clippy::too_many_arguments)] // a point and three matrices
     fn jacobian(
         &mut self,
         t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
-        m: &mut SMatrix<f64, F, F>,
-        c: &mut SMatrix<f64, F, F>,
-        k: &mut SMatrix<f64, F, F>,
+        q: &F::Vector,
+        v: &F::Vector,
+        a: &F::Vector,
+        m: &mut F::Matrix,
+        c: &mut F::Matrix,
+        k: &mut F::Matrix,
     );
 
     /// Writes the acceleration with r(t, q, v, a) = 0.
@@ -43,16 +36,16 @@ pub trait System<const F: usize> {
     fn acceleration(
         &mut self,
         t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &mut SVector<f64, F>,
+        q: &F::Vector,
+        v: &F::Vector,
+        a: &mut F::Vector,
     ) -> Result<(), Singular> {
-        let zero = SVector::zeros();
-        let mut r = SVector::zeros();
-        let (mut m, mut c, mut k) = (SMatrix::zeros(), SMatrix::zeros(), SMatrix::zeros());
+        let size = q.size();
+        let (zero, mut r) = (size.zeros(), size.zeros());
+        let [mut m, mut c, mut k] = [(); 3].map(|()| size.zero_matrix());
         self.residual(t, q, v, &zero, &mut r);
         self.jacobian(t, q, v, &zero, &mut m, &mut c, &mut k);
-        *a = solve(&m, &-r, &SVector::repeat(1.0))?;
+        *a = solve_for(&m, |i| -r[i], &size.repeat(1.0))?;
         Ok(())
     }
 
@@ -80,11 +73,11 @@ pub trait System<const F: usize> {
 }
 
 /// A first-order problem y′ = f(t, y), to be run through [`FirstOrder`].
-pub trait FirstOrderProblem<const F: usize> {
+pub trait FirstOrderProblem<F: Size> {
     /// Writes f(t, y).
-    fn derivative(&mut self, t: f64, y: &SVector<f64, F>, f: &mut SVector<f64, F>);
+    fn derivative(&mut self, t: f64, y: &F::Vector, f: &mut F::Vector);
     /// Writes ∂f/∂y.
-    fn jacobian(&mut self, t: f64, y: &SVector<f64, F>, j: &mut SMatrix<f64, F, F>);
+    fn jacobian(&mut self, t: f64, y: &F::Vector, j: &mut F::Matrix);
 }
 
 /// Makes a first-order problem a [`System`]: the velocity v plays y, r = a − f(t, v), and q is ∫ y dt,
@@ -92,18 +85,18 @@ pub trait FirstOrderProblem<const F: usize> {
 #[derive(Debug, Clone)]
 pub struct FirstOrder<P>(pub P);
 
-impl<const F: usize, P: FirstOrderProblem<F>> System<F> for FirstOrder<P> {
+impl<F: Size, P: FirstOrderProblem<F>> System<F> for FirstOrder<P> {
     #[inline]
     fn residual(
         &mut self,
         t: f64,
-        _q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: &SVector<f64, F>,
-        r: &mut SVector<f64, F>,
+        _q: &F::Vector,
+        v: &F::Vector,
+        a: &F::Vector,
+        r: &mut F::Vector,
     ) {
         self.0.derivative(t, v, r);
-        for i in 0..F {
+        for i in 0..r.size().get() {
             r[i] = a[i] - r[i];
         }
     }
@@ -112,16 +105,17 @@ impl<const F: usize, P: FirstOrderProblem<F>> System<F> for FirstOrder<P> {
     fn jacobian(
         &mut self,
         t: f64,
-        _q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        _a: &SVector<f64, F>,
-        m: &mut SMatrix<f64, F, F>,
-        c: &mut SMatrix<f64, F, F>,
-        k: &mut SMatrix<f64, F, F>,
+        _q: &F::Vector,
+        v: &F::Vector,
+        _a: &F::Vector,
+        m: &mut F::Matrix,
+        c: &mut F::Matrix,
+        k: &mut F::Matrix,
     ) {
         self.0.jacobian(t, v, c);
-        c.neg_mut();
-        m.fill_with_identity();
-        k.fill(0.0);
+        c.as_mut_slice().iter_mut().for_each(|c| *c = -*c);
+        m.as_mut_slice().fill(0.0);
+        (0..m.size().get()).for_each(|i| m[(i, i)] = 1.0);
+        k.as_mut_slice().fill(0.0);
     }
 }

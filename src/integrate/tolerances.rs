@@ -1,22 +1,22 @@
 //! Error tolerances and the norm they define.
 
 use super::tableau::{Coefficients, RadauIia, Tableau};
-use nalgebra::SVector;
+use crate::numerics::{Const, Size, Vector};
 
 /// Tolerances of the local error: component i of q may be wrong by
 /// `q_absolute[i] + relative · |q_i|` in a step, component i of v likewise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerances<const F: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tolerances<F: Size> {
     relative: f64,
-    q_absolute: SVector<f64, F>,
-    v_absolute: SVector<f64, F>,
+    q_absolute: F::Vector,
+    v_absolute: F::Vector,
 }
 
 /// Tolerances that no integration can meet.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ToleranceError {
     /// The relative tolerance is outside its range.
-    #[error("relative tolerance {0:e}: must be from {min:e} to below 1", min = Tolerances::<0>::SMALLEST_RELATIVE)]
+    #[error("relative tolerance {0:e}: must be from {min:e} to below 1", min = Tolerances::<Const<0>>::SMALLEST_RELATIVE)]
     Relative(f64),
     /// An absolute tolerance of q is not positive.
     #[error("absolute tolerance {value:e} of coordinate {coordinate}: must be positive")]
@@ -36,10 +36,15 @@ pub enum ToleranceError {
     },
 }
 
-impl<const F: usize> Tolerances<F> {
+impl<F: Size> Tolerances<F> {
     /// The relative tolerance, then the absolute ones of coordinates and of velocities.
     pub fn all(&self) -> Vec<f64> {
-        let absolute = self.q_absolute.iter().chain(&self.v_absolute).copied();
+        let absolute = self
+            .q_absolute
+            .as_slice()
+            .iter()
+            .chain(self.v_absolute.as_slice())
+            .copied();
         std::iter::once(self.relative).chain(absolute).collect()
     }
 
@@ -55,13 +60,13 @@ impl<const F: usize> Tolerances<F> {
     /// [`Self::SMALLEST_RELATIVE`] or not below 1, or a tolerance of a velocity is infinite.
     pub fn new(
         relative: f64,
-        q_absolute: SVector<f64, F>,
-        v_absolute: SVector<f64, F>,
+        q_absolute: F::Vector,
+        v_absolute: F::Vector,
     ) -> Result<Self, ToleranceError> {
         if !(Self::SMALLEST_RELATIVE..1.0).contains(&relative) {
             return Err(ToleranceError::Relative(relative));
         }
-        for coordinate in 0..F {
+        for coordinate in 0..q_absolute.size().get() {
             let (q, v) = (q_absolute[coordinate], v_absolute[coordinate]);
             if q.is_nan() || q <= 0.0 {
                 return Err(ToleranceError::Coordinate {
@@ -83,18 +88,23 @@ impl<const F: usize> Tolerances<F> {
         })
     }
 
+    /// Number of coordinates.
+    pub fn size(&self) -> F {
+        self.q_absolute.size()
+    }
+
     /// Relative tolerance, dimensionless.
     pub fn relative(&self) -> f64 {
         self.relative
     }
 
     /// Absolute tolerances of the coordinates, in their units.
-    pub fn q_absolute(&self) -> &SVector<f64, F> {
+    pub fn q_absolute(&self) -> &F::Vector {
         &self.q_absolute
     }
 
     /// Absolute tolerances of the velocities, in their units.
-    pub fn v_absolute(&self) -> &SVector<f64, F> {
+    pub fn v_absolute(&self) -> &F::Vector {
         &self.v_absolute
     }
 }
@@ -104,15 +114,15 @@ impl<const F: usize> Tolerances<F> {
 /// The embedded formula has order S, the method 2S − 1. So that the error of a step follows the
 /// tolerance in proportion, the estimate is held against 0.1 · relative^((S+1)/(2S)), and absolute
 /// tolerances keep their ratio to the relative one (RADAU: Hairer & Wanner 1999, section 5).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Control<const F: usize> {
+#[derive(Debug, Clone)]
+pub(super) struct Control<F: Size> {
     /// Tolerance of the estimate, relative.
     pub relative: f64,
     /// Tolerance of the estimate ÷ tolerance asked for.
     pub loosening: f64,
     /// Absolute tolerance ÷ relative tolerance: the typical sizes.
-    q_size: SVector<f64, F>,
-    v_size: SVector<f64, F>,
+    q_size: F::Vector,
+    v_size: F::Vector,
     /// Newton's iteration stops when its error is below this part of the tolerance of the estimate.
     pub newton: f64,
     /// (relative ÷ error constant)^(1/(S+1)): length of a step that just meets the tolerance, in
@@ -120,11 +130,12 @@ pub(super) struct Control<const F: usize> {
     pub step_per_scale: f64,
 }
 
-impl<const F: usize> Control<F> {
+impl<F: Size> Control<F> {
     pub fn new<const S: usize>(tolerances: &Tolerances<F>) -> Self
     where
         RadauIia<S>: Coefficients<S>,
     {
+        let size = tolerances.size();
         let root = nth_root(tolerances.relative, 2 * Tableau::<S>::STAGES);
         let relative = 0.1 * power(root, Tableau::<S>::STAGES + 1);
         // Newton's error is 3 % of what the user asked for (RADAU: the same, stated as
@@ -133,26 +144,26 @@ impl<const F: usize> Control<F> {
         Control {
             relative,
             loosening: relative / tolerances.relative,
-            q_size: tolerances.q_absolute / tolerances.relative,
-            v_size: tolerances.v_absolute / tolerances.relative,
+            q_size: size.vector(|i| tolerances.q_absolute[i] / tolerances.relative),
+            v_size: size.vector(|i| tolerances.v_absolute[i] / tolerances.relative),
             newton: asked.max(10.0 * f64::EPSILON / relative),
             step_per_scale: nth_root(relative / RadauIia::<S>::TABLEAU.error_constant, S + 1),
         }
     }
 
     /// Sizes by which rows are scaled when pivots are chosen; see `linear`.
-    pub fn row_scale(&self) -> &SVector<f64, F> {
+    pub fn row_scale(&self) -> &F::Vector {
         &self.v_size
     }
 
     /// Reciprocal tolerances of the estimate at the state (q, v).
     #[inline]
-    pub fn weights(&self, q: &SVector<f64, F>, v: &SVector<f64, F>) -> Weights<F> {
-        let mut weights = Weights {
-            q: SVector::zeros(),
-            v: SVector::zeros(),
+    pub fn weights(&self, q: &F::Vector, v: &F::Vector) -> Weights<F> {
+        let mut weights = Weights::<F> {
+            q: q.size().zeros(),
+            v: q.size().zeros(),
         };
-        for i in 0..F {
+        for i in 0..q.size().get() {
             weights.q[i] = 1.0 / (self.relative * (self.q_size[i] + q[i].abs()));
             weights.v[i] = 1.0 / (self.relative * (self.v_size[i] + v[i].abs()));
         }
@@ -162,10 +173,10 @@ impl<const F: usize> Control<F> {
 
 /// Reciprocal tolerances. The norm they define is the largest weighted component: unlike a mean
 /// over the components, it does not loosen when a coordinate is added that has no error.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Weights<const F: usize> {
-    pub q: SVector<f64, F>,
-    pub v: SVector<f64, F>,
+#[derive(Debug, Clone)]
+pub(super) struct Weights<F: Size> {
+    pub q: F::Vector,
+    pub v: F::Vector,
 }
 
 /// x^(1/n), n ≥ 2, by Newton's method, to a few roundings; x > 0, cheap unless x is tiny. The mathematical library's `pow` may
@@ -191,6 +202,7 @@ pub(super) fn power(x: f64, n: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::SVector;
 
     #[test]
     fn roots_are_accurate() {
@@ -209,24 +221,24 @@ mod tests {
         let one = SVector::<f64, 1>::repeat(1.0);
         for relative in [0.0, -1e-6, f64::NAN, 1e-16, 1.0] {
             assert!(matches!(
-                Tolerances::new(relative, one, one),
+                Tolerances::<Const<1>>::new(relative, one, one),
                 Err(ToleranceError::Relative(_))
             ));
         }
         for q in [0.0, -1.0, f64::NAN] {
-            let error = Tolerances::new(1e-6, one * q, one).unwrap_err();
+            let error = Tolerances::<Const<1>>::new(1e-6, one * q, one).unwrap_err();
             assert!(matches!(
                 error,
                 ToleranceError::Coordinate { coordinate: 0, .. }
             ));
         }
         for v in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let error = Tolerances::new(1e-6, one, one * v).unwrap_err();
+            let error = Tolerances::<Const<1>>::new(1e-6, one, one * v).unwrap_err();
             assert!(matches!(
                 error,
                 ToleranceError::Velocity { coordinate: 0, .. }
             ));
         }
-        assert!(Tolerances::new(1e-6, one * f64::INFINITY, one).is_ok());
+        assert!(Tolerances::<Const<1>>::new(1e-6, one * f64::INFINITY, one).is_ok());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::ORDERS;
 use crate::input::Signals;
-use crate::kernel::{Context, MOST_FREE};
+use crate::kernel::Context;
 use crate::model::{Mode, Operands, Row, Tape};
 use crate::numerics::{self, Bounded};
 
@@ -29,8 +29,14 @@ pub(crate) struct Expansion {
     system: Vec<Row>,
     /// Of what depends on the motion.
     others: Vec<Row>,
-    /// Inverse of the mass matrix at the start.
-    inverse: [[f64; MOST_FREE]; MOST_FREE],
+    /// Inverse of the mass matrix at the start, row by row.
+    inverse: Box<[f64]>,
+    /// Room for the matrix while it is inverted.
+    matrix: Box<[f64]>,
+    /// What the equations ask of the accelerations, these, and what they leave.
+    rest: Box<[Bounded]>,
+    accelerations: Box<[f64]>,
+    left: Box<[f64]>,
 }
 
 impl Expansion {
@@ -50,7 +56,11 @@ impl Expansion {
             wanted: vec![true; signals].into(),
             system: Vec::new(),
             others: Vec::new(),
-            inverse: [[0.0; MOST_FREE]; MOST_FREE],
+            inverse: vec![0.0; coordinates * coordinates].into(),
+            matrix: vec![0.0; coordinates * coordinates].into(),
+            rest: vec![Bounded::default(); coordinates].into(),
+            accelerations: vec![0.0; coordinates].into(),
+            left: vec![0.0; coordinates].into(),
         }
     }
 
@@ -133,26 +143,26 @@ impl Expansion {
         let entry = |place: usize| &self.system[mode.system.results[place]];
         if k == 0 {
             let mass = |i: usize, j: usize| entry(count * j + i)[0].value;
-            invert(count, mass, &mut self.inverse);
+            invert(count, mass, [&mut self.matrix, &mut self.inverse]);
         }
         // M₀ a_k + rest = 0.
-        let mut rest = [Bounded::default(); MOST_FREE];
-        for (i, rest) in rest.iter_mut().enumerate().take(count) {
+        let rest = &mut self.rest[..count];
+        for (i, rest) in rest.iter_mut().enumerate() {
             *rest = entry(count * count + i)[k];
             for (j, &coordinate) in free.iter().enumerate() {
                 let (mass, a) = (entry(count * j + i), &self.given.a[coordinate]);
                 *rest = (1..=k).fold(*rest, |sum, n| sum + mass[n] * a[k - n]);
             }
         }
-        let mut a = [0.0; MOST_FREE];
-        for (i, a) in a.iter_mut().enumerate().take(count) {
+        let a = &mut self.accelerations[..count];
+        for (i, a) in a.iter_mut().enumerate() {
             *a = -(0..count)
-                .map(|j| self.inverse[i][j] * rest[j].value)
+                .map(|j| self.inverse[i * count + j] * rest[j].value)
                 .sum::<f64>();
         }
         // What these leave of the equations, times the inverse, is their error.
-        let mut left = [0.0; MOST_FREE];
-        for (i, left) in left.iter_mut().enumerate().take(count) {
+        let left = &mut self.left[..count];
+        for (i, left) in left.iter_mut().enumerate() {
             let residual = (0..count).fold(rest[i], |sum, j| {
                 sum + entry(count * j + i)[0] * Bounded::exact(a[j])
             });
@@ -161,7 +171,7 @@ impl Expansion {
         let given = &mut self.given;
         for (i, &coordinate) in free.iter().enumerate() {
             let error = (0..count)
-                .map(|j| self.inverse[i][j].abs() * left[j])
+                .map(|j| self.inverse[i * count + j].abs() * left[j])
                 .sum::<f64>();
             let acceleration = Bounded { value: a[i], error };
             given.a[coordinate][k] = acceleration;
@@ -178,35 +188,32 @@ impl Expansion {
 
 /// Writes the inverse of a matrix, by Gauss and Jordan with the largest pivot of each column. What is not a number, of a
 /// singular one, becomes an error without bound.
-fn invert(
-    count: usize,
-    entry: impl Fn(usize, usize) -> f64,
-    inverse: &mut [[f64; MOST_FREE]; MOST_FREE],
-) {
-    let mut rows = [[0.0; MOST_FREE]; MOST_FREE];
+fn invert(count: usize, entry: impl Fn(usize, usize) -> f64, [rows, inverse]: [&mut [f64]; 2]) {
     for i in 0..count {
         for j in 0..count {
-            rows[i][j] = entry(i, j);
-            inverse[i][j] = f64::from(u8::from(i == j));
+            rows[i * count + j] = entry(i, j);
+            inverse[i * count + j] = f64::from(u8::from(i == j));
         }
     }
     for column in 0..count {
-        let size = |row: &usize| rows[*row][column].abs();
+        let size = |row: &usize| rows[row * count + column].abs();
         let pivot = (column..count)
             .max_by(|a, b| size(a).total_cmp(&size(b)))
             .expect("a column has a row");
-        rows.swap(column, pivot);
-        inverse.swap(column, pivot);
-        let reciprocal = 1.0 / rows[column][column];
         for j in 0..count {
-            rows[column][j] *= reciprocal;
-            inverse[column][j] *= reciprocal;
+            rows.swap(column * count + j, pivot * count + j);
+            inverse.swap(column * count + j, pivot * count + j);
+        }
+        let reciprocal = 1.0 / rows[column * count + column];
+        for j in 0..count {
+            rows[column * count + j] *= reciprocal;
+            inverse[column * count + j] *= reciprocal;
         }
         for i in (0..count).filter(|&i| i != column) {
-            let factor = rows[i][column];
+            let factor = rows[i * count + column];
             for j in 0..count {
-                rows[i][j] -= factor * rows[column][j];
-                inverse[i][j] -= factor * inverse[column][j];
+                rows[i * count + j] -= factor * rows[column * count + j];
+                inverse[i * count + j] -= factor * inverse[column * count + j];
             }
         }
     }

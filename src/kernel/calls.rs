@@ -5,8 +5,7 @@ use super::raw::{Raw, RawContext};
 use super::tables::{
     ConstantsKernel, Free, GuardKernel, LinearSystem, ModeKernel, TransitionKernel,
 };
-use crate::numerics::{ORDERS, Series};
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::{Matrix, ORDERS, Rows, Series, Size, Vector};
 use std::sync::Arc;
 
 unsafe extern "C" {
@@ -84,55 +83,64 @@ impl ConstantsKernel {
     }
 }
 
-impl<const F: usize> Free<'_, F> {
+/// Where the numbers are.
+///
+/// # Panics
+/// If there are not as many as the mode has free coordinates.
+#[inline(always)]
+fn pointer<V: Vector>(of: &V, size: V::Size) -> *const f64 {
+    assert_eq!(of.size(), size, "one number a free coordinate");
+    of.as_slice().as_ptr()
+}
+
+impl<F: Size> Free<'_, F> {
+    /// Where the numbers are.
+    ///
+    /// # Panics
+    /// If there are not as many as the mode has free coordinates.
     #[inline(always)]
-    fn pointers(&self) -> [*const f64; 3] {
-        [self.q.as_ptr(), self.v.as_ptr(), self.a.as_ptr()]
+    fn pointers(&self, size: F) -> [*const f64; 3] {
+        [self.q, self.v, self.a].map(|of| pointer(of, size))
     }
 }
 
-impl<const F: usize> ModeKernel<F> {
+impl<F: Size> ModeKernel<F> {
     /// r(q, v, a, u): generalized forces that are missing for equilibrium, one a free coordinate.
     #[inline]
-    pub fn residual(&self, x: &Context, at: Free<F>, r: &mut SVector<f64, F>) {
+    pub fn residual(&self, x: &Context, at: Free<F>, r: &mut F::Vector) {
+        assert_eq!(r.size(), self.size, "one number a free coordinate");
         // SAFETY: F outputs.
         unsafe {
             x.call(
                 self.residual,
                 &self.dimensions,
-                at.pointers(),
-                r.as_mut_ptr(),
+                at.pointers(self.size),
+                r.as_mut_slice().as_mut_ptr(),
             )
         }
     }
 
     /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
     #[inline]
-    pub fn jacobian(&self, x: &Context, at: Free<F>, out: &mut [SMatrix<f64, F, F>; 3]) {
-        // SAFETY: three dense column-major F × F outputs, contiguous in the array.
-        unsafe {
-            x.call(
-                self.jacobian,
-                &self.dimensions,
-                at.pointers(),
-                out.as_mut_ptr().cast(),
-            )
-        }
+    pub fn jacobian(&self, x: &Context, at: Free<F>, out: &mut [F::Matrix; 3]) {
+        assert!(out.iter().all(|matrix| matrix.size() == self.size));
+        let at = at.pointers(self.size);
+        // SAFETY: three dense column-major F × F outputs, one behind the other.
+        let write = |out| unsafe { x.call(self.jacobian, &self.dimensions, at, out) };
+        self.size.write_three(out, write);
     }
 
     /// Mass matrix and load at (q, v).
     #[inline]
-    pub fn system(&self, x: &Context, q: &SVector<f64, F>, v: &SVector<f64, F>) -> LinearSystem<F> {
-        let mut out = LinearSystem {
-            mass: SMatrix::zeros(),
-            load: SVector::zeros(),
-        };
-        if F > 0 {
-            let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
-            // SAFETY: F × F and F outputs, contiguous in a repr(C) struct; `a` is not read.
-            unsafe { x.call(self.system, &self.dimensions, at, (&raw mut out).cast()) }
-        }
-        out
+    pub fn system(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> LinearSystem<F> {
+        let [q, v] = [q, v].map(|of| pointer(of, self.size));
+        let (mass, load) = self.size.matrix_and_vector(|out| {
+            if self.size.get() > 0 {
+                // SAFETY: F × F and F outputs, one behind the other; `a` is not read.
+                unsafe { x.call(self.system, &self.dimensions, [q, v, v], out) }
+            }
+        });
+        LinearSystem { mass, load }
     }
 
     /// Fills `Context::guard_series` with the Taylor coefficients of all guards, one row an order,
@@ -146,7 +154,8 @@ impl<const F: usize> ModeKernel<F> {
             return false;
         };
         assert!(orders <= ORDERS);
-        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
+        self.assert_rows(at);
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast_mut());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let out = x.guard_series.as_mut_ptr();
         let raw = x.raw(&self.dimensions);
@@ -165,21 +174,29 @@ impl<const F: usize> ModeKernel<F> {
     /// If the mode is not analytic.
     #[inline]
     pub fn series_start(&self, x: &mut Context, at: &Series<F>) -> LinearSystem<F> {
-        let mut out = LinearSystem {
-            mass: SMatrix::zeros(),
-            load: SVector::zeros(),
-        };
-        if F == 0 {
-            return out;
-        }
-        let series = self.motion_series(x).expect("the mode is analytic");
-        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast::<f64>().cast_mut());
-        let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
-        let raw = x.raw(&self.dimensions);
-        // SAFETY: F entries a row, which are only read; F × F and F outputs, contiguous in a repr(C)
-        // struct; the workspace has room for every mode of the model.
-        unsafe { (series.start)(q, v, a, u, raw, w, (&raw mut out).cast()) }
-        out
+        self.assert_rows(at);
+        let (mass, load) = self.size.matrix_and_vector(|out| {
+            if self.size.get() == 0 {
+                return;
+            }
+            let series = self.motion_series(x).expect("the mode is analytic");
+            let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast_mut());
+            let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
+            let raw = x.raw(&self.dimensions);
+            // SAFETY: F entries a row, which are only read; F × F and F outputs, one behind the other; the
+            // workspace has room for every mode of the model.
+            unsafe { (series.start)(q, v, a, u, raw, w, out) }
+        });
+        LinearSystem { mass, load }
+    }
+
+    /// One number a free coordinate in each row.
+    #[inline(always)]
+    fn assert_rows(&self, at: &Series<F>) {
+        let is_own = [&at.q, &at.v, &at.a]
+            .iter()
+            .all(|rows| rows.size() == self.size);
+        assert!(is_own, "a series of the mode's free coordinates");
     }
 
     /// Goes on to the first `n` accelerations of the series begun by [`Self::series_start`], for the
@@ -189,21 +206,17 @@ impl<const F: usize> ModeKernel<F> {
     /// # Panics
     /// If the mode is not analytic, or `n` is more than [`ORDERS`] − 2.
     #[inline]
-    pub fn series_run(
-        &self,
-        x: &mut Context,
-        n: usize,
-        inverse: &SMatrix<f64, F, F>,
-        at: &mut Series<F>,
-    ) {
-        if F == 0 {
+    pub fn series_run(&self, x: &mut Context, n: usize, inverse: &F::Matrix, at: &mut Series<F>) {
+        if self.size.get() == 0 {
             return;
         }
+        self.assert_rows(at);
+        assert_eq!(inverse.size(), self.size);
         let series = self.motion_series(x).expect("the mode is analytic");
         assert!(n <= ORDERS - 2);
-        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
-        let inverse = inverse.as_ptr().cast_mut();
+        let inverse = inverse.as_slice().as_ptr().cast_mut();
         let raw = x.raw(&self.dimensions);
         // SAFETY: F entries a row of q, v and a, and n + 2 rows are there; the F × F entries of the
         // inverse are only read; the workspace has room for every mode of the model.
@@ -211,28 +224,24 @@ impl<const F: usize> ModeKernel<F> {
     }
 
     /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
-    pub fn inertia(
-        &self,
-        x: &Context,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-    ) -> SMatrix<f64, F, F> {
-        let mut out = SMatrix::<f64, F, F>::zeros();
-        let at = [q.as_ptr(), v.as_ptr(), v.as_ptr()];
+    pub fn inertia(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> F::Matrix {
+        let mut out = self.size.zero_matrix();
+        let [q, v] = [q, v].map(|of| pointer(of, self.size));
+        let to = out.as_mut_slice().as_mut_ptr();
         // SAFETY: F × F outputs; `a` is not read.
-        unsafe { x.call(self.inertia, &self.dimensions, at, out.as_mut_ptr()) }
+        unsafe { x.call(self.inertia, &self.dimensions, [q, v, v], to) }
         out
     }
 
     /// b with M j + b = 0 for the jerk j; needs the signals to be set.
-    pub fn jerk_load(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
+    pub fn jerk_load(&self, x: &Context, at: Free<F>) -> F::Vector {
         // SAFETY: F outputs.
         unsafe { self.one_a_coordinate(self.jerk_load, x, at) }
     }
 
     /// Number of terms × sum of their magnitudes, per equation: times machine epsilon a bound of
     /// the rounding error of the residual.
-    pub fn magnitude(&self, x: &Context, at: Free<F>) -> SVector<f64, F> {
+    pub fn magnitude(&self, x: &Context, at: Free<F>) -> F::Vector {
         // SAFETY: F outputs.
         unsafe { self.one_a_coordinate(self.magnitude, x, at) }
     }
@@ -241,11 +250,12 @@ impl<const F: usize> ModeKernel<F> {
     ///
     /// # Safety
     /// The function must have F outputs.
-    unsafe fn one_a_coordinate(&self, function: Raw, x: &Context, at: Free<F>) -> SVector<f64, F> {
-        let mut out = SVector::<f64, F>::zeros();
-        if F > 0 {
+    unsafe fn one_a_coordinate(&self, function: Raw, x: &Context, at: Free<F>) -> F::Vector {
+        let mut out = self.size.zeros();
+        if self.size.get() > 0 {
+            let (at, to) = (at.pointers(self.size), out.as_mut_slice().as_mut_ptr());
             // SAFETY: as the caller promises.
-            unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
+            unsafe { x.call(function, &self.dimensions, at, to) }
         }
         out
     }
@@ -265,7 +275,7 @@ impl<const F: usize> ModeKernel<F> {
             x.call(
                 self.reactions,
                 &self.dimensions,
-                at.pointers(),
+                at.pointers(self.size),
                 out.as_mut_ptr(),
             )
         }
@@ -279,7 +289,7 @@ impl<const F: usize> ModeKernel<F> {
             x.call(
                 self.energies,
                 &self.dimensions,
-                at.pointers(),
+                at.pointers(self.size),
                 out.as_mut_ptr(),
             )
         }
@@ -295,7 +305,7 @@ impl<const F: usize> ModeKernel<F> {
             x.call(
                 self.powers,
                 &self.dimensions,
-                at.pointers(),
+                at.pointers(self.size),
                 out.as_mut_ptr(),
             )
         }
@@ -316,7 +326,7 @@ impl<const F: usize> ModeKernel<F> {
             x.call(
                 self.momenta,
                 &self.dimensions,
-                at.pointers(),
+                at.pointers(self.size),
                 out.as_mut_ptr(),
             )
         }
@@ -331,7 +341,14 @@ impl<const F: usize> ModeKernel<F> {
         let (function, count) = self.requirements;
         assert_eq!(out.len(), count);
         // SAFETY: the length was checked.
-        unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                function,
+                &self.dimensions,
+                at.pointers(self.size),
+                out.as_mut_ptr(),
+            )
+        }
     }
 
     /// Lower bounds of what must be positive, while time goes on by `tau` (s) from where the series of motion
@@ -349,27 +366,30 @@ impl<const F: usize> ModeKernel<F> {
     ) {
         assert_eq!(out.len(), self.requirements.1);
         assert!(orders + 2 <= ORDERS);
-        let zero = [SVector::<f64, F>::zeros(); 3];
-        let (mut middles, mut radii) = (zero, zero);
-        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast());
-        let (to_middles, to_radii) = (middles.as_mut_ptr().cast(), radii.as_mut_ptr().cast());
-        // SAFETY: F entries a row, and all ORDERS rows are there, those beyond the order zero; room for three times F.
-        unsafe { dalembert_ranges(F, orders + 2, q, v, a, tau, to_middles, to_radii) };
-        x.set_signal_radii(orders, tau);
-        let u = match x.quiet {
-            true => x.arrays.signals.as_ptr(),
-            false => x.signal_series.as_ptr(),
-        };
-        let raw = RawContext {
-            u,
-            u_dot: x.signal_radii.as_ptr(),
-            j: radii.as_ptr().cast(),
-            ..*x.raw(&self.dimensions)
-        };
-        let [q, v, a] = middles.each_ref().map(|of| of.as_ptr());
-        // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
-        // radii.
-        unsafe { (self.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
+        self.assert_rows(at);
+        let n = self.size.get();
+        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr());
+        self.size.with_room::<6, _>(|room| {
+            let (middles, radii) = room.split_at_mut(3 * n);
+            let (to_middles, to_radii) = (middles.as_mut_ptr(), radii.as_mut_ptr());
+            // SAFETY: F entries a row, and all ORDERS rows are there, those beyond the order zero; room for three times F.
+            unsafe { dalembert_ranges(n, orders + 2, q, v, a, tau, to_middles, to_radii) };
+            x.set_signal_radii(orders, tau);
+            let u = match x.quiet {
+                true => x.arrays.signals.as_ptr(),
+                false => x.signal_series.as_ptr(),
+            };
+            let raw = RawContext {
+                u,
+                u_dot: x.signal_radii.as_ptr(),
+                j: radii.as_ptr(),
+                ..*x.raw(&self.dimensions)
+            };
+            let [q, v, a] = [0, n, 2 * n].map(|from| middles[from..].as_ptr());
+            // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
+            // radii.
+            unsafe { (self.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
+        });
     }
 
     /// Constant rates of the frozen coordinates (0 where one rests or is free).
@@ -392,14 +412,21 @@ impl<const F: usize> ModeKernel<F> {
     /// What a function of the mode gives that has one output a coordinate and does not depend on those that are free.
     fn of_held(&self, function: Raw, x: &Context, out: &mut [f64]) {
         assert_eq!(out.len(), self.dimensions.coordinates);
-        let none = SVector::<f64, F>::zeros();
+        let none = self.size.zeros();
         let at = Free {
             q: &none,
             v: &none,
             a: &none,
         };
         // SAFETY: the length was checked.
-        unsafe { x.call(function, &self.dimensions, at.pointers(), out.as_mut_ptr()) }
+        unsafe {
+            x.call(
+                function,
+                &self.dimensions,
+                at.pointers(self.size),
+                out.as_mut_ptr(),
+            )
+        }
     }
 
     /// Value of a guard of this mode.
@@ -409,26 +436,35 @@ impl<const F: usize> ModeKernel<F> {
     /// functions that are passed a guard or a transition.
     #[inline]
     pub fn guard(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
-        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        assert_eq!(
+            guard.free,
+            self.size.get(),
+            "a guard is evaluated in its own mode"
+        );
         let mut out = 0.0;
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.value, &guard.dimensions, at.pointers(), &mut out) }
+        unsafe {
+            x.call(
+                guard.value,
+                &guard.dimensions,
+                at.pointers(self.size),
+                &mut out,
+            )
+        }
         out
     }
 
     /// Derivative of a guard along the flow with jerk `j`; needs the signals to be set.
-    pub fn guard_rate(
-        &self,
-        x: &Context,
-        guard: &GuardKernel,
-        at: Free<F>,
-        j: &SVector<f64, F>,
-    ) -> f64 {
-        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+    pub fn guard_rate(&self, x: &Context, guard: &GuardKernel, at: Free<F>, j: &F::Vector) -> f64 {
+        assert_eq!(
+            guard.free,
+            self.size.get(),
+            "a guard is evaluated in its own mode"
+        );
         let mut out = 0.0;
-        let [q, v, a] = at.pointers();
+        let [q, v, a] = at.pointers(self.size);
         let raw = RawContext {
-            j: j.as_ptr(),
+            j: pointer(j, self.size),
             ..*x.raw(&guard.dimensions)
         };
         // SAFETY: one output; the guard's number of free coordinates was checked.
@@ -438,10 +474,21 @@ impl<const F: usize> ModeKernel<F> {
 
     /// Sum of the absolute values of the terms that a guard is the sum of, in its unit.
     pub fn guard_magnitude(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
-        assert_eq!(guard.free, F, "a guard is evaluated in its own mode");
+        assert_eq!(
+            guard.free,
+            self.size.get(),
+            "a guard is evaluated in its own mode"
+        );
         let mut out = 0.0;
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe { x.call(guard.magnitude, &guard.dimensions, at.pointers(), &mut out) }
+        unsafe {
+            x.call(
+                guard.magnitude,
+                &guard.dimensions,
+                at.pointers(self.size),
+                &mut out,
+            )
+        }
         out
     }
 
@@ -451,7 +498,8 @@ impl<const F: usize> ModeKernel<F> {
     /// If `out` has not two entries a coordinate and one a discrete state.
     pub fn reset(&self, x: &Context, transition: &TransitionKernel, at: Free<F>, out: &mut [f64]) {
         assert_eq!(
-            transition.source_free, F,
+            transition.source_free,
+            self.size.get(),
             "a reset is evaluated in its source mode"
         );
         let dimensions = &transition.dimensions;
@@ -461,7 +509,7 @@ impl<const F: usize> ModeKernel<F> {
             x.call(
                 transition.reset,
                 dimensions,
-                at.pointers(),
+                at.pointers(self.size),
                 out.as_mut_ptr(),
             )
         }
@@ -478,10 +526,21 @@ impl<const F: usize> ModeKernel<F> {
         let Some((function, free, count)) = transition.condition else {
             return &[];
         };
-        assert_eq!(free, F, "a condition is evaluated in the target mode");
+        assert_eq!(
+            free,
+            self.size.get(),
+            "a condition is evaluated in the target mode"
+        );
         let out = x.conditions[..count].as_mut_ptr();
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
-        unsafe { x.call(function, &transition.dimensions, at.pointers(), out) }
+        unsafe {
+            x.call(
+                function,
+                &transition.dimensions,
+                at.pointers(self.size),
+                out,
+            )
+        }
         &x.conditions[..count]
     }
 }

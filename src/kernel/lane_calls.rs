@@ -4,7 +4,7 @@ use super::context::Dimensions;
 use super::lanes::{LaneContext, LaneLevel, LaneSeries, LaneSystem};
 use super::raw::RawContext;
 use super::tables::{GuardKernel, ModeKernel, TransitionKernel};
-use crate::numerics::{Lanes, ORDERS};
+use crate::numerics::{Const, Lanes, ORDERS};
 use std::sync::Arc;
 
 impl<const W: usize> LaneContext<W> {
@@ -30,7 +30,7 @@ impl<const W: usize> LaneContext<W> {
     }
 }
 
-impl<const F: usize> ModeKernel<F> {
+impl<const F: usize> ModeKernel<Const<F>> {
     /// As [`Self::series_start`]; `quiet`: no input acts.
     ///
     /// # Panics

@@ -3,6 +3,7 @@
 use super::context::{Context, Dimensions};
 use super::lane_functions::LaneFunctions;
 use super::tables::ModeKernel;
+use crate::numerics::Const;
 use crate::numerics::{LaneMask, Lanes, ORDERS};
 use std::cell::Cell;
 use std::sync::Arc;
@@ -119,7 +120,7 @@ fn zero_angles<const W: usize>(count: usize) -> Box<[Cell<Block<W>>]> {
 impl<const W: usize> LaneContext<W> {
     /// A context for a mode, with the discrete states, held coordinates and constants of `like` in all
     /// lanes.
-    pub fn new<const F: usize>(kernel: &ModeKernel<F>, like: &Context) -> Self {
+    pub fn new<const F: usize>(kernel: &ModeKernel<Const<F>>, like: &Context) -> Self {
         let zeros = LaneRows::zeros;
         let mut context = LaneContext {
             dimensions: like.dimensions.clone(),

@@ -37,7 +37,7 @@ pub use load::Library;
 pub(crate) use load::{linked_models, name_of_linked, open, parts_of_linked};
 pub(crate) use raw::Raw;
 pub use tables::{
-    ConstantsKernel, Free, GuardKernel, LinearSystem, MOST_FREE, ModeKernel, ModeKernels,
-    TransitionKernel, with_kernel,
+    ConstantsKernel, Free, GuardKernel, LinearSystem, ModeKernel, ModeKernels, TransitionKernel,
+    with_kernel,
 };
 pub(crate) use tables::{LaneKernel, SeriesKernel};

@@ -3,8 +3,7 @@
 
 use super::raw::{Raw, RawRun, RawStart};
 use super::{Context, Dimensions, LaneLevel};
-use crate::numerics::{ORDERS, SeriesKind};
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::{Const, Dynamic, ORDERS, SeriesKind, Singular, Size, solve_for};
 use std::sync::Arc;
 
 /// What depends on parameters alone.
@@ -23,29 +22,48 @@ impl ConstantsKernel {
 }
 
 /// State and accelerations of the free coordinates of a mode, as every mode function takes them.
-#[derive(Debug, Clone, Copy)]
-pub struct Free<'a, const F: usize> {
+#[derive(Debug)]
+pub struct Free<'a, F: Size> {
     /// Coordinates.
-    pub q: &'a SVector<f64, F>,
+    pub q: &'a F::Vector,
     /// Velocities.
-    pub v: &'a SVector<f64, F>,
+    pub v: &'a F::Vector,
     /// Accelerations.
-    pub a: &'a SVector<f64, F>,
+    pub a: &'a F::Vector,
 }
 
 /// Mass matrix M and load b of r = M a + b.
-#[derive(Debug, Clone, Copy)]
-#[repr(C)]
-pub struct LinearSystem<const F: usize> {
+#[derive(Debug, Clone)]
+pub struct LinearSystem<F: Size> {
     /// M = ∂r/∂a; unsymmetric where friction depends on the accelerations.
-    pub mass: SMatrix<f64, F, F>,
+    pub mass: F::Matrix,
     /// r at a = 0.
-    pub load: SVector<f64, F>,
+    pub load: F::Vector,
+}
+
+impl<F: Size> Clone for Free<'_, F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: Size> Copy for Free<'_, F> {}
+
+impl<F: Size> LinearSystem<F> {
+    /// The accelerations, M⁻¹(−b); `scale`: typical sizes of the coordinates, for the choice of pivots.
+    ///
+    /// # Errors
+    /// [`Singular`] where M is singular.
+    #[inline(always)]
+    pub fn accelerations(&self, scale: &F::Vector) -> Result<F::Vector, Singular> {
+        solve_for(&self.mass, |i| -self.load[i], scale)
+    }
 }
 
 /// The generated functions of one mode with F free coordinates.
 #[derive(Debug)]
-pub struct ModeKernel<const F: usize> {
+pub struct ModeKernel<F: Size> {
+    pub(crate) size: F,
     pub(crate) dimensions: Arc<Dimensions>,
     pub(crate) residual: Raw,
     pub(crate) jacobian: Raw,
@@ -98,7 +116,13 @@ pub struct SeriesKernel {
     pub(crate) ends: bool,
 }
 
-impl<const F: usize> ModeKernel<F> {
+impl<F: Size> ModeKernel<F> {
+    /// Number of free coordinates.
+    #[inline(always)]
+    pub fn size(&self) -> F {
+        self.size
+    }
+
     /// Whether the mass matrix stays the same while the mode lasts.
     pub fn mass_is_constant(&self) -> bool {
         self.mass_is_constant
@@ -212,29 +236,36 @@ pub struct TransitionKernel {
     pub(crate) in_lanes: Box<[Option<Raw>]>,
 }
 
-/// The functions of a mode, typed by its number of free coordinates: the event engine is compiled for each.
+/// The functions of a mode, typed by its number of free coordinates: the event engine is compiled for each of the small ones,
+/// and once for all others.
 #[derive(Debug)]
 pub enum ModeKernels {
     /// A mode with 0 free coordinates.
-    F0(ModeKernel<0>),
+    F0(ModeKernel<Const<0>>),
     /// A mode with 1 free coordinates.
-    F1(ModeKernel<1>),
+    F1(ModeKernel<Const<1>>),
     /// A mode with 2 free coordinates.
-    F2(ModeKernel<2>),
+    F2(ModeKernel<Const<2>>),
     /// A mode with 3 free coordinates.
-    F3(ModeKernel<3>),
+    F3(ModeKernel<Const<3>>),
     /// A mode with 4 free coordinates.
-    F4(ModeKernel<4>),
+    F4(ModeKernel<Const<4>>),
     /// A mode with 5 free coordinates.
-    F5(ModeKernel<5>),
+    F5(ModeKernel<Const<5>>),
     /// A mode with 6 free coordinates.
-    F6(ModeKernel<6>),
+    F6(ModeKernel<Const<6>>),
+    /// A mode with any number of free coordinates.
+    Any(ModeKernel<Dynamic>),
 }
 
-/// Runs an expression with the typed kernel of a mode: `with_kernel!(kernels, k => expression)`.
+/// Runs an expression with the typed kernel of a mode: `with_kernel!(kernels, k => expression)`. Another one may be given for
+/// modes whose number of free coordinates is known when the program runs.
 #[macro_export]
 macro_rules! with_kernel {
     ($kernels:expr, $kernel:ident => $body:expr) => {
+        $crate::with_kernel!($kernels, $kernel => $body, $kernel => $body)
+    };
+    ($kernels:expr, $kernel:ident => $body:expr, $any:ident => $of_any:expr) => {
         match $kernels {
             $crate::kernel::ModeKernels::F0($kernel) => $body,
             $crate::kernel::ModeKernels::F1($kernel) => $body,
@@ -243,10 +274,8 @@ macro_rules! with_kernel {
             $crate::kernel::ModeKernels::F4($kernel) => $body,
             $crate::kernel::ModeKernels::F5($kernel) => $body,
             $crate::kernel::ModeKernels::F6($kernel) => $body,
+            $crate::kernel::ModeKernels::Any($any) => $of_any,
         }
     };
 }
 pub use crate::with_kernel;
-
-/// Most free coordinates that a mode may have.
-pub const MOST_FREE: usize = 6;

@@ -10,14 +10,15 @@ use super::{
 };
 use crate::kernel::{
     ConstantsKernel, ContractError, Dimensions, Functions, GuardKernel, LaneKernel, Library,
-    MOST_FREE, ModeKernel, ModeKernels, Parts, Raw, SeriesKernel, TransitionKernel,
+    ModeKernel, ModeKernels, Parts, Raw, SeriesKernel, TransitionKernel,
 };
+use crate::numerics::{Const, Dynamic, Size};
 use std::sync::Arc;
 
 type Read<T> = Result<T, ContractError>;
 
-/// Makes a model of its parts.
-pub(super) fn model(parts: &Parts, library: Option<Library>) -> Read<Model> {
+/// Makes a model of its parts. `dynamic`: what serves any number of free coordinates serves the small ones, too.
+pub(super) fn model(parts: &Parts, library: Option<Library>, dynamic: bool) -> Read<Model> {
     let value =
         serde_json::from_str(&parts.description).map_err(|error| ContractError::Description {
             place: format!("line {}, column {}", error.line(), error.column()),
@@ -43,6 +44,7 @@ pub(super) fn model(parts: &Parts, library: Option<Library>) -> Read<Model> {
         functions: &parts.functions,
         lanes: &parts.lanes,
         dimensions,
+        dynamic,
     };
     reader.model(&root, intern(&parts.digest), library)
 }
@@ -67,6 +69,8 @@ struct Reader<'p> {
     functions: &'p Functions,
     lanes: &'p [Functions],
     dimensions: Arc<Dimensions>,
+    /// What serves any number of free coordinates serves the small ones, too.
+    dynamic: bool,
 }
 
 /// What indices of a variant refer to.
@@ -187,9 +191,9 @@ impl Reader<'_> {
         let n = self.dimensions.coordinates;
         let free = at.get("free", |at| {
             let free = at.list(|at| at.index(n))?;
-            match free.is_sorted_by(|a, b| a < b) && free.len() <= MOST_FREE {
+            match free.is_sorted_by(|a, b| a < b) {
                 true => Ok(free),
-                false => Err(at.wrong(format!("up to {MOST_FREE} increasing indices"))),
+                false => Err(at.wrong("increasing indices")),
             }
         })?;
         let guards = at.get("guards", |at| {
@@ -276,20 +280,22 @@ impl Reader<'_> {
 
     fn kernels(&self, at: &At, free: usize, guards: &[Guard], held: usize) -> Read<ModeKernels> {
         Ok(match free {
-            0 => ModeKernels::F0(self.kernel(at, guards, held)?),
-            1 => ModeKernels::F1(self.kernel(at, guards, held)?),
-            2 => ModeKernels::F2(self.kernel(at, guards, held)?),
-            3 => ModeKernels::F3(self.kernel(at, guards, held)?),
-            4 => ModeKernels::F4(self.kernel(at, guards, held)?),
-            5 => ModeKernels::F5(self.kernel(at, guards, held)?),
-            6 => ModeKernels::F6(self.kernel(at, guards, held)?),
-            _ => return Err(at.wrong(format!("functions of up to {MOST_FREE} free coordinates"))),
+            _ if self.dynamic => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, held)?),
+            0 => ModeKernels::F0(self.kernel(at, Const, guards, held)?),
+            1 => ModeKernels::F1(self.kernel(at, Const, guards, held)?),
+            2 => ModeKernels::F2(self.kernel(at, Const, guards, held)?),
+            3 => ModeKernels::F3(self.kernel(at, Const, guards, held)?),
+            4 => ModeKernels::F4(self.kernel(at, Const, guards, held)?),
+            5 => ModeKernels::F5(self.kernel(at, Const, guards, held)?),
+            6 => ModeKernels::F6(self.kernel(at, Const, guards, held)?),
+            _ => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, held)?),
         })
     }
 
-    fn kernel<const F: usize>(
+    fn kernel<F: Size>(
         &self,
         at: &At,
+        size: F,
         guards: &[Guard],
         held: usize,
     ) -> Read<ModeKernel<F>> {
@@ -310,6 +316,7 @@ impl Reader<'_> {
             })
         });
         Ok(ModeKernel {
+            size,
             dimensions: self.dimensions.clone(),
             residual: value("residual")?,
             jacobian: value("jacobian")?,

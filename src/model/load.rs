@@ -16,14 +16,15 @@ impl Model {
     /// `digest` tells, if that is given.
     pub fn load(file: &Path, digest: Option<&str>) -> Result<Model, ContractError> {
         let (parts, library) = open(file, digest)?;
-        description::model(&parts, Some(library))
+        description::model(&parts, Some(library), false)
     }
 }
 
-/// A model that is linked into the program.
+/// A model that is linked into the program; `dynamic`: what serves any number of free coordinates serves the small ones,
+/// too.
 ///
 /// # Errors
 /// [`ContractError`] if it is of another version.
-pub(crate) fn linked(raw: &'static RawModel) -> Result<Model, ContractError> {
-    description::model(&parts_of_linked(raw)?, None)
+pub(crate) fn linked(raw: &'static RawModel, dynamic: bool) -> Result<Model, ContractError> {
+    description::model(&parts_of_linked(raw)?, None, dynamic)
 }

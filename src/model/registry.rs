@@ -13,6 +13,7 @@ pub struct Models {
     linked: BTreeMap<&'static str, &'static RawModel>,
     read: Mutex<BTreeMap<&'static str, Arc<Model>>>,
     folders: Option<Box<FromFolder>>,
+    dynamic: bool,
 }
 
 /// Makes the model of a folder. The second argument holds what a scene may mean for its choices, by name: options of those
@@ -63,6 +64,16 @@ impl Models {
         }
     }
 
+    /// The same models, whose modes all go by what serves any number of free coordinates: the same bits, and slower.
+    #[must_use]
+    pub fn with_dynamic_sizes(self) -> Models {
+        Models {
+            dynamic: true,
+            read: Mutex::default(),
+            ..self
+        }
+    }
+
     /// Whether a name is that of a folder: anything with a slash is.
     pub fn is_folder(name: &str) -> bool {
         name.contains('/') || cfg!(windows) && name.contains('\\')
@@ -98,6 +109,7 @@ impl Models {
             linked: named.collect::<Result<_, _>>()?,
             read: Mutex::default(),
             folders: None,
+            dynamic: false,
         })
     }
 
@@ -114,7 +126,7 @@ impl Models {
         let (name, raw) = self.linked.get_key_value(name)?;
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
         let model = read.entry(name).or_insert_with(|| {
-            let model = load::linked(raw);
+            let model = load::linked(raw, self.dynamic);
             Arc::new(model.unwrap_or_else(|error| panic!("the model `{name}`: {error}")))
         });
         Some(model.clone())

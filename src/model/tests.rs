@@ -21,13 +21,13 @@ fn parts(name: &str) -> Parts {
 fn changed(change: impl FnOnce(&mut RawModel)) -> ContractError {
     let mut model = *raw("bouncing_ball");
     change(&mut model);
-    linked(Box::leak(Box::new(model))).expect_err("it was changed")
+    linked(Box::leak(Box::new(model)), false).expect_err("it was changed")
 }
 
 #[test]
 fn every_linked_model_is_as_the_contract_says() {
     for raw in linked_models() {
-        let model = linked(raw).unwrap();
+        let model = linked(raw, false).unwrap();
         assert_eq!(Ok(model.name), name_of_linked(raw));
         assert_eq!(model.digest.len(), 16, "{}", model.digest);
     }
@@ -59,7 +59,7 @@ fn with(value: &Value) -> Result<(), ContractError> {
         description: value.to_string(),
         ..parts("bouncing_ball")
     };
-    description::model(&parts, None).map(|_| ())
+    description::model(&parts, None, false).map(|_| ())
 }
 
 /// All places in a value, as JSON pointers.
@@ -168,6 +168,8 @@ fn what_is_no_json_is_refused_with_its_place() {
         description: "{\n  \"name\": }".to_owned(),
         ..parts("bouncing_ball")
     };
-    let error = description::model(&parts, None).unwrap_err().to_string();
+    let error = description::model(&parts, None, false)
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("line 2, column 11"), "{error}");
 }

@@ -5,8 +5,10 @@
 //! have the same unit. The choice of pivots, and with it every bit of the result, does not depend on
 //! the units of the coordinates.
 
-use super::persist::{Persist, persist};
-use nalgebra::{Complex, SMatrix, SVector};
+use super::buffer::Stored;
+use super::persist::persist;
+use super::size::{Matrix, Size, Square, Vector};
+use nalgebra::Complex;
 use std::ops::{Mul, Sub};
 
 /// A matrix is singular to working precision.
@@ -17,7 +19,7 @@ pub struct Singular {
 }
 
 /// Entries of a matrix: real or complex.
-pub(crate) trait Scalar: Copy + Default + Mul<Output = Self> + Sub<Output = Self> {
+pub(crate) trait Scalar: Stored + Default + Mul<Output = Self> + Sub<Output = Self> {
     /// Size for the choice of a pivot; for complex numbers |Re| + |Im|, within √2 of the modulus.
     fn size(self) -> f64;
     /// 1 / self. Complex: |self| in 1e-154 … 1e154, where its square is a normal number.
@@ -48,25 +50,27 @@ impl Scalar for Complex<f64> {
 }
 
 /// P A = L U of an F × F matrix.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Lu<T, const F: usize> {
+#[derive(Debug, Clone)]
+pub(crate) struct Lu<T: Stored, F: Size> {
+    size: F,
     /// L below the diagonal, U above.
-    rows: [[T; F]; F],
+    rows: F::Square<T>,
     /// Reciprocals of the diagonal of U.
-    reciprocals: [T; F],
+    reciprocals: F::List<T>,
     /// Row of A that became row i.
-    order: [usize; F],
+    order: F::List<usize>,
 }
 
-persist!([T: Persist, const F: usize] Lu<T, F> { rows, reciprocals, order });
+persist!([T: Stored, F: Size] Lu<T, F> { rows, reciprocals, order } but { size });
 
-impl<T: Scalar, const F: usize> Lu<T, F> {
+impl<T: Scalar, F: Size> Lu<T, F> {
     /// Placeholder until the first factorization.
-    pub fn empty() -> Self {
+    pub fn empty(size: F) -> Self {
         Lu {
-            rows: [[T::default(); F]; F],
-            reciprocals: [T::default(); F],
-            order: [0; F],
+            size,
+            rows: size.square(T::default()),
+            reciprocals: size.list(T::default()),
+            order: size.list(0),
         }
     }
 
@@ -75,18 +79,19 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
     #[inline(always)]
     pub fn factorize(
         entry: impl Fn(usize, usize) -> T,
-        row_scale: &SVector<f64, F>,
+        row_scale: &F::Vector,
     ) -> Result<Self, Singular> {
-        let mut lu = Self::empty();
-        let mut scale = [0.0; F];
-        for i in 0..F {
+        let size = row_scale.size();
+        let mut lu = Self::empty(size);
+        let mut scale = size.list(0.0);
+        for i in 0..size.get() {
             lu.order[i] = i;
             scale[i] = row_scale[i];
-            for j in 0..F {
-                lu.rows[i][j] = entry(i, j);
+            for j in 0..size.get() {
+                lu.rows[(i, j)] = entry(i, j);
             }
         }
-        for k in 0..F {
+        for k in 0..size.get() {
             lu.eliminate(k, &mut scale)?;
         }
         Ok(lu)
@@ -95,20 +100,21 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
     /// One column of Doolittle's elimination by rows of U, columns of L (Crout order): column `k` is
     /// brought up to date, its pivot chosen, and row `k` finished.
     #[inline(always)]
-    fn eliminate(&mut self, k: usize, scale: &mut [f64; F]) -> Result<(), Singular> {
-        let mut largest = [0.0_f64; F];
-        for i in k..F {
-            largest[i] = self.rows[i][k].size();
+    fn eliminate(&mut self, k: usize, scale: &mut F::List<f64>) -> Result<(), Singular> {
+        let n = self.size.get();
+        let mut largest = self.size.list(0.0_f64);
+        for i in k..n {
+            largest[i] = self.rows[(i, k)].size();
             for l in 0..k {
-                let product = self.rows[i][l] * self.rows[l][k];
+                let product = self.rows[(i, l)] * self.rows[(l, k)];
                 largest[i] = largest[i].max(product.size());
-                self.rows[i][k] = self.rows[i][k] - product;
+                self.rows[(i, k)] = self.rows[(i, k)] - product;
             }
         }
         let mut pivot = k;
-        let mut size = self.rows[k][k].size() * scale[k];
-        for i in k + 1..F {
-            let candidate = self.rows[i][k].size() * scale[i];
+        let mut size = self.rows[(k, k)].size() * scale[k];
+        for i in k + 1..n {
+            let candidate = self.rows[(i, k)].size() * scale[i];
             if candidate > size {
                 pivot = i;
                 size = candidate;
@@ -116,41 +122,43 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
         }
         // F roundings of the largest number of its sum: what is left below that is no information.
         // A row of small numbers may well be exact. (A NaN fails the comparison as well.)
-        let rounding = if k == 0 { 0.0 } else { F as f64 * f64::EPSILON };
+        let rounding = if k == 0 { 0.0 } else { n as f64 * f64::EPSILON };
         if !(size > rounding * largest[pivot] * scale[pivot] && size.is_finite()) {
             return Err(Singular { coordinate: k });
         }
         if pivot != k {
-            self.rows.swap(pivot, k);
-            self.order.swap(pivot, k);
-            scale.swap(pivot, k);
+            self.rows.swap_rows(pivot, k);
+            let (row, own) = (self.order[pivot], scale[pivot]);
+            (self.order[pivot], scale[pivot]) = (self.order[k], scale[k]);
+            (self.order[k], scale[k]) = (row, own);
         }
-        for j in k + 1..F {
+        for j in k + 1..n {
             for l in 0..k {
-                self.rows[k][j] = self.rows[k][j] - self.rows[k][l] * self.rows[l][j];
+                self.rows[(k, j)] = self.rows[(k, j)] - self.rows[(k, l)] * self.rows[(l, j)];
             }
         }
-        self.reciprocals[k] = self.rows[k][k].reciprocal();
-        for i in k + 1..F {
-            self.rows[i][k] = self.rows[i][k] * self.reciprocals[k];
+        self.reciprocals[k] = self.rows[(k, k)].reciprocal();
+        for i in k + 1..n {
+            self.rows[(i, k)] = self.rows[(i, k)] * self.reciprocals[k];
         }
         Ok(())
     }
 
     /// A⁻¹ b.
     #[inline(always)]
-    pub fn solve(&self, b: impl Fn(usize) -> T) -> [T; F] {
-        let mut x = [T::default(); F];
-        for i in 0..F {
+    pub fn solve(&self, b: impl Fn(usize) -> T) -> F::List<T> {
+        let n = self.size.get();
+        let mut x = self.size.list(T::default());
+        for i in 0..n {
             let mut sum = b(self.order[i]);
             for j in 0..i {
-                sum = sum - self.rows[i][j] * x[j];
+                sum = sum - self.rows[(i, j)] * x[j];
             }
             x[i] = sum;
         }
-        for i in (0..F).rev() {
-            for j in i + 1..F {
-                x[i] = x[i] - self.rows[i][j] * x[j];
+        for i in (0..n).rev() {
+            for j in i + 1..n {
+                x[i] = x[i] - self.rows[(i, j)] * x[j];
             }
             x[i] = x[i] * self.reciprocals[i];
         }
@@ -164,29 +172,45 @@ impl<T: Scalar, const F: usize> Lu<T, F> {
 /// # Errors
 /// [`Singular`] if no pivot exceeds the rounding of its column, or an entry is not finite.
 #[inline(always)]
-pub fn solve<const F: usize>(
-    matrix: &SMatrix<f64, F, F>,
-    right_side: &SVector<f64, F>,
-    row_scale: &SVector<f64, F>,
-) -> Result<SVector<f64, F>, Singular> {
-    let lu = Lu::factorize(|i, j| matrix[(i, j)], row_scale)?;
-    Ok(SVector::from(lu.solve(|i| right_side[i])))
+pub fn solve<M: Matrix>(
+    matrix: &M,
+    right_side: &<M::Size as Size>::Vector,
+    row_scale: &<M::Size as Size>::Vector,
+) -> Result<<M::Size as Size>::Vector, Singular> {
+    solve_for(matrix, |i| right_side[i], row_scale)
+}
+
+/// The same with a right side whose components a function gives.
+#[inline(always)]
+pub(crate) fn solve_for<M: Matrix>(
+    matrix: &M,
+    right_side: impl Fn(usize) -> f64,
+    row_scale: &<M::Size as Size>::Vector,
+) -> Result<<M::Size as Size>::Vector, Singular> {
+    let lu = Lu::<f64, M::Size>::factorize(|i, j| matrix[(i, j)], row_scale)?;
+    let x = lu.solve(right_side);
+    Ok(matrix.size().vector(|i| x[i]))
 }
 
 /// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
 #[inline(always)]
-pub(crate) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i8 {
-    let mut m = *matrix;
+pub(crate) fn determinant_sign<M: Matrix>(matrix: &M) -> i8 {
+    let n = matrix.size().get();
+    let mut m = matrix.clone();
     let mut sign = 1;
-    for k in 0..F {
+    for k in 0..n {
         let mut pivot = k;
-        for i in k + 1..F {
+        for i in k + 1..n {
             if m[(i, k)].abs() > m[(pivot, k)].abs() {
                 pivot = i;
             }
         }
         if pivot != k {
-            m.swap_rows(pivot, k);
+            for j in 0..n {
+                let entry = m[(pivot, j)];
+                m[(pivot, j)] = m[(k, j)];
+                m[(k, j)] = entry;
+            }
             sign = -sign;
         }
         if m[(k, k)] == 0.0 || m[(k, k)].is_nan() {
@@ -195,9 +219,9 @@ pub(crate) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i
         if m[(k, k)] < 0.0 {
             sign = -sign;
         }
-        for i in k + 1..F {
+        for i in k + 1..n {
             let factor = m[(i, k)] / m[(k, k)];
-            for j in k + 1..F {
+            for j in k + 1..n {
                 m[(i, j)] -= factor * m[(k, j)];
             }
         }
@@ -208,6 +232,7 @@ pub(crate) fn determinant_sign<const F: usize>(matrix: &SMatrix<f64, F, F>) -> i
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::{Const, SMatrix, SVector};
 
     /// Entries without structure in (−1, 1), the same in every run.
     fn noise(seed: &mut u64) -> f64 {
@@ -231,7 +256,7 @@ mod tests {
             assert!(residual.amax() < 1e-12, "{residual}");
 
             let b = matrix * x.map(|x| Complex::new(x, -x));
-            let lu = Lu::factorize(|i, j| matrix[(i, j)], &scale).unwrap();
+            let lu = Lu::<_, Const<F>>::factorize(|i, j| matrix[(i, j)], &scale).unwrap();
             let residual = matrix * SVector::from(lu.solve(|i| b[i])) - b;
             assert!(residual.iter().all(|r| r.size() < 1e-12), "{residual}");
         }

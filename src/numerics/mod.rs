@@ -1,19 +1,23 @@
 //! Numbers and small linear algebra: what everything stands on, and what imports nothing of ours.
 
 mod bounded;
+mod buffer;
 mod few;
 mod lanes;
 mod linear;
 mod persist;
 mod series;
 mod side;
+mod size;
 
 pub use bounded::Bounded;
 pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{LaneMask, Lanes};
-pub(crate) use linear::{Lu, determinant_sign};
+pub(crate) use linear::{Lu, determinant_sign, solve_for};
 pub use linear::{Singular, solve};
-pub(crate) use persist::persist;
 pub use persist::{Blank, Memory, Persist};
+pub(crate) use persist::{Kept, persist};
+pub(crate) use series::stretch;
 pub use series::{ORDERS, Series, SeriesKind};
 pub use side::Side;
+pub use size::{Const, Dynamic, Matrix, Rows, Size, Vector};

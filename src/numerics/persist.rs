@@ -133,6 +133,49 @@ impl<A: Persist, B: Persist> Persist for (A, B) {
     }
 }
 
+/// A value that may not be there, whose memory is there all the same.
+#[derive(Debug, Clone)]
+pub(crate) struct Kept<T> {
+    is_there: bool,
+    value: T,
+}
+
+impl<T> Kept<T> {
+    /// Nothing, in this memory.
+    pub fn nothing(value: T) -> Self {
+        Kept {
+            is_there: false,
+            value,
+        }
+    }
+
+    /// It is no longer there.
+    pub fn clear(&mut self) {
+        self.is_there = false;
+    }
+
+    /// The value, if it is there.
+    pub fn get(&self) -> Option<&T> {
+        self.is_there.then_some(&self.value)
+    }
+
+    /// It is there, to be written.
+    pub fn write(&mut self) -> &mut T {
+        self.is_there = true;
+        &mut self.value
+    }
+}
+
+impl<T: Persist> Persist for Kept<T> {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.is_there.persist(memory)?;
+        match self.is_there {
+            true => self.value.persist(memory),
+            false => Some(()),
+        }
+    }
+}
+
 impl<T: Persist + Blank> Persist for Option<T> {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
         let mut is_some = self.is_some();
@@ -165,12 +208,6 @@ impl Blank for bool {
 impl<A: Blank, B: Blank> Blank for (A, B) {
     fn blank() -> Self {
         (A::blank(), B::blank())
-    }
-}
-
-impl<const R: usize, const C: usize> Blank for SMatrix<f64, R, C> {
-    fn blank() -> Self {
-        SMatrix::zeros()
     }
 }
 

@@ -6,7 +6,7 @@ use super::limits;
 use super::record;
 use super::shape::{Key, Object, Quantity, Shape};
 use crate::hybrid::Method;
-use crate::integrate::Tolerances;
+use crate::integrate::{Const, Tolerances};
 use crate::model::{Bounds, Coordinate, Input, Limit, Model, Variant};
 
 /// Relative tolerance of a scene that asks for none: eight digits, well above the rounding of long
@@ -318,7 +318,7 @@ fn accuracy(model: Option<&Model>) -> Object {
     // Below, no method can tell a step's error from rounding; above, it controls nothing.
     let relative = Bounds {
         maximum: 0.1,
-        ..Bounds::at_least(Tolerances::<0>::SMALLEST_RELATIVE)
+        ..Bounds::at_least(Tolerances::<Const<0>>::SMALLEST_RELATIVE)
     };
     let relative = Quantity::within(relative, "1");
     let each = match model {

@@ -29,6 +29,7 @@ mod rocking;
 mod roots_cases;
 mod roots_properties;
 mod sin_cos;
+mod sizes;
 mod stiff;
 mod tolerances;
 mod torture;

@@ -3,12 +3,13 @@
 use crate::problems::{DoublePendulum, Oscillator, SlidingBlock};
 use crate::{start, tolerances};
 use dalembert::integrate::{Motion, ORDERS, System};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector, vector};
 
 /// A block that lifts off: the tilting moment t passes zero at t = 0, a = t + 5 sin θ.
 struct LiftOff;
 
-impl System<1> for LiftOff {
+impl System<Const<1>> for LiftOff {
     fn residual(
         &mut self,
         t: f64,
@@ -102,7 +103,7 @@ fn clipping_keeps_the_polynomial() {
     let (one, zero) = (vector![1.0], vector![0.0]);
     let mut radau = start::<3, 1>(&mut oscillator, one, zero, &tolerances(1e-8, 1.0, 1.0));
     radau.step(&mut oscillator, 10.0, f64::INFINITY).unwrap();
-    let mut clipped = *radau.dense().unwrap();
+    let mut clipped = radau.dense().unwrap().clone();
     let middle = 0.5 * clipped.end();
     clipped.clip(middle);
     assert_eq!(clipped.end(), middle);
@@ -121,7 +122,7 @@ fn a_window_cannot_grow() {
     let (one, zero) = (vector![1.0], vector![0.0]);
     let mut radau = start::<3, 1>(&mut oscillator, one, zero, &tolerances(1e-8, 1.0, 1.0));
     radau.step(&mut oscillator, 10.0, f64::INFINITY).unwrap();
-    let mut dense = *radau.dense().unwrap();
+    let mut dense = radau.dense().unwrap().clone();
     let end = dense.end();
     dense.clip(2.0 * end);
 }

@@ -3,12 +3,13 @@
 use crate::problems::Oscillator;
 use crate::tolerances;
 use dalembert::integrate::{Radau, StepError, System};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector, vector};
 
 /// A system given by functions of (t, q, v, a); M, C, K likewise.
 struct Given<R, J>(R, J);
 
-impl<R: FnMut(f64, f64, f64, f64) -> f64, J: FnMut(f64, f64, f64, f64) -> [f64; 3]> System<1>
+impl<R: FnMut(f64, f64, f64, f64) -> f64, J: FnMut(f64, f64, f64, f64) -> [f64; 3]> System<Const<1>>
     for Given<R, J>
 {
     fn residual(
@@ -36,8 +37,8 @@ impl<R: FnMut(f64, f64, f64, f64) -> f64, J: FnMut(f64, f64, f64, f64) -> [f64; 
 }
 
 /// Steps from (t = 1, q = 1, v = 0, a) until an error.
-fn failure(system: &mut impl System<1>, a: f64) -> StepError {
-    let mut radau = Radau::<3, 1>::new(&tolerances(1e-6, 1.0, 1.0));
+fn failure(system: &mut impl System<Const<1>>, a: f64) -> StepError {
+    let mut radau = Radau::<3, Const<1>>::new(&tolerances(1e-6, 1.0, 1.0));
     radau.restart(1.0, &vector![1.0], &vector![0.0], &vector![a]);
     loop {
         let before = *radau.state();
@@ -143,7 +144,7 @@ fn a_jump_of_the_force_is_passed_with_short_steps() {
     // The engine cuts steps at jumps it knows of; one it does not know must not stop the run.
     let force = |t: f64| if t < 1.5 { 0.0 } else { 1.0 };
     let mut system = Given(move |t, _, _, a| a - force(t), |_, _, _, _| [1.0, 0.0, 0.0]);
-    let mut radau = Radau::<3, 1>::new(&tolerances(1e-6, 1.0, 1.0));
+    let mut radau = Radau::<3, Const<1>>::new(&tolerances(1e-6, 1.0, 1.0));
     radau.restart(1.0, &vector![0.0], &vector![0.0], &vector![0.0]);
     while radau.state().t < 2.5 {
         radau.step(&mut system, 2.5, f64::INFINITY).unwrap();

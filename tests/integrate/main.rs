@@ -13,21 +13,22 @@ mod stiff;
 use dalembert::integrate::{
     Coefficients, Counters, Radau, RadauIia, State, StepError, System, Tolerances,
 };
+use nalgebra::Const;
 use nalgebra::SVector;
 
 /// Tolerances `relative` and `relative` × `size` for all components.
-fn tolerances<const F: usize>(relative: f64, q_size: f64, v_size: f64) -> Tolerances<F> {
+fn tolerances<const F: usize>(relative: f64, q_size: f64, v_size: f64) -> Tolerances<Const<F>> {
     let absolute = |size| SVector::repeat(relative * size);
     Tolerances::new(relative, absolute(q_size), absolute(v_size)).unwrap()
 }
 
 /// An integrator at (0, q, v), with the acceleration that belongs to it.
 fn start<const S: usize, const F: usize>(
-    system: &mut impl System<F>,
+    system: &mut impl System<Const<F>>,
     q: SVector<f64, F>,
     v: SVector<f64, F>,
-    tolerances: &Tolerances<F>,
-) -> Radau<S, F>
+    tolerances: &Tolerances<Const<F>>,
+) -> Radau<S, Const<F>>
 where
     RadauIia<S>: Coefficients<S>,
 {
@@ -40,12 +41,12 @@ where
 
 /// The state at `t_end`.
 fn run<const S: usize, const F: usize>(
-    system: &mut impl System<F>,
+    system: &mut impl System<Const<F>>,
     q: SVector<f64, F>,
     v: SVector<f64, F>,
-    tolerances: &Tolerances<F>,
+    tolerances: &Tolerances<Const<F>>,
     t_end: f64,
-) -> Result<(State<F>, Counters), StepError>
+) -> Result<(State<Const<F>>, Counters), StepError>
 where
     RadauIia<S>: Coefficients<S>,
 {

@@ -3,17 +3,18 @@
 use crate::problems::{DoublePendulum, Oscillator};
 use crate::{start, tolerances};
 use dalembert::integrate::{Coefficients, Radau, RadauIia, System};
+use nalgebra::Const;
 use nalgebra::{SVector, vector};
 
 /// Steps of length h from (0, q, v) to time `t`, without error control; `visit` sees each.
 fn fixed<const S: usize, const F: usize>(
-    system: &mut impl System<F>,
+    system: &mut impl System<Const<F>>,
     q: SVector<f64, F>,
     v: SVector<f64, F>,
     t: f64,
     steps: usize,
-    mut visit: impl FnMut(&Radau<S, F>),
-) -> Radau<S, F>
+    mut visit: impl FnMut(&Radau<S, Const<F>>),
+) -> Radau<S, Const<F>>
 where
     RadauIia<S>: Coefficients<S>,
 {

@@ -5,6 +5,7 @@ use crate::problems::Pleiades;
 use crate::references::{data, numbers};
 use crate::tolerances;
 use dalembert::integrate::{Analytic, ORDERS, Series, SeriesKind, State, System, Taylor};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector};
 
 /// Coefficients of (dx, dy) and r⁻³ of each pair of bodies i < j.
@@ -70,7 +71,7 @@ impl Expanded {
     }
 }
 
-impl System<14> for Expanded {
+impl System<Const<14>> for Expanded {
     fn residual(
         &mut self,
         t: f64,
@@ -95,16 +96,16 @@ impl System<14> for Expanded {
     }
 }
 
-impl Analytic<14> for Expanded {
+impl Analytic<Const<14>> for Expanded {
     fn start(
         &mut self,
         _t: f64,
         _order: usize,
-        series: &Series<14>,
+        series: &Series<Const<14>>,
     ) -> (SMatrix<f64, 14, 14>, SVector<f64, 14>) {
         (SMatrix::identity(), -self.pull(0, &series.q))
     }
-    fn run(&mut self, n: usize, _inverse: &SMatrix<f64, 14, 14>, series: &mut Series<14>) {
+    fn run(&mut self, n: usize, _inverse: &SMatrix<f64, 14, 14>, series: &mut Series<Const<14>>) {
         for k in 1..n {
             let a = self.pull(k, &series.q);
             series.a[k] = a;
@@ -115,13 +116,13 @@ impl Analytic<14> for Expanded {
 }
 
 /// The state at t = 3 and the number of steps.
-fn motion(relative: f64) -> (State<14>, u64) {
+fn motion(relative: f64) -> (State<Const<14>>, u64) {
     let mut bodies = Expanded::new();
     let (q, v) = (SVector::from(Pleiades::Q), SVector::from(Pleiades::V));
     let mut a = SVector::zeros();
     bodies.acceleration(0.0, &q, &v, &mut a).unwrap();
     // Products of an order: six a pair.
-    let mut taylor = Taylor::<14>::new(
+    let mut taylor = Taylor::<Const<14>>::new(
         &tolerances(relative, 0.1, 0.1),
         SeriesKind::Convolved(6 * 21),
     );

@@ -1,6 +1,7 @@
 //! Test problems, each with its source. Reference values are beside the tests that use them.
 
 use dalembert::integrate::{FirstOrderProblem, System};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector, matrix, vector};
 
 /// q″ + 2ζω q′ + ω² q = 0, and copies of it; with `linear` it says that it is linear.
@@ -10,7 +11,7 @@ pub struct Oscillator {
     pub linear: bool,
 }
 
-impl<const F: usize> System<F> for Oscillator {
+impl<const F: usize> System<Const<F>> for Oscillator {
     fn residual(
         &mut self,
         _t: f64,
@@ -45,7 +46,7 @@ pub struct DoublePendulum {
     pub g: f64,
 }
 
-impl System<2> for DoublePendulum {
+impl System<Const<2>> for DoublePendulum {
     fn residual(
         &mut self,
         _t: f64,
@@ -84,7 +85,7 @@ pub struct SpringPendulum {
     pub g: f64,
 }
 
-impl System<2> for SpringPendulum {
+impl System<Const<2>> for SpringPendulum {
     fn residual(
         &mut self,
         _t: f64,
@@ -128,7 +129,7 @@ impl Pleiades {
     ];
 }
 
-impl System<14> for Pleiades {
+impl System<Const<14>> for Pleiades {
     fn residual(
         &mut self,
         _t: f64,
@@ -182,7 +183,7 @@ impl System<14> for Pleiades {
 /// IVP test set (Bari/CWI): high irradiance responses, 8 reactions.
 pub struct Hires;
 
-impl FirstOrderProblem<8> for Hires {
+impl FirstOrderProblem<Const<8>> for Hires {
     fn derivative(&mut self, _t: f64, y: &SVector<f64, 8>, f: &mut SVector<f64, 8>) {
         *f = vector![
             -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007,
@@ -213,7 +214,7 @@ impl FirstOrderProblem<8> for Hires {
 /// IVP test set: the Oregonator, s = 77.27, w = 0.161, q = 8.375e-6.
 pub struct Orego;
 
-impl FirstOrderProblem<3> for Orego {
+impl FirstOrderProblem<Const<3>> for Orego {
     fn derivative(&mut self, _t: f64, y: &SVector<f64, 3>, f: &mut SVector<f64, 3>) {
         *f = vector![
             77.27 * (y[1] + y[0] * (1.0 - 8.375e-6 * y[0] - y[1])),
@@ -233,7 +234,7 @@ impl FirstOrderProblem<3> for Orego {
 /// IVP test set: Robertson's reactions.
 pub struct Rober;
 
-impl FirstOrderProblem<3> for Rober {
+impl FirstOrderProblem<Const<3>> for Rober {
     fn derivative(&mut self, _t: f64, y: &SVector<f64, 3>, f: &mut SVector<f64, 3>) {
         let slow = 0.04 * y[0];
         let back = 1e4 * y[1] * y[2];
@@ -254,7 +255,7 @@ pub struct VanDerPol {
     pub epsilon: f64,
 }
 
-impl FirstOrderProblem<2> for VanDerPol {
+impl FirstOrderProblem<Const<2>> for VanDerPol {
     fn derivative(&mut self, _t: f64, y: &SVector<f64, 2>, f: &mut SVector<f64, 2>) {
         *f = vector![y[1], ((1.0 - y[0] * y[0]) * y[1] - y[0]) / self.epsilon];
     }
@@ -267,7 +268,7 @@ impl FirstOrderProblem<2> for VanDerPol {
 }
 
 /// The same with its second-order structure: ε q″ = (1 − q²) q′ − q.
-impl System<1> for VanDerPol {
+impl System<Const<1>> for VanDerPol {
     fn residual(
         &mut self,
         _t: f64,
@@ -299,7 +300,7 @@ pub struct ProtheroRobinson {
     pub lambda: f64,
 }
 
-impl FirstOrderProblem<1> for ProtheroRobinson {
+impl FirstOrderProblem<Const<1>> for ProtheroRobinson {
     fn derivative(&mut self, t: f64, y: &SVector<f64, 1>, f: &mut SVector<f64, 1>) {
         f[0] = -self.lambda * (y[0] - t.cos()) - t.sin();
     }
@@ -313,7 +314,7 @@ pub struct Kaps {
     pub epsilon: f64,
 }
 
-impl FirstOrderProblem<2> for Kaps {
+impl FirstOrderProblem<Const<2>> for Kaps {
     fn derivative(&mut self, _t: f64, y: &SVector<f64, 2>, f: &mut SVector<f64, 2>) {
         f[0] = -2.0 * y[0] + (y[1] * y[1] - y[0]) / self.epsilon;
         f[1] = y[0] - y[1] * (1.0 + y[1]);
@@ -339,7 +340,7 @@ impl SlidingBlock {
     const FRICTION: f64 = 0.3 * 9.81 * (Self::M + Self::SMALL);
 }
 
-impl System<2> for SlidingBlock {
+impl System<Const<2>> for SlidingBlock {
     fn residual(
         &mut self,
         _t: f64,

@@ -9,6 +9,7 @@ use crate::{run, tolerances};
 use dalembert::integrate::{
     Coefficients, FirstOrder, FirstOrderProblem, RadauIia, System, Tolerances,
 };
+use nalgebra::Const;
 use nalgebra::{SVector, vector};
 use serde_json::Value;
 
@@ -33,7 +34,7 @@ fn digits<const N: usize>(actual: &SVector<f64, N>, expected: &SVector<f64, N>) 
 
 /// Digits reached at `t` with a relative tolerance, absolute tolerances `size` times it.
 fn first_order<const S: usize, const N: usize>(
-    problem: impl FirstOrderProblem<N>,
+    problem: impl FirstOrderProblem<Const<N>>,
     start: [f64; N],
     size: f64,
     relative: f64,
@@ -179,7 +180,7 @@ fn energy_drifts_by_less_than_1e_11_in_50_seconds() {
 
 /// The Jacobians of the test problems against central differences, whose error is below 1e-6 of the
 /// largest entry here.
-fn check_jacobian<const F: usize>(system: &mut impl System<F>, seed: f64) {
+fn check_jacobian<const F: usize>(system: &mut impl System<Const<F>>, seed: f64) {
     let point =
         |shift: f64| SVector::<f64, F>::from_fn(|i, _| (seed + shift + i as f64).sin() + 1.5);
     let (q, v, a) = (point(0.0), point(0.3), point(0.7));

@@ -3,6 +3,7 @@
 use crate::problems::{DoublePendulum, Oscillator, Rober};
 use crate::{run, start, tolerances};
 use dalembert::integrate::{FirstOrder, System, Tolerances};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector, vector};
 
 #[test]
@@ -158,7 +159,7 @@ fn the_work_on_a_stiff_problem_is_as_it_was() {
 /// No coordinates are free: only time passes.
 struct Nothing;
 
-impl System<0> for Nothing {
+impl System<Const<0>> for Nothing {
     fn residual(
         &mut self,
         _t: f64,

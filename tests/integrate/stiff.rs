@@ -4,9 +4,10 @@ use crate::problems::{Kaps, ProtheroRobinson, SlidingBlock, SpringPendulum};
 use crate::references::{data, number, numbers};
 use crate::{run, start, tolerances};
 use dalembert::integrate::{Coefficients, FirstOrder, Radau, RadauIia, State, System, Tolerances};
+use nalgebra::Const;
 use nalgebra::{SMatrix, SVector, vector};
 
-fn first_order<const F: usize>(relative: f64) -> Tolerances<F> {
+fn first_order<const F: usize>(relative: f64) -> Tolerances<Const<F>> {
     Tolerances::new(
         relative,
         SVector::repeat(f64::INFINITY),
@@ -70,14 +71,17 @@ fn spring_pendulum_from_rest() {
 }
 
 /// Steps until the first velocity falls to zero; then takes the last step again up to that instant.
-fn stop<const S: usize>(system: &mut impl System<2>, radau: &mut Radau<S, 2>) -> State<2>
+fn stop<const S: usize>(
+    system: &mut impl System<Const<2>>,
+    radau: &mut Radau<S, Const<2>>,
+) -> State<Const<2>>
 where
     RadauIia<S>: Coefficients<S>,
 {
     while radau.state().v[0] > 0.0 {
         radau.step(system, 10.0, f64::INFINITY).unwrap();
     }
-    let dense = *radau.dense().unwrap();
+    let dense = radau.dense().unwrap().clone();
     let (mut low, mut high) = (0.0, dense.length());
     while 0.5 * (low + high) > low && 0.5 * (low + high) < high {
         let middle = 0.5 * (low + high);
@@ -101,7 +105,7 @@ struct Spring {
     c: f64,
 }
 
-impl System<1> for Spring {
+impl System<Const<1>> for Spring {
     fn residual(
         &mut self,
         _t: f64,
@@ -189,7 +193,7 @@ struct Massless {
     cubic: f64,
 }
 
-impl System<2> for Massless {
+impl System<Const<2>> for Massless {
     fn residual(
         &mut self,
         t: f64,
@@ -228,7 +232,7 @@ fn a_massless_part_follows_its_algebraic_equation() {
         // The velocity of an algebraic coordinate is as accurate as a difference quotient of it.
         let q_absolute = vector![1e-12, 1e-12 * size];
         let sizes = Tolerances::new(1e-12, q_absolute, vector![1e-12, size]);
-        let mut radau = Radau::<5, 2>::new(&sizes.unwrap());
+        let mut radau = Radau::<5, Const<2>>::new(&sizes.unwrap());
         radau.restart(
             0.0,
             &vector![0.0, 0.0],

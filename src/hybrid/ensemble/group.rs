@@ -14,6 +14,7 @@ use crate::kernel::{
     lane_departs,
 };
 use crate::model::{GuardShape, Mode};
+use crate::numerics::Const;
 use nalgebra::SVector;
 
 /// What became of a lane in a step.
@@ -92,7 +93,7 @@ impl<const F: usize, const W: usize> Way<F, W> {
 
 /// Up to `W` trajectories in one mode.
 pub(super) struct Group<'p, const F: usize, const W: usize> {
-    pub kernel: &'p ModeKernel<F>,
+    pub kernel: &'p ModeKernel<Const<F>>,
     pub mode: &'p Mode,
     /// Index of the mode.
     pub index: usize,
@@ -135,7 +136,7 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
 impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     /// An empty group for the mode of a simulation, whose state is put into the empty lanes.
     pub fn new(
-        kernel: &'p ModeKernel<F>,
+        kernel: &'p ModeKernel<Const<F>>,
         level: LaneLevel<W>,
         quiet: bool,
         like: &Simulation<'p>,
@@ -181,7 +182,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 coefficients: [Lanes::of(0.0); ORDERS],
             }
         });
-        let tolerances = tolerances(problem, mode);
+        let tolerances = tolerances(kernel.size(), problem, mode);
         let kind = kernel.series_kind(&like.context);
         let mut group = Group {
             kernel,
@@ -273,7 +274,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
 
     fn set(&mut self, lane: usize, from: &Simulation) {
         let here = &mut self.here;
-        let [q, v, a] = from.here.free::<F>(&self.mode.free);
+        let [q, v, a] = from.here.free(self.kernel.size(), &self.mode.free);
         for i in 0..F {
             here.q[i].0[lane] = q[i];
             here.v[i].0[lane] = v[i];

@@ -173,7 +173,9 @@ impl<'a, const W: usize> Worker<'a, W> {
         let lanes = self.lanes[mode].get_or_insert_with(|| {
             let kernels = &simulation.mode().kernels;
             let group: Box<dyn AnyGroup<W> + 'a> =
-                with_kernel!(kernels, k => Box::new(Group::new(k, level, quiet, simulation)));
+                with_kernel!(kernels,
+                    k => Box::new(Group::new(k, level, quiet, simulation)),
+                    _any => unreachable!("a mode of so many free coordinates does not go in lanes"));
             Lanes {
                 group,
                 slots: [None; W],

@@ -4,10 +4,11 @@ use super::extremes::Extremes;
 use super::interpolants::{Interpolants, Polynomial};
 use super::{Observers, Part, Step};
 use crate::integrate::Motion;
+use crate::numerics::Size;
 
 impl Observers<'_> {
     /// Looks for extremes of all that is represented in a part of a step.
-    pub(super) fn look_for_extremes<const F: usize, M: Motion<F>>(
+    pub(super) fn look_for_extremes<F: Size, M: Motion<F>>(
         &mut self,
         extremes: &mut Extremes,
         step: &mut Step<F, M>,
@@ -21,7 +22,8 @@ impl Observers<'_> {
             let time = |place: f64| seconds(part.time(place));
             let summits = extremes.look(&self.interpolants, f, column, rate, time);
             for place in summits.into_iter().flatten() {
-                let tau = polish(step.motion, part, f, part.time(place));
+                let n = step.equations.kernel.size().get();
+                let tau = polish((step.motion, n), part, f, part.time(place));
                 self.evaluate(step, tau, Interpolants::SPARE, (columns, false));
                 let value = self.interpolants.value_at(Interpolants::SPARE, f);
                 extremes.note(column, seconds(tau), value);
@@ -31,7 +33,7 @@ impl Observers<'_> {
 
     /// Looks for extremes of what was dissipated and of the work of the inputs: their ends, and where a power
     /// changes its sign.
-    pub(super) fn look_for_extremes_of_work<const F: usize, M: Motion<F>>(
+    pub(super) fn look_for_extremes_of_work<F: Size, M: Motion<F>>(
         &self,
         extremes: &mut Extremes,
         step: &Step<F, M>,
@@ -63,13 +65,14 @@ impl Observers<'_> {
 
 /// Goes from a place near an extremum of a function to it, where its derivative is that of the motion: by the
 /// secant method, from a place that is off by less than a thousandth of the part, until a step is as short as places
-/// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again.
-fn polish<const F: usize, M: Motion<F>>(motion: &M, part: Part, f: usize, tau: f64) -> f64 {
+/// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again. Of the functions the first are the
+/// `n` free coordinates, then their rates.
+fn polish<F: Size, M: Motion<F>>((motion, n): (&M, usize), part: Part, f: usize, tau: f64) -> f64 {
     let rate = |tau: f64| {
         let (_, v, a) = motion.at(tau);
-        if f < F { v[f] } else { a[f - F] }
+        if f < n { v[f] } else { a[f - n] }
     };
-    if f >= 2 * F {
+    if f >= 2 * n {
         return tau;
     }
     let clamp = |tau: f64| tau.clamp(part.from, part.to);

@@ -25,6 +25,7 @@ use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
 use crate::model::Mode;
+use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::{Layout, Ledger, Peak};
 use extremes::Extremes;
@@ -100,7 +101,7 @@ impl Functions {
 }
 
 /// A step that was made, or what its first event has left of it.
-pub(super) struct Step<'s, 'e, const F: usize, M> {
+pub(super) struct Step<'s, 'e, F: Size, M> {
     pub equations: &'s mut Equations<'e, F>,
     pub motion: &'s M,
     pub mode: &'s Mode,
@@ -273,7 +274,7 @@ impl<'o> Observers<'o> {
     /// Looks at a step: its samples, its extremes, its energies. `Break`: the run ends at a sample, whose time (s) is
     /// given and whose state is in `step.here`.
     #[inline]
-    pub fn step<const F: usize, M: Motion<F>>(&mut self, mut step: Step<F, M>) -> ControlFlow<f64> {
+    pub fn step<F: Size, M: Motion<F>>(&mut self, mut step: Step<F, M>) -> ControlFlow<f64> {
         if self.recording.sees_steps {
             self.show(&mut step);
         }
@@ -297,7 +298,7 @@ impl<'o> Observers<'o> {
 
     /// Ends a step at a sample in it: what is left of it has no samples. Gives the time of the sample, s.
     #[cold]
-    fn cut<const F: usize, M: Motion<F>>(
+    fn cut<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         Sampled { from, tau, t }: Sampled,
@@ -322,7 +323,7 @@ impl<'o> Observers<'o> {
     }
 
     /// Shows a step to the observer.
-    fn show<const F: usize, M: Motion<F>>(&mut self, step: &mut Step<F, M>) {
+    fn show<F: Size, M: Motion<F>>(&mut self, step: &mut Step<F, M>) {
         let clock = step.equations.clock;
         let seconds = |tau: f64| clock.start.plus(tau).seconds();
         let (from, to) = (step.motion.start(), step.end + step.beyond);
@@ -349,7 +350,7 @@ impl<'o> Observers<'o> {
     }
 
     /// Looks at a step from local time `start` on.
-    fn look<const F: usize, M: Motion<F>>(
+    fn look<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         start: f64,
@@ -408,7 +409,7 @@ impl<'o> Observers<'o> {
     }
 
     /// Takes what there is in a part of a step that is represented; gives its work [dissipated, input], J.
-    fn take<const F: usize, M: Motion<F>>(
+    fn take<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         part: Part,

@@ -5,18 +5,21 @@ use super::{Functions, Observers, Part, Step};
 use crate::hybrid::guards;
 use crate::integrate::Motion;
 use crate::kernel::Free;
+use crate::numerics::Size;
+use crate::numerics::Vector;
 
 impl Observers<'_> {
     /// Fits polynomials to all functions in a part of a step; false: they do not represent them.
-    pub(super) fn represent<const F: usize, M: Motion<F>>(
+    pub(super) fn represent<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         part: Part,
         (columns, powers): (usize, bool),
     ) -> bool {
         // Where nothing moves and nothing acts all nodes have the same values.
-        let stands =
-            F == 0 && step.equations.context.quiet && step.equations.clock.drift.is_empty();
+        let stands = step.equations.kernel.size().get() == 0
+            && step.equations.context.quiet
+            && step.equations.clock.drift.is_empty();
         if !self.joined {
             self.evaluate(step, part.from, 0, (columns, powers));
         }
@@ -71,7 +74,7 @@ impl Observers<'_> {
     }
 
     /// Evaluates all functions at local time `tau` of the step, into the values at `node`.
-    pub(super) fn evaluate<const F: usize, M: Motion<F>>(
+    pub(super) fn evaluate<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         tau: f64,
@@ -93,12 +96,13 @@ impl Observers<'_> {
         };
         let (kernel, context) = (step.equations.kernel, &*step.equations.context);
         let row = self.interpolants.values_mut(node);
+        let n = kernel.size().get();
         if columns > 0 {
-            row[..F].copy_from_slice(q.as_slice());
-            row[F..2 * F].copy_from_slice(v.as_slice());
+            row[..n].copy_from_slice(q.as_slice());
+            row[n..2 * n].copy_from_slice(v.as_slice());
             if !reactions.is_empty() {
                 kernel.reactions(context, at, room);
-                for (value, &i) in row[2 * F..].iter_mut().zip(&*reactions) {
+                for (value, &i) in row[2 * n..].iter_mut().zip(&*reactions) {
                     *value = room[i];
                 }
             }

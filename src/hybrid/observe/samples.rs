@@ -11,6 +11,7 @@ use crate::hybrid::simulation::{Here, Simulation};
 use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
+use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::{Group, Layout};
 use std::ops::ControlFlow;
@@ -26,7 +27,7 @@ pub(super) struct Row<'a> {
 
 impl Row<'_> {
     /// Fills a row; the context is set to its time.
-    pub fn fill<const F: usize>(
+    pub fn fill<F: Size>(
         mut self,
         kernel: &ModeKernel<F>,
         context: &Context,
@@ -116,13 +117,13 @@ impl Samples {
 
 impl Observers<'_> {
     /// Local time of the next sample, if it is due up to local time `to`.
-    pub(super) fn due<const F: usize>(&self, equations: &Equations<F>, to: f64) -> Option<f64> {
+    pub(super) fn due<F: Size>(&self, equations: &Equations<F>, to: f64) -> Option<f64> {
         let tau = Instant::new(self.samples.next()).since(equations.clock.start);
         (tau <= to).then_some(tau)
     }
 
     /// Records the samples that are due in a part of a step.
-    pub(super) fn sample<const F: usize, M: Motion<F>>(
+    pub(super) fn sample<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         part: Part,
@@ -168,7 +169,7 @@ impl Observers<'_> {
     }
 
     /// Records the state at the end of a step, whose time the context is set for.
-    pub fn sample_end<const F: usize>(
+    pub fn sample_end<F: Size>(
         &mut self,
         equations: &Equations<F>,
         here: &Here,
@@ -230,7 +231,7 @@ impl Simulation<'_> {
             ledger: row_of(observers.ledger.as_ref(), [0.0; 2]),
         };
         with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = here.free(&mode.free);
+            let [q, v, a] = here.free(k.size(), &mode.free);
             observers.recording.row(t, here.mode, |values| {
                 row.fill(k, context, Free { q: &q, v: &v, a: &a }, values)
             })

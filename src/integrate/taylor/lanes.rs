@@ -6,7 +6,7 @@ use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
     lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
 };
-use crate::numerics::{LaneMask, Lanes, ORDERS, SeriesKind};
+use crate::numerics::{Const, LaneMask, Lanes, ORDERS, SeriesKind};
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
 pub(crate) struct LaneTaylor<const F: usize, const W: usize> {
@@ -20,7 +20,7 @@ pub(crate) struct LaneTaylor<const F: usize, const W: usize> {
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     /// A method of the order that [`super::Taylor::new`] chooses.
-    pub fn new(level: LaneLevel<W>, tolerances: &Tolerances<F>, kind: SeriesKind) -> Self {
+    pub fn new(level: LaneLevel<W>, tolerances: &Tolerances<Const<F>>, kind: SeriesKind) -> Self {
         let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];

@@ -16,7 +16,6 @@ mod series;
 use length::Terms;
 
 pub use dense::TaylorDense;
-pub(crate) use dense::stretch;
 pub(crate) use lanes::LaneTaylor;
 pub use series::Analytic;
 
@@ -25,9 +24,9 @@ use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, State, add, fit};
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances};
-use crate::numerics::{Lu, Series, SeriesKind};
-use crate::numerics::{Memory, Persist, persist};
-use nalgebra::{SMatrix, SVector};
+use crate::numerics::{
+    Kept, Lu, Matrix, Memory, ORDERS, Persist, Series, SeriesKind, Size, Vector, persist,
+};
 
 /// What is not finite where the coefficients of a series leave the range of doubles.
 pub(crate) const SERIES: &str = "the Taylor series of the motion";
@@ -41,7 +40,7 @@ struct Implicit {
 }
 
 impl Implicit {
-    fn new<const S: usize, const F: usize>(tolerances: &Tolerances<F>) -> Self
+    fn new<const S: usize, F: Size>(tolerances: &Tolerances<F>) -> Self
     where
         RadauIia<S>: Coefficients<S>,
     {
@@ -75,7 +74,7 @@ impl Last {
 /// The Taylor method for an [`Analytic`] system of `F` coordinates. It is used as
 /// [`super::Radau`] is.
 #[derive(Debug, Clone)]
-pub struct Taylor<const F: usize> {
+pub struct Taylor<F: Size> {
     tolerances: Tolerances<F>,
     order: usize,
     /// The lower order where there are many steps.
@@ -91,9 +90,9 @@ pub struct Taylor<const F: usize> {
     open: Option<f64>,
     last: Last,
     /// Reciprocal tolerances of coordinates and velocities at the start of the step.
-    weights: [SVector<f64, F>; 2],
+    weights: [F::Vector; 2],
     /// The mass matrix at the start of the last step, and its inverse; `None` where it has none.
-    inverse: Option<(SMatrix<f64, F, F>, SMatrix<f64, F, F>)>,
+    inverse: Kept<(F::Matrix, F::Matrix)>,
     /// Whether the accelerations after a restart were given.
     accelerations_given: bool,
     implicit: Implicit,
@@ -102,7 +101,7 @@ pub struct Taylor<const F: usize> {
     counters: Counters,
 }
 
-persist!([const F: usize] Taylor<F> {
+persist!([F: Size] Taylor<F> {
     start, end, lost_at_start, lost, dense, open, last, weights, inverse, accelerations_given, length, counters
 } but { tolerances, order, lower, terms, implicit });
 
@@ -113,13 +112,12 @@ impl Persist for Last {
     }
 }
 
-impl<const F: usize> Taylor<F> {
+impl<F: Size> Taylor<F> {
     /// An integrator at rest at zero; call [`Taylor::restart`] before the first step.
     pub fn new(tolerances: &Tolerances<F>, kind: SeriesKind) -> Self {
-        let zero = SVector::zeros();
-        let origin = State::origin();
+        let size = tolerances.size();
         let relative = tolerances.relative();
-        let order = length::order(relative, kind, F);
+        let order = length::order(relative, kind, size.get());
         let implicit = match super::stages(relative) {
             5 => Implicit::new::<5, F>(tolerances),
             _ => Implicit::new::<7, F>(tolerances),
@@ -128,26 +126,26 @@ impl<const F: usize> Taylor<F> {
         Taylor {
             implicit,
             length: f64::INFINITY,
-            tolerances: *tolerances,
+            tolerances: tolerances.clone(),
             order,
             lower: length::half_period(relative, kind).map(|p| (p, Terms::new(relative, p, kind))),
             terms: Terms::new(relative, order, kind),
-            start: origin,
-            end: origin,
-            lost_at_start: Lost::nothing(),
-            lost: Lost::nothing(),
+            start: State::origin(size),
+            end: State::origin(size),
+            lost_at_start: Lost::nothing(size),
+            lost: Lost::nothing(size),
             dense: TaylorDense {
                 t0: 0.0,
                 h: 0.0,
                 t_end: 0.0,
                 order,
                 known: order,
-                series: Series::zero(),
+                series: Series::zero(size),
             },
             open: None,
             last: Last::Restart,
-            weights: [zero; 2],
-            inverse: None,
+            weights: [size.zeros(), size.zeros()],
+            inverse: Kept::nothing((size.zero_matrix(), size.zero_matrix())),
             accelerations_given: false,
             counters: Counters::default(),
         }
@@ -155,22 +153,16 @@ impl<const F: usize> Taylor<F> {
 
     /// Goes on from a state that the last step did not lead to, as [`super::Radau::restart`]. Accelerations that are
     /// not given are those of the equations; [`Taylor::state`] has zeros instead before the first step.
-    pub fn restart(
-        &mut self,
-        t: f64,
-        q: &SVector<f64, F>,
-        v: &SVector<f64, F>,
-        a: Option<&SVector<f64, F>>,
-    ) {
+    pub fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {
         self.weights = self.weights_at(q, v);
         self.end = State {
             t,
-            q: *q,
-            v: *v,
-            a: a.copied().unwrap_or_else(SVector::zeros),
+            q: q.clone(),
+            v: v.clone(),
+            a: a.cloned().unwrap_or_else(|| q.size().zeros()),
         };
         self.accelerations_given = a.is_some();
-        self.lost = Lost::nothing();
+        self.lost = Lost::nothing(q.size());
         self.open = None;
         self.last = Last::Restart;
     }
@@ -300,26 +292,33 @@ impl<const F: usize> Taylor<F> {
         }
         self.dense.t0 = t;
         let series = &mut self.dense.series;
-        (series.q[0], series.v[0]) = (origin.q, origin.v);
-        let (mass, load) = system.start(t, self.order, series);
-        if self.inverse.is_none_or(|(of, _)| of != mass) {
-            self.invert(&mass)?;
+        let n = origin.size().get();
+        for i in 0..n {
+            (series.q[0][i], series.v[0][i]) = (origin.q[i], origin.v[i]);
         }
-        let (_, inverse) = self.inverse.as_ref().expect("it was inverted");
+        let (mass, load) = system.start(t, self.order, series);
+        if self.inverse.get().is_none_or(|(of, _)| *of != mass) {
+            self.invert(mass)?;
+        }
+        let (_, inverse) = self.inverse.get().expect("it was inverted");
         let (origin, series) = (&mut self.end, &mut self.dense.series);
         // A restart may give the accelerations: zero where they are not told from it, so that the motion
         // leaves with the sign of the jerk.
-        series.a[0] = match restarted && self.accelerations_given {
-            true => origin.a,
-            false => -(inverse * load),
-        };
-        origin.a = series.a[0];
-        (series.q[1], series.v[1], series.q[2]) = (origin.v, series.a[0], series.a[0] * 0.5);
+        if !(restarted && self.accelerations_given) {
+            let a = inverse.times(&load);
+            origin.a = a.size().vector(|i| -a[i]);
+        }
+        for i in 0..n {
+            let a = origin.a[i];
+            (series.a[0][i], series.v[1][i], series.q[2][i]) = (a, a, a * 0.5);
+            series.q[1][i] = origin.v[i];
+        }
         system.run(self.order, inverse, series);
         self.counters.residual_evaluations += self.order as u64;
         self.dense.known = self.order;
         // What is not finite stays so in all higher orders.
-        let is_finite = |order: usize| self.dense.series.a[order - 1].iter().all(|x| x.is_finite());
+        let is_finite =
+            |order: usize| (0..n).all(|i| self.dense.series.a[order - 1][i].is_finite());
         match self.lower {
             _ if is_finite(self.order) => {}
             Some((lower, _)) if is_finite(lower) => self.lower_order(lower),
@@ -339,9 +338,18 @@ impl<const F: usize> Taylor<F> {
     #[cold]
     fn lower_order(&mut self, order: usize) {
         let series = &mut self.dense.series;
-        series.a[order..].fill(SVector::zeros());
-        series.v[order + 1..].fill(SVector::zeros());
-        series.q[order + 2..].fill(SVector::zeros());
+        let n = series.size().get();
+        for k in order..ORDERS {
+            for i in 0..n {
+                series.a[k][i] = 0.0;
+                if k > order {
+                    series.v[k][i] = 0.0;
+                }
+                if k > order + 1 {
+                    series.q[k][i] = 0.0;
+                }
+            }
+        }
         self.dense.known = order;
         self.find_last();
     }
@@ -349,17 +357,18 @@ impl<const F: usize> Taylor<F> {
     /// Looks for the last coefficients that differ from zero.
     #[inline(always)]
     fn find_last(&mut self) {
-        let a = &self.dense.series.a[..self.dense.known];
-        let last = a.iter().rposition(|a| a.iter().any(|x| *x != 0.0));
+        let series = &self.dense.series;
+        let n = series.size().get();
+        let last = (0..self.dense.known).rposition(|k| (0..n).any(|i| series.a[k][i] != 0.0));
         self.dense.order = last.map_or(1, |last| last + 1);
     }
 
     /// Inverts the mass matrix.
-    fn invert(&mut self, mass: &SMatrix<f64, F, F>) -> Result<(), StepError> {
-        self.inverse = None;
+    fn invert(&mut self, mass: F::Matrix) -> Result<(), StepError> {
+        self.inverse.clear();
         let t = self.dense.t0;
         let scale = self.tolerances.v_absolute();
-        let lu = Lu::factorize(|i, j| mass[(i, j)], scale).map_err(|singular| {
+        let lu = Lu::<f64, F>::factorize(|i, j| mass[(i, j)], scale).map_err(|singular| {
             let coordinate = singular.coordinate;
             StepError::Singular {
                 t,
@@ -367,21 +376,23 @@ impl<const F: usize> Taylor<F> {
                 coordinate,
             }
         })?;
-        let mut inverse = SMatrix::<f64, F, F>::zeros();
-        for j in 0..F {
+        let inverse = self.inverse.write();
+        let n = mass.size().get();
+        for j in 0..n {
             let column = lu.solve(|i| if i == j { 1.0 } else { 0.0 });
-            inverse.set_column(j, &SVector::from(column));
+            (0..n).for_each(|i| inverse.1[(i, j)] = column[i]);
         }
         self.counters.factorizations += 1;
-        self.inverse = Some((*mass, inverse));
+        inverse.0 = mass;
         Ok(())
     }
 
     /// Reciprocal tolerances of given coordinates and velocities.
-    fn weights_at(&self, q: &SVector<f64, F>, v: &SVector<f64, F>) -> [SVector<f64, F>; 2] {
+    fn weights_at(&self, q: &F::Vector, v: &F::Vector) -> [F::Vector; 2] {
         let relative = self.tolerances.relative();
-        let weights = |absolute: &SVector<f64, F>, x: &SVector<f64, F>| {
-            SVector::from_fn(|i, _| 1.0 / (absolute[i] + relative * x[i].abs()))
+        let weights = |absolute: &F::Vector, x: &F::Vector| {
+            x.size()
+                .vector(|i| 1.0 / (absolute[i] + relative * x[i].abs()))
         };
         [
             weights(self.tolerances.q_absolute(), q),
@@ -394,8 +405,8 @@ impl<const F: usize> Taylor<F> {
     fn accurate_length(&self) -> f64 {
         let Series { q, v, .. } = &self.dense.series;
         let [of_q, of_v] = &self.weights;
-        let of_q = |power: usize| largest(&q[power], of_q);
-        let of_v = |power: usize| largest(&v[power], of_v);
+        let of_q = |power: usize| largest::<F>(&q[power], of_q);
+        let of_v = |power: usize| largest::<F>(&v[power], of_v);
         let p = self.dense.known;
         let sizes = [
             of_v(p - 1),
@@ -415,7 +426,7 @@ impl<const F: usize> Taylor<F> {
     pub fn lag<Y: Analytic<F>>(&self, system: &Y, least: f64) -> f64 {
         let Implicit { power, error } = self.implicit;
         let [_, of_v] = &self.weights;
-        let size = largest(&self.dense.series.v[power], of_v) * error;
+        let size = largest::<F>(&self.dense.series.v[power], of_v) * error;
         // Already the step that is `least` times as long has too large an error, or has none.
         let limit = least * self.length;
         let is_less = (0..power).fold(size, |error, _| error * limit) >= 1.0;
@@ -432,7 +443,8 @@ impl<const F: usize> Taylor<F> {
     /// The step starts where the last one ended.
     #[inline]
     fn start_here(&mut self) {
-        (self.start, self.lost_at_start) = (self.end, self.lost);
+        self.start.clone_from(&self.end);
+        self.lost_at_start.clone_from(&self.lost);
     }
 
     /// Ends the step after `h`, at `t` if that is given.
@@ -456,7 +468,7 @@ impl<const F: usize> Taylor<F> {
     fn complete(&mut self, h: f64) {
         let (start, lost) = (&self.start, &self.lost_at_start);
         let (dq, dv) = self.dense.change(h);
-        for i in 0..F {
+        for i in 0..start.size().get() {
             (self.end.q[i], self.lost.q[i]) = add(start.q[i], dq[i], lost.q[i]);
             (self.end.v[i], self.lost.v[i]) = add(start.v[i], dv[i], lost.v[i]);
         }
@@ -478,8 +490,8 @@ impl<const F: usize> Taylor<F> {
 
 /// The largest component of a coefficient, weighted.
 #[inline]
-fn largest<const F: usize>(coefficient: &SVector<f64, F>, weights: &SVector<f64, F>) -> f64 {
-    (0..F).fold(0.0, |most, i| {
+fn largest<F: Size>(coefficient: &F::Row, weights: &F::Vector) -> f64 {
+    (0..weights.size().get()).fold(0.0, |most, i| {
         f64::max(most, coefficient[i].abs() * weights[i])
     })
 }
