@@ -297,7 +297,8 @@ impl<F: Size> System<F> for Equations<'_, F> {
         k: &mut F::Matrix,
     ) {
         self.at(t);
-        let mut out = std::array::from_fn(|_| self.kernel.size().zero_matrix());
+        let size = self.kernel.size();
+        let mut out = [size.zero_matrix(), size.zero_matrix(), size.zero_matrix()];
         self.kernel
             .jacobian(self.context, Free { q, v, a }, &mut out);
         [*m, *c, *k] = out;

@@ -100,7 +100,11 @@ impl<F: Size> Free<'_, F> {
     /// If there are not as many as the mode has free coordinates.
     #[inline(always)]
     fn pointers(&self, size: F) -> [*const f64; 3] {
-        [self.q, self.v, self.a].map(|of| pointer(of, size))
+        [
+            pointer(self.q, size),
+            pointer(self.v, size),
+            pointer(self.a, size),
+        ]
     }
 }
 
@@ -123,7 +127,8 @@ impl<F: Size> ModeKernel<F> {
     /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
     #[inline]
     pub fn jacobian(&self, x: &Context, at: Free<F>, out: &mut [F::Matrix; 3]) {
-        assert!(out.iter().all(|matrix| matrix.size() == self.size));
+        let [m, c, k] = &*out;
+        assert!(m.size() == self.size && c.size() == self.size && k.size() == self.size);
         let at = at.pointers(self.size);
         // SAFETY: three dense column-major F × F outputs, one behind the other.
         let write = |out| unsafe { x.call(self.jacobian, &self.dimensions, at, out) };
@@ -133,7 +138,7 @@ impl<F: Size> ModeKernel<F> {
     /// Mass matrix and load at (q, v).
     #[inline]
     pub fn system(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> LinearSystem<F> {
-        let [q, v] = [q, v].map(|of| pointer(of, self.size));
+        let (q, v) = (pointer(q, self.size), pointer(v, self.size));
         let (mass, load) = self.size.matrix_and_vector(|out| {
             if self.size.get() > 0 {
                 // SAFETY: F × F and F outputs, one behind the other; `a` is not read.
@@ -155,7 +160,11 @@ impl<F: Size> ModeKernel<F> {
         };
         assert!(orders <= ORDERS);
         self.assert_rows(at);
-        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast_mut());
+        let (q, v, a) = (
+            at.q.as_ptr().cast_mut(),
+            at.v.as_ptr().cast_mut(),
+            at.a.as_ptr().cast_mut(),
+        );
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let out = x.guard_series.as_mut_ptr();
         let raw = x.raw(&self.dimensions);
@@ -180,7 +189,11 @@ impl<F: Size> ModeKernel<F> {
                 return;
             }
             let series = self.motion_series(x).expect("the mode is analytic");
-            let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr().cast_mut());
+            let (q, v, a) = (
+                at.q.as_ptr().cast_mut(),
+                at.v.as_ptr().cast_mut(),
+                at.a.as_ptr().cast_mut(),
+            );
             let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
             let raw = x.raw(&self.dimensions);
             // SAFETY: F entries a row, which are only read; F × F and F outputs, one behind the other; the
@@ -193,9 +206,8 @@ impl<F: Size> ModeKernel<F> {
     /// One number a free coordinate in each row.
     #[inline(always)]
     fn assert_rows(&self, at: &Series<F>) {
-        let is_own = [&at.q, &at.v, &at.a]
-            .iter()
-            .all(|rows| rows.size() == self.size);
+        let (n, Series { q, v, a }) = (self.size, at);
+        let is_own = q.size() == n && v.size() == n && a.size() == n;
         assert!(is_own, "a series of the mode's free coordinates");
     }
 
@@ -214,7 +226,7 @@ impl<F: Size> ModeKernel<F> {
         assert_eq!(inverse.size(), self.size);
         let series = self.motion_series(x).expect("the mode is analytic");
         assert!(n <= ORDERS - 2);
-        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr());
+        let (q, v, a) = (at.q.as_mut_ptr(), at.v.as_mut_ptr(), at.a.as_mut_ptr());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());
         let inverse = inverse.as_slice().as_ptr().cast_mut();
         let raw = x.raw(&self.dimensions);
@@ -226,7 +238,7 @@ impl<F: Size> ModeKernel<F> {
     /// Mass matrix without friction: ∂²T/∂v² on the free coordinates.
     pub fn inertia(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> F::Matrix {
         let mut out = self.size.zero_matrix();
-        let [q, v] = [q, v].map(|of| pointer(of, self.size));
+        let (q, v) = (pointer(q, self.size), pointer(v, self.size));
         let to = out.as_mut_slice().as_mut_ptr();
         // SAFETY: F × F outputs; `a` is not read.
         unsafe { x.call(self.inertia, &self.dimensions, [q, v, v], to) }
@@ -368,7 +380,7 @@ impl<F: Size> ModeKernel<F> {
         assert!(orders + 2 <= ORDERS);
         self.assert_rows(at);
         let n = self.size.get();
-        let [q, v, a] = [&at.q, &at.v, &at.a].map(|rows| rows.as_ptr());
+        let (q, v, a) = (at.q.as_ptr(), at.v.as_ptr(), at.a.as_ptr());
         self.size.with_room::<6, _>(|room| {
             let (middles, radii) = room.split_at_mut(3 * n);
             let (to_middles, to_radii) = (middles.as_mut_ptr(), radii.as_mut_ptr());
@@ -385,7 +397,11 @@ impl<F: Size> ModeKernel<F> {
                 j: radii.as_ptr(),
                 ..*x.raw(&self.dimensions)
             };
-            let [q, v, a] = [0, n, 2 * n].map(|from| middles[from..].as_ptr());
+            let (q, v, a) = (
+                middles.as_ptr(),
+                middles[n..].as_ptr(),
+                middles[2 * n..].as_ptr(),
+            );
             // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
             // radii.
             unsafe { (self.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
