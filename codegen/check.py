@@ -1,6 +1,7 @@
 """Checks of a finished model: what its parts say of each other. `arguments.py` looks at each call by itself."""
 
 import itertools
+import math
 import random
 
 import casadi as ca
@@ -124,14 +125,29 @@ def _is_singular(matrix):
     symbols = ca.symvar(matrix)
     value = ca.Function("matrix", symbols, [matrix])
     for _ in range(32):
-        at = value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in symbols])[0]
-        rows = [sum(float(x) ** 2 for x in at[i, :].nz) ** 0.5 for i in range(at.shape[0])]
-        size = 1.0
-        for row in rows:
-            size *= row
-        if abs(float(ca.det(at))) > 1e-9 * size or size != size:
+        at = ca.densify(value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in symbols])[0])
+        if not _is_rounding(_least_pivot([list(map(float, at[i, :].nz)) for i in range(at.shape[0])])):
             return False
     return True
+
+
+def _is_rounding(pivot):
+    """Whether the pivot of a matrix whose rows have the length 1 is the rounding of zero. What is not a number is not."""
+    return pivot < 1e-9
+
+
+def _least_pivot(rows):
+    """The last pivot of Gaussian elimination with the largest entry of all that are left for a pivot, the rows being of
+    the length 1: no product of them, which becomes small for many rows whatever they are."""
+    lengths = [math.hypot(*row) for row in rows]
+    rows = [[x / length for x in row] if length else row for row, length in zip(rows, lengths)]
+    while True:
+        largest = max((abs(x), i, j) for i, row in enumerate(rows) for j, x in enumerate(row))
+        pivot, i, j = largest
+        if len(rows) == 1 or _is_rounding(pivot) or pivot != pivot:
+            return pivot
+        own = rows.pop(i)
+        rows = [[x - row[j] / own[j] * y for k, (x, y) in enumerate(zip(row, own)) if k != j] for row in rows]
 
 
 # ---- transitions --------------------------------------------------------------------------------

@@ -235,22 +235,25 @@ def arrange(expressions, parameters):
     symbols = ca.symvar(ca.vertcat(expressions, ca.vertcat(*parameters)))
     parametric = {p.element_hash() for vector in parameters for p in ca.vertsplit(vector)}
     function = ca.Function("arrange", symbols, [expressions])
-    work, result = {}, [None] * expressions.numel()
+    work, known, result = {}, {}, [None] * expressions.numel()
     for k in range(function.n_instructions()):
         op = function.instruction_id(k)
         into, source = function.instruction_output(k), function.instruction_input(k)
         if op == ca.OP_CONST:
-            work[into[0]] = _Value(ca.SX(function.instruction_constant(k)))
+            key = op, struct.pack("<d", function.instruction_constant(k))
+            work[into[0]] = known.setdefault(key, _Value(ca.SX(function.instruction_constant(k))))
         elif op == ca.OP_INPUT:
             symbol = symbols[source[0]]
-            if symbol.element_hash() in parametric:
-                work[into[0]] = _Value(symbol)
-            else:
-                work[into[0]] = _Value(ca.SX(1), symbol)
+            value = _Value(symbol) if symbol.element_hash() in parametric else _Value(ca.SX(1), symbol)
+            work[into[0]] = known.setdefault((op, source[0]), value)
         elif op == ca.OP_OUTPUT:
             result[into[1]] = work[source[0]].expression()
         else:
-            work[into[0]] = _arranged(op, [work[i] for i in source])
+            # What stands there several times is arranged once: derivatives repeat themselves, the more the larger a mode is.
+            key = op, *(id(work[i]) for i in source)
+            if key not in known:
+                known[key] = _arranged(op, [work[i] for i in source])
+            work[into[0]] = known[key]
     nonzeros = ca.SX(expressions.sparsity(), ca.vertcat(*result[: expressions.nnz()]))
     return ca.densify(nonzeros)
 

@@ -96,6 +96,14 @@ class Mistakes(ScratchTest):
         text = HEAD + 'y = model.coordinate("y", "m", "")\nmodel.point_mass(m, position=(x + y, 0))\n' + 'model.mode("moves")\n'
         self.assertIn("the mass matrix of its free coordinates (x, y) is singular", self.refusal(text, 8))
 
+    def test_many_coordinates_that_hang_together_are_not_taken_for_singular(self):
+        """Of 30 masses one on the other the determinant is 2e-52 of the product of the rows, and there are 30! products in it."""
+        lines = [HEAD, "place = 0\n"]
+        for k in range(30):
+            lines.append(f'place = place + model.coordinate("y_{k}", "m", "")\nmodel.point_mass(m, position=(place, 0))\n')
+        lines.append('model.point_mass(m, position=(x, 0))\nmodel.mode("moves")\n')
+        self.described("".join(lines))
+
     def test_an_energy_that_is_all_there_is(self):
         text = HEAD + "model.kinetic(k * x**2 / 2)\n" + 'model.mode("moves")\n'
         self.assertIn("no mass moves with coordinate `x`", self.refusal(text, 7))
