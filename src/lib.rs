@@ -46,6 +46,7 @@ pub mod precision;
 pub mod record;
 pub mod run;
 pub mod scene;
+pub mod study;
 
 /// Compiles and runs the examples of the README.
 #[cfg(doctest)]

@@ -95,7 +95,7 @@ fn every_folder_and_every_module_is_named() {
 }
 
 /// The modules of the crate, from the bottom up: each may import those above it in this list, none below it.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 16] = [
     "numerics",
     "kernel",
     "model",
@@ -107,6 +107,7 @@ const LAYERS: [&str; 15] = [
     "motion",
     "record",
     "scene",
+    "study",
     "precision",
     "page",
     "folders",

@@ -14,6 +14,7 @@ mod check;
 mod compare;
 mod describe;
 mod folders;
+mod fragility;
 mod interrupt;
 mod models;
 mod motion;
@@ -58,6 +59,8 @@ enum Command {
     Precision(precision::PrecisionArguments),
     /// Show what ground-motion records hold: peaks, intensity, spectra
     Motion(motion::MotionArguments),
+    /// Fit a fragility curve to a table of runs or capacities
+    Fragility(fragility::FragilityArguments),
     /// Make a model folder to start from
     New(new::NewArguments),
     /// Say what is wrong with a model folder, or what the model is
@@ -85,6 +88,7 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Precision(arguments) => precision::precision(&arguments),
         Command::Motion(arguments) => motion::motion(&arguments),
+        Command::Fragility(arguments) => fragility::fragility(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Models(arguments) => models::models(&arguments),
