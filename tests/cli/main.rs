@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod describe;
 mod folders;
+mod fragility;
 mod input;
 mod interrupt;
 mod limits;
