@@ -6,6 +6,9 @@ from .latex import ENTITIES, Parser
 
 BREAK = object()
 
+# what stands over a symbol
+OVER = {"bar": "¯", "overline": "¯", "hat": "^", "widehat": "^", "tilde": "~", "widetilde": "~"}
+
 
 def mathml(tree, marks=None):
     """MathML of a tree; `marks` gives a CSS class by ordinal."""
@@ -14,6 +17,8 @@ def mathml(tree, marks=None):
 
     def symbol(node):
         body = f"<mi>{escape(ENTITIES.get(node.text, node.text))}</mi>"
+        if node.accent:
+            body = f'<mover accent="true">{body}<mo>{OVER[node.accent]}</mo></mover>'
         if node.dots:
             body = f'<mover accent="true">{body}<mo>{"˙¨⃛"[node.dots - 1]}</mo></mover>'
         if node.index:
@@ -31,7 +36,7 @@ def mathml(tree, marks=None):
 
     def call(node, name):
         """A function and its argument."""
-        space = "" if node.children[0].kind == "group" else '<mspace width="0.17em"/>'
+        space = "" if node.children[0].kind == "group" and node.children[0].text else '<mspace width="0.17em"/>'
         return f"<mrow>{name}<mo>&#x2061;</mo>{space}{inline(node.children[0])}</mrow>"
 
     def emit(node, to):
@@ -46,10 +51,14 @@ def mathml(tree, marks=None):
             to.append(call(node.children[0], f"<msup><mi>{node.children[0].text}</mi><mn>{escape(node.text)}</mn></msup>"))
         elif node.kind == "power":
             to.append(f"<msup>{inline(node.children[0])}<mn>{escape(node.text)}</mn></msup>")
+        elif node.kind == "fraction" and node.text:
+            to.append(f"<mrow>{inline(node.children[0])}<mo>/</mo>{inline(node.children[1])}</mrow>")
         elif node.kind == "fraction":
             to.append(f"<mfrac>{inline(node.children[0])}{inline(node.children[1])}</mfrac>")
         elif node.kind == "modulus":
             to.append(f"<mrow><mo>|</mo>{inline(node.children[0])}<mo>|</mo></mrow>")
+        elif node.kind == "group" and not node.text:
+            emit(node.children[0], to)
         elif node.kind == "group":
             left = node.text[-1]
             to.append(f'<mo stretchy="false">{left}</mo>')
@@ -67,7 +76,7 @@ def mathml(tree, marks=None):
                     emit(factor, inside)
                 to += [f'<mrow class="{mark}">' + "".join(x for x in inside if x is not BREAK) + "</mrow>"] if mark else inside
         else:
-            text = node.text[6:-1] if node.kind == "text" else node.text
+            text = node.text[6:-1] if node.kind == "text" else node.lead
             space = '<mspace width="0.5em"/>'
             to.append(f"{space}<mtext>{escape(text)}</mtext>{space}" if node.kind == "text" else f"<mo>{escape(text)}</mo>")
 

@@ -1,7 +1,8 @@
 """What a paper prints: its symbols with their units, and its equations as lists of terms.
 
-A printed equation is a Python function of a namespace `s` of symbols and a namespace `m` of
-functions (`sin`, `cos`, `sign`, `Abs`). It returns its terms in printed order, every bracketed
+A printed equation is its LaTeX, or a Python function of a namespace `s` of symbols and a namespace `m` of
+functions (`sin`, `cos`, `sign`, `Abs`), or both, and then they are proved to say the same. The function
+returns the terms in printed order, every bracketed
 sum multiplied out into its parts, each part as one expression. The same function is evaluated
 with SymPy symbols (verification) and with CasADi symbols or numbers (simulation).
 
@@ -62,23 +63,29 @@ class Equation:
     - reset: they sum to the rate of the coordinate `of` after an impact, in the state before it
 
     `margin` marks a condition whose function already gives the terms of its margin, `momentum` a
-    force that is the rate of a momentum: the reaction of a translation of the whole system.
+    force that is the rate of a momentum: the reaction of a translation of the whole system. Without a
+    `function` the terms follow from the LaTeX, with the symbols of `paper`.
     """
 
     number: str
     kind: str
     of: str
     latex: str
-    function: Callable
+    function: Optional[Callable]
     title: str = ""
     relation: str = ""
     result: int = 0
     margin: bool = False
     momentum: bool = False
+    paper: object = field(default=None, compare=False, repr=False)
 
     def terms(self, s, m):
         """The printed terms, in printed order. Of a condition, with the signs that make their
         sum positive where the condition holds."""
+        if self.function is None:
+            from . import transcription  # it needs this module
+
+            return transcription.terms(transcription.statement(self, self.paper), self.paper, s, m, self.latex)
         terms = self.function(s, m)
         if not isinstance(terms, (list, tuple)):
             raise PaperError(f"its function returns {terms} where a list of its terms belongs")
@@ -178,8 +185,14 @@ class Paper:
         return register
 
     def _equation(self, number, kind, of, latex, title, relation="", result=0, momentum=False):
+        if number in self.equations:
+            raise PaperError(f"equation ({number}) is given twice")
+        if latex:
+            # until a function is written beside it, the LaTeX says what the terms are
+            self.equations[number] = Equation(number, kind, of, latex, None, title, relation, result, momentum=momentum, paper=self)
+
         def register(function):
-            if number in self.equations:
+            if number in self.equations and self.equations[number].function:
                 raise PaperError(f"equation ({number}) is given twice")
             self.equations[number] = Equation(
                 number, kind, of, latex, function, title, relation, result, momentum=momentum)
@@ -275,8 +288,8 @@ def rates(symbol):
 
 
 def plain_latex(latex):
-    """LaTeX of a symbol without braces, backslashes and spaces: what symbols are told apart by."""
-    return re.sub(r"[\\{}\s]", "", latex)
+    """LaTeX of a symbol without upright letters, braces, backslashes and spaces: what symbols are told apart by."""
+    return re.sub(r"\\(?:mathrm|mathit|mathnormal|textrm|text|operatorname|rm|it)(?![A-Za-z])|[\\{}\s]", "", latex)
 
 
 GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "lambda", "mu", "nu",

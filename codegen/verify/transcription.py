@@ -6,6 +6,7 @@ from fractions import Fraction
 from .algebra import NotInClass
 from .lagrange import sympy_namespace
 from .latex import LatexError, Parser
+from .tokens import error_at
 from .printed import PaperError, plain_latex
 
 
@@ -15,7 +16,7 @@ def proved(subject):
     # a symbol that the paper does not define stands for itself: its reading is not what is printed
     s = sympy_namespace(subject.paper, defined=False)
     return [number for number, equation in subject.paper.equations.items()
-            if equation.latex and _prove(subject, equation, s)]
+            if equation.latex and equation.function and _prove(subject, equation, s)]
 
 
 def _prove(subject, equation, s):
@@ -23,7 +24,7 @@ def _prove(subject, equation, s):
     name = f"equation ({equation.number})"
     try:
         tree = statement(equation, subject.paper)
-        written = [subject.ring.read(term) for term in terms(tree, subject.paper, s, subject.m)]
+        written = [subject.ring.read(term) for term in terms(tree, subject.paper, s, subject.m, equation.latex)]
     except (LatexError, NotInClass, ZeroDivisionError) as error:
         raise PaperError(f"{name}: its LaTeX: {error}") from error
     given = [subject.ring.read(term) for term in equation.terms(s, subject.m)]
@@ -71,10 +72,15 @@ def statement(equation, paper):
     return tree
 
 
+def _sums(product):
+    """The factors of a product that are sums of terms: brackets, and fractions of more than one term."""
+    return [f for f in product.children if f.kind == "group" or f.kind == "fraction" and len(f.children[0].children) > 1]
+
+
 def _collect(node, sign, counter):
     """Numbers the terms of a sum, brackets multiplied out, and gives each its sign on its side."""
     for product in node.children:
-        groups = [f for f in product.children if f.kind == "group"]
+        groups = _sums(product)
         product.side = sign
         if groups:
             _collect(groups[-1].children[0], sign, counter)
@@ -122,22 +128,22 @@ def _times(equation, tree, parser):
 
 def _key(node):
     """What a symbol's LaTeX is told by."""
-    return plain_latex(node.text + ("_" + node.index if node.index else ""))
+    return plain_latex(node.accent + node.text + ("_" + node.index if node.index else ""))
 
 
-def terms(tree, paper, s, m):
+def terms(tree, paper, s, m, latex=""):
     """The expressions of the numbered terms, with the signs of `Equation.terms`: an equation of
     motion is left minus right, a condition positive where it holds."""
     by_latex = {plain_latex(symbol.latex): symbol for symbol in paper.symbols.values()}
 
     def symbol(node):
         if _key(node) not in by_latex:
-            raise LatexError(f"the symbol {_key(node)!r} is not declared by the paper")
+            raise error_at(latex, node.at, f"the symbol {_key(node)!r} is not declared by the paper")
         found = by_latex[_key(node)]
         if node.dots and found.role not in ("coordinate", "input"):
-            raise LatexError(f"the symbol {found.name} has dots and is neither a coordinate nor an input")
+            raise error_at(latex, node.at, f"the symbol {found.name} has dots and is neither a coordinate nor an input")
         if node.dots > 2:
-            raise LatexError(f"the symbol {found.name} has {node.dots} dots; equations of motion have two at most")
+            raise error_at(latex, node.at, f"the symbol {found.name} has {node.dots} dots; equations of motion have two at most")
         return getattr(s, "d" * node.dots + found.name)
 
     def value(node):
@@ -152,6 +158,9 @@ def terms(tree, paper, s, m):
             return symbol(node)
         if node.kind == "number":
             return Fraction(node.text)
+        if node.kind == "call" and node.text in ("tan", "cot"):
+            angle = value(node.children[0])
+            return m.sin(angle) / m.cos(angle) if node.text == "tan" else m.cos(angle) / m.sin(angle)
         if node.kind == "call":
             return getattr(m, node.text)(value(node.children[0]))
         if node.kind == "modulus":
@@ -170,11 +179,13 @@ def terms(tree, paper, s, m):
             if product.ordinal is not None:
                 found[product.ordinal] = product.side * sign * value(product)
                 continue
-            groups = [f for f in product.children if f.kind == "group"]
+            groups = _sums(product)
             if groups and product.side:
                 for factor in product.children:
                     if factor is not groups[-1]:
                         sign = sign * value(factor)
+                if groups[-1].kind == "fraction":
+                    sign = sign / value(groups[-1].children[1])
                 collect(groups[-1].children[0], sign)
 
     for side in tree.children:
