@@ -25,7 +25,7 @@ FACTORS = ("symbol", "upright", "accent", "number", "function", "dots", "frac", 
 class Node:
     """A node of the tree: `kind` is equation, sum, product, symbol, number, call, group, modulus,
     power, fraction, relation or text; `time` is + or - after (t^+) or (t^-), `text` of a fraction / where it
-    is printed so, `accent` what stands over a symbol, `at` the offset in the LaTeX. `ordinal` numbers the
+    is printed so, `lead` the sign, relation or dot that is printed before it, `accent` what stands over a symbol, `at` the offset in the LaTeX. `ordinal` numbers the
     terms from 0 and `side` is the sign that their side of the equation gives them (transcription.py)."""
 
     kind: str
@@ -136,19 +136,21 @@ class Parser:
 
     def product(self):
         """Factors side by side."""
-        factors, at = [], self.peek().at
+        factors, at, dot = [], self.peek().at, ""
         while self.peek().kind in FACTORS and not self.sees("brace", "}"):
             token = self.peek()
             if token.kind == "bar" and self.depth_bar:
                 break
             if factors and self.broken():
                 raise self.error(f"a sign or a relation is missing after the line break before {token.text!r}", token.at)
-            if factors and token.kind == "number" and factors[-1].kind == "number":
+            if factors and not dot and token.kind == "number" and factors[-1].kind == "number":
                 raise self.error(f"two numbers side by side, {factors[-1].text} and {token.text}: write one number, or \\cdot between")
             node = self.factor()
+            node.lead, dot = dot, ""
             factors += node.children if node.kind == "product" else [node]
             if self.sees("times"):
                 self.next()
+                dot = "·"
                 if self.peek().kind not in FACTORS:
                     raise self.error("a factor is missing after \\cdot")
             elif self.sees("slash"):

@@ -73,6 +73,8 @@ def mathml(tree, marks=None):
                 if product.lead:
                     inside.append(f'<mo form="infix">{"−" if product.lead == "-" else "+"}</mo>')
                 for factor in product.children:
+                    if factor.lead:
+                        inside.append(f"<mo>{factor.lead}</mo>")
                     emit(factor, inside)
                 to += [f'<mrow class="{mark}">' + "".join(x for x in inside if x is not BREAK) + "</mrow>"] if mark else inside
         else:
