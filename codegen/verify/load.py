@@ -9,12 +9,13 @@ from typing import List, Optional
 
 from ..errors import error_location
 from .effects import Effects
+from .manuscript import TEX, is_manuscript, read
 from .printed import Paper, PaperError
 
 
 @dataclass
 class Case:
-    """All that a model folder offers to verification: `paper.py` (`paper`), `paper_energies.py`
+    """All that a model folder offers to verification: `paper.py` (`paper`) or `paper.tex` with `symbols.csv`, `paper_energies.py`
     (`energies`, a list, the best first; also `candidates` for that place), `corrections.py` (`corrections`),
     `paper_numbers.py` (`numbers`) and `paper_effects.py` (`effects`)."""
 
@@ -32,8 +33,12 @@ def load(folder, name: Optional[str] = None) -> Case:
     """The case in a model folder. The files may import one another as `.paper`."""
     folder = Path(folder)
     name = name or folder.name
-    if not (folder / "paper.py").is_file():
-        raise PaperError(f"the model '{name}' has no hand-written equations: {folder / 'paper.py'} does not exist")
+    written = (folder / "paper.py").is_file()
+    if not written and not is_manuscript(folder):
+        raise PaperError(f"the model '{name}' has no hand-written equations: neither {folder / 'paper.py'} nor {folder / TEX} exists")
+    if written and is_manuscript(folder):
+        raise PaperError(f"{folder} has both paper.py and {TEX}: one of them says what is printed")
+    printed, derived = (None, []) if written else read(folder)
     package = "printed_" + name
     for module in [m for m in sys.modules if m == package or m.startswith(package + ".")]:
         del sys.modules[module]
@@ -59,8 +64,8 @@ def load(folder, name: Optional[str] = None) -> Case:
             raise PaperError(f"{path}: '{attribute}' must be a {kind.__name__}, not {type(found).__name__}")
         return found
 
-    energies = offered("paper_energies", "energies", [])
+    energies = offered("paper_energies", "energies", derived)
     candidates = getattr(sys.modules.get(f"{package}.paper_energies"), "candidates", [])
-    return Case(name, folder, offered("paper", "paper", None, Paper), list(energies),
+    return Case(name, folder, offered("paper", "paper", printed, Paper), list(energies),
                 list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates),
                 offered("paper_effects", "effects", None, Effects))

@@ -116,7 +116,8 @@ class Paper:
 
     `translation` names a coordinate and an input that may enter the energies only as their sum
     (slip and ground displacement): Galilean invariance is judged for it. `definitions` give
-    symbols that the paper uses without defining them, by what they must mean. `sets` are the
+    symbols that the paper uses without defining them, by what they must mean; those of them that it does
+    define are `auxiliary`. `sets` are the
     parameter values of its examples; `box` bounds the coordinates and parameters for which the
     mass matrix must be positive definite (what it does not name is taken from the sets);
     `negligible` are the parameters that the paper allows to be left out; `special` names special
@@ -128,6 +129,7 @@ class Paper:
     symbols: Dict[str, Symbol] = field(default_factory=dict)
     equations: Dict[str, Equation] = field(default_factory=dict)
     definitions: Dict[str, Callable] = field(default_factory=dict)
+    auxiliary: Tuple[str, ...] = ()
     translation: Optional[Tuple[str, str]] = None
     sets: Dict[str, Dict[str, float]] = field(default_factory=dict)
     box: Dict[str, Tuple[float, float]] = field(default_factory=dict)

@@ -18,7 +18,10 @@ def transcription_lines(report):
     if report.transcribed:
         lines.append(f"Transcription: ({'), ('.join(report.transcribed)}) are proved equal to their LaTeX: symbol, relation, and "
                      "term by term.")
-    without = [n for n in paper.equations if n not in report.transcribed]
+    read = [n for n, equation in paper.equations.items() if equation.function is None]
+    if read:
+        lines.append(f"Transcription: ({'), ('.join(read)}) are judged from their LaTeX: no terms are written beside it.")
+    without = [n for n, equation in paper.equations.items() if not equation.latex]
     if without:
         lines.append(f"Transcription: ({'), ('.join(without)}) have no LaTeX; what is judged is the function alone.")
     return lines
@@ -173,10 +176,15 @@ def as_text(report):
         lines += ["", "Printed numbers (recomputed as an interval over the rounding of what they come from)"]
     for x in report.numbers:
         lines.append("  " + number_text(x))
-    if paper.definitions:
+    if undefined := undefined_symbols(paper):
         lines += ["", "Symbols that the paper uses and does not define"]
-        lines += [f"  {name}: {paper.symbols[name].meaning}" for name in paper.definitions]
+        lines += [f"  {name}: {paper.symbols[name].meaning}" for name in undefined]
     return "\n".join(lines) + "\n"
+
+
+def undefined_symbols(paper):
+    """Names of the symbols that a paper uses and does not define."""
+    return [name for name in paper.definitions if name not in paper.auxiliary]
 
 
 def extent_lines(finding):
