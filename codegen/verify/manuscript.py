@@ -7,6 +7,7 @@ is, it shows, or a comment line in it or directly above it says: `% motion of \\
 
 import csv
 import re
+from dataclasses import replace
 from pathlib import Path
 
 from . import transcription, units
@@ -225,6 +226,11 @@ def _sort(equation, paper, rows, printed):
             printed.setdefault("definitions", []).append((name, equation))
         else:
             printed.setdefault("forces", {})[name] = equation.right(paper)
+            # what is given as a force is no part of a Lagrangian
+            for node in _nodes(equation.tree.children[2]):
+                other = rows.get(transcription._key(node), {}).get("name") if node.kind == "symbol" else None
+                if other and paper.symbols[other].role == "force":
+                    paper.symbols[other] = replace(paper.symbols[other], dissipative=True)
     elif role == "constraint":
         if equation.shape() != ["sum", "=", "sum"]:
             raise equation.error("a constraint is written as terms = terms")

@@ -9,36 +9,40 @@ use super::print;
 /// A folder that is inside the program.
 struct Template {
     name: &'static str,
-    files: [(&'static str, &'static str); 3],
+    /// Names and texts.
+    files: &'static [(&'static str, &'static str)],
+    /// What to do with it: commands, in which `{}` is the folder.
+    next: &'static [&'static str],
 }
 
 macro_rules! template {
-    ($name:literal) => {
+    ($name:literal, $next:expr, $($file:literal),+) => {
         Template {
             name: $name,
-            files: [
-                (
-                    "model.py",
-                    include_str!(concat!("../../templates/", $name, "/model.py")),
-                ),
-                (
-                    "README.md",
-                    include_str!(concat!("../../templates/", $name, "/README.md")),
-                ),
-                (
-                    "scene.json",
-                    include_str!(concat!("../../templates/", $name, "/scene.json")),
-                ),
-            ],
+            files: &[$((
+                $file,
+                include_str!(concat!("../../templates/", $name, "/", $file)),
+            )),+],
+            next: $next,
         }
+    };
+    ($name:literal) => {
+        template!($name, MODEL, "model.py", "README.md", "scene.json")
     };
 }
 
-const TEMPLATES: [Template; 4] = [
+/// What to do with a model.
+const MODEL: &[&str] = &["dalembert check {}", "dalembert run {}/scene.json"];
+
+/// What to do with a paper.
+const PAPER: &[&str] = &["dalembert verify {}"];
+
+const TEMPLATES: [Template; 5] = [
     template!("energies"),
     template!("bodies"),
     template!("stick-slip"),
     template!("impact"),
+    template!("paper", PAPER, "paper.tex", "symbols.csv", "README.md"),
 ];
 
 #[derive(Debug, clap::Args)]
@@ -46,7 +50,7 @@ pub struct NewArguments {
     /// Folder to make; its name is that of the model
     folder: PathBuf,
     /// What to start from: a pendulum by its energies, a rod on a cart by its bodies, a block on a rough slope, a ball
-    /// that bounces
+    /// that bounces; or the equations of a paper, to be verified
     #[arg(long, default_value = "energies", value_parser = TEMPLATES.map(|template| template.name))]
     template: String,
 }
@@ -65,10 +69,15 @@ pub fn new(arguments: &NewArguments) -> Result {
     };
     write(folder, template)
         .map_err(|error| Failure::system(format!("cannot write {}: {error}", folder.display())))?;
-    let shown = folder.display();
+    let shown = folder.display().to_string();
+    let next: Vec<String> = template
+        .next
+        .iter()
+        .map(|command| command.replace("{}", &shown))
+        .collect();
     print::output(format_args!(
-        "made {shown}; next:\n  dalembert check {shown}\n  dalembert run {}",
-        folder.join("scene.json").display()
+        "made {shown}; next:\n  {}",
+        next.join("\n  ")
     ))?;
     Ok(Outcome::Done)
 }

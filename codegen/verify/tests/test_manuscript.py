@@ -1,0 +1,151 @@
+"""A folder with a paper's LaTeX and a table of its symbols is judged as it is; what is wrong in it is said
+with file, line and column."""
+
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+from codegen.verify import report, text
+from codegen.verify.load import load
+from codegen.verify.printed import PaperError
+from codegen.verify.tokens import LatexError
+
+TEMPLATE = Path(__file__).resolve().parents[3] / "templates" / "paper"
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        for name in ("paper.tex", "symbols.csv"):
+            shutil.copy(TEMPLATE / name, self.folder)
+
+    def change(self, *pairs, file="paper.tex"):
+        path = self.folder / file
+        content = path.read_text(encoding="utf-8")
+        for old, new in pairs:
+            self.assertIn(old, content)
+            content = content.replace(old, new, 1)
+        path.write_text(content, encoding="utf-8")
+
+    def judged(self):
+        return report.verify(load(self.folder, "cart"), thorough=False)
+
+    def refused(self, error, expected):
+        with self.assertRaisesRegex(error, expected):
+            self.judged()
+
+
+class Judged(Folder):
+    def test_the_template_is_judged_right(self):
+        result = self.judged()
+        self.assertEqual((result.findings, list(result.unjudged)), ([], ["galilei"]))
+        self.assertEqual([(n, e.of) for n, e in result.case.paper.equations.items()], [("5", "x"), ("6", "theta")])
+        self.assertIn("(5), (6) are judged from their LaTeX", text.as_text(result))
+
+    def test_a_slip_in_it_is_found_and_named(self):
+        for old, new, slip in ((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot", "sign"), (r"m l \cos\theta \, \ddot{x}", r"m l \sin\theta \, \ddot{x}",
+                               "function"), ("+ c \\dot{x} = F", "+ 2 c \\dot{x} = F", "number"), ("+ c \\dot{x} = F", "+ c \\ddot{x} = F", "dot"),
+                               (r" + m g l \sin\theta = 0", " = 0", "lost term"), ("= F,\n\\end", "= 0,\n\\end", "lost term")):
+            shutil.copy(TEMPLATE / "paper.tex", self.folder)
+            self.change((old, new))
+            self.assertEqual([(f.slip, f.proved) for f in self.judged().findings], [(slip, True)], new)
+
+    def test_a_lagrangian_does_for_energies(self):
+        self.change(("T = ", "L = m g l \\cos\\theta + "), ("V =", "% skip\nV ="))
+        self.assertEqual(self.judged().findings, [])
+
+    def test_without_energies_the_equations_are_judged_by_themselves(self):
+        self.change(("T =", "% skip\nT ="), ("V =", "% skip\nV ="), ("D =", "% skip\nD ="), ("Q_x =", "% skip\nQ_x ="))
+        self.change(("F,         force", "F,         friction"), file="symbols.csv")
+        result = self.judged()
+        self.assertEqual((result.findings, result.motions), ([], []))
+        self.assertIn("difference", result.unjudged)
+
+    def test_a_definition_is_put_in(self):
+        self.change((r"\left( \dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} + l^2 \dot{\theta}^2 \right)", r"\left( v_x^2 + v_y^2 \right)"),
+                    ("and the force", "\\[ v_x = \\dot{x} + l \\cos\\theta \\dot\\theta \\]\n\\[ v_y = l \\sin\\theta \\dot\\theta \\] and the force"))
+        self.change(("\ng,  ", "\nv_x, defined, m/s, velocity, ,\nv_y, defined, m/s, velocity, ,\ng,  "), file="symbols.csv")
+        result = self.judged()
+        self.assertEqual((result.findings, text.undefined_symbols(result.case.paper)), ([], []))
+        self.change(("l \\sin\\theta \\dot\\theta \\]", "l \\sin\\theta \\]"))
+        self.refused(LatexError, r"paper.tex, line \d+, column \d+: v_y is declared in m\*s\^-1 and defined in m")
+
+    def test_a_constraint_with_its_multiplier_in_either_sign(self):
+        (self.folder / "symbols.csv").write_text("symbol,kind,unit,meaning\nx,coordinate,m,across\ny,coordinate,m,up\nm,parameter,kg,mass\n"
+                                                 "g,parameter,m/s^2,gravity\nl,parameter,m,length\n\\lambda,multiplier,N/m,multiplier\n")
+        for sign in "+-":
+            (self.folder / "paper.tex").write_text(rf"""
+                \[ T = \frac12 m (\dot x^2 + \dot y^2) \] \[ V = m g y \]
+                % constraint with \lambda
+                \[ x^2 + y^2 = l^2 \]
+                \begin{{equation}} m \ddot x {sign} 2 \lambda x = 0 \end{{equation}}
+                \begin{{equation}} m \ddot y + m g {sign} 2 \lambda y = 0 \end{{equation}}""")
+            result = self.judged()
+            self.assertEqual((result.findings, list(result.case.paper.equations)), ([], ["1", "2"]))
+            content = (self.folder / "paper.tex").read_text()
+            (self.folder / "paper.tex").write_text(content.replace(r"2 \lambda y", r"\lambda y"))
+            self.assertEqual([(f.equation, f.slip) for f in self.judged().findings], [("2", "number")])
+
+    def test_values_conditions_rules_and_impacts(self):
+        self.change(("The equations of motion", r"""\[ R = (M + m) g + m l \sin\theta \ddot\theta + m l \cos\theta \dot\theta^2 \]
+            % condition on x
+            \[ |F| > \mu R \tag{8} \]
+            \[ s = 1 \quad\text{if}\quad \dot{x} > 0 \tag{9} \]
+            \[ \dot{x}^+ = -e \dot{x}^- \tag{10} \] The equations of motion"""))
+        self.change(("\ng,  ", "\nR, force, N, normal force, ,\n\\mu, parameter, 1, friction, , 0.1\ns, sign, 1, side, -1,\n"
+                     "e, parameter, 1, restitution, , 0.5\ng,  "), file="symbols.csv")
+        self.assertEqual([(e.number, e.kind, e.of) for e in self.judged().case.paper.equations.values()],
+                         [("unnumbered 5", "value", "R"), ("8", "condition", "x"), ("9", "rule", "s"), ("10", "reset", "x"), ("5", "motion", "x"),
+                          ("6", "motion", "theta")])
+
+
+class Refused(Folder):
+    def test_errors_of_the_latex_say_where_in_the_file(self):
+        self.change((r"m l^2 \ddot{\theta} +", r"m l^2 \ddot{\theta} + \sqrt{m} +"))
+        with self.assertRaises(LatexError) as caught:
+            self.judged()
+        first, line, caret = str(caught.exception).split("\n")
+        number = next(k for k, x in enumerate((self.folder / "paper.tex").read_text().split("\n"), 1) if r"\sqrt" in x)
+        self.assertIn(f"paper.tex, line {number}, column {line.index('sqrt') - 4}: \\sqrt", first)
+        self.assertEqual(caret.index("^"), line.index(r"\sqrt"))
+
+    def test_what_is_not_clear_is_asked_for(self):
+        table = [
+            ((("% motion of x\n", ""),), LatexError, r"line 24, column 1: it is not clear what this equation is of.*% motion of"),
+            ((("% motion of x", "% motion of y"),), LatexError, r"y is not in symbols.csv"),
+            ((("% motion of x", "% motion of x\n% motion of \\theta"),), LatexError, r"two comments"),
+            ((("V = ", "T = "),), LatexError, "T is given twice"), ((("V = ", "% skip\nV = "),), PaperError, "V is not given; if there is none, write V = 0"),
+            ((("V = ", "L = "),), PaperError, "L is given beside T"), ((("Q_x = F", "Q_z = F"),), LatexError, "z is not in symbols.csv"),
+            ((("= F,", "= F_2,"),), PaperError, r"equation \(5\): .*paper.tex, line 25, column \d+: the symbol 'F_2' is not declared"),
+            ((("T = ", "T + V = "),), LatexError, "not clear"), ((("V = - m", "V < - m"),), LatexError, "not clear|not in"),
+        ]
+        for pairs, error, expected in table:
+            shutil.copy(TEMPLATE / "paper.tex", self.folder)
+            self.change(*pairs)
+            with self.subTest(expected):
+                self.refused(error, expected)
+
+    def test_the_table_of_symbols(self):
+        table = [
+            ((("m/s^2", "m/min^2"),), r"symbols.csv, line 7: the unit 'm/min\^2'"), ((("damping,    N", "brake,    N"),), r"line 8: 'brake' is no kind"),
+            ((("l,         ", "m,         "),), "line 6: the symbol 'm' is declared twice"), ((("symbol,", "name,"),), "line 1: the table lacks the column 'symbol'"),
+            (((" 0.5", " ,"),), "line 5: the row has not 6 cells"), (((" 0.5", ""),), "the column 'value' says nothing of m"),
+            (((" 0.5", " half"),), "line 5: .*half"), ((("-1,\nM", "-2,\nM"),), "line 3: mirror is 1 or -1, not -2"),
+        ]
+        for pairs, expected in table:
+            shutil.copy(TEMPLATE / "symbols.csv", self.folder)
+            self.change(*pairs, file="symbols.csv")
+            with self.subTest(expected):
+                self.refused(PaperError, expected)
+        (self.folder / "symbols.csv").unlink()
+        self.refused(PaperError, "needs the table of its symbols")
+
+    def test_one_of_two_papers(self):
+        (self.folder / "paper.py").write_text("")
+        self.refused(PaperError, "both paper.py and paper.tex")
+
+
+if __name__ == "__main__":
+    unittest.main()
