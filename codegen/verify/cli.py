@@ -3,13 +3,15 @@
     verify MODEL [--models DIR] [--json] [--html FILE] [--program FILE] [--quick]
     verify --seeded [--json]
 
-MODEL is the name of a folder under DIR (default: models) or the path of one. Exit status: 0 the
+MODEL is the name of a folder under DIR (default: models) or the path of one: with paper.py, or with
+paper.tex and symbols.csv. Exit status: 0 the
 equations were judged (whatever the verdict); 2 the input is wrong.
 """
 
 import argparse
 import importlib.util
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -28,6 +30,18 @@ def parser():
 
 
 def main(argv=None):
+    """Run the command and return its exit status. A reader that has seen enough (`| head`) is no error."""
+    try:
+        status = _main(argv)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:
+        # what is left in the buffer goes nowhere, and the interpreter does not complain of it when it ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _main(argv):
     """Run the command and return its exit status."""
     arguments = parser().parse_args(argv)
     if importlib.util.find_spec("sympy") is None:

@@ -8,7 +8,7 @@ from .report import closed
 from .show import form_latex
 from .text import (agreement_text, consistent_label, consistent_text, effect_lines, extent_lines, headline, judged_text,
                    judgement_text, number_text, possible_lines, printed_text, reason_lines, scale_lines, squares_text, transcription_lines,
-                   verdict_text)
+                   undefined_symbols, verdict_text)
 
 STYLE = """
 body { font: 16px/1.5 Georgia, serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1b1b1b; background: #fff; }
@@ -161,8 +161,8 @@ def _numbers(report):
             style = "bad" if x.agrees is False or not x.unit_agrees else "good" if x.agrees else ""
             out.append(f'<li class="{style}">{escape(number_text(x))}</li>')
         out.append("</ul>")
-    if paper.definitions:
+    if undefined := undefined_symbols(paper):
         out.append("<h2>Symbols that the paper uses and does not define</h2><ul>")
-        out += [f"<li>{escape(name)}: {escape(paper.symbols[name].meaning)}</li>" for name in paper.definitions]
+        out += [f"<li>{escape(name)}: {escape(paper.symbols[name].meaning)}</li>" for name in undefined]
         out.append("</ul>")
     return out

@@ -5,6 +5,7 @@ import json
 from .judgements import TITLES
 from .report import closed
 from .show import form_latex, form_text, message_text
+from .text import undefined_symbols
 
 
 # raised when a key changes its meaning or goes
@@ -65,7 +66,7 @@ def as_dictionary(report):
             "unit_printed": x.number.unit_printed, "low": x.low, "high": x.high, "agrees": x.agrees,
             "unit_agrees": x.unit_agrees, "meaning": x.number.meaning, "note": x.number.note,
         } for x in report.numbers],
-        "undefined_symbols": {name: paper.symbols[name].meaning for name in paper.definitions},
+        "undefined_symbols": {name: paper.symbols[name].meaning for name in undefined_symbols(paper)},
     }
 
 

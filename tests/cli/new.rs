@@ -4,7 +4,7 @@ use std::fs;
 
 use super::{ends_with, json, names, stderr, stdout};
 
-/// The templates.
+/// The templates of models.
 pub const TEMPLATES: [&str; 4] = ["energies", "bodies", "stick-slip", "impact"];
 
 #[test]
@@ -20,6 +20,17 @@ fn a_new_folder_is_a_model_without_errors() {
         let output = ends_with(0, folder.path(), &["check", &name]);
         assert!(stdout(&output).starts_with(&format!("{name}: no errors\n  mode ")));
     }
+}
+
+#[test]
+fn a_new_paper_is_judged_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = ends_with(0, folder.path(), &["new", "cart", "--template", "paper"]);
+    assert!(stdout(&output).contains("dalembert verify cart\n"));
+    let made = folder.path().join("cart");
+    assert_eq!(names(&made), ["README.md", "paper.tex", "symbols.csv"]);
+    let output = ends_with(0, folder.path(), &["verify", "cart", "--quick"]);
+    assert!(stdout(&output).contains("0 findings"), "{}", stdout(&output));
 }
 
 #[test]

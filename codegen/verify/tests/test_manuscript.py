@@ -1,7 +1,10 @@
 """A folder with a paper's LaTeX and a table of its symbols is judged as it is; what is wrong in it is said
 with file, line and column."""
 
+import os
 import shutil
+import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -99,6 +102,19 @@ class Judged(Folder):
         self.assertEqual([(e.number, e.kind, e.of) for e in self.judged().case.paper.equations.values()],
                          [("unnumbered 5", "value", "R"), ("8", "condition", "x"), ("9", "rule", "s"), ("10", "reset", "x"), ("5", "motion", "x"),
                           ("6", "motion", "theta")])
+
+
+class Command(Folder):
+    def test_a_reader_that_stops_reading_is_no_error(self):
+        root = Path(__file__).resolve().parents[3]
+        reader, writer = os.pipe()
+        os.close(reader)  # who writes now is told that nobody reads
+        try:
+            result = subprocess.run([sys.executable, "-B", "-m", "codegen", "verify", str(self.folder), "--quick"], cwd=root,
+                                    stdout=writer, stderr=subprocess.PIPE, check=False)
+        finally:
+            os.close(writer)
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
 
 
 class Refused(Folder):
