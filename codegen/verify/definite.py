@@ -55,6 +55,14 @@ def states(paper, forms=None):
     return [dict(zip(names, values)) for values in product((1, -1), repeat=len(names))]
 
 
+def rest(paper):
+    """Where the system rests, as (zeros, places): all coordinates and rates at zero, but for coordinates whose
+    box has no zero in it, which stay; their places are the middles of their boxes. There zero is singular, or
+    no position of the system."""
+    places = {n: (low + high) / 2 for n, (low, high) in paper.box.items() if n in paper.coordinates() and not low <= 0 <= high}
+    return {p + n: 0 for n in paper.coordinates() for p in ("", "d", "dd") if p or n not in places}, places
+
+
 @dataclass
 class Verdict:
     """`status`: proved, refuted (`point` is a box or point where a leading minor is negative) or
@@ -91,11 +99,11 @@ def prove(forms, fixed, box, limit=BISECTIONS) -> Verdict:
 
 def definite(subject, motion=None) -> List[Violation]:
     """Violations where the symmetric part of the printed mass matrix is not positive definite at
-    zero coordinates, for one of the paper's parameter sets."""
+    rest, for one of the paper's parameter sets."""
     if not subject.paper.sets or not subject.paper.motions():
         return []
-    rest = {p + n: 0 for n in subject.paper.coordinates() for p in ("", "d", "dd")}
-    matrix = [[form.substitute(rest) for form in row] for row in printed_mass(subject, symmetric=True)]
+    zeros, _ = rest(subject.paper)
+    matrix = [[form.substitute(zeros) for form in row] for row in printed_mass(subject, symmetric=True)]
     key = ("definite", None, str(matrix))
     if key not in subject.memo:
         # all equations together may have been multiplied by a constant
@@ -113,7 +121,7 @@ def _indefinite(subject, forms):
     violations = []
     numbers = tuple(e.number for e in subject.paper.motions())
     for (name, values), state in product(subject.paper.sets.items(), states(subject.paper)):
-        found = signs(forms, intervals({**values, **state}))
+        found = signs(forms, intervals({**values, **rest(subject.paper)[1], **state}))
         if any(sign != 1 for sign in found):
             bad = next(k for k, sign in enumerate(found) if sign != 1)
             at = ", ".join([f"parameter set {name}"] + [f"{n} = {v:+d}" for n, v in state.items()])
@@ -145,7 +153,7 @@ def critical(form, parameter, paper) -> Optional[Critical]:
     coefficients = [form.substitute(zero), first.substitute(zero), second.substitute(zero) * HALF]
     roots = {}
     for (name, values), state in product(paper.sets.items(), states(paper, coefficients)):
-        number = {**{n: float(v) for n, v in values.items()}, **state}
+        number = {**{n: float(v) for n, v in values.items()}, **rest(paper)[1], **state}
         c, b, a = (x.evaluate(number, math.sin, math.cos, 0.0) for x in coefficients)
         if a:
             square = b * b - 4 * a * c

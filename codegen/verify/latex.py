@@ -372,7 +372,7 @@ class Parser:
         self.next()
         text = ""
         while not self.sees("brace", "}"):
-            text += _plain(self.next("symbol", "number", "sign", "upright", "text", "end"))
+            text += _plain(self.next("symbol", "number", "sign", "upright", "text", "end", "index"))
         self.shut()
         return text
 

@@ -9,7 +9,7 @@ from . import transcription
 from .algebra import NotInClass, expression
 from .comparison import compare
 from .corrections import apply
-from .definite import critical, determinant, minors, printed_mass, prove, states
+from .definite import critical, determinant, minors, printed_mass, prove, rest, states
 from .findings import Finding, from_corrections, from_locations, from_objections, from_repairs, judge, repaired, scores
 from .intervals import intervals, signs
 from .judgements import unjudged, unreferenced
@@ -98,7 +98,7 @@ def _neglected(report):
     for motion, d in zip(report.motions, report.definiteness[1:]):
         if d.neglected is None:
             continue
-        found = [signs([d.neglected], intervals({**values, **state}))[0] for values in paper.sets.values() for state in states(paper)]
+        found = [signs([d.neglected], intervals({**values, **rest(paper)[1], **state}))[0] for values in paper.sets.values() for state in states(paper)]
         if not d.neglected:
             verdict = "singular: the determinant at rest is exactly 0, and accelerations along its null vector are not determined"
         elif -1 in found:
@@ -126,7 +126,7 @@ def _regular(paper, d):
         key = ", ".join([name] + [f"{n} = {v:+d}" for n, v in state.items()])
         roots = d.critical.roots[key] if d.critical else []
         if len(roots) == 2:
-            put = {**values, **state, d.critical.parameter: sum(roots) / 2}
+            put = {**values, **rest(paper)[1], **state, d.critical.parameter: sum(roots) / 2}
             if signs([d.at_rest], intervals(put)) == [1]:
                 result.append(f"{roots[0]:.4g} and {roots[1]:.4g} ({key})")
     return result
@@ -157,8 +157,7 @@ def _squares(motion):
 
 def _definiteness(name, paper, mass, squares, thorough):
     """The sixth judgement on one mass matrix."""
-    rest = {p + n: 0 for n in paper.coordinates() for p in ("", "d", "dd")}
-    at_rest = determinant(mass).substitute(rest)
+    at_rest = determinant(mass).substitute(rest(paper)[0])
     neglected = at_rest.substitute({n: 0 for n in paper.negligible}) if paper.negligible else None
     decided = critical(at_rest, paper.negligible[0], paper) if paper.negligible else None
     boxes = {}

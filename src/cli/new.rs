@@ -75,10 +75,7 @@ pub fn new(arguments: &NewArguments) -> Result {
         .iter()
         .map(|command| command.replace("{}", &shown))
         .collect();
-    print::output(format_args!(
-        "made {shown}; next:\n  {}",
-        next.join("\n  ")
-    ))?;
+    print::output(format_args!("made {shown}; next:\n  {}", next.join("\n  ")))?;
     Ok(Outcome::Done)
 }
 

@@ -30,7 +30,11 @@ fn a_new_paper_is_judged_as_it_is() {
     let made = folder.path().join("cart");
     assert_eq!(names(&made), ["README.md", "paper.tex", "symbols.csv"]);
     let output = ends_with(0, folder.path(), &["verify", "cart", "--quick"]);
-    assert!(stdout(&output).contains("0 findings"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("0 findings"),
+        "{}",
+        stdout(&output)
+    );
 }
 
 #[test]
