@@ -160,14 +160,17 @@ def _definiteness(name, paper, mass, squares, thorough):
     at_rest = determinant(mass).substitute(rest(paper)[0])
     neglected = at_rest.substitute({n: 0 for n in paper.negligible}) if paper.negligible else None
     decided = critical(at_rest, paper.negligible[0], paper) if paper.negligible else None
-    boxes = {}
+    boxes, forms = {}, minors(mass)
+    moving = set(paper.coordinates()) & set().union(*(form.names() for form in forms))
+    # without bounds of all that the matrix depends on there is no box to speak of
+    thorough = thorough and moving <= paper.box.keys()
     for set_name, values in paper.sets.items() if thorough else ():
         for neglect in (False, True) if paper.negligible else (False,):
             if neglect and not neglected:
                 continue  # singular at rest: the exact zero above says so
             fixed = {**values, **({n: 0 for n in paper.negligible} if neglect else {})}
             for state in states(paper):
-                verdict = prove(minors(mass), {**fixed, **state}, paper.box or {n: (0.0, 0.0) for n in paper.coordinates()})
+                verdict = prove(forms, {**fixed, **state}, paper.box)
                 label = set_name + (", " + " = ".join([*paper.negligible, "0"]) if neglect else "")
                 key = ", ".join([label] + [f"{n} = {v:+d}" for n, v in state.items()])
                 boxes[key] = verdict

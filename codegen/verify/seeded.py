@@ -13,6 +13,7 @@ from .load import load
 from .units import parse
 
 EXAMPLES = Path(__file__).parent / "examples"
+PUBLISHED = Path(__file__).parent / "published"
 
 KINDS = (
     "sign", "missing discrete state", "swapped symbol", "lost dot", "lost power", "dropped velocity term", "dropped term",

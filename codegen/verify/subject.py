@@ -8,6 +8,7 @@ from sympy import Expr, Mul, cos, sin, sympify
 from . import units
 from .algebra import NotInClass
 from .edits import Editor
+from .judgements import lagrangian
 from .lagrange import Mathematics, ring_of, sympy_namespace
 from .printed import PaperError
 from .scales import scales
@@ -117,7 +118,7 @@ class Subject:
         motions = self.paper.motions()
         rows = [[self.scales[e.number] * self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
         if not motions or not any(row[i] != rows[i][j] for j, row in enumerate(rows) for i in range(len(motions))):
-            return dict(self.scales)
+            return self._uncoupled(dict(self.scales), motions, rows)
         best = None
         for choice in product(self.factors(), repeat=len(motions) - 1):
             choice = (self.ring.number(1),) + choice
@@ -125,4 +126,17 @@ class Subject:
                        for i in range(len(motions)) for j in range(i))
             if best is None or cost < best[0]:
                 best = (cost, choice)
-        return {e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}
+        return self._uncoupled({e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}, motions, rows)
+
+    def _uncoupled(self, found, motions, rows):
+        """The multipliers, where the mass matrix couples an equation to no other, and so says nothing of its
+        constant: that with which least is left of the Helmholtz conditions, and then a positive inertia."""
+        alone = [i for i in range(len(motions)) if not any(rows[i][j] or rows[j][i] for j in range(len(motions)) if j != i)]
+        for i in alone[len(alone) == len(motions):]:
+            number, costs = motions[i].number, []
+            for factor in self.factors():
+                self.multipliers = {**found, number: factor * self.scales[number]}
+                left = sum(len(part.terms) for v in lagrangian(self) for part in v.message if not isinstance(part, str))
+                costs.append((left, all(value < 0 for value in (self.multipliers[number] * rows[i][i]).terms.values()), self.multipliers))
+            found = min(costs, key=lambda cost: cost[:2])[2]
+        return found
