@@ -2,3 +2,4 @@
 
 pub mod fragility;
 pub mod normal;
+pub mod sampling;
