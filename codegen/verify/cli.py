@@ -1,11 +1,13 @@
 """`python -m codegen verify`: judge the hand-written equations of a model.
 
     verify MODEL [--models DIR] [--json] [--html FILE] [--program FILE] [--quick]
+                 [--fail-on misprint|finding [--waivers FILE]]
     verify --seeded [--json]
 
 MODEL is the name of a folder under DIR (default: models) or the path of one: with paper.py, or with
 paper.tex and symbols.csv. Exit status: 0 the
-equations were judged (whatever the verdict); 2 the input is wrong.
+equations were judged (whatever the verdict, unless --fail-on asks for one); 1 there is what --fail-on names
+and no waiver excuses; 2 the input is wrong.
 """
 
 import argparse
@@ -14,6 +16,10 @@ import json
 import os
 import sys
 from pathlib import Path
+
+
+# kinds of findings by what --fail-on says; None: all
+FAILS = {"misprint": ("misprint", "repair"), "finding": None}
 
 
 def parser():
@@ -25,6 +31,9 @@ def parser():
     result.add_argument("--html", metavar="FILE", help="also write a self-contained HTML page")
     result.add_argument("--quick", action="store_true", help="skip the proof over the whole box of coordinates, and simulations")
     result.add_argument("--program", metavar="FILE", help="the program dalembert: simulate what each slip does to the scenes")
+    result.add_argument("--fail-on", choices=sorted(FAILS), help="exit with status 1 where there is a misprint (a slip that is repaired or "
+                        "corrected as one), or any finding")
+    result.add_argument("--waivers", metavar="FILE", help="findings that --fail-on excuses: lines 'id: reason'")
     result.add_argument("--seeded", action="store_true", help="print the detection table of seeded errors instead")
     return result
 
@@ -95,7 +104,43 @@ def _judge(arguments):
         except OSError as error:
             print(f"verify: cannot write {path}: {error.strerror}", file=sys.stderr)
             return 2
-    return 0
+    return _gate(arguments, result) if arguments.fail_on else 0
+
+
+def _gate(arguments, result):
+    """The exit status where --fail-on is given."""
+    waived = _waivers(arguments.waivers) if arguments.waivers else {}
+    kinds = FAILS[arguments.fail_on]
+    found = [f.key for f in result.findings if kinds is None or f.kind in kinds]
+    open_ = [key for key in found if key not in waived]
+    # what excuses nothing any more would excuse the next finding of that name
+    stale = [key for key in waived if key not in found]
+    if open_:
+        print(f"verify: --fail-on {arguments.fail_on}: {', '.join(open_)}", file=sys.stderr)
+    if stale:
+        print(f"verify: {arguments.waivers}: no finding needs {', '.join(stale)}: take the line out", file=sys.stderr)
+    return 1 if open_ or stale else 0
+
+
+def _waivers(path):
+    """The reasons by the names of findings."""
+    from .printed import PaperError
+
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").split("\n")
+    except OSError as error:
+        raise PaperError(f"cannot read {path}: {error.strerror}") from error
+    waived = {}
+    for number, line in enumerate(lines, 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        key, colon, reason = (part.strip() for part in line.partition(":"))
+        if not (key and colon and reason):
+            raise PaperError(f"{path}, line {number}: a waiver is a finding and its reason, 'id: reason', not {line.strip()!r}")
+        if key in waived:
+            raise PaperError(f"{path}, line {number}: {key} is waived twice")
+        waived[key] = reason
+    return waived
 
 
 if __name__ == "__main__":

@@ -26,8 +26,14 @@ pub struct VerifyArguments {
     /// Skip the proof of definiteness over the whole box of parameters
     #[arg(long)]
     quick: bool,
+    /// Exit with status 1 where there is a misprint, or any finding
+    #[arg(long, value_parser = ["misprint", "finding"])]
+    fail_on: Option<String>,
+    /// Findings that --fail-on excuses: lines `id: reason`
+    #[arg(long, value_name = "FILE", requires = "fail_on")]
+    waivers: Option<PathBuf>,
     /// Instead, put errors into correct equations and show which judgement finds which
-    #[arg(long, conflicts_with_all = ["model", "html", "quick"])]
+    #[arg(long, conflicts_with_all = ["model", "html", "quick", "fail_on"])]
     seeded: bool,
 }
 
@@ -69,6 +75,12 @@ pub fn verify(arguments: &VerifyArguments) -> Result {
     }
     if let Some(html) = &arguments.html {
         command.arg("--html").arg(absolute(html)?);
+    }
+    if let Some(kind) = &arguments.fail_on {
+        command.args(["--fail-on", kind]);
+    }
+    if let Some(waivers) = &arguments.waivers {
+        command.arg("--waivers").arg(absolute(waivers)?);
     }
     // The verification simulates what each slip does to the model's scenes.
     if !arguments.seeded

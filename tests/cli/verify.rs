@@ -45,3 +45,25 @@ fn an_interpreter_that_is_gone_is_named_with_what_to_do() {
     );
     assert!(message.contains("DALEMBERT_PYTHON"), "{message}");
 }
+
+#[test]
+fn misprints_fail_where_they_are_asked_to() {
+    let home = tempfile::tempdir().unwrap();
+    ends_with(0, home.path(), &["new", "cart", "--template", "paper"]);
+    let paper = home.path().join("cart/paper.tex");
+    let text = std::fs::read_to_string(&paper).unwrap();
+    std::fs::write(&paper, text.replace("+ m g l", "- m g l")).unwrap();
+    let judge = ["verify", "cart", "--quick", "--fail-on", "misprint"];
+    let output = ends_with(1, home.path(), &judge);
+    assert!(
+        stderr(&output).contains("--fail-on misprint: 6-1"),
+        "{}",
+        stderr(&output)
+    );
+    std::fs::write(home.path().join("known"), "6-1: the author knows\n").unwrap();
+    ends_with(
+        0,
+        home.path(),
+        &[&judge[..], &["--waivers", "known"]].concat(),
+    );
+}

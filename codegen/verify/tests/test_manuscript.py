@@ -1,6 +1,8 @@
 """A folder with a paper's LaTeX and a table of its symbols is judged as it is; what is wrong in it is said
 with file, line and column."""
 
+import contextlib
+import io
 import os
 import shutil
 import subprocess
@@ -9,7 +11,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from codegen.verify import report, text
+from codegen.verify import cli, report, text
 from codegen.verify.load import load
 from codegen.verify.printed import PaperError
 from codegen.verify.tokens import LatexError
@@ -115,6 +117,35 @@ class Command(Folder):
         finally:
             os.close(writer)
         self.assertEqual((result.returncode, result.stderr), (0, b""))
+
+
+class Gate(Folder):
+    def status(self, *arguments):
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
+            return cli.main([str(self.folder), "--quick", *arguments]), said.getvalue()
+
+    def test_the_exit_status_where_one_is_asked_for(self):
+        waivers = self.folder / "waivers"
+        self.assertEqual(self.status("--fail-on", "finding"), (0, ""))
+        self.change((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot"))
+        self.assertEqual(self.status(), (0, ""))
+        for kind in ("misprint", "finding"):
+            self.assertEqual(self.status("--fail-on", kind), (1, f"verify: --fail-on {kind}: 5-1\n"))
+        waivers.write_text("# agreed with the author\n5-1: the next edition has it right\n")
+        self.assertEqual(self.status("--fail-on", "misprint", "--waivers", str(waivers)), (0, ""))
+        waivers.write_text("5-1: known\n5-2: gone\n")
+        status, said = self.status("--fail-on", "misprint", "--waivers", str(waivers))
+        self.assertEqual((status, "no finding needs 5-2" in said), (1, True))
+        for text, expected in (("5-1\n", "line 1: a waiver is a finding and its reason"), ("5-1:\n", "line 1"), ("5-1: a\n5-1: b\n", "line 2: 5-1 is waived twice")):
+            waivers.write_text(text)
+            status, said = self.status("--fail-on", "misprint", "--waivers", str(waivers))
+            self.assertEqual((status, expected in said), (2, True), said)
+        waivers.unlink()
+        self.assertEqual(self.status("--fail-on", "misprint", "--waivers", str(waivers))[0], 2)
+
+    def test_an_objection_is_a_finding_and_no_misprint(self):
+        self.change(("T =", "% skip\nT ="), ("V =", "% skip\nV ="), ("D =", "% skip\nD ="), ("Q_x =", "% skip\nQ_x ="))
+        self.assertEqual((self.status("--fail-on", "misprint")[0], self.status("--fail-on", "finding")[0]), (0, 1))
 
 
 class Refused(Folder):
