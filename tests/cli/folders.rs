@@ -360,3 +360,57 @@ fn folders_are_refused_with_reasons() {
         "{text}"
     );
 }
+
+/// More free coordinates than the engine is compiled for, by both methods: links that keep their energy, and masses that stick
+/// and slip.
+#[test]
+fn models_of_many_free_coordinates_run() {
+    let place = Place::new();
+    for (model, choice, number, beginning) in [
+        (
+            "link_chain",
+            "links",
+            10,
+            r#""initial": {"theta_1": 1.0, "theta_10": -1.0}"#,
+        ),
+        (
+            "spring_chain",
+            "masses",
+            40,
+            r#""parameters": {"k_3": 1e4}"#,
+        ),
+    ] {
+        let text = fs::read_to_string(project().join("tests/models").join(model).join("model.py"));
+        let text = text
+            .unwrap()
+            .replace("\nN = 7\n", &format!("\nN = {number}\n"));
+        assert!(text.contains(&format!("\nN = {number}\n")));
+        fs::create_dir(place.path(model)).unwrap();
+        fs::write(place.path(model).join("model.py"), text).unwrap();
+        let scene = format!(
+            r#"{{"model": "./{model}", "{choice}": "{number}", {beginning}, "end": 2.0, "accuracy": {{"relative": 1e-12}}}}"#
+        );
+        let file = format!("{model}.json");
+        fs::write(place.path(&file), scene).unwrap();
+        let [taylor, radau] = ["taylor", "radau"].map(|method| {
+            let out = format!("{model}_{method}");
+            let set = format!("method={method}");
+            place.run(0, &["run", &file, "--set", &set, "--out", &out]);
+            let summary = fs::read_to_string(place.path(&out).join("summary.json")).unwrap();
+            let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+            (out, summary)
+        });
+        for (_, summary) in [&taylor, &radau] {
+            let imbalance = summary["energy"]["imbalance"].as_f64().unwrap();
+            assert!(imbalance.abs() < 1e-9, "{model}: {imbalance:e}");
+        }
+        let name = if model == "link_chain" {
+            "theta_10"
+        } else {
+            "x_40"
+        };
+        let [taylor, radau] = [taylor.0, radau.0].map(|out| place.column(&out, name));
+        close(*taylor.last().unwrap(), *radau.last().unwrap());
+        assert!(taylor.len() > 2 && taylor.last() != taylor.first());
+    }
+}
