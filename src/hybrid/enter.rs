@@ -9,7 +9,7 @@ use super::simulation::{Simulation, Violation};
 use crate::integrate::{Size, Vector, determinant_sign};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, GuardShape};
-use crate::numerics::{Matrix, solve_for};
+use crate::numerics::{Lu, Matrix};
 
 /// Unit roundoff of a double.
 const ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -287,9 +287,9 @@ fn is_at_rest(guard: &Guard, v: &impl Vector) -> bool {
 fn inverse<M: Matrix>(mass: &M, scale: &<M::Size as Size>::Vector) -> M {
     let size = mass.size();
     let mut inverse = size.zero_matrix();
-    for j in 0..size.get() {
-        let unit = |i| if i == j { 1.0 } else { 0.0 };
-        if let Ok(column) = solve_for(mass, unit, scale) {
+    if let Ok(lu) = Lu::<f64, M::Size>::factorize(|i, j| mass[(i, j)], scale) {
+        for j in 0..size.get() {
+            let column = lu.solve(|i| if i == j { 1.0 } else { 0.0 });
             (0..size.get()).for_each(|i| inverse[(i, j)] = column[i]);
         }
     }

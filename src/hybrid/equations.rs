@@ -4,7 +4,7 @@ use super::instant::Instant;
 use crate::input::{Side, Signals};
 use crate::integrate::{Analytic, Series, Singular, Size, State, System};
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::numerics::solve_for;
+use crate::numerics::{Lu, solve_for};
 
 /// What a segment needs to know about time: where it starts, what the inputs do, what drifts.
 #[derive(Debug, Clone, Copy)]
@@ -230,11 +230,12 @@ impl<'a, F: Size> Equations<'a, F> {
         let mut jacobian = std::array::from_fn(|_| size.zero_matrix());
         self.kernel.jacobian(self.context, at, &mut jacobian);
         let [mass, damping, _] = jacobian;
+        let Ok(lu) = Lu::<f64, F>::factorize(|i, j| mass[(i, j)], &self.scale) else {
+            return 0.0;
+        };
         let mut sums = size.zeros();
         for j in 0..size.get() {
-            let Ok(column) = solve_for(&mass, |i| damping[(i, j)], &self.scale) else {
-                return 0.0;
-            };
+            let column = lu.solve(|i| damping[(i, j)]);
             for i in 0..size.get() {
                 sums[i] += column[i].abs() * self.scale[j];
             }
