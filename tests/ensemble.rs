@@ -128,6 +128,23 @@ fn each_trajectory_of_an_ensemble_is_a_single_run() {
 }
 
 #[test]
+fn members_with_more_free_coordinates_than_lanes_take_are_single_runs() {
+    let mut masses = problem("spring_chain", &[]);
+    masses.choose(&[("masses", "7")]).unwrap();
+    masses.end.time = 3.0;
+    let masses = variations(&masses, 5, |p, x| {
+        p.set_parameter("k_3", 1e3 + 1e4 * x).unwrap()
+    });
+    let (alone, together) = (alone(&masses), together(&masses, processor_level(), 2));
+    assert_eq!(alone, together);
+    assert!(
+        alone
+            .iter()
+            .all(|one| one.steps > 10 && !one.events.is_empty())
+    );
+}
+
+#[test]
 fn a_smooth_ensemble_is_within_its_tolerance_of_solutions_of_forty_digits() {
     // Driven pendulums, of which some nearly turn over: errors grow along their motion, at most so much.
     const AMPLIFICATION: f64 = 100.0;

@@ -109,19 +109,22 @@ impl<F: Size> Free<'_, F> {
 }
 
 impl<F: Size> ModeKernel<F> {
+    /// Calls a function of the mode.
+    ///
+    /// # Safety
+    /// `out` must have room for its outputs, and it must not read jerks.
+    #[inline(always)]
+    unsafe fn call(&self, function: Raw, x: &Context, at: Free<F>, out: *mut f64) {
+        // SAFETY: there are as many coordinates, velocities and accelerations as it reads; the rest is the caller's.
+        unsafe { x.call(function, &self.dimensions, at.pointers(self.size), out) }
+    }
+
     /// r(q, v, a, u): generalized forces that are missing for equilibrium, one a free coordinate.
     #[inline]
     pub fn residual(&self, x: &Context, at: Free<F>, r: &mut F::Vector) {
         assert_eq!(r.size(), self.size, "one number a free coordinate");
         // SAFETY: F outputs.
-        unsafe {
-            x.call(
-                self.residual,
-                &self.dimensions,
-                at.pointers(self.size),
-                r.as_mut_slice().as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(self.residual, x, at, r.as_mut_slice().as_mut_ptr()) }
     }
 
     /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
@@ -265,9 +268,8 @@ impl<F: Size> ModeKernel<F> {
     unsafe fn one_a_coordinate(&self, function: Raw, x: &Context, at: Free<F>) -> F::Vector {
         let mut out = self.size.zeros();
         if self.size.get() > 0 {
-            let (at, to) = (at.pointers(self.size), out.as_mut_slice().as_mut_ptr());
             // SAFETY: as the caller promises.
-            unsafe { x.call(function, &self.dimensions, at, to) }
+            unsafe { self.call(function, x, at, out.as_mut_slice().as_mut_ptr()) }
         }
         out
     }
@@ -283,28 +285,14 @@ impl<F: Size> ModeKernel<F> {
             self.dimensions.coordinates + self.dimensions.motions
         );
         // SAFETY: the length was checked.
-        unsafe {
-            x.call(
-                self.reactions,
-                &self.dimensions,
-                at.pointers(self.size),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(self.reactions, x, at, out.as_mut_ptr()) }
     }
 
     /// [kinetic, potential] energy, J, in the inertial frame.
     pub fn energies(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];
         // SAFETY: two outputs.
-        unsafe {
-            x.call(
-                self.energies,
-                &self.dimensions,
-                at.pointers(self.size),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(self.energies, x, at, out.as_mut_ptr()) }
         out
     }
 
@@ -313,14 +301,7 @@ impl<F: Size> ModeKernel<F> {
     pub fn powers(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];
         // SAFETY: two outputs.
-        unsafe {
-            x.call(
-                self.powers,
-                &self.dimensions,
-                at.pointers(self.size),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(self.powers, x, at, out.as_mut_ptr()) }
         out
     }
 
@@ -334,14 +315,7 @@ impl<F: Size> ModeKernel<F> {
             self.dimensions.coordinates + self.dimensions.motions
         );
         // SAFETY: the length was checked.
-        unsafe {
-            x.call(
-                self.momenta,
-                &self.dimensions,
-                at.pointers(self.size),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(self.momenta, x, at, out.as_mut_ptr()) }
     }
 
     /// What must be positive in this mode.
@@ -353,14 +327,7 @@ impl<F: Size> ModeKernel<F> {
         let (function, count) = self.requirements;
         assert_eq!(out.len(), count);
         // SAFETY: the length was checked.
-        unsafe {
-            x.call(
-                function,
-                &self.dimensions,
-                at.pointers(self.size),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }
 
     /// Lower bounds of what must be positive, while time goes on by `tau` (s) from where the series of motion
@@ -435,14 +402,7 @@ impl<F: Size> ModeKernel<F> {
             a: &none,
         };
         // SAFETY: the length was checked.
-        unsafe {
-            x.call(
-                function,
-                &self.dimensions,
-                at.pointers(self.size),
-                out.as_mut_ptr(),
-            )
-        }
+        unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }
 
     /// Value of a guard of this mode.

@@ -25,16 +25,21 @@ impl<T> Store<T> {
         }
     }
 
-    fn take(&mut self, class: usize) -> Vec<T> {
+    /// What is free of a class, and how many of it are there.
+    fn class(&mut self, class: usize) -> (&mut Vec<Vec<T>>, &mut usize) {
         if self.free.len() <= class {
             self.free.resize_with(class + 1, Vec::new);
             self.made.resize(class + 1, 0);
         }
-        let free = &mut self.free[class];
+        (&mut self.free[class], &mut self.made[class])
+    }
+
+    fn take(&mut self, class: usize) -> Vec<T> {
+        let (free, made) = self.class(class);
         free.pop().unwrap_or_else(|| {
-            self.made[class] += 1;
+            *made += 1;
             // So that there is room when all are given back.
-            free.reserve(self.made[class]);
+            free.reserve(*made);
             Vec::with_capacity(1 << class)
         })
     }
@@ -42,12 +47,8 @@ impl<T> Store<T> {
     fn give_back(&mut self, mut memory: Vec<T>) {
         // Of another thread, perhaps: any class is as good as the one that it was made for, as long as it fits.
         let class = memory.capacity().ilog2() as usize;
-        if self.free.len() <= class {
-            self.free.resize_with(class + 1, Vec::new);
-            self.made.resize(class + 1, 0);
-        }
         memory.clear();
-        self.free[class].push(memory);
+        self.class(class).0.push(memory);
     }
 }
 

@@ -150,6 +150,7 @@ fn climb(
         ];
         // What the quadratic model gains, twice. Near the maximum it falls quadratically until it is nothing but rounding.
         let expected = ga * step[0] + gb * step[1];
+        // Below a millionth a step is right to its square; a likelihood of many runs has no digits left to judge it by.
         let is_near = expected < 1e-6;
         if is_near && expected >= gain || expected.is_nan() || expected <= 0.0 {
             return p;

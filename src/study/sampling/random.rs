@@ -19,11 +19,6 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number in (0, 1): the middle of one of 2⁵² cells.
-    pub fn uniform(&mut self) -> f64 {
-        ((self.bits() >> 12) as f64 + 0.5) / 2f64.powi(52)
-    }
-
     /// A whole number below n > 0, each as likely as the others.
     pub fn below(&mut self, n: u64) -> u64 {
         // Numbers of the last, incomplete run of n are drawn again.
