@@ -3,7 +3,7 @@
  * A model exports one constant, a `struct dalembert_model`. Its first fields, up to the digest, keep their places
  * in all versions, so that any engine can tell what it has before it. What is data is JSON: names, units,
  * meanings, modes, guards, and for each function its place in the tables below; codegen/description.py writes it,
- * src/kernel/description.rs reads it and checks every index.
+ * src/model/description/ reads it and checks every index.
  *
  * A `real` is a double; in code for lanes, trajectories side by side, a vector of them (lanes.h).
  */

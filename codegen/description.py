@@ -1,7 +1,7 @@
 """What a model is besides its functions: names, units, meanings, modes, guards, and where each function is found in the
 tables of the contract (contract.h).
 
-The result is data alone, written as JSON into the compiled model; src/kernel/description.rs reads it and checks it. Keys are
+The result is data alone, written as JSON into the compiled model; src/model/description/ reads it and checks it. Keys are
 the names of the fields there.
 """
 

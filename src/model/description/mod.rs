@@ -1,18 +1,19 @@
 //! From the description and the functions of a compiled model to a [`Model`]: codegen/description.py wrote it, and every
 //! field and index of it is checked here.
 
+mod functions;
+mod tapes;
+
 use super::name::intern;
 use super::reader::{At, count, number, text, truth};
 use super::{
-    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Instruction, Limit,
-    Mode, Model, Motion, Name, Parameter, ParameterSet, ParametricBound, Pick, Requirement, Rest,
-    Tape, Transition, Validity, Variant,
+    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Limit, Mode, Model,
+    Motion, Parameter, ParameterSet, ParametricBound, Requirement, Rest, Transition, Validity,
+    Variant,
 };
 use crate::kernel::{
-    ConstantsKernel, ContractError, Dimensions, Functions, GuardKernel, LaneKernel, Library,
-    ModeKernel, ModeKernels, Parts, Raw, SeriesKernel, TransitionKernel,
+    ContractError, Dimensions, Functions, GuardKernel, Library, Parts, TransitionKernel,
 };
-use crate::numerics::{Const, Dynamic, Size};
 use std::sync::Arc;
 
 type Read<T> = Result<T, ContractError>;
@@ -278,111 +279,6 @@ impl Reader<'_> {
         })
     }
 
-    fn kernels(&self, at: &At, free: usize, guards: &[Guard], held: usize) -> Read<ModeKernels> {
-        Ok(match free {
-            _ if self.dynamic => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, held)?),
-            0 => ModeKernels::F0(self.kernel(at, Const, guards, held)?),
-            1 => ModeKernels::F1(self.kernel(at, Const, guards, held)?),
-            2 => ModeKernels::F2(self.kernel(at, Const, guards, held)?),
-            3 => ModeKernels::F3(self.kernel(at, Const, guards, held)?),
-            4 => ModeKernels::F4(self.kernel(at, Const, guards, held)?),
-            5 => ModeKernels::F5(self.kernel(at, Const, guards, held)?),
-            6 => ModeKernels::F6(self.kernel(at, Const, guards, held)?),
-            _ => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, held)?),
-        })
-    }
-
-    fn kernel<F: Size>(
-        &self,
-        at: &At,
-        size: F,
-        guards: &[Guard],
-        held: usize,
-    ) -> Read<ModeKernel<F>> {
-        let value = |key: &str| at.get(key, |at| self.value(at));
-        let series = |key: &str| at.get(key, |at| at.option(|at| self.series(at, self.functions)));
-        let lanes = match at.get("goes_in_lanes", truth)? {
-            true => self.lanes,
-            false => &[],
-        };
-        let lanes = lanes.iter().map(|functions| {
-            let series = |key: &str| at.get(key, |at| self.series(at, functions));
-            Ok(LaneKernel {
-                series: series("series")?,
-                quiet_series: series("quiet_series")?,
-                requirement_bounds: at.get("requirement_bounds", |at| {
-                    in_lanes(at, self.functions, functions)
-                })?,
-            })
-        });
-        Ok(ModeKernel {
-            size,
-            dimensions: self.dimensions.clone(),
-            residual: value("residual")?,
-            jacobian: value("jacobian")?,
-            system: value("system")?,
-            inertia: value("inertia")?,
-            jerk_load: value("jerk_load")?,
-            magnitude: value("magnitude")?,
-            reactions: value("reactions")?,
-            energies: value("energies")?,
-            powers: value("powers")?,
-            momenta: value("momenta")?,
-            requirements: (value("requirements")?, held),
-            requirement_bounds: value("requirement_bounds")?,
-            held_rates: value("held_rates")?,
-            held_values: value("held_values")?,
-            series: series("series")?,
-            quiet_series: series("quiet_series")?,
-            guard_series: series("guard_series")?,
-            guards: guards.len(),
-            mass_is_constant: at.get("mass_is_constant", truth)?,
-            inertia_is_fixed: at.get("inertia_is_fixed", truth)?,
-            is_linear: at.get("is_linear", truth)?,
-            lanes: lanes.collect::<Read<_>>()?,
-        })
-    }
-
-    /// A function of values by its place.
-    fn value(&self, at: &At) -> Read<Raw> {
-        let values = &self.functions.values;
-        let found = values[at.index(values.len())?];
-        found.ok_or_else(|| at.wrong("the place of a function that is there"))
-    }
-
-    /// The same for lanes, at each level.
-    fn in_lanes(&self, at: &At) -> Read<Box<[Option<Raw>]>> {
-        let place = at.index(self.functions.values.len())?;
-        Ok(self.lanes.iter().map(|of| of.values[place]).collect())
-    }
-
-    /// A function of parameters with so many results.
-    fn of_parameters(&self, at: &At, results: usize) -> Read<ConstantsKernel> {
-        Ok(ConstantsKernel {
-            dimensions: self.dimensions.clone(),
-            function: at.get("function", |at| self.value(at))?,
-            count: at.get("count", |at| match count(at)? {
-                count if count == results => Ok(count),
-                _ => Err(at.wrong(results.to_string())),
-            })?,
-        })
-    }
-
-    fn series(&self, at: &At, functions: &Functions) -> Read<SeriesKernel> {
-        let (start, run) = at.get("functions", |at| {
-            let found = functions.series[at.index(functions.series.len())?];
-            found.ok_or_else(|| at.wrong("the place of functions that are there"))
-        })?;
-        Ok(SeriesKernel {
-            start,
-            run,
-            lead: at.get("lead", count)?,
-            row: at.get("row", count)?,
-            convolutions: at.get("convolutions", count)?,
-            ends: at.get("ends", truth)?,
-        })
-    }
-
     fn shape(&self, at: &At, free: usize) -> Read<GuardShape> {
         at.tagged(|key, at| match key {
             "linear" => Ok(GuardShape::Linear {
@@ -401,102 +297,6 @@ impl Reader<'_> {
             _ => Err(at.wrong("`linear` or `general`")),
         })
     }
-
-    /// A tape with so many results. Operands are instructions before them; only the slope of a function may stand behind it.
-    fn tape(&self, at: &At, results: usize) -> Read<Tape> {
-        let count = at.get("instructions", |at| Ok(at.list(|_| Ok(()))?.len()))?;
-        let mut place = 0;
-        let instructions = at.get("instructions", |at| {
-            at.list(|at| {
-                let instruction = self.instruction(at, (place, count));
-                place += 1;
-                instruction
-            })
-        })?;
-        Ok(Tape {
-            instructions,
-            results: at.get("results", |at| at.list_of(results, |at| at.index(count)))?,
-        })
-    }
-
-    fn instruction(&self, at: &At, (place, count): (usize, usize)) -> Read<Instruction> {
-        let of = &*self.dimensions;
-        at.tagged(|key, at| {
-            let before = |at: &At| at.index(place);
-            let two = |of: fn(usize, usize) -> Instruction| {
-                Ok(of(at.entry(0, 2, before)?, at.entry(1, 2, before)?))
-            };
-            Ok(match key {
-                "Constant" => Instruction::Constant(number(at)?),
-                "Coordinate" => Instruction::Coordinate(at.index(of.coordinates)?),
-                "Rate" => Instruction::Rate(at.index(of.coordinates)?),
-                "Acceleration" => Instruction::Acceleration(at.index(of.coordinates)?),
-                "Signal" => Instruction::Signal(at.index(of.signals)?),
-                "Discrete" => Instruction::Discrete(at.index(of.discretes)?),
-                "Parameter" => Instruction::Parameter(at.index(of.parameters)?),
-                "Sum" => two(Instruction::Sum)?,
-                "Difference" => two(Instruction::Difference)?,
-                "Product" => two(Instruction::Product)?,
-                "Quotient" => two(Instruction::Quotient)?,
-                "Negative" => Instruction::Negative(before(at)?),
-                "Function" => Instruction::Function(
-                    at.entry(0, 3, function_name)?,
-                    at.entry(1, 3, before)?,
-                    at.entry(2, 3, |at| at.index(count))?,
-                ),
-                "Fixed" => Instruction::Fixed(
-                    at.entry(0, 3, pick)?,
-                    at.entry(1, 3, before)?,
-                    at.entry(2, 3, before)?,
-                ),
-                _ => return Err(at.wrong(format!("an instruction, which `{key}` is not"))),
-            })
-        })
-    }
-}
-
-/// A function for lanes.
-fn in_lanes(at: &At, functions: &Functions, of_level: &Functions) -> Read<Raw> {
-    let found = of_level.values[at.index(functions.values.len())?];
-    found.ok_or_else(|| at.wrong("the place of a function that is there for lanes, too"))
-}
-
-fn function_name(at: &At) -> Read<Name> {
-    Ok(match text(at)? {
-        "SquareRoot" => Name::SquareRoot,
-        "Exponential" => Name::Exponential,
-        "Logarithm" => Name::Logarithm,
-        "Sine" => Name::Sine,
-        "Cosine" => Name::Cosine,
-        "Tangent" => Name::Tangent,
-        "ArcSine" => Name::ArcSine,
-        "ArcCosine" => Name::ArcCosine,
-        "ArcTangent" => Name::ArcTangent,
-        "HyperbolicSine" => Name::HyperbolicSine,
-        "HyperbolicCosine" => Name::HyperbolicCosine,
-        "HyperbolicTangent" => Name::HyperbolicTangent,
-        _ => return Err(at.wrong("a smooth function")),
-    })
-}
-
-fn pick(at: &At) -> Read<Pick> {
-    Ok(match text(at)? {
-        "Least" => Pick::Least,
-        "Greatest" => Pick::Greatest,
-        "Less" => Pick::Less,
-        "NotMore" => Pick::NotMore,
-        "Equal" => Pick::Equal,
-        "Unequal" => Pick::Unequal,
-        "Not" => Pick::Not,
-        "And" => Pick::And,
-        "Or" => Pick::Or,
-        "Where" => Pick::Where,
-        "Modulus" => Pick::Modulus,
-        "Sign" => Pick::Sign,
-        "Floor" => Pick::Floor,
-        "Ceiling" => Pick::Ceiling,
-        _ => return Err(at.wrong("an operation that is not smooth")),
-    })
 }
 
 fn coordinate(at: &At) -> Read<Coordinate> {
