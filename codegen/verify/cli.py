@@ -39,18 +39,6 @@ def parser():
 
 
 def main(argv=None):
-    """Run the command and return its exit status. A reader that has seen enough (`| head`) is no error."""
-    try:
-        status = _main(argv)
-        sys.stdout.flush()
-        return status
-    except BrokenPipeError:
-        # what is left in the buffer goes nowhere, and the interpreter does not complain of it when it ends
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-
-
-def _main(argv):
     """Run the command and return its exit status."""
     arguments = parser().parse_args(argv)
     if importlib.util.find_spec("sympy") is None:
@@ -66,7 +54,7 @@ def _main(argv):
             from . import seeded
 
             results = seeded.run_all()
-            print(json.dumps(seeded.as_dictionary(results), indent=2) if arguments.json else seeded.as_text(results))
+            _show((json.dumps(seeded.as_dictionary(results), indent=2) if arguments.json else seeded.as_text(results)) + "\n")
             return 0
         if not arguments.model:
             print("verify: name a model, for example: verify walking_tank", file=sys.stderr)
@@ -75,6 +63,15 @@ def _main(argv):
     except (PaperError, LatexError, UnitError, NotInClass) as error:
         print(f"verify: {error}", file=sys.stderr)
         return 2
+
+
+def _show(text):
+    """Prints the result. A reader that has seen enough (`| head`) is no error, and changes nothing of what is done besides."""
+    try:
+        print(text, end="", flush=True)
+    except BrokenPipeError:
+        # what is left in the buffer goes nowhere, and the interpreter does not complain of it when it ends
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _judge(arguments):
@@ -94,7 +91,7 @@ def _judge(arguments):
         simulated = effects.simulate(case.effects, case.corrections, arguments.program)
         effects.attach(result.findings, case.corrections, simulated)
         result.variants = simulated.variants
-    print(machine.as_json(result) if arguments.json else text.as_text(result), end="")
+    _show(machine.as_json(result) if arguments.json else text.as_text(result))
     if arguments.html:
         path = Path(arguments.html)
         partial = path.with_name(path.name + ".tmp")

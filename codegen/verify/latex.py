@@ -18,6 +18,10 @@ ENTITIES = GREEK
 
 CLOSING = {"(": ")", "[": "]", r"\{": r"\}"}
 
+# what is expected, in words
+WORDS = {"symbol": "a symbol", "upright": "a name", "number": "a number", "sign": "a sign", "text": "a word", "end": "a comma or full stop",
+         "index": "_", "bar": "|", "power": "^", "slash": "/"}
+
 FACTORS = ("symbol", "upright", "accent", "number", "function", "dots", "frac", "open", "bar", "brace")
 
 
@@ -85,7 +89,7 @@ class Parser:
         self.broken()
         token = self.peek()
         if kinds and token.kind not in kinds:
-            raise self.error(f"expected {' or '.join(kinds)} and found {token.text!r}")
+            raise self.error(f"expected {' or '.join(WORDS.get(kind, kind) for kind in kinds)} and found {token.text!r}")
         self.at += 1
         return token
 

@@ -10,6 +10,8 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+from sympy import sympify
+
 from . import transcription, units
 from .comparison import compare
 from .lagrange import Energies, Mathematics, Motion, sympy_namespace
@@ -299,8 +301,6 @@ def _check_definitions(paper, printed):
     known = units.table(paper.symbols.values())
     s, m = sympy_namespace(paper), Mathematics()
     for name, equation in printed.get("definitions", ()):
-        from sympy import sympify
-
         try:
             found = units.measure(sympify(equation.right(paper)(s, m)), known)
         except units.UnitError as error:

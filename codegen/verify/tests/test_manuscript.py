@@ -107,16 +107,28 @@ class Judged(Folder):
 
 
 class Command(Folder):
-    def test_a_reader_that_stops_reading_is_no_error(self):
+    def unread(self, *arguments):
+        """Exit status and errors of the command where nobody reads what it prints."""
         root = Path(__file__).resolve().parents[3]
         reader, writer = os.pipe()
         os.close(reader)  # who writes now is told that nobody reads
         try:
-            result = subprocess.run([sys.executable, "-B", "-m", "codegen", "verify", str(self.folder), "--quick"], cwd=root,
+            result = subprocess.run([sys.executable, "-B", "-m", "codegen", "verify", str(self.folder), "--quick", *arguments], cwd=root,
                                     stdout=writer, stderr=subprocess.PIPE, check=False)
         finally:
             os.close(writer)
-        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        return result.returncode, result.stderr.decode()
+
+    def test_a_reader_that_stops_reading_is_no_error(self):
+        self.assertEqual(self.unread(), (0, ""))
+
+    def test_what_is_not_read_is_judged_and_written_all_the_same(self):
+        self.change((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot"))
+        page = self.folder / "page.html"
+        status, said = self.unread("--fail-on", "misprint", "--html", str(page))
+        self.assertEqual(status, 1)
+        self.assertIn("--fail-on misprint", said)
+        self.assertIn("</html>", page.read_text(encoding="utf-8"))
 
 
 class Gate(Folder):
