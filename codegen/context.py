@@ -4,6 +4,7 @@ import os
 import sys
 import types
 
+from . import contacts
 from .errors import ModelError
 
 
@@ -40,6 +41,7 @@ def build(name, file, source, run=exec):
             sys.path[:] = path
         if context.model is None:
             raise ModelError("no Model(…) is made here", file)
+        contacts.expand(context.model)
         models.append(context.model)
         made = dict(context.options)
         for choice, others in context.open:

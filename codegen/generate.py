@@ -247,7 +247,7 @@ def _variant(model, absent, kind=""):
     check.check_equations(model, modes)
     variant = Variant(model, modes)
     parameters = [p.symbol for p in model.parameters]
-    names = [m.name for m in model.modes]
+    names = [m.identifier for m in model.modes]
     index = {m.name: i for i, m in enumerate(model.modes)}
     for i, equations in enumerate(modes):
         prefix = f"{_tag(model)}{kind}{names[i]}_"

@@ -7,10 +7,12 @@ Signs: X horizontal to the right, Y up. A reaction is the force that the constra
 system along the frozen coordinate; a base reaction is the force of the ground on the system.
 """
 
+import re
+
 import casadi as ca
 from casadi import atan2, cos, exp, pi, sin, sqrt, tan  # noqa: F401  (for model files)
 
-from . import arguments, drawing, limits, units
+from . import arguments, contacts, drawing, limits, units
 from .context import CONTEXT
 from .declarations import Body, Coordinate, Declaration, Discrete, Falls, Transition
 from .errors import ModelError, caller_location
@@ -38,6 +40,11 @@ class Mode:
         self.held, self.drift = freeze, drift
         self.location = caller_location(model.file)
         self.forces, self.requirements = [], []
+
+    @property
+    def identifier(self):
+        """Its name as part of names in generated code."""
+        return re.sub(r"\W", "_", self.name)
 
     def is_free(self, coordinate):
         """Whether the coordinate is integrated in this mode."""
@@ -88,6 +95,7 @@ class Model:
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
+        self.contacts = []
         self.limits, self.validity = [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -239,6 +247,21 @@ class Model:
         if not check_units:
             self.unchecked.add(coordinate.name())
 
+    # ---- contacts -----------------------------------------------------------------------------
+
+    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0):
+        """A contact: `gap` ≥ 0, and a force that pushes where it is zero.
+
+        With `slip`, a place along the contact or its slip rate, it has Coulomb friction, `static` (`kinetic` where it is
+        not given) and `kinetic`. An impact multiplies the rate of the gap by −`restitution` (Newton's law); friction impulses
+        keep within the kinetic coefficient. Modes, guards, impacts and rests follow; see docs/models.md.
+        """
+        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution)
+
+    def friction(self, name, *, slip, normal, kinetic, static=None):
+        """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N."""
+        contacts.declare(self, name, None, slip, normal, static, kinetic, 0)
+
     # ---- hybrid structure ---------------------------------------------------------------------
 
     def mode(self, name, meaning="", *, freeze=(), drift=None):
@@ -246,6 +269,9 @@ class Model:
         parameters; without a value (or with HELD) they are held wherever they were. `drift` lists frozen coordinates with
         a constant rate (a belt) instead of rest."""
         arguments.name(self, "mode", name)
+        return self._mode(name, meaning, freeze, drift)
+
+    def _mode(self, name, meaning, freeze, drift):
         if any(m.name == name for m in self.modes):
             raise self.error(f"mode `{name}` is declared twice")
         if isinstance(freeze, dict):
