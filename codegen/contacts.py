@@ -345,7 +345,7 @@ class Expansion:
             # Friction without an impulse of its own does not hold against one.
             target[k] = SLIDES
             rate = other.slip.sign * after[place] + other.slip.offset
-            reset.append((other.direction, 2 * (rate >= 0) - 1))
+            reset.append((other.direction, 1 - 2 * (rate < 0)))
         if keeps:
             held = self.modes.get(tuple(target))
             reset = [(s, v) for s, v in reset if not _is_held(held, s)]
