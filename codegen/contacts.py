@@ -345,7 +345,8 @@ class Expansion:
             # Friction without an impulse of its own does not hold against one.
             target[k] = SLIDES
             rate = other.slip.sign * after[place] + other.slip.offset
-            reset.append((other.direction, 1 - 2 * (rate < 0)))
+            # Where the impact leaves no slip rate, the direction stays as it was.
+            reset.append((other.direction, other.direction * (1 - 2 * (other.direction * rate < 0))))
         if keeps:
             held = self.modes.get(tuple(target))
             reset = [(s, v) for s, v in reset if not _is_held(held, s)]

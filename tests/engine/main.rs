@@ -6,6 +6,7 @@ mod common;
 
 mod advance;
 mod bouncing;
+mod contacts;
 mod coulomb;
 mod derivatives;
 mod extreme_damping;

@@ -1,0 +1,202 @@
+//! Modes that follow from contacts, held against modes written by hand, and against the laws of contact.
+
+use crate::common::*;
+use dalembert::hybrid::{Method, Problem};
+use dalembert::input::{Function, Sine};
+use dalembert::record::Run;
+use std::f64::consts::PI;
+
+const METHODS: [Method; 3] = [Method::Auto, Method::Taylor, Method::Radau];
+
+/// Two models of one system, run alike: by contacts and by hand.
+fn pair(names: [&str; 2], prepare: impl Fn(&mut Problem)) -> Vec<[Run; 2]> {
+    METHODS
+        .iter()
+        .map(|&method| {
+            names.map(|name| {
+                let mut problem = problem(name, &[]);
+                prepare(&mut problem);
+                problem.method = method;
+                println!("{name} {method:?}"); // is shown with a failure
+                run(&problem)
+            })
+        })
+        .collect()
+}
+
+/// The same number of events, at the same times and places to `error`, of the same meaning: `words` pairs the names of
+/// transitions.
+fn assert_same_motion([contacts, hand]: &[Run; 2], words: &[(&str, &str)], error: f64) {
+    let translated: Vec<_> = transitions(contacts)
+        .iter()
+        .map(|name| words.iter().find(|word| word.0 == *name).expect(name).1)
+        .collect();
+    assert_eq!(translated, transitions(hand));
+    for (a, b) in contacts.events.iter().zip(&hand.events) {
+        assert!(
+            (a.t - b.t).abs() <= error * b.t.max(1.0),
+            "{} at {} and {}",
+            a.transition,
+            a.t,
+            b.t
+        );
+        for (x, y) in [(&a.before.q, &b.before.q), (&a.after.v, &b.after.v)] {
+            assert!(
+                (x[0] - y[0]).abs() <= error,
+                "{} at {}: {} and {}",
+                a.transition,
+                a.t,
+                x[0],
+                y[0]
+            );
+        }
+    }
+    let ends = [contacts, hand].map(|run| (run.end.t, run.end.state.q[0], run.end.state.v[0]));
+    assert!((ends[0].1 - ends[1].1).abs() <= error, "{ends:?}");
+    assert!((ends[0].2 - ends[1].2).abs() <= error, "{ends:?}");
+}
+
+#[test]
+fn a_ball_by_its_contact_bounces_and_rests_as_the_one_by_hand() {
+    for runs in pair(["contact_ball", "bouncing_ball"], |ball| {
+        ball.set_initial("h", 1.0).unwrap();
+        ball.set_tolerance(1e-12);
+        ball.end.time = 5.0;
+    }) {
+        assert!(runs[0].events.len() > 20);
+        assert_same_motion(
+            &runs,
+            &[("floor strikes", "impact"), ("rest", "rest")],
+            1e-12,
+        );
+        assert_eq!(runs[0].layout.modes[runs[0].end.mode], "floor closed");
+    }
+}
+
+#[test]
+fn a_belt_by_its_friction_sticks_and_slips_as_the_one_by_hand() {
+    let words = [
+        ("belt sticks", "stick"),
+        ("belt reverses", "reversal"),
+        ("belt slips", "slip"),
+    ];
+    for [static_friction, kinetic, belt] in
+        [[0.04, 0.025, 0.1], [0.1, 0.05, 0.5], [0.05, 0.05, 0.2]]
+    {
+        for runs in pair(["contact_belt", "belt_oscillator"], |mass| {
+            mass.set_parameter("mu_s", static_friction).unwrap();
+            mass.set_parameter("mu_k", kinetic).unwrap();
+            mass.set_parameter("belt", belt).unwrap();
+            mass.set_input("force", Sine::new(0.7, 1.3, 0.2).into())
+                .unwrap();
+            let direction = match mass.model.name {
+                "contact_belt" => "belt_direction",
+                _ => "slip",
+            };
+            mass.set_initial(direction, -1.0).unwrap();
+            mass.set_tolerance(1e-12);
+            mass.end.time = 40.0;
+        }) {
+            println!("{} events", runs[0].events.len());
+            assert!(runs[0].events.len() > 5);
+            assert_same_motion(&runs, &words, 1e-10);
+        }
+    }
+}
+
+#[test]
+fn stops_and_friction_on_one_coordinate_act_as_the_ones_by_hand() {
+    let words = [
+        ("ground sticks", "stick"),
+        ("ground reverses", "reversal"),
+        ("ground slips", "slip"),
+        ("left strikes", "impact"),
+        ("right strikes", "impact"),
+        ("left opens", "leave"),
+        ("right opens", "leave"),
+        ("rest", "rest"),
+    ];
+    for e in [0.0, 0.5, 1.0] {
+        for mut runs in pair(["contact_stops", "coulomb_oscillator"], |mass| {
+            for (name, value) in [("static_friction", 0.15), ("stop", 0.8), ("e", e)] {
+                mass.set_parameter(name, value).unwrap();
+            }
+            mass.set_input("force", Sine::new(1.4, 0.6, PI / 5.0).into())
+                .unwrap();
+            mass.set_tolerance(1e-12);
+            mass.end.time = 60.0;
+        }) {
+            assert!(runs[0].events.len() > 20);
+            if e == 0.0 {
+                // By hand, the mass that a stop has caught is said to slide away from it, and reverses at once.
+                let hand = &mut runs[1].events;
+                let caught: Vec<f64> = hand
+                    .iter()
+                    .filter(|e| e.transition == "impact")
+                    .map(|e| e.t)
+                    .collect();
+                hand.retain(|event| event.transition != "reversal" || !caught.contains(&event.t));
+            }
+            assert_same_motion(&runs, &words, 1e-9);
+        }
+    }
+}
+
+/// A block on a table that shakes in both directions: what the record must satisfy at each instant.
+#[test]
+fn a_block_that_hops_with_friction_keeps_the_laws_of_contact() {
+    for method in METHODS {
+        for (e, mu_s, mu_k) in [
+            (0.0, 0.5, 0.4),
+            (0.3, 0.5, 0.4),
+            (0.6, 0.2, 0.2),
+            (0.3, 0.0, 0.0),
+        ] {
+            let mut block = problem(
+                "contact_hopper",
+                &[("e", e), ("mu_s", mu_s), ("mu_k", mu_k)],
+            );
+            block.method = method;
+            block
+                .set_input("horizontal", Function::from(Sine::new(7.0, 5.0, 0.3)))
+                .unwrap();
+            block
+                .set_input("vertical", Function::from(Sine::new(14.0, 9.0, 0.0)))
+                .unwrap();
+            block.set_initial("y", 0.05).unwrap();
+            block.set_initial("x.rate", 0.5).unwrap();
+            block.set_tolerance(1e-11);
+            block.end.time = 10.0;
+            let run = run(&block);
+            let words = transitions(&run);
+            println!("{method:?} e = {e}, mu = {mu_s}: {} events", words.len());
+            for wanted in ["table strikes", "table opens"] {
+                assert!(words.contains(&wanted), "no `{wanted}`: {words:?}");
+            }
+            for event in &run.events {
+                let (before, after) = (&event.before, &event.after);
+                assert!(
+                    after.q[1] >= -1e-10,
+                    "{} at {}: y = {}",
+                    event.transition,
+                    event.t,
+                    after.q[1]
+                );
+                if event.transition == "table strikes" {
+                    let push = after.v[1] - before.v[1];
+                    let friction = after.v[0] - before.v[0];
+                    assert!((after.v[1] + e * before.v[1]).abs() <= 1e-14);
+                    assert!(push > 0.0, "{} at {}", event.transition, event.t);
+                    // It slips against its friction impulse, which is the whole cone, or it sticks within it; up to the
+                    // rounding of the rates.
+                    let rounding = 2.0 * f64::EPSILON * (before.v[0].abs() + push);
+                    match after.v[0] {
+                        0.0 => assert!(friction.abs() <= mu_k * push + rounding),
+                        slip => assert!((friction + slip.signum() * mu_k * push).abs() <= rounding),
+                    }
+                }
+            }
+            assert!(run.end.t == 10.0);
+        }
+    }
+}
