@@ -111,7 +111,9 @@ def _line(model, what, expression, of_rates):
     if len(moving) == 1 and slopes[moving[0]].is_constant() and abs(float(slopes[moving[0]])) == 1:
         offset = ca.substitute(expression, column[moving[0]], 0)
         if limits.is_of_parameters(model, offset):
-            return Line(symbols[moving[0]], int(float(slopes[moving[0]])), offset)
+            line = Line(symbols[moving[0]], int(float(slopes[moving[0]])), offset)
+            model._constant(f"{what}, where it is zero", line.value(), line.name + (".rate" if of_rates else ""))
+            return line
     one = "the rate of one coordinate" if of_rates else "one coordinate"
     raise model.error(f"{what}, `{units.short(expression)}`, is not ± {one} and what parameters add: choose coordinates so that it"
                       " is. Gaps and slips that depend on several coordinates are written as modes by hand")

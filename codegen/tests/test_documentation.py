@@ -15,15 +15,33 @@ PAGE = pathlib.Path(__file__).parents[2] / "docs" / "models.md"
 class Documentation(unittest.TestCase):
 
     def test_the_complete_model_generates_and_holds_the_block(self):
-        source = re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL).group(1)
+        model = self.built(self.blocks()[0])
+        self.assertEqual([mode.name for mode in model.modes], ["slope open", "slope sticks", "slope slides"])
+        self.assert_holds_the_block(model, model.modes[1])
+
+    def test_the_same_by_hand(self):
+        contacts, hand = self.blocks()[:2]
+        declared = contacts[:contacts.index("model.contact(")].replace(
+            "force = model.input", 'slip = model.discrete("slip", (-1, +1), "direction of slip")\nforce = model.input')
+        model = self.built(declared + hand)
+        self.assert_holds_the_block(model, model.modes[0])
+
+    @staticmethod
+    def blocks():
+        return re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+
+    def built(self, source):
         with tempfile.TemporaryDirectory() as folder:
             model_folder = pathlib.Path(folder) / "slope_block"
             model_folder.mkdir()
             (model_folder / "model.py").write_text(source, encoding="utf-8")
             self.assertIn("slope_block.c", generate.generate(str(model_folder)))
             model, = generate.load(str(model_folder))
+        return model
+
+    def assert_holds_the_block(self, model, mode):
         held = ca.SX.sym("held", len(model.coordinates))
-        sticks = derive.ModeEquations(model, model.modes[0], derive.residual_from_bodies(model), held)
+        sticks = derive.ModeEquations(model, mode, derive.residual_from_bodies(model), held)
         values = {p.name: p.extra["default"] for p in model.parameters}
         values["force"] = 0.7
         reactions = ca.vertcat(*[reaction for _, reaction in sticks.reactions])

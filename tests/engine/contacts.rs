@@ -200,3 +200,32 @@ fn a_block_that_hops_with_friction_keeps_the_laws_of_contact() {
         }
     }
 }
+
+/// The same scene from behind: the block moves the other way, by the same bits.
+#[test]
+fn a_mirrored_scene_mirrors() {
+    for method in METHODS {
+        let [right, left] = [1.0, -1.0].map(|side| {
+            let mut block = problem("contact_hopper", &[]);
+            block.method = method;
+            block
+                .set_input("horizontal", Sine::new(side * 7.0, 5.0, 0.3).into())
+                .unwrap();
+            block
+                .set_input("vertical", Sine::new(14.0, 9.0, 0.0).into())
+                .unwrap();
+            block.set_initial("y", 0.05).unwrap();
+            block.set_initial("x.rate", side * 0.5).unwrap();
+            block.end.time = 5.0;
+            run(&block)
+        });
+        assert_eq!(transitions(&right), transitions(&left));
+        for (a, b) in right.events.iter().zip(&left.events) {
+            assert_eq!(
+                (a.t, a.after.q[0], a.after.q[1]),
+                (b.t, -b.after.q[0], b.after.q[1])
+            );
+            assert_eq!((a.after.v[0], a.after.v[1]), (-b.after.v[0], b.after.v[1]));
+        }
+    }
+}
