@@ -88,16 +88,19 @@ _LONG = 150_000
 KEPT_ANGLES = 4
 """Angles whose sine and cosine a context keeps. A function may have more."""
 
-_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/", ca.OP_EQ: "==", ca.OP_LT: "<"}
+_BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/",
+           ca.OP_EQ: "==", ca.OP_NE: "!=", ca.OP_LT: "<", ca.OP_LE: "<="}
 # Functions of the C library, whose last bits may differ between systems; sine and cosine are not
-# among them (see `sin_cos`), and sqrt, fabs and fmax are exact by IEEE 754.
+# among them (see `sin_cos`), and sqrt, fabs, copysign, fmin and fmax are exact by IEEE 754.
 _CALLS = {
     getattr(ca, "OP_" + name.upper()): name
     for name in ("tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "sinh",
                  "cosh", "tanh", "asinh", "acosh", "atanh", "expm1", "log1p", "pow", "atan2", "hypot",
-                 "erf", "fmax")
+                 "erf", "fmin", "fmax", "copysign")
 }
 _CALLS[ca.OP_CONSTPOW] = "pow"
+
+_LOGIC = {ca.OP_AND: "&&", ca.OP_OR: "||"}
 
 SIN_COS = {ca.OP_SIN: "sin", ca.OP_COS: "cos"}
 """Members of a pair; see `sin_cos`."""
@@ -174,6 +177,15 @@ def operation(op, arguments):
         return f"1.0 / {parenthesized(arguments[0])}"
     if op == ca.OP_ASSIGN:
         return arguments[0]
+    # What holds is any number but zero.
+    if op == ca.OP_NOT:
+        return f"{arguments[0]} == 0.0"
+    if op in _LOGIC:
+        return f"{arguments[0]} != 0.0 {_LOGIC[op]} {arguments[1]} != 0.0"
+    if op == ca.OP_IF_ELSE_ZERO:
+        return f"{arguments[0]} != 0.0 ? {arguments[1]} : 0.0"
+    if op == ca.OP_SIGN:
+        return f"({arguments[0]} > 0.0) - ({arguments[0]} < 0.0)"
     if op in _CALLS:
         return f"{_CALLS[op]}({', '.join(arguments)})"
     raise ValueError(f"CasADi operation {op} cannot be emitted as C")

@@ -25,6 +25,7 @@ mod pendulum;
 mod random_scenes;
 mod refusals;
 mod requirements;
+mod resets;
 mod rest;
 mod rocking;
 mod roots_cases;
