@@ -10,7 +10,9 @@ fn a_reset_decides_as_it_is_written() {
     walls.end.time = 2.0;
     let run = run(&walls);
     // less, not more, equal, unequal, not, both, either, choice, sign, copied sign, least, greatest
-    let left = [1.0, 1.0, 0.0, 1.0, 0.0, 1.0, 1.0, 3.0, -1.0, -7.0, -1.0, -0.5];
+    let left = [
+        1.0, 1.0, 0.0, 1.0, 0.0, 1.0, 1.0, 3.0, -1.0, -7.0, -1.0, -0.5,
+    ];
     let right = [0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 5.0, 1.0, 7.0, 0.5, 1.0];
     assert_eq!(transitions(&run), ["left", "right"]);
     assert_eq!(run.events[0].after.v[1..], left);
