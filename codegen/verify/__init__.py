@@ -1,8 +1,16 @@
 """Verification of hand-derived equations of motion against what follows from energies.
 
-A model folder with printed equations holds `paper.py` (the equations exactly as printed),
-`paper_energies.py` (energies in the paper's symbols) and, optionally, `corrections.py` and
-`paper_numbers.py`; README.md in this folder describes them. Importing this package, or
-`codegen.verify.printed`, does not import SymPy: a model file may use the printed equations for
-simulation with CasADi symbols where SymPy is not installed.
+`input` is what a paper prints; `normal` the exact normal form that all is compared in; `readings` the energies that a
+paper may mean, and what follows from them; `judgements` what is objected to; `repairs` the slips; `report`
+gathers and writes. docs/verification.md is the guide. What the files of a model folder need is imported from here:
+`from codegen.verify import Paper, group`. None of it imports SymPy, so that a model that simulates printed equations
+with CasADi symbols works where SymPy is not installed.
 """
+
+from .input.corrections import Correction, apply, without
+from .input.printed import Paper, group
+from .judgements.numbers import Number
+from .readings.lagrange import Energies
+from .report.effects import Effects
+
+__all__ = ["Correction", "Effects", "Energies", "Number", "Paper", "apply", "group", "without"]

@@ -17,6 +17,8 @@ import os
 import sys
 from pathlib import Path
 
+from .errors import PaperError, VerifyError
+
 
 # kinds of findings by what --fail-on says; None: all
 FAILS = {"misprint": ("misprint", "repair"), "finding": None}
@@ -44,11 +46,6 @@ def main(argv=None):
     if importlib.util.find_spec("sympy") is None:
         print("verify: SymPy is not installed for this Python; install it with: pip install sympy", file=sys.stderr)
         return 2
-    from .algebra import NotInClass
-    from .latex import LatexError
-    from .printed import PaperError
-    from .units import UnitError
-
     try:
         if arguments.seeded:
             from . import seeded
@@ -60,7 +57,7 @@ def main(argv=None):
             print("verify: name a model, for example: verify walking_tank", file=sys.stderr)
             return 2
         return _judge(arguments)
-    except (PaperError, LatexError, UnitError, NotInClass) as error:
+    except VerifyError as error:
         print(f"verify: {error}", file=sys.stderr)
         return 2
 
@@ -76,8 +73,8 @@ def _show(text):
 
 def _judge(arguments):
     """Judge one model and write the report."""
-    from . import effects, html, machine, report, text
-    from .load import load
+    from .report import effects, gather as report, html, machine, text
+    from .input.load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
     if not folder.is_dir():
@@ -121,7 +118,6 @@ def _gate(arguments, result):
 
 def _waivers(path):
     """The reasons by the names of findings."""
-    from .printed import PaperError
 
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").split("\n")

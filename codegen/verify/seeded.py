@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Callable, List
 
-from .findings import JUDGEMENTS, detected, repaired
-from .subject import Subject
-from .lagrange import Motion
-from .load import load
-from .units import parse
+from .input.load import load
+from .input.units import parse
+from .judgements import JUDGEMENTS
+from .normal.subject import Subject
+from .readings.lagrange import Motion
+from .report.findings import detected, repaired
 
 EXAMPLES = Path(__file__).parent / "examples"
 PUBLISHED = Path(__file__).parent / "published"

@@ -7,7 +7,7 @@ printed equations in paper.py.
 from types import SimpleNamespace
 
 from codegen.model import *
-from codegen.verify.corrections import apply, without
+from codegen.verify import apply, without
 from .corrections import corrections
 from .paper import paper
 

@@ -8,10 +8,11 @@ from fractions import Fraction
 
 import sympy
 
-from codegen.verify.algebra import NotInClass, Ring, expression
-from codegen.verify.definite import determinant, prove
-from codegen.verify.lagrange import Motion
-from codegen.verify.load import load
+from codegen.verify.errors import NotInClass
+from codegen.verify.input.load import load
+from codegen.verify.judgements.definite import determinant, prove
+from codegen.verify.normal.algebra import Ring, expression
+from codegen.verify.readings.lagrange import Motion
 from codegen.verify.seeded import EXAMPLES
 
 A, B, Q, V, LAM, M = sympy.symbols("a b q v lam m", real=True)

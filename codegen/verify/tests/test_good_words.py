@@ -2,7 +2,6 @@
 wrong on it: the word must not come."""
 
 import json
-import tempfile
 import unittest
 import xml.etree.ElementTree as xml
 from dataclasses import replace
@@ -11,19 +10,22 @@ from pathlib import Path
 
 import sympy
 
-from codegen.verify import html, machine, report, seeded, text, transcription
-from codegen.verify.comparison import compare
-from codegen.verify.definite import prove
-from codegen.verify.effects import quantity
-from codegen.verify.findings import judge
+from codegen.verify import seeded
+from codegen.verify import Paper
+from codegen.verify.errors import PaperError
+from codegen.verify.input import transcription
+from codegen.verify.input.load import Case, load
 from codegen.verify.judgements import unjudged
-from codegen.verify.lagrange import Energies, Motion
-from codegen.verify.load import Case, load
-from codegen.verify.numbers import Number, check
-from codegen.verify.printed import Paper, PaperError
-from codegen.verify.subject import Subject
+from codegen.verify.judgements.comparison import compare
+from codegen.verify.judgements.definite import prove
+from codegen.verify.judgements.numbers import Number, check
+from codegen.verify.normal.subject import Subject
+from codegen.verify.readings.lagrange import Energies, Motion
+from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report.effects import quantity
+from codegen.verify.report.findings import judge
 
-HEAD = "from codegen.verify.printed import Paper\n"
+HEAD = "from codegen.verify import Paper\n"
 
 
 def oscillator(**options):
@@ -410,7 +412,7 @@ class Findings(unittest.TestCase):
                 self.assertEqual({n for n, v in result.corrected_violations.items() if v}, set())
 
     def test_corrections_that_do_not_correct_are_said_to_be_none(self):
-        from codegen.verify.corrections import Correction
+        from codegen.verify import Correction
         paper = oscillator()
         paper.motion("1", of="q")(lambda s, m: [s.m * s.ddq, 2 * s.k * s.q])
         wrong = Correction("factor", "1", "misprint", "three", {2: lambda s, m, on: 3 * s.k * s.q})

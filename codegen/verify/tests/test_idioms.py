@@ -4,12 +4,13 @@ import unittest
 
 import sympy
 
-from codegen.verify import mathml, transcription
-from codegen.verify.lagrange import Mathematics, sympy_namespace
-from codegen.verify.latex import Parser
-from codegen.verify.printed import Paper, PaperError
-from codegen.verify.subject import Subject
-from codegen.verify.tokens import LatexError
+from codegen.verify import Paper
+from codegen.verify.errors import LatexError, PaperError
+from codegen.verify.input import transcription
+from codegen.verify.input.latex import Parser
+from codegen.verify.normal.subject import Subject
+from codegen.verify.readings.lagrange import Mathematics, sympy_namespace
+from codegen.verify.report import mathml
 
 
 def paper():

@@ -5,10 +5,11 @@ import xml.etree.ElementTree as xml
 from dataclasses import replace
 from pathlib import Path
 
-from codegen.verify import latex, mathml, show, transcription
-from codegen.verify.subject import Subject
-from codegen.verify.load import load
-from codegen.verify.printed import PaperError
+from codegen.verify.errors import PaperError
+from codegen.verify.input import transcription
+from codegen.verify.input.load import load
+from codegen.verify.normal.subject import Subject
+from codegen.verify.report import mathml, show
 
 WALKING_TANK = Path(__file__).resolve().parents[3] / "models" / "walking_tank"
 

@@ -4,11 +4,12 @@ import json
 import unittest
 from dataclasses import replace
 
-from codegen.verify import html, machine, report, seeded, text
-from codegen.verify.findings import judge
-from codegen.verify.load import load
-from codegen.verify.locate import _with, locate
-from codegen.verify.subject import Subject
+from codegen.verify import seeded
+from codegen.verify.input.load import load
+from codegen.verify.normal.subject import Subject
+from codegen.verify.repairs.locate import _with, locate
+from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report.findings import judge
 
 
 class Location(unittest.TestCase):

@@ -11,10 +11,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from codegen.verify import cli, report, text
-from codegen.verify.load import load
-from codegen.verify.printed import PaperError
-from codegen.verify.tokens import LatexError
+from codegen.verify import cli
+from codegen.verify.errors import LatexError, PaperError
+from codegen.verify.input.load import load
+from codegen.verify.report import gather as report, text
 
 TEMPLATE = Path(__file__).resolve().parents[3] / "templates" / "paper"
 

@@ -2,8 +2,9 @@
 
 import unittest
 
-from codegen.verify import report, seeded
-from codegen.verify.load import load
+from codegen.verify import seeded
+from codegen.verify.input.load import load
+from codegen.verify.report import gather as report
 from codegen.verify.seeded import PUBLISHED
 
 # printed terms that agree with the printed energies, of all; None: no energies are printed

@@ -6,11 +6,13 @@ import unittest
 from dataclasses import replace
 from pathlib import Path
 
-from codegen.verify import html, machine, report, seeded, text, transcription
-from codegen.verify.lagrange import Energies
-from codegen.verify.load import Case, load
-from codegen.verify.printed import Paper
-from codegen.verify.subject import Subject
+from codegen.verify import seeded
+from codegen.verify import Paper
+from codegen.verify.input import transcription
+from codegen.verify.input.load import Case, load
+from codegen.verify.normal.subject import Subject
+from codegen.verify.readings.lagrange import Energies
+from codegen.verify.report import gather as report, html, machine, text
 
 DIVISORS = (
     (lambda s: s.m_2 * s.l_1**2, lambda s: s.m_2 * s.l_2**2), (lambda s: s.m_2 * s.l_1, lambda s: s.m_2 * s.l_2),

@@ -10,13 +10,14 @@ import xml.etree.ElementTree as xml
 from pathlib import Path
 from types import SimpleNamespace
 
-from codegen.verify import cli, html, machine, report, text
-from codegen.verify.corrections import apply, closure, without
-from codegen.verify.effects import Simulated, attach
-from codegen.verify.findings import JUDGEMENTS
-from codegen.verify.subject import Subject
-from codegen.verify.load import load
-from codegen.verify.printed import PaperError
+from codegen.verify import cli
+from codegen.verify.errors import PaperError
+from codegen.verify.input.corrections import apply, closure, without
+from codegen.verify.input.load import load
+from codegen.verify.judgements import JUDGEMENTS
+from codegen.verify.normal.subject import Subject
+from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report.effects import Simulated, attach
 
 MODELS = Path(__file__).resolve().parents[3] / "models"
 
@@ -204,7 +205,7 @@ class Command(unittest.TestCase):
             self.assertIn("paper.py", err)
 
     def test_errors_of_a_model_file_name_file_and_equation(self):
-        head = "from codegen.verify.printed import Paper\npaper = Paper('t', 's')\npaper.coordinate('q', 'm', 'q')\n"
+        head = "from codegen.verify import Paper\npaper = Paper('t', 's')\npaper.coordinate('q', 'm', 'q')\n"
         for text, expected in (
                 (head + "paper.coordinate('q', 'm', 'q')\n", r"paper\.py:4: the symbol 'q' is declared twice"),
                 (head + "nonsense\n", r"paper\.py:4: NameError"),
@@ -222,7 +223,7 @@ class Command(unittest.TestCase):
             model = Path(folder) / "strange"
             model.mkdir()
             (model / "paper.py").write_text(
-                "from codegen.verify.printed import Paper\npaper = Paper('t', 's')\npaper.coordinate('q', 'm', 'q')\n"
+                "from codegen.verify import Paper\npaper = Paper('t', 's')\npaper.coordinate('q', 'm', 'q')\n"
                 "paper.motion('1', of='q')(lambda s, m: [s.ddq, 1 / (1 + s.q)])\n", encoding="utf-8")
             status, _, err = self.run_command("strange", "--models", folder)
             self.assertEqual(status, 2)

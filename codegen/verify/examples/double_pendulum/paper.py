@@ -1,6 +1,6 @@
 """Two point masses on massless rods, angles from the vertical: the textbook's equations."""
 
-from codegen.verify.printed import Paper, group
+from codegen.verify import Paper, group
 
 paper = Paper("Double pendulum", "any textbook of analytical mechanics",
               sets={"unit": {"m_1": "1", "m_2": "2", "l_1": "1", "l_2": "0.75", "g": "9.80665"}},

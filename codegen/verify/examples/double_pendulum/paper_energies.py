@@ -1,6 +1,6 @@
 """Energies of the double pendulum."""
 
-from codegen.verify.lagrange import Energies
+from codegen.verify import Energies
 
 
 def kinetic(s, m):

@@ -1,6 +1,6 @@
 """A rigid block that rocks about an edge and slides on a moving floor."""
 
-from codegen.verify.printed import Paper, group
+from codegen.verify import Paper, group
 
 paper = Paper("Rocking and sliding block", "Housner 1963, with slip of the edge", translation=("x", "z_h"),
               sets={"block": {"m": "2", "I": "2.7", "R": "1", "alpha": "0.3", "g": "9.80665", "nu": "0.3"}},

@@ -1,6 +1,6 @@
 """Energies of the rocking and sliding block, with its height y for the normal force."""
 
-from codegen.verify.lagrange import Energies
+from codegen.verify import Energies
 
 
 def kinetic(s, m):

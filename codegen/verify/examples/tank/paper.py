@@ -1,6 +1,6 @@
 """The walking tank's equations written by hand without slips, for the energy-consistent bodies."""
 
-from codegen.verify.printed import Paper, group
+from codegen.verify import Paper, group
 
 paper = Paper(
     "Walking tank, energy-consistent", "written by hand from the bodies of models/walking_tank", translation=("x", "z_h"),

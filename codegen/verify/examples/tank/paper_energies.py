@@ -1,6 +1,6 @@
 """Energies of the tank as a sum over bodies."""
 
-from codegen.verify.lagrange import Energies
+from codegen.verify import Energies
 
 
 def kinetic(s, m):

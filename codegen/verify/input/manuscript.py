@@ -1,0 +1,355 @@
+"""A paper as LaTeX alone: `paper.tex` with the equations and energies as printed, `symbols.csv` with what
+each symbol is. Nothing is written twice: terms, energies and constraint forces follow from the LaTeX.
+
+Of `paper.tex` the displayed equations are read; the rest may be the manuscript as it is. What an equation
+is, it shows, or a comment line in it or directly above it says: `% motion of \\theta_1`.
+"""
+
+import csv
+import re
+from dataclasses import replace
+from pathlib import Path
+
+from sympy import sympify
+
+from ..errors import PaperError
+from ..judgements.comparison import compare
+from ..normal.subject import Subject
+from ..readings.lagrange import Energies, Mathematics, Motion, sympy_namespace
+from . import transcription, units
+from .latex import Parser
+from .printed import Paper, plain_latex
+from .tokens import Placed, error_at
+
+TEX, SYMBOLS = "paper.tex", "symbols.csv"
+
+COLUMNS = ("symbol", "kind", "unit", "meaning")
+FURTHER = ("mirror", "minimum", "value", "low", "high")
+KINDS = ("coordinate", "input", "parameter", "damping", "force", "friction", "sign", "multiplier", "defined")
+
+DISPLAY = re.compile(r"\\begin\{(?P<name>equation|align|multline|gather|eqnarray|displaymath)(?P<star>\*?)\}(?P<body>.*?)\\end\{(?P=name)(?P=star)\}"
+                     r"|\\\[(?P<bracket>.*?)\\\]|\$\$(?P<dollars>.*?)\$\$", re.DOTALL)
+ROLES = {"motion of": "motion", "value of": "value", "reaction": "reaction", "condition on": "condition", "rule for": "rule",
+         "impact of": "reset", "constraint with": "constraint", "definition of": "definition", "force on": "force",
+         "kinetic energy": "T", "potential energy": "V", "dissipation": "D", "lagrangian": "L", "skip": "skip"}
+NOTE = re.compile(rf"%[ \t]*(?P<role>{'|'.join(ROLES)})\b[ \t]*(?P<of>[^\n%]*?)[ \t.]*$", re.MULTILINE | re.IGNORECASE)
+ENERGIES = {"T": "T", "V": "V", "U": "V", "D": "D", "L": "L"}
+
+
+class Displayed:
+    """A displayed equation: its number, its LaTeX with its place, what the comment beside it says, and its tree."""
+
+    def __init__(self, latex, number, note):
+        self.latex, self.number = latex, number
+        self.role, self.named = (ROLES[note["role"].lower()], note["of"].strip()) if note else (None, "")
+        self.tree = None if self.role == "skip" else Parser(latex).equation()
+
+    def error(self, what):
+        """An error about the equation: its first character that shows."""
+        return error_at(self.latex, len(self.latex) - len(self.latex.lstrip()), what)
+
+    def shape(self):
+        """What the equation consists of: sums, relations and words."""
+        return [child.kind if child.kind != "relation" else child.text for child in self.tree.children]
+
+    def left(self):
+        """The symbol that the left side consists of, or None."""
+        side = self.tree.children[0]
+        alone = len(side.children) == 1 and len(side.children[0].children) == 1 and side.children[0].sign == 1
+        node = side.children[0].children[0] if alone else None
+        return node if node and node.kind == "symbol" else None
+
+    def right(self, paper):
+        """The right side as a function of the namespaces."""
+        def function(s, m):
+            tree = Parser(self.latex).equation()
+            side = tree.children[2]
+            transcription._collect(side, 1, [0])
+            tree.children = [side]
+            return sum(transcription.terms(tree, paper, s, m, self.latex))
+
+        return function
+
+
+def is_manuscript(folder):
+    """Whether a folder has a paper as LaTeX."""
+    return (Path(folder) / TEX).is_file()
+
+
+def read(folder):
+    """The paper of a folder and the energies that it prints, a list."""
+    folder = Path(folder)
+    if not (folder / SYMBOLS).is_file():
+        raise PaperError(f"{folder / TEX} needs the table of its symbols beside it, {SYMBOLS}, with the columns {', '.join(COLUMNS)}")
+    text = (folder / TEX).read_text(encoding="utf-8-sig")
+    shown = re.sub(r"(?<!\\)%[^\n]*", lambda match: " " * len(match.group()), text)
+    title = re.search(r"\\title\{([^{}]*)\}", shown)
+    source = re.search(r"^%[ \t]*source:[ \t]*(.+)$", text, re.MULTILINE)
+    paper = Paper(title.group(1).strip() if title else folder.name, source.group(1).strip() if source else str(folder / TEX))
+    rows = _symbols(folder / SYMBOLS, paper)
+    found = _displayed(text, shown, str(folder / TEX))
+    _translation(text, paper, rows, folder / TEX)
+    printed = {}
+    for equation in found:
+        _sort(equation, paper, rows, printed)
+    defined = [r for r in rows.values() if r["kind"] == "defined" and r["name"] not in paper.definitions]
+    if defined:
+        raise PaperError(f"{folder / SYMBOLS}, line {defined[0]['line']}: no equation of {TEX} defines {defined[0]['symbol']}")
+    _check_definitions(paper, printed)
+    paper.check()
+    return paper, _energies(paper, printed, folder)
+
+
+def _symbols(path, paper):
+    """Declares the symbols of a table; its rows by what symbols are told apart by."""
+    result, values, bounds, lacking = {}, {}, {}, []
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        reader = csv.DictReader(file, skipinitialspace=True)
+        header = [name.strip() for name in reader.fieldnames or ()]
+        reader.fieldnames = header
+        wrong = [f"lacks the column '{name}'" for name in COLUMNS if name not in header]
+        wrong += [f"has an unknown column '{name}'" for name in header if name not in COLUMNS + FURTHER]
+        if wrong:
+            raise PaperError(f"{path}, line 1: the table {wrong[0]}; its columns are {', '.join(COLUMNS)}, and where wanted "
+                             f"{', '.join(FURTHER)}")
+        for row in reader:
+            if row.get(None) or None in row.values():
+                raise PaperError(f"{path}, line {reader.line_num}: the row has not {len(header)} cells; a cell with a comma stands in \"...\"")
+            row = {key: value.strip() for key, value in row.items()}
+            if not any(row.values()):
+                continue
+            row["line"] = reader.line_num
+            try:
+                row["name"] = _declare(paper, row)
+                for name in ("value", "low", "high", "minimum"):
+                    if row.get(name):
+                        float(row[name])
+            except (PaperError, units.UnitError, ValueError) as error:
+                raise PaperError(f"{path}, line {row['line']}: {error}") from error
+            if row.get("value"):
+                values[row["name"]] = row["value"]
+            elif row["kind"] in ("parameter", "damping"):
+                lacking.append(row["symbol"])
+            if row.get("low") and row.get("high"):
+                bounds[row["name"]] = (float(row["low"]), float(row["high"]))
+            result[plain_latex(row["symbol"])] = row
+    if values and lacking:
+        raise PaperError(f"{path}: the column 'value' says nothing of {', '.join(lacking)}: give all parameters a value, or none")
+    if values:
+        paper.sets["values"] = values
+    paper.box.update(bounds)
+    return result
+
+
+def _declare(paper, row):
+    """Declares one symbol and returns its name."""
+    kind, latex = row["kind"], row["symbol"]
+    name = re.sub(r"\W+", "_", plain_latex(latex)).strip("_")
+    units.parse(row["unit"])
+    mirror = {"": 1, "1": 1, "+1": 1, "-1": -1}.get(row.get("mirror", ""))
+    if mirror is None:
+        raise PaperError(f"mirror is 1 or -1, not {row['mirror']}")
+    if mirror == -1 and kind in ("parameter", "damping", "multiplier", "defined"):
+        raise PaperError(f"a {kind} keeps its sign in the mirror image")
+    if kind == "coordinate":
+        paper.coordinate(name, row["unit"], row["meaning"], latex, mirror, float(row["minimum"]) if row.get("minimum") else None)
+    elif kind == "input":
+        paper.input(name, row["unit"], row["meaning"], latex, mirror)
+    elif kind == "sign":
+        paper.discrete(name, (1, -1), row["meaning"], latex, mirror)
+    elif kind in ("force", "friction"):
+        paper.force(name, row["unit"], row["meaning"], latex, mirror, kind == "friction")
+    elif kind in KINDS:
+        paper.parameter(name, row["unit"], row["meaning"], latex, kind == "damping")
+    else:
+        raise PaperError(f"'{kind}' is no kind of symbol: {', '.join(KINDS)}")
+    return name
+
+
+def _translation(text, paper, rows, path):
+    """`% translation: x, z`: the coordinate and the input that may enter as their sum only."""
+    match = re.search(r"^%[ \t]*translation:(.*)$", text, re.MULTILINE)
+    if match:
+        names = [rows.get(plain_latex(part), {}).get("name") for part in match.group(1).split(",")]
+        if len(names) != 2 or None in names:
+            raise error_at(Placed(text, 0, len(text), str(path)), match.start(), "a translation is a coordinate and an input of the table, "
+                           "with a comma between")
+        paper.translation = tuple(names)
+
+
+def _displayed(text, shown, file):
+    """The displayed equations, numbered as LaTeX numbers them."""
+    found, counter, before = [], 0, 0
+    for match in DISPLAY.finditer(shown):
+        group = next(name for name in ("body", "bracket", "dollars") if match.group(name) is not None)
+        latex = Placed(text, *match.span(group), file)
+        tag = re.search(r"\\tag\*?\{([^{}]*)\}", match.group(group))
+        numbered = group == "body" and match.group("name") != "displaymath" and not match.group("star") \
+            and not re.search(r"\\(?:nonumber|notag)\b", match.group(group))
+        counter += numbered and not tag
+        number = tag.group(1).strip() if tag else str(counter) if numbered else f"unnumbered {len(found) + 1}"
+        # a comment speaks of the equation in which or directly above which it stands
+        above = text[before:match.start()]
+        lines = re.search(r"(?:^[ \t]*%[^\n]*\n)+[ \t]*\Z", above, re.MULTILINE)
+        notes = list(NOTE.finditer((lines.group() if lines else "") + "\n" + latex))
+        if len(notes) > 1:
+            raise error_at(latex, 0, "two comments say what this equation is")
+        found.append(Displayed(latex, number, notes[0] if notes else None))
+        before = match.end()
+    if not found:
+        raise PaperError(f"{file}: no displayed equation is found: \\begin{{equation}} ... \\end{{equation}}, \\[ ... \\] or $$ ... $$")
+    return found
+
+
+def _sort(equation, paper, rows, printed):
+    """Gives an equation to the paper, or to the energies (`printed`, by role)."""
+    role = equation.role or _role(equation, rows)
+    if role == "skip":
+        return
+    latex, number = equation.latex, equation.number
+    if role in ("T", "V", "D", "L"):
+        if role in printed:
+            raise equation.error(f"{role} is given twice")
+        if equation.shape() != ["sum", "=", "sum"]:
+            raise equation.error("an energy is written as a symbol = terms")
+        printed[role] = equation.right(paper)
+        return
+    named = equation.named or _named(equation, role, rows)
+    row = rows.get(plain_latex(named))
+    if row is None:
+        raise equation.error(f"{named} is not in {SYMBOLS}" if named else "it is not clear what this equation is of: say it in a comment line "
+                             f"above it, such as % {next(k for k, v in ROLES.items() if v == role)} \\theta")
+    name = row["name"]
+    if role in ("definition", "force"):
+        if equation.shape() != ["sum", "=", "sum"]:
+            raise equation.error(f"a {role} is written as a symbol = terms")
+        if role == "definition":
+            paper.definitions[name] = equation.right(paper)
+            paper.auxiliary += (name,)
+            printed.setdefault("definitions", []).append((name, equation))
+        else:
+            printed.setdefault("forces", {})[name] = equation.right(paper)
+            # what is given as a force is no part of a Lagrangian
+            for node in _nodes(equation.tree.children[2]):
+                other = rows.get(transcription._key(node), {}).get("name") if node.kind == "symbol" else None
+                if other and paper.symbols[other].role == "force":
+                    paper.symbols[other] = replace(paper.symbols[other], dissipative=True)
+    elif role == "constraint":
+        if equation.shape() != ["sum", "=", "sum"]:
+            raise equation.error("a constraint is written as terms = terms")
+        printed.setdefault("constraints", []).append((name, equation))
+    elif role == "motion":
+        paper.motion(number, of=name, latex=latex)
+    elif role in ("value", "reaction"):
+        paper.value(number, of=name, latex=latex, momentum=role == "reaction")
+    elif role == "reset":
+        paper.reset(number, of=name, latex=latex)
+    else:
+        relation = next((x for x in equation.shape() if x in ("<", ">")), None)
+        if relation is None:
+            raise equation.error(f"a {role} has the relation < or >")
+        if role == "condition":
+            paper.condition(number, of=name, relation=relation, latex=latex)
+        else:
+            result = transcription._number(equation.tree.children[2]) if len(equation.tree.children) > 2 else None
+            if result not in (1, -1):
+                raise equation.error("a rule is written as \\lambda = 1 \\quad \\text{if} \\quad ... > 0")
+            paper.rule(number, of=name, result=int(result), relation=relation, latex=latex)
+
+
+def _role(equation, rows):
+    """What an equation is, from its form."""
+    shape, left = equation.shape(), equation.left()
+    if "text" in shape:
+        return "rule"
+    if shape != ["sum", "=", "sum"]:
+        return "condition"
+    key = transcription._key(left) if left else None
+    if left and not left.dots and key in rows:
+        kind = rows[key]["kind"]
+        return "definition" if kind == "defined" else "value" if kind in ("force", "friction", "parameter") else "motion"
+    if left and not left.dots and key in ENERGIES:
+        return ENERGIES[key]
+    if left and not left.dots and key.startswith("Q_"):
+        return "force"
+    return "reset" if left and left.time else "motion"
+
+
+def _named(equation, role, rows):
+    """The symbol that an equation is of, from its form: LaTeX, or nothing."""
+    left = equation.left()
+    if role in ("value", "definition", "reset", "rule", "reaction") and left:
+        return transcription._key(left)
+    if role == "force" and left:
+        return transcription._key(left).partition("_")[2]
+    if role == "motion":
+        accelerated = {transcription._key(node) for node in _nodes(equation.tree) if node.kind == "symbol" and node.dots == 2}
+        of = [key for key in accelerated if rows.get(key, {}).get("kind") == "coordinate"]
+        coordinates = [key for key, row in rows.items() if row["kind"] == "coordinate"]
+        return of[0] if len(of) == 1 else coordinates[0] if len(coordinates) == 1 else ""
+    return ""
+
+
+def _nodes(node):
+    """A node and all below it."""
+    yield node
+    for child in node.children:
+        yield from _nodes(child)
+
+
+def _check_definitions(paper, printed):
+    """The dimension of each definition is that of its symbol."""
+    known = units.table(paper.symbols.values())
+    s, m = sympy_namespace(paper), Mathematics()
+    for name, equation in printed.get("definitions", ()):
+        try:
+            found = units.measure(sympify(equation.right(paper)(s, m)), known)
+        except units.UnitError as error:
+            raise equation.error(f"the definition of {name} is or contains {error}") from error
+        if found != units.parse(paper.symbols[name].unit):
+            raise equation.error(f"{name} is declared in {units.parse(paper.symbols[name].unit)} and defined in {found}")
+
+
+def _energies(paper, printed, folder):
+    """The energies, with the sign of the constraint forces with which more terms agree."""
+    if not any(name in printed for name in ("T", "V", "D", "L")):
+        return []
+    if "L" in printed and ("T" in printed or "V" in printed):
+        raise PaperError(f"{folder / TEX}: L is given beside T or V: give one of them")
+    if "L" not in printed and ("T" not in printed or "V" not in printed):
+        lost = "T" if "T" not in printed else "V"
+        raise PaperError(f"{folder / TEX}: {lost} is not given; if there is none, write {lost} = 0")
+    zero = lambda s, m: 0
+    kinetic, potential = printed.get("T") or printed["L"], printed.get("V", zero)
+    constraints = [(name, _left_minus_right(equation, paper)) for name, equation in printed.get("constraints", ())]
+
+    def made(sign):
+        def held(s, m):
+            return potential(s, m) - sign * sum(getattr(s, name) * form(s, m) for name, form in constraints)
+
+        words = f", constraint forces {'+' if sign > 0 else '-'} multiplier times slope of the constraint" if constraints else ""
+        return Energies("printed energies" + words, f"the energies of {TEX}", kinetic, held if constraints else potential,
+                        printed.get("D"), printed.get("forces", {}))
+
+    if not constraints:
+        return [made(1)]
+    subject = Subject(paper)
+
+    def disagreeing(energies):
+        found = [compare(subject, Motion(paper, energies), e.number) for e in paper.motions()]
+        return sum(len(c.differ) + len(c.absent) for c in found if c)
+
+    return [min((made(sign) for sign in (1, -1)), key=disagreeing)]
+
+
+def _left_minus_right(equation, paper):
+    """A constraint as the function that it holds at zero."""
+    def function(s, m):
+        tree = Parser(equation.latex).equation()
+        left, right = tree.children[0], tree.children[2]
+        counter = [0]
+        transcription._collect(left, 1, counter)
+        transcription._collect(right, -1, counter)
+        return sum(transcription.terms(tree, paper, s, m, equation.latex))
+
+    return function

@@ -1,0 +1,153 @@
+"""The LaTeX of a printed equation as a list of tokens, each with its place; errors show the place."""
+
+import re
+from dataclasses import dataclass
+
+from ..errors import LatexError, Place
+
+
+class Placed(str):
+    """A part of a file's text that knows where it stands: `file`, the `whole` text, its `offset`."""
+
+    def __new__(cls, whole, start, end, file):
+        result = super().__new__(cls, whole[start:end])
+        result.whole, result.offset, result.file = whole, start, file
+        return result
+
+
+def error_at(latex, at, what):
+    """A LatexError about a place of a text: line, column, the line itself and a caret below it."""
+    whole, at = getattr(latex, "whole", latex), at + getattr(latex, "offset", 0)
+    start = whole.rfind("\n", 0, at) + 1
+    end = whole.find("\n", at)
+    line, column = whole.count("\n", 0, at) + 1, at - start + 1
+    shown = whole[start:end if end >= 0 else len(whole)].replace("\t", " ")
+    file = getattr(latex, "file", "")
+    return LatexError(what, Place(file, line, column), f"    {shown}\n    {' ' * (column - 1)}^")
+
+
+@dataclass
+class Token:
+    """A token: `kind` is what the parser asks for, `at` the offset of its first character."""
+
+    kind: str
+    text: str
+    at: int
+
+
+GREEK = {"lambda": "λ", "theta": "θ", "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε",
+         "zeta": "ζ", "eta": "η", "iota": "ι", "kappa": "κ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ",
+         "tau": "τ", "upsilon": "υ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ",
+         "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "varphi": "ϕ", "vartheta": "ϑ",
+         "varepsilon": "ϵ", "ell": "ℓ"}
+
+FRAMES = "aligned|alignedat|align|gather|gathered|split|equation|multline|displaymath|math|eqnarray"
+
+TOKEN = re.compile(
+    r"(?:\s|~|%[^\n]*(?:\n|$))+|&|(?P<break>\\\\\*?(?:\[[^\]]*\])?)|(?P<skip>\\[,;:!> ]|\\/)"
+    rf"|(?P<frame>\\(?:begin|end)\{{(?:{FRAMES})\*?\}}|\\\[|\\\]|\$\$?)"
+    r"|(?P<place>\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\})"
+    r"|(?P<roman>\\(?:text|textrm|textnormal|mathrm|mathit|mathnormal|operatorname\*?|mbox)\s*\{(?P<word>[^{}]*)\})"
+    r"|(?P<time>\(t\s*\^\s*\{?[+-]\}?\))|(?P<of_time>\(t\))"
+    r"|(?P<command>\\(?:[A-Za-z]+|[|{}]))|(?P<symbol>[A-Za-z]|[α-ωΑ-Ωϕϑϵℓ])|(?P<number>\d+(?:\.\d+)?|\.\d+)|(?P<open>[(\[])|(?P<close>[)\]])"
+    r"|(?P<bar>\|)|(?P<relation>[=<>≤≥])|(?P<sign>[+−-])|(?P<power>\^)|(?P<index>_)|(?P<brace>[{}])|(?P<slash>/)|(?P<times>[*·×])"
+    r"|(?P<end>[.,;:])|(?P<prime>['’])")
+
+# what a command is; any other is a symbol, which must be declared
+COMMANDS = {
+    "quad": "skip", "qquad": "skip", "displaystyle": "skip", "textstyle": "skip", "nonumber": "skip", "notag": "skip",
+    "mathstrut": "skip", "rm": "skip", "it": "skip", "centering": "skip", "thinspace": "skip", "limits": "skip", "left": "size", "right": "size", "middle": "size",
+    "sin": "function", "cos": "function", "tan": "function", "cot": "function", "sign": "function", "sgn": "function",
+    "dot": "dots", "ddot": "dots", "dddot": "dots", "frac": "frac", "dfrac": "frac", "tfrac": "frac", "cfrac": "frac",
+    "cdot": "times", "times": "times", "ast": "times", "lvert": "bar", "rvert": "bar", "vert": "bar",
+    "bar": "accent", "hat": "accent", "tilde": "accent", "overline": "accent", "widetilde": "accent", "widehat": "accent",
+    "lt": "relation", "gt": "relation", "le": "relation", "leq": "relation", "ge": "relation", "geq": "relation",
+    "leqslant": "relation", "geqslant": "relation", "{": "open", "lbrace": "open", "lbrack": "open", "lparen": "open",
+    "}": "close", "rbrace": "close", "rbrack": "close", "rparen": "close",
+    **{name: "size" for name in ("big", "Big", "bigg", "Bigg", "bigl", "bigr", "Bigl", "Bigr", "biggl", "biggr", "Biggl", "Biggr")},
+}
+
+# what is refused, and what to write instead
+REFUSED = {
+    "sqrt": "a root is no trigonometric polynomial: multiply the equation out, or declare the root as a symbol",
+    "exp": "an exponential is no trigonometric polynomial: declare it as a symbol",
+    "ln": "a logarithm is no trigonometric polynomial: declare it as a symbol",
+    "log": "a logarithm is no trigonometric polynomial: declare it as a symbol",
+    "arcsin": "an inverse function is no trigonometric polynomial: declare the angle as a symbol",
+    "arccos": "an inverse function is no trigonometric polynomial: declare the angle as a symbol",
+    "arctan": "an inverse function is no trigonometric polynomial: declare the angle as a symbol",
+    "sinh": "a hyperbolic function is no trigonometric polynomial: declare it as a symbol",
+    "cosh": "a hyperbolic function is no trigonometric polynomial: declare it as a symbol",
+    "tanh": "a hyperbolic function is no trigonometric polynomial: declare it as a symbol",
+    "sec": "write \\frac{1}{\\cos ...}", "csc": "write \\frac{1}{\\sin ...}",
+    "int": "an integral cannot be judged: carry it out", "sum": "write the terms of the sum", "prod": "write the factors of the product",
+    "partial": "carry the derivative out: only rates in time are known, \\dot and \\ddot", "nabla": "carry the derivative out",
+    "pm": "two equations in one: write one for each sign, or declare a sign symbol",
+    "mp": "two equations in one: write one for each sign, or declare a sign symbol",
+    "approx": "an approximation is no equation: write = or a relation", "simeq": "an approximation is no equation: write = or a relation",
+    "equiv": "write =", "neq": "that two things differ cannot be judged: write < or >", "ne": "that two things differ cannot be judged: "
+    "write < or >", "propto": "a proportion is no equation: write the factor", "ll": "write <", "gg": "write >",
+    "over": "write \\frac{...}{...}", "vec": "a vector cannot be judged: write its components", "mathbf": "a vector cannot be judged: "
+    "write its components", "boldsymbol": "a vector cannot be judged: write its components", "bm": "a vector cannot be judged: write "
+    "its components", "prime": "a prime can be a derivative or a name: write \\dot, or an index", "|": "write | for a modulus",
+    "langle": "write ( or |", "rangle": "write ) or |", "ldots": "write all terms", "dots": "write all terms", "cdots": "write all terms",
+    "max": "write one condition for each case", "min": "write one condition for each case", "ddddot": "equations of motion have two dots "
+    "at most", "div": "write \\frac{...}{...}", "circ": "write angles in radians", "underbrace": "write what is above the brace alone",
+    "phantom": "leave it out: it does not show", "begin": "write each case or component as an equation of its own", "end": "an end "
+    "without its beginning",
+}
+
+FUNCTIONS = {"sin": "sin", "cos": "cos", "tan": "tan", "cot": "cot", "sign": "sign", "sgn": "sign", "signum": "sign"}
+RELATIONS = {"lt": "<", "gt": ">", "le": "≤", "leq": "≤", "leqslant": "≤", "ge": "≥", "geq": "≥", "geqslant": "≥"}
+BRACKETS = {r"\lbrace": r"\{", r"\rbrace": r"\}", r"\lbrack": "[", r"\rbrack": "]", r"\lparen": "(", r"\rparen": ")"}
+
+
+def tokens(latex):
+    """The tokens of a text; what does not show in print is left out."""
+    found, place = [], 0
+    while place < len(latex):
+        match = TOKEN.match(latex, place)
+        if not match:
+            raise error_at(latex, place, f"{latex[place]!r} cannot be read here")
+        kind, text, at = match.lastgroup, match.group(), place
+        place = match.end()
+        if kind == "word":  # the last group of a roman word
+            kind = "roman"
+        if kind == "command":
+            kind, text = _command(latex, text, at)
+        elif kind == "roman":
+            kind, text = _roman(text, match.group("word").strip())
+        elif kind == "symbol" and not text.isascii():
+            text = "\\" + next(name for name, letter in GREEK.items() if letter == text) if text in GREEK.values() else text
+        elif kind == "sign":
+            text = "+" if text == "+" else "-"
+        if kind == "size":
+            rest = latex[place:].lstrip()
+            if rest.startswith("."):
+                raise error_at(latex, at, "a bracket that does not show: write both brackets, or none")
+            continue
+        if kind not in (None, "skip", "frame", "place"):
+            found.append(Token(kind, text, at))
+    return found
+
+
+def _command(latex, text, at):
+    """What a command is, and how it is written in the tree."""
+    name = text[1:]
+    if name in REFUSED:
+        raise error_at(latex, at, f"{text}: {REFUSED[name]}")
+    kind = COMMANDS.get(name, "symbol")
+    if kind == "function":
+        text = "\\" + FUNCTIONS[name]
+    elif kind == "relation":
+        text = RELATIONS[name]
+    elif kind == "bar":
+        text = "|"
+    return kind, BRACKETS.get(text, text)
+
+
+def _roman(text, word):
+    """Upright words: a function, a name, or words between equations."""
+    if not text.startswith((r"\text", r"\mbox")) or word in FUNCTIONS:
+        return ("function", "\\" + FUNCTIONS[word]) if word in FUNCTIONS else ("upright", word)
+    return "text", rf"\text{{{word}}}"

@@ -1,0 +1,168 @@
+"""Judgement 6: the mass matrix is positive definite over the box of coordinates and parameters.
+
+Signs are proved with interval arithmetic, never sampled; where one parameter decides, its critical
+values are roots of the determinant in closed form.
+"""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import Dict, List, Optional, Tuple
+
+from ..normal.intervals import intervals, signs
+from .violation import Violation
+
+# A budget of some ten seconds. What is undecided by then lies at a point where the matrix is nearly
+# singular; the verdict then says "undecided" and names the box.
+BISECTIONS = 400
+
+HALF = Fraction(1, 2)
+
+
+def determinant(matrix):
+    """Determinant of a square matrix of forms, by expansion (the matrices are small)."""
+    if len(matrix) == 1:
+        return matrix[0][0]
+    total = matrix[0][0] * 0
+    for j, entry in enumerate(matrix[0]):
+        if entry:
+            minor = [row[:j] + row[j + 1:] for row in matrix[1:]]
+            total += entry * determinant(minor) * (-1) ** j
+    return total
+
+
+def minors(matrix):
+    """Leading principal minors; all are positive exactly where the matrix is positive definite."""
+    return [determinant([row[:k] for row in matrix[:k]]) for k in range(1, len(matrix) + 1)]
+
+
+def printed_mass(subject, symmetric=False):
+    """Mass matrix of the printed equations of motion, each times its constant; `symmetric` takes
+    the symmetric part."""
+    motions = subject.paper.motions()
+    matrix = [[(subject.multipliers[e.number] * subject.total(e.number)).diff("dd" + f.of) for f in motions] for e in motions]
+    if not symmetric:
+        return matrix
+    return [[(matrix[i][j] + matrix[j][i]) * HALF for j in range(len(matrix))] for i in range(len(matrix))]
+
+
+def states(paper, forms=None):
+    """All combinations of the discrete states (of those that the forms contain), as dictionaries."""
+    names = [x.name for x in paper.symbols.values() if x.role == "discrete"]
+    if forms is not None:
+        names = [n for n in names if any(n in form.names() for form in forms)]
+    return [dict(zip(names, values)) for values in product((1, -1), repeat=len(names))]
+
+
+def rest(paper):
+    """Where the system rests, as (zeros, places): all coordinates and rates at zero, but for coordinates whose
+    box has no zero in it, which stay; their places are the middles of their boxes. There zero is singular, or
+    no position of the system."""
+    places = {n: (low + high) / 2 for n, (low, high) in paper.box.items() if n in paper.coordinates() and not low <= 0 <= high}
+    return {p + n: 0 for n in paper.coordinates() for p in ("", "d", "dd") if p or n not in places}, places
+
+
+@dataclass
+class Verdict:
+    """`status`: proved, refuted (`point` is a box or point where a leading minor is negative) or
+    undecided (`point` is a box that could not be decided)."""
+
+    status: str
+    boxes: int
+    point: Optional[Dict[str, Tuple[float, float]]] = None
+
+
+def prove(forms, fixed, box, limit=BISECTIONS) -> Verdict:
+    """Whether all forms are positive over a box {name: (low, high)} with the other values fixed."""
+    fixed = intervals(fixed)
+    queue, count = [dict(box)], 0
+    while queue:
+        part = queue.pop()
+        count += 1
+        found = signs(forms, {**fixed, **intervals(part)})
+        if -1 in found:
+            return Verdict("refuted", count, part)
+        if all(sign == 1 for sign in found):
+            continue
+        middle = {n: ((low + high) / 2,) * 2 for n, (low, high) in part.items()}
+        if -1 in signs(forms, {**fixed, **intervals(middle)}):
+            return Verdict("refuted", count, middle)
+        widths = {n: (part[n][1] - part[n][0]) / (box[n][1] - box[n][0]) for n in part if box[n][1] > box[n][0]}
+        if count >= limit or not widths:
+            return Verdict("undecided", count, part)
+        name = max(widths, key=widths.get)
+        centre = middle[name][0]
+        queue += [{**part, name: (part[name][0], centre)}, {**part, name: (centre, part[name][1])}]
+    return Verdict("proved", count)
+
+
+def definite(subject, motion=None) -> List[Violation]:
+    """Violations where the symmetric part of the printed mass matrix is not positive definite at
+    rest, for one of the paper's parameter sets."""
+    if not subject.paper.sets or not subject.paper.motions():
+        return []
+    zeros, _ = rest(subject.paper)
+    matrix = [[form.substitute(zeros) for form in row] for row in printed_mass(subject, symmetric=True)]
+    key = ("definite", None, str(matrix))
+    if key not in subject.memo:
+        # all equations together may have been multiplied by a constant
+        found = []
+        for factor in subject.factors():
+            found.append(_indefinite(subject, minors([[factor * form for form in row] for row in matrix])))
+            if not found[-1]:
+                break
+        subject.memo[key] = [] if [] in found else found[0]
+    return subject.memo[key]
+
+
+def _indefinite(subject, forms):
+    """Violations for each parameter set and state in which some leading minor is not positive."""
+    violations = []
+    numbers = tuple(e.number for e in subject.paper.motions())
+    for (name, values), state in product(subject.paper.sets.items(), states(subject.paper)):
+        found = signs(forms, intervals({**values, **rest(subject.paper)[1], **state}))
+        if any(sign != 1 for sign in found):
+            bad = next(k for k, sign in enumerate(found) if sign != 1)
+            at = ", ".join([f"parameter set {name}"] + [f"{n} = {v:+d}" for n, v in state.items()])
+            violations.append(Violation("definite", numbers, (), [
+                f"the kinetic energy is not positive definite at rest ({at}): the leading minor {bad + 1} is not positive: ",
+                forms[bad]]))
+    return violations
+
+
+@dataclass
+class Critical:
+    """Roots of a determinant in one parameter: `coefficients` are those of its powers 0, 1, 2 (as
+    forms); `roots` are real roots by parameter set and state, or None where it is not real."""
+
+    parameter: str
+    determinant: object
+    coefficients: list
+    roots: Dict[str, List[float]]
+
+
+def critical(form, parameter, paper) -> Optional[Critical]:
+    """The critical values of a parameter in closed form, where the determinant is a polynomial of
+    degree 1 or 2 in it; None otherwise."""
+    powers = {dict(monomial).get(parameter, 0) for monomial, _ in form.terms}
+    if not powers or not powers <= {0, 1, 2} or powers == {0}:
+        return None
+    first, second = form.diff(parameter), form.diff(parameter).diff(parameter)
+    zero = {parameter: 0}
+    coefficients = [form.substitute(zero), first.substitute(zero), second.substitute(zero) * HALF]
+    roots = {}
+    for (name, values), state in product(paper.sets.items(), states(paper, coefficients)):
+        number = {**{n: float(v) for n, v in values.items()}, **rest(paper)[1], **state}
+        c, b, a = (x.evaluate(number, math.sin, math.cos, 0.0) for x in coefficients)
+        if a:
+            square = b * b - 4 * a * c
+            # the form without cancellation: the larger root first, the other from the product
+            large = -(b + math.copysign(math.sqrt(square), b)) / 2 if square >= 0 else 0.0
+            found = sorted({large / a, c / large}) if square >= 0 and large else [0.0] if square >= 0 else []
+        else:
+            found = [-c / b] if b else []
+        found = [root + 0.0 for root in found]  # -0.0 prints as 0
+        key = ", ".join([name] + [f"{n} = {v:+d}" for n, v in state.items()])
+        roots[key] = found
+    return Critical(parameter, form, coefficients, roots)

@@ -1,0 +1,141 @@
+"""Printed equations in normal form: what the judgements judge."""
+
+from fractions import Fraction
+from itertools import product
+
+from sympy import Expr, Mul, cos, sin, sympify
+
+from ..errors import NotInClass, PaperError
+from ..input import units
+from ..judgements.helmholtz import lagrangian
+from ..readings.lagrange import Mathematics, ring_of, sympy_namespace
+from ..repairs.edits import Editor
+from .scales import scales
+
+
+class Subject:
+    """Printed equations in normal form: `forms[number]` lists one form for each term."""
+
+    def __init__(self, paper, base=None):
+        """`base` is a subject that shares all but a few equations: their forms are not redone."""
+        if not base:
+            paper.check()
+        self.paper = paper
+        self.ring = base.ring if base else ring_of(paper)
+        self.s = base.s if base else sympy_namespace(paper)
+        self.m = base.m if base else Mathematics()
+        self.dimension = base.dimension if base else units.table(paper.symbols.values())
+        self.editor = base.editor if base else Editor(paper)
+        self.known = base.known if base else {}
+        self.expressions, self.forms, self.memo = {}, {}, {}
+        kept = set()
+        for number, equation in paper.equations.items():
+            if base and base.paper.equations.get(number) is equation:
+                self.expressions[number], self.forms[number] = base.expressions[number], base.forms[number]
+                kept.add(number)
+            else:
+                self.expressions[number] = self._terms(equation)
+                self.forms[number] = [self._form(number, k, term) for k, term in enumerate(self.expressions[number], 1)]
+            if not base and not self.forms[number]:
+                raise PaperError(f"equation ({number}) has no terms")
+        if base:
+            self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
+        self.scales = scales(self)
+        self.multipliers = self._multipliers()
+
+    def _terms(self, equation):
+        """The terms of an equation as SymPy expressions; an error in its function names it."""
+        try:
+            terms = equation.terms(self.s, self.m)
+        except Exception as error:  # whatever a model file does wrong is its author's to read
+            raise PaperError(f"equation ({equation.number}): {error}") from error
+        known, result = set(self.paper.names()), []
+        for k, term in enumerate(terms, 1):
+            # text would be read as a formula of other symbols, a list as no formula at all
+            if not isinstance(term, (Expr, int, Fraction)) or isinstance(term, bool):
+                raise PaperError(f"equation ({equation.number}), term {k}: {term!r} is not an expression of the symbols s.… "
+                                 "with exact numbers" + ("; write *group(...)" if isinstance(term, (list, tuple)) else ""))
+            result.append(sympify(term))
+            for symbol in sorted(result[-1].free_symbols, key=str):
+                if symbol.name not in known:
+                    raise PaperError(f"equation ({equation.number}), term {k}: the symbol '{symbol}' is not declared")
+        return result
+
+    def _form(self, number, k, term):
+        """The form of a term; an error names it."""
+        try:
+            return self.read(term)
+        except NotInClass as error:
+            raise NotInClass(f"equation ({number}), term {k}: {error}") from error
+
+    def read(self, term):
+        """The form of an expression, read once."""
+        if term not in self.known:
+            self.known[term] = self.ring.read(term)
+        return self.known[term]
+
+    def units(self):
+        """The sines, cosines and their products that the paper prints and the algebra takes apart."""
+        found = {}
+        for terms in self.expressions.values():
+            for term in terms:
+                factors = [f for f in Mul.make_args(term) if f.as_base_exp()[0].func in (sin, cos)]
+                form = self.read(Mul(*factors))
+                if len(form.terms) > 1:
+                    found[form] = True
+        return list(found)
+
+    def each(self, name, judge, *context):
+        """The violations of all equations, where `judge(number)` gives those of one: what is known
+        from the base about an equation that has not changed is not judged again."""
+        violations = []
+        for number in self.paper.equations:
+            key = (name, number, *context)
+            if key not in self.memo:
+                self.memo[key] = judge(number)
+            violations += self.memo[key]
+        return violations
+
+    def total(self, number):
+        """The sum of an equation's terms."""
+        return sum(self.forms[number], self.ring.number(0))
+
+    def conservative(self, number):
+        """The sum without what is declared dissipative."""
+        dissipative = {x.name: 0 for x in self.paper.symbols.values() if x.dissipative}
+        return self.total(number).substitute(dissipative)
+
+    def factors(self):
+        """The constants that an equation may have been multiplied by: 1, -1 and these times
+        each discrete state."""
+        one = self.ring.number(1)
+        return [one, -one] + [sign * self.ring.symbol(n) for n in sorted(self.ring.involutions) for sign in (one, -one)]
+
+    def _multipliers(self):
+        """For each equation of motion, its scale times the constant that makes the mass matrix most
+        nearly symmetric; the first equation keeps 1, and 1 is preferred."""
+        motions = self.paper.motions()
+        rows = [[self.scales[e.number] * self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
+        if not motions or not any(row[i] != rows[i][j] for j, row in enumerate(rows) for i in range(len(motions))):
+            return self._uncoupled(dict(self.scales), motions, rows)
+        best = None
+        for choice in product(self.factors(), repeat=len(motions) - 1):
+            choice = (self.ring.number(1),) + choice
+            cost = sum(len((choice[i] * rows[i][j] - choice[j] * rows[j][i]).terms)
+                       for i in range(len(motions)) for j in range(i))
+            if best is None or cost < best[0]:
+                best = (cost, choice)
+        return self._uncoupled({e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}, motions, rows)
+
+    def _uncoupled(self, found, motions, rows):
+        """The multipliers, where the mass matrix couples an equation to no other, and so says nothing of its
+        constant: that with which least is left of the Helmholtz conditions, and then a positive inertia."""
+        alone = [i for i in range(len(motions)) if not any(rows[i][j] or rows[j][i] for j in range(len(motions)) if j != i)]
+        for i in alone[len(alone) == len(motions):]:
+            number, costs = motions[i].number, []
+            for factor in self.factors():
+                self.multipliers = {**found, number: factor * self.scales[number]}
+                left = sum(len(part.terms) for v in lagrangian(self) for part in v.message if not isinstance(part, str))
+                costs.append((left, all(value < 0 for value in (self.multipliers[number] * rows[i][i]).terms.values()), self.multipliers))
+            found = min(costs, key=lambda cost: cost[:2])[2]
+        return found

@@ -1,0 +1,165 @@
+"""Equations of motion and reactions from energies, by Lagrange's equations, in normal form."""
+
+from dataclasses import dataclass, field
+from typing import Callable, Dict, Optional
+
+from ..errors import PaperError
+from ..input.printed import Symbol, latex_name
+from ..normal.algebra import Ring
+from ..normal.intervals import intervals, signs
+
+
+@dataclass
+class Energies:
+    """Energies in the symbols of a paper; functions of the same namespaces `s`, `m`.
+
+    `kinetic`, `potential` and `dissipation` (Rayleigh) are energies in J (W for the last);
+    `forces` gives further generalized forces by coordinate. `squares`, where known, lists pairs
+    (coefficient, velocity) with T = 1/2 sum coefficient velocity^2 while the further coordinates
+    are held: a certificate that T >= 0 where no coefficient is negative. `references` says,
+    by equation number, what a printed value, condition or rule must equal (of a rule: what is
+    positive where the state is +1): a function of `s`, `m` and the derived `Motion`. Coordinates that the paper does not have (the height whose reaction
+    is the normal force) are declared with `coordinate` and are held at zero.
+    """
+
+    name: str
+    description: str
+    kinetic: Callable
+    potential: Callable
+    dissipation: Optional[Callable] = None
+    forces: Dict[str, Callable] = field(default_factory=dict)
+    squares: Optional[Callable] = None
+    references: Dict[str, Callable] = field(default_factory=dict)
+    scales: Dict[str, Callable] = field(default_factory=dict)
+    extra: Dict[str, Symbol] = field(default_factory=dict)
+
+    def coordinate(self, name, unit, meaning, mirror=1):
+        """Declare a coordinate that is held at zero in all equations."""
+        self.extra[name] = Symbol(name, unit, meaning, "coordinate", latex_name(name), mirror)
+
+    def reference(self, number, scale=None):
+        """Register the decorated function as what equation `number` must say, once the printed
+        terms are multiplied by the positive factor `scale` (of a sign rule)."""
+
+        def register(function):
+            self.references[number] = function
+            if scale:
+                self.scales[number] = scale
+            return function
+
+        return register
+
+
+class Mathematics:
+    """The namespace `m` for SymPy expressions."""
+
+    def __init__(self):
+        import sympy
+
+        self.sin, self.cos, self.sign, self.Abs = sympy.sin, sympy.cos, sympy.sign, sympy.Abs
+
+
+def ring_of(paper):
+    """The ring of a paper's symbols."""
+    symbols = paper.symbols.values()
+    return Ring([x.name for x in symbols if x.role == "discrete"], [x.name for x in symbols if x.role == "parameter"])
+
+
+def sympy_namespace(paper, extra=(), defined=True):
+    """SymPy symbols for every name of a paper and of `extra` coordinates. What the paper leaves
+    undefined is put in by its reading, or (not `defined`) is a symbol of its own."""
+    import sympy
+
+    names = [n for n in paper.names() if not (defined and n in paper.definitions)]
+    for symbol in extra:
+        names += [symbol, "d" + symbol, "dd" + symbol]
+    return paper.namespace({n: sympy.Symbol(n, real=True) for n in names}, Mathematics())
+
+
+class Motion:
+    """What follows from energies: equations of motion, mass matrix, reactions (normal forms)."""
+
+    def __init__(self, paper, energies):
+        self.paper, self.energies = paper, energies
+        for name in energies.extra:
+            if name in paper.symbols:
+                raise PaperError(f"the energies '{energies.name}' redeclare the symbol '{name}'")
+        self.ring = ring_of(paper)
+        self.s = sympy_namespace(paper, energies.extra)
+        self.m = Mathematics()
+        self.coordinates = paper.coordinates() + list(energies.extra)
+        moving = self.coordinates + [x.name for x in paper.symbols.values() if x.role == "input"]
+        self.chain = {n: "d" + n for n in moving}
+        self.chain.update({"d" + n: "dd" + n for n in moving})
+        self.kinetic = self._read(energies.kinetic)
+        self.potential = self._read(energies.potential)
+        self.dissipation = self._read(energies.dissipation) if energies.dissipation else self.ring.number(0)
+        self.held = {p + n: 0 for n in energies.extra for p in ("", "d", "dd")}
+        self._residuals = {}
+        self._check(moving)
+
+    def _check(self, moving):
+        """Raises a PaperError where Lagrange's equations would not be what `residual` computes."""
+        rates, accelerations = {"d" + n for n in moving}, {"dd" + n for n in moving}
+        wrong = [("kinetic energy", self.kinetic, accelerations), ("potential", self.potential, rates | accelerations),
+                 ("dissipation", self.dissipation, accelerations)]
+        for what, form, names in wrong:
+            if found := sorted(form.names() & names):
+                raise PaperError(f"the {what} of '{self.energies.name}' contains {', '.join(found)}")
+        for name in self.energies.forces:
+            if name not in self.coordinates:
+                raise PaperError(f"'{self.energies.name}' has a force on '{name}', which is no coordinate")
+        for number in [*self.energies.references, *self.energies.scales]:
+            if number not in self.paper.equations:
+                raise PaperError(f"'{self.energies.name}' has a reference for equation ({number}), which the paper does not have")
+
+    def _read(self, function):
+        """The form of a function of the namespaces."""
+        return self.ring.read(function(self.s, self.m))
+
+    def residual(self, name):
+        """d/dt dT/dv - dT/dq + dV/dq + dD/dv - Q of a coordinate, which is its reaction where it
+        is held; the further coordinates of the energies at zero."""
+        if name not in self._residuals:
+            form = self.kinetic.diff("d" + name).rate(self.chain) - self.kinetic.diff(name)
+            form += self.potential.diff(name) + self.dissipation.diff("d" + name)
+            if name in self.energies.forces:
+                form -= self._read(self.energies.forces[name])
+            self._residuals[name] = form.substitute(self.held)
+        return self._residuals[name]
+
+    def at_rest(self, name, *held):
+        """The reaction of a coordinate while the coordinates `held` stay still at zero."""
+        return self.residual(name).substitute({p + n: 0 for n in held for p in ("", "d", "dd")})
+
+    def frozen(self, name, *frozen):
+        """The reaction of a coordinate while the coordinates `frozen` do not move."""
+        return self.residual(name).substitute({p + n: 0 for n in frozen for p in ("d", "dd")})
+
+    def reference(self, equation):
+        """The normal form that an equation must have: its equation of motion, or what the
+        energies' reference says; None where nothing is known."""
+        if equation.number in self.energies.references:
+            form = self.ring.read(self.energies.references[equation.number](self.s, self.m, self))
+            if equation.kind == "value" and equation.of in form.names():
+                raise PaperError(f"the reference of '{self.energies.name}' for ({equation.number}) gives {equation.of} by itself")
+            return form
+        if equation.kind == "motion":
+            return self.residual(equation.of)
+        return None
+
+    def scale(self, number):
+        """The factor of the printed terms of a sign rule, proved positive for every parameter set."""
+        function = self.energies.scales.get(number)
+        if not function:
+            return self.ring.number(1)
+        factor = self.ring.read(function(self.s, self.m))
+        if not self.paper.sets or any(signs([factor], intervals(values)) != [1] for values in self.paper.sets.values()):
+            raise PaperError(f"the scale of the reference for ({number}) is not shown to be positive: it must be so for every one "
+                             "of the paper's parameter sets, of which there is at least one")
+        return factor
+
+    def mass(self):
+        """Mass matrix of the paper's coordinates, as a list of rows."""
+        rows = self.paper.coordinates()
+        return [[self.kinetic.diff("d" + i).diff("d" + j).substitute(self.held) for j in rows] for i in rows]

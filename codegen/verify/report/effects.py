@@ -1,0 +1,106 @@
+"""What a printed slip does to the motion: scenes simulated with and without it.
+
+The model states in `paper_effects.py` how a scene selects the equations; the simulations are runs
+of the program itself, whose path is given.
+"""
+
+import json
+import os
+import subprocess
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Dict, List, Tuple
+
+from ..errors import PaperError
+
+
+@dataclass(frozen=True)
+class Effects:
+    """How the effect of a slip is simulated.
+
+    `scenes` are scene files relative to the project; `corrected` the overrides that select the
+    corrected equations, and `slip` the parameter that leaves out one correction, by its number in
+    the list of corrections (0: none). `variants` are overrides by name, for the comparison of the
+    equations as a whole. `quantities` are places in the summary of a run by name.
+    """
+
+    scenes: Tuple[str, ...]
+    corrected: Tuple[str, ...]
+    slip: str
+    variants: Dict[str, Tuple[str, ...]]
+    quantities: Dict[str, Tuple[str, ...]]
+
+
+@dataclass
+class Simulated:
+    """Results of the runs: by scene and variant, and by scene and number of the slip."""
+
+    variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
+    slips: Dict[str, List[dict]] = field(default_factory=dict)
+
+
+def simulate(effects, corrections, program):
+    """Runs all scenes in all variants and with each slip."""
+    jobs = []
+    for scene in effects.scenes:
+        jobs += [(scene, name, overrides) for name, overrides in effects.variants.items()]
+        jobs += [(scene, number, effects.corrected + (f"parameters.{effects.slip}={number}",))
+                 for number in range(len(corrections) + 1)]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(lambda job: run(program, job[0], job[2], effects.quantities), jobs))
+    simulated = Simulated()
+    for (scene, which, _), result in zip(jobs, results):
+        name = os.path.splitext(os.path.basename(scene))[0]
+        if isinstance(which, str):
+            simulated.variants.setdefault(name, {})[which] = result
+        else:
+            simulated.slips.setdefault(name, []).append(result)
+    return simulated
+
+
+def attach(findings, corrections, simulated):
+    """Fills in the effects of the findings that a correction describes."""
+    numbers = {correction.key: k for k, correction in enumerate(corrections, 1)}
+    for finding in findings:
+        if finding.key in numbers:
+            finding.effects = {
+                scene: {"without": results[0], "with": results[numbers[finding.key]]}
+                for scene, results in simulated.slips.items()
+            }
+
+
+def quantity(summary, path):
+    """The number at a place of a summary. What is counted and did not happen is 0; a place that does
+    not exist is an error, not a quantity that no slip changes."""
+    value = summary
+    for k, key in enumerate(path):
+        counts = isinstance(value, dict) and all(type(x) is int for x in value.values())
+        if isinstance(value, dict) and key in value:
+            value = value[key]
+        elif counts and k == len(path) - 1:
+            return 0
+        else:
+            raise PaperError(f"the summary of a run has no {'.'.join(path)}; paper_effects.py asks for it")
+    return value
+
+
+def run(program, scene, overrides, quantities):
+    """One run of the program: the quantities, and why it stopped where it did early."""
+    command = [program, "run", scene]
+    for override in overrides:
+        command += ["--set", override]
+    with tempfile.TemporaryDirectory() as folder:
+        out = os.path.join(folder, "out")
+        done = subprocess.run(command + ["--out", out], capture_output=True, text=True)
+        if done.returncode not in (0, 3):
+            raise PaperError(f"{' '.join(command)} failed:\n{done.stderr}")
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as stream:
+            summary = json.load(stream)
+    result = {}
+    for name, path in quantities.items():
+        result[name] = quantity(summary, path)
+    if done.returncode == 3:
+        failure = summary["failure"]
+        result["stopped"] = f"at t = {failure['t']:.6g} s in mode {failure['mode']}: {failure['reason']}"
+    return result

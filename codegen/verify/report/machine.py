@@ -1,0 +1,75 @@
+"""The report as JSON."""
+
+import json
+
+from ..judgements import TITLES
+from .gather import closed
+from .show import form_latex, form_text, message_text
+from .text import undefined_symbols
+
+
+# raised when a key changes its meaning or goes
+SCHEMA = 2
+
+
+def as_dictionary(report):
+    """The report for machines."""
+    paper = report.case.paper
+    first = report.comparisons[report.motions[0].energies.name] if report.motions else {}
+
+    def show(part):
+        return {"text": part} if isinstance(part, str) else {"text": form_text(part, paper), "latex": form_latex(part, paper)}
+
+    return {
+        "schema": SCHEMA, "model": report.case.name, "title": paper.title, "source": paper.source,
+        "transcription_proved": report.transcribed,
+        "agreeing_terms": sum(len(c.agree) for c in first.values()),
+        "terms": sum(c.terms() for c in first.values()),
+        "multipliers": {n: show(first[n].scale if n in first else scale) for n, scale in report.printed.scales.items()
+                        if (first[n].scale if n in first else scale) != report.printed.ring.number(1)},
+        "unreferenced_equations": report.unreferenced,
+        "energies": [{
+            "name": m.energies.name, "description": m.energies.description,
+            "equations": {n: {
+                "agree": [{"term": k + 1, **show(report.printed.forms[n][k])} for k in c.agree],
+                "differ": [{"term": k + 1, **show(report.printed.forms[n][k])} for k in c.differ],
+                "idle": [{"term": k + 1, **show(report.printed.forms[n][k])} for k in c.idle],
+                "absent": [show(x) for x in c.absent],
+            } for n, c in report.comparisons[m.energies.name].items()},
+        } for m in report.motions],
+        "candidates": [dict(zip(("name", "agree", "terms", "absent"), row)) for row in report.scores],
+        "judgements": {name: {
+            "title": title, "judged": name not in report.unjudged, "not_judged_because": report.unjudged.get(name),
+            "objections": [{"equations": v.equations, "terms": [k + 1 for k in v.terms],
+                            "message": message_text(v.message, paper)} for v in report.violations[name]],
+            "objections_after_correction": len(report.corrected_violations[name]),
+        } for name, title in TITLES.items()},
+        "findings": [{
+            "id": f.key, "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": f.reason,
+            "term": [k + 1 for k in f.ordinals], "printed": [show(x) for x in f.printed],
+            "consistent": None if f.kind == "objection" else [show(x) for x in f.consistent], "proved": f.proved,
+            "possible": [{"equation": n, "term": [k + 1 for k in r.ordinals], "slip": r.slip,
+                          "printed": [show(x) for x in r.printed], "edited": [show(x) for x in r.consistent]} for n, r in f.possible],
+            "judgements": f.judgements, "order": f.order, "vanishes": f.vanishes, "effects": f.effects or None,
+        } for f in report.findings],
+        "variants": report.variants or None,
+        "definiteness": [{
+            "name": d.name, "determinant_at_rest": str(closed(d.at_rest)),
+            "neglected": None if d.neglected is None else str(closed(d.neglected)) if d.neglected else "0",
+            "critical": d.critical and {"parameter": d.critical.parameter, "roots": d.critical.roots,
+                                        "coefficients": [str(closed(c)) if c else "0" for c in d.critical.coefficients]},
+            "sum_of_squares": d.squares,
+            "box": {key: {"status": v.status, "boxes": v.boxes, "point": v.point} for key, v in d.boxes.items()},
+        } for d in report.definiteness],
+        "numbers": [{
+            "name": x.number.name, "printed": x.number.printed, "unit": x.number.unit,
+            "unit_printed": x.number.unit_printed, "low": x.low, "high": x.high, "agrees": x.agrees,
+            "unit_agrees": x.unit_agrees, "meaning": x.number.meaning, "note": x.number.note,
+        } for x in report.numbers],
+        "undefined_symbols": {name: paper.symbols[name].meaning for name in undefined_symbols(paper)},
+    }
+
+
+def as_json(report):
+    """The report as JSON text."""
+    return json.dumps(as_dictionary(report), indent=2, ensure_ascii=False) + "\n"

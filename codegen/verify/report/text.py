@@ -1,0 +1,240 @@
+"""The report as text for a terminal, and the sentences that all forms of the report share."""
+
+from ..input.corrections import KINDS
+from ..judgements import TITLES
+from ..repairs.edits import slip_text
+from .gather import closed
+from .show import message_text, shown
+
+
+def count(number, what):
+    """A number of things."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def transcription_lines(report):
+    """Which equations are proved equal to their LaTeX, and which have none."""
+    lines, paper = [], report.case.paper
+    if report.transcribed:
+        lines.append(f"Transcription: ({'), ('.join(report.transcribed)}) are proved equal to their LaTeX: symbol, relation, and "
+                     "term by term.")
+    read = [n for n, equation in paper.equations.items() if equation.function is None]
+    if read:
+        lines.append(f"Transcription: ({'), ('.join(read)}) are judged from their LaTeX: no terms are written beside it.")
+    without = [n for n, equation in paper.equations.items() if not equation.latex]
+    if without:
+        lines.append(f"Transcription: ({'), ('.join(without)}) have no LaTeX; what is judged is the function alone.")
+    return lines
+
+
+def scale_lines(report, show):
+    """What equations are divided by, if they are."""
+    lines, one = [], report.printed.ring.number(1)
+    for number, scale in report.printed.scales.items():
+        if report.motions and (comparison := report.comparisons[report.motions[0].energies.name].get(number)):
+            scale = comparison.scale
+        if scale != one:
+            lines.append(f"Equation ({number}) is judged as multiplied by {show(scale)}.")
+    return lines
+
+
+def agreement_text(motion, comparisons):
+    """How many printed terms agree with energies."""
+    agree = sum(len(c.agree) for c in comparisons.values())
+    total, idle = sum(c.terms() for c in comparisons.values()), sum(len(c.idle) for c in comparisons.values())
+    return (f"Energies '{motion.energies.name}': {agree} of {total} printed terms agree, "
+            + (f"{idle} cancel one another or vanish, " if idle else "")
+            + f"{sum(len(c.absent) for c in comparisons.values())} derived terms are not printed")
+
+
+def judgement_text(report, name):
+    """The number of objections of a judgement, before and after correction; or why it is not judged."""
+    if name in report.unjudged:
+        return f"{TITLES[name]}: not judged: {report.unjudged[name]}"
+    after = "as corrected" if report.by_hand else "with the repairs below"
+    text = f"{TITLES[name]}: {count(len(report.violations[name]), 'objection')}"
+    if report.by_hand or any(finding.kind == "repair" for finding in report.findings):
+        text += f" ({len(report.corrected_violations[name])} {after})"
+    if name == "difference" and report.unreferenced:
+        text += f"; the energies say nothing about ({'), ('.join(report.unreferenced)})"
+    if name == "lagrangian" and (lonely := unmoved(report)):
+        text += f"; nothing is judged about the motion of {', '.join(lonely)}, which has no equation"
+    return text
+
+
+def unmoved(report):
+    """Coordinates without an equation of motion."""
+    moved = {equation.of for equation in report.case.paper.motions()}
+    return [name for name in report.case.paper.coordinates() if name not in moved]
+
+
+def headline(report):
+    """The number of findings, and what was not judged: without it, none is no verdict."""
+    text = count(len(report.findings), "finding")
+    open_ = [TITLES[name].lower() for name in report.unjudged]
+    if "difference" not in report.unjudged and report.unreferenced:
+        open_.append(f"what ({'), ('.join(report.unreferenced)}) must be")
+    return text + (f"; not judged: {', '.join(open_)}" if open_ else "")
+
+
+def printed_text(finding, show):
+    """What is printed; `show` makes text of a form."""
+    if finding.printed:
+        return ",  ".join(show(part) for part in finding.printed)
+    return "(the equation as a whole)" if finding.kind == "objection" else "(not printed)"
+
+
+def consistent_text(finding, show):
+    """What would be consistent, or that it is not known."""
+    if finding.kind == "objection":
+        return "not known"
+    return ",  ".join(show(part) for part in finding.consistent) or "(no such term)"
+
+
+def possible_lines(finding, show):
+    """The edits with each of which an objection vanishes: none is proved to be what was meant."""
+    lines = []
+    for number, repair in finding.possible:
+        where = f"({number})" + (f" term {repair.ordinals[0] + 1}" if repair.ordinals else "")
+        before = ",  ".join(show(x) for x in repair.printed) or "(not printed)"
+        after = ",  ".join(show(x) for x in repair.consistent) or "(no such term)"
+        lines.append(f"would remove it and raise no other: {where}: {before} → {after}: {slip_text(repair.slip)}")
+    return lines
+
+
+def consistent_label(finding):
+    """Whether what is called consistent is proved so."""
+    return "consistent" if finding.proved or finding.kind == "objection" else "proposed, not proved consistent"
+
+
+def reason_lines(finding):
+    """What kind of slip a finding is, and why."""
+    lines = [f"slip: {slip_text(finding.slip)}"] if finding.slip else []
+    lines += [KINDS[finding.kind]] if finding.kind in KINDS else []
+    return lines + ([finding.reason] if finding.reason else [])
+
+
+def judged_text(finding):
+    """Who finds it."""
+    return ", ".join(finding.judgements) or "no judgement: nothing here shows that what is printed is wrong"
+
+
+def as_text(report):
+    """The report for a terminal."""
+    case, paper = report.case, report.case.paper
+
+    def show(part):
+        return shown(part, paper)
+
+    lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", "", *transcription_lines(report),
+             *scale_lines(report, show), ""]
+    for motion in report.motions:
+        found = report.comparisons[motion.energies.name]
+        lines.append(agreement_text(motion, found))
+        for number, c in found.items():
+            lines.append(f"  ({number})  {len(c.agree)} of {c.terms()} terms agree")
+        lines.append("")
+    if report.scores:
+        lines.append("Candidate energies (equations of motion, forces and reactions): agreeing terms, absent terms")
+        lines += [f"  {agree:3d} of {total}, {absent:2d} absent   {name}" for name, agree, total, absent in report.scores] + [""]
+    lines.append("Judgements on the printed equations")
+    for name in TITLES:
+        lines.append("  " + judgement_text(report, name))
+        if name != "difference":
+            lines += ["    " + message_text(v.message, paper) for v in report.violations[name]]
+    lines += ["", headline(report)]
+    for f in report.findings:
+        where = f", terms {', '.join(str(k + 1) for k in f.ordinals)}" if f.ordinals else ""
+        label = consistent_label(f) + ":"
+        lines += ["", f"  [{f.key}] equation ({f.equation}){where}", f"    printed:    {printed_text(f, show)}",
+                  f"    {label:11} {consistent_text(f, show)}"]
+        lines += [f"    {line}" for line in reason_lines(f) + possible_lines(f, show)]
+        lines.append("    found by: " + judged_text(f))
+        lines += [f"    {line}" for line in extent_lines(f) + effect_lines(f)]
+    if report.variants:
+        lines += ["", "The scenes with the equations as a whole"]
+    for scene, results in report.variants.items():
+        lines.append(f"  {scene}")
+        lines += [f"    {name}: {outcome_text(result)}" for name, result in results.items()]
+    if report.definiteness:
+        lines += ["", "Positive definite kinetic energy"]
+    for d in report.definiteness:
+        lines += [f"  {d.name}", f"    determinant at rest: {closed(d.at_rest)}"]
+        if d.neglected is not None:
+            value = closed(d.neglected) if d.neglected else "0 (singular)"
+            lines.append(f"    with {' = '.join(paper.negligible)} = 0: {value}")
+        if d.critical:
+            name = d.critical.parameter
+            lines.append(f"    critical {name}: roots of c0 + c1 {name} + c2 {name}^2")
+            lines += [f"      c{k} = {closed(c) if c else 0}" for k, c in enumerate(d.critical.coefficients)]
+            lines += [f"      {key}: {', '.join(f'{root:.6g}' for root in roots) or 'none'}"
+                      for key, roots in d.critical.roots.items()]
+        if d.squares is not None:
+            lines.append("    " + squares_text(d))
+        lines += [f"    {key}: {verdict_text(v)}" for key, v in d.boxes.items()]
+    if report.numbers:
+        lines += ["", "Printed numbers (recomputed as an interval over the rounding of what they come from)"]
+    for x in report.numbers:
+        lines.append("  " + number_text(x))
+    if undefined := undefined_symbols(paper):
+        lines += ["", "Symbols that the paper uses and does not define"]
+        lines += [f"  {name}: {paper.symbols[name].meaning}" for name in undefined]
+    return "\n".join(lines) + "\n"
+
+
+def undefined_symbols(paper):
+    """Names of the symbols that a paper uses and does not define."""
+    return [name for name in paper.definitions if name not in paper.auxiliary]
+
+
+def extent_lines(finding):
+    """How small a finding is, and where it vanishes."""
+    lines = [] if finding.order is None else [f"order in the coordinates: {finding.order}"]
+    return lines + (["makes no difference for " + ", ".join(finding.vanishes)] if finding.vanishes else [])
+
+
+def effect_lines(finding):
+    """The simulated effect of a finding, a line a scene."""
+    if not finding.effects:
+        return ["effect on the scenes: not simulated"] if finding.kind in KINDS else []
+    lines = []
+    for scene, effect in finding.effects.items():
+        parts = [f"{which} the slip {outcome_text(effect[which])}" for which in ("without", "with")]
+        lines.append(f"effect on {scene}: " + "; ".join(parts))
+    return lines
+
+
+def outcome_text(result):
+    """What a simulation gave: its quantities, and why it stopped early if it did."""
+    return ", ".join(f"{n} = {v:.6g}" if isinstance(v, (int, float)) else f"{n} {v}" for n, v in result.items())
+
+
+def verdict_text(verdict):
+    """A verdict over the box in words."""
+    where = "" if not verdict.point else " at " + ", ".join(
+        f"{n} = {low:g}" if low == high else f"{n} in [{low:g}, {high:g}]" for n, (low, high) in verdict.point.items())
+    return {"proved": f"positive definite on the whole box (proved, {verdict.boxes} boxes)",
+            "refuted": f"NOT positive definite{where}",
+            "undecided": f"undecided{where} after {verdict.boxes} boxes"}[verdict.status]
+
+
+def squares_text(definiteness):
+    """Whether the kinetic energy is the declared sum of squares."""
+    if definiteness.squares:
+        return "the kinetic energy is the declared sum of squares (identity proved)"
+    return "the kinetic energy is NOT the declared sum of squares"
+
+
+def number_text(checked):
+    """One number with its verdict."""
+    n = checked.number
+    text = f"{n.name} = {n.printed} {n.unit_printed or n.unit}" if n.printed else f"{n.name} [{n.unit}] not printed"
+    if checked.low is not None:
+        text += f"; recomputed {checked.low:.6g}" + (f" to {checked.high:.6g}" if f"{checked.low:.6g}" != f"{checked.high:.6g}" else "")
+    if checked.agrees is not None:
+        text += ": agrees" if checked.agrees else ": DISAGREES"
+    elif checked.low is not None and n.printed:
+        text += ": cannot be decided"
+    if not checked.unit_agrees:
+        text += f"; the unit must be {n.unit}"
+    return f"{text}   ({n.meaning}{'; ' + n.note if n.note else ''})"
