@@ -82,6 +82,11 @@ impl Signs {
         self.waits |= away > 0.0;
     }
 
+    /// Local time until which one that was zero at the start of the segment is known to be positive; 0 of others.
+    pub fn positive_until(&self, index: usize) -> f64 {
+        self.away[index]
+    }
+
     /// Whether one of them is searched only from some time on.
     pub fn waits(&self) -> bool {
         self.waits

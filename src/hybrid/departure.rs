@@ -124,21 +124,26 @@ impl<'p> Simulation<'p> {
         question.answer(&mut self.expansion)
     }
 
-    /// Whether a transition of a guard may be taken: none of its conditions is negative just after it, in the motion of
-    /// its target. Leaves the reset in `next`.
+    /// The least condition of a transition of a guard; leaves the reset in `next`.
     #[inline(always)]
-    pub fn may_take<F: Size>(
+    pub fn least_condition<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         transition: &'p Transition,
         at: Free<F>,
-    ) -> bool {
+    ) -> f64 {
         let mut conditions = Conditions {
             modes: self.modes,
             plan: &self.plan,
             next: &mut self.next,
         };
-        let least = conditions.least(kernel, &mut self.context, transition, at);
+        conditions.least(kernel, &mut self.context, transition, at)
+    }
+
+    /// Whether a transition of a guard may be taken: none of its conditions, of which the least is given, is negative just
+    /// after it, in the motion of its target. Its reset is in `next`.
+    #[inline(always)]
+    pub fn may_take(&mut self, transition: &'p Transition, least: f64) -> bool {
         least >= 0.0 || (!least.is_nan() && self.holds_just_after(transition))
     }
 

@@ -1,4 +1,4 @@
-//! Where a run cannot tell whether a guard falls through zero.
+//! Where a run cannot tell whether a guard falls through zero. (Which of its transitions is taken then, `choice` asks.)
 //!
 //! A guard that turns close to zero may have crossed it or not: the errors of the steps decide. What they
 //! may amount to is known from the tolerances: the initial state and every step may be off by one
@@ -33,6 +33,9 @@ pub(super) struct Doubts {
     /// Per mode, what an error of one tolerance changes each watched guard by, and its rounding: as it
     /// was at the first step in the mode. Empty: no step yet.
     errors: Vec<Vec<f64>>,
+    /// Per mode and transition of its guards, one guard after the other: the same of the condition with the largest one,
+    /// at the first event that asked for it. Infinite before that.
+    errors_of_conditions: Vec<Vec<f64>>,
     /// Names of guards that were near zero at the end of the last step; with a doubt if they fell so steeply that
     /// it is one only if they do not fall through zero right after it.
     left: Vec<(&'static str, Option<Doubt>)>,
@@ -45,6 +48,8 @@ impl Persist for Doubts {
         self.steps.persist(memory)?;
         self.most_tolerances.persist(memory)?;
         (self.errors.iter_mut()).try_for_each(|errors| memory.list(errors, f64::default))?;
+        let mut of_conditions = self.errors_of_conditions.iter_mut();
+        of_conditions.try_for_each(|errors| memory.slice(errors))?;
         let named = |(name, doubt): &(&str, Option<Doubt>)| (String::from(*name), doubt.clone());
         let mut left: Vec<(String, Option<Doubt>)> = self.left.iter().map(named).collect();
         memory.list(&mut left, || (String::new(), None))?;
@@ -80,7 +85,12 @@ impl Blank for Doubt {
 
 impl Persist for Question {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
-        let all = [Question::Graze, Question::NearMiss, Question::Unresolved];
+        let all = [
+            Question::Graze,
+            Question::NearMiss,
+            Question::Unresolved,
+            Question::Choice,
+        ];
         memory.one_of(self, &all)
     }
 }
@@ -91,19 +101,27 @@ pub(super) struct Searched<'s> {
     index: usize,
     mode: &'s Mode,
     watched: &'s [Watched],
-    /// Signs at the start of the step.
-    watches: &'s [Watch],
+    signs: &'s Signs,
     found: &'s [Search],
     accuracy: &'s Accuracy,
 }
 
 impl Doubts {
-    /// Nothing is known, of a problem with so many modes.
-    pub fn new(modes: usize) -> Self {
+    /// Nothing is known, of a problem with these modes.
+    pub fn new(modes: &[Mode]) -> Self {
+        let unknown = |mode: &Mode| vec![f64::INFINITY; place_of(mode, mode.guards.len(), 0)];
         Doubts {
-            errors: vec![Vec::new(); modes],
+            errors: vec![Vec::new(); modes.len()],
+            errors_of_conditions: modes.iter().map(unknown).collect(),
             ..Doubts::default()
         }
+    }
+
+    /// Forgets what is known of the errors, for other parameters.
+    pub fn forget_errors(&mut self) {
+        self.errors.iter_mut().for_each(Vec::clear);
+        let of_conditions = self.errors_of_conditions.iter_mut();
+        of_conditions.for_each(|errors| errors.fill(f64::INFINITY));
     }
 
     /// Forgets the doubts, for the next run.
@@ -180,11 +198,12 @@ impl Doubts {
             if !is_near(found, self.errors[step.index][i] * within) {
                 continue;
             }
-            let armed = step.watches[i] == Watch::Armed && found.watch == Watch::Armed;
+            // One that starts at zero has risen from it.
+            let positive = step.signs.watches[i] != Watch::Violated && found.watch == Watch::Armed;
             let (t, what, value) = match found.crossing {
                 Some(_) => (end.t, Question::Graze, guard.would_turn(method, found)),
-                None if !armed => continue,
-                None => match guard.least(method) {
+                None if !positive => continue,
+                None => match guard.least(step.signs.positive_until(i), method) {
                     Some((t, value)) => (t, Question::NearMiss, value),
                     None => continue,
                 },
@@ -288,6 +307,38 @@ impl Doubts {
         is_small.then(|| guard.doubt(t, Question::Graze, value, error))
     }
 
+    /// Whether the least condition of a transition, by the index of its mode, its guard and its own, may be within its
+    /// error. The initial state has none.
+    #[inline(always)]
+    pub fn may_leave_open(
+        &self,
+        (index, mode): (usize, &Mode),
+        (guard, transition): (usize, usize),
+        least: f64,
+    ) -> bool {
+        let error = self.errors_of_conditions[index][place_of(mode, guard, transition)];
+        let certain = least.abs() > error * self.most_tolerances;
+        self.steps > 0 && !certain
+    }
+
+    /// Takes note of what an error of one tolerance changes a transition's conditions by at most.
+    pub fn know_conditions(
+        &mut self,
+        (index, mode): (usize, &Mode),
+        (guard, transition): (usize, usize),
+        error: f64,
+    ) {
+        let known = &mut self.errors_of_conditions[index][place_of(mode, guard, transition)];
+        if *known == f64::INFINITY {
+            *known = error;
+        }
+    }
+
+    /// Error of every coordinate and rate so far, in units of its tolerance.
+    pub fn tolerances(&self) -> f64 {
+        tolerances(self.steps)
+    }
+
     /// Takes note of a transition: what its guard fell to has happened.
     #[inline(always)]
     pub fn happened(&mut self, guard: &Guard) {
@@ -295,6 +346,13 @@ impl Doubts {
             self.left.retain(|(other, _)| *other != guard.name);
         }
     }
+}
+
+/// Place of a transition of a guard among all of a mode.
+#[inline(always)]
+fn place_of(mode: &Mode, guard: usize, transition: usize) -> usize {
+    let before = mode.guards[..guard].iter().map(|g| g.transitions.len());
+    before.sum::<usize>() + transition
 }
 
 /// Error of every coordinate and rate after so many steps, in units of its tolerance.
@@ -322,7 +380,7 @@ impl<'s> Searched<'s> {
             index,
             mode,
             watched,
-            watches: &signs.watches,
+            signs,
             found: signs.found(),
             accuracy: &problem.accuracy,
         }
@@ -347,7 +405,7 @@ impl<'s> Searched<'s> {
 
 impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     /// The doubt about it at local time `t`.
-    fn doubt(&self, t: f64, what: Question, value: f64, error: f64) -> Doubt {
+    pub fn doubt(&self, t: f64, what: Question, value: f64, error: f64) -> Doubt {
         let (guard, unit) = match self.watched.condition {
             None => (self.guard.name.to_owned(), self.guard.unit.to_owned()),
             Some((transition, _)) => {
@@ -374,7 +432,7 @@ mod tests {
     #[test]
     fn the_bound_of_the_errors_holds_in_every_step_of_a_run_that_was_resumed() {
         for before in [0, 1, 2, 3, 4, 7, 8, 1000] {
-            let mut doubts = Doubts::new(1);
+            let mut doubts = Doubts::new(&[]);
             doubts.go_on(before, Uncertain::default());
             for steps in before + 1..before + 3000 {
                 doubts.count_step();

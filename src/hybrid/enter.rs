@@ -101,8 +101,10 @@ impl<'p> Simulation<'p> {
                 };
                 let acts = !watched.conditional
                     || guard.transitions.iter().any(|transition| {
-                        self.plan.allowed[transition.target]
-                            && self.may_take(kernel, transition, at)
+                        self.plan.allowed[transition.target] && {
+                            let least = self.least_condition(kernel, transition, at);
+                            self.may_take(transition, least)
+                        }
                     });
                 let from_zero = matches!(departure, Departure::Down { order: 1.. });
                 if acts {

@@ -78,10 +78,28 @@ impl<'p> Simulation<'p> {
             v: &v,
             a: &a,
         };
-        let transitions = &mode.guards[guard].transitions;
-        (0..transitions.len()).find(|&t| {
-            self.plan.allowed[transitions[t].target] && self.may_take(kernel, &transitions[t], at)
-        })
+        let index = self.here.mode;
+        let (mut chosen, mut open) = (None, false);
+        for (t, transition) in mode.guards[guard].transitions.iter().enumerate() {
+            if !self.plan.allowed[transition.target] {
+                continue;
+            }
+            let least = self.least_condition(kernel, transition, at);
+            open |= transition.conditional
+                && (self.doubts).may_leave_open((index, mode), (guard, t), least);
+            if self.may_take(transition, least) {
+                chosen = Some(t);
+                break;
+            }
+        }
+        if open {
+            self.doubt_choice(kernel, guard, chosen);
+            // The reset was overwritten.
+            if let Some(t) = chosen {
+                self.least_condition(kernel, &mode.guards[guard].transitions[t], at);
+            }
+        }
+        chosen
     }
 
     /// Makes `next` the present state, in mode `target`, and records the event.

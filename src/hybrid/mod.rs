@@ -8,6 +8,7 @@
 mod accumulation;
 mod advance;
 mod checkpoint;
+mod choice;
 mod crossing;
 mod departure;
 mod doubt;

@@ -303,7 +303,7 @@ fn search_part<const N: usize>(
     let starts = watch == Watch::Dormant && from == 0.0 && to > 0.0 && of.constant == 0.0;
     if starts && of.rises {
         (of.write)(1, &mut polynomial.coefficients);
-        return polynomial.search_of_multiple(to, isolation, found);
+        return polynomial.search_of_multiple(1, to, isolation, found);
     }
     (of.write)(0, &mut polynomial.coefficients);
     match watch {

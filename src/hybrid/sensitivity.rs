@@ -83,8 +83,13 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
         self.accuracy.relative * magnitude
     }
 
-    /// Place and value of its least value in the last step; `None` if that is at the start.
-    pub fn least<M: OneStep<F, Equations<'a, F>>>(&mut self, method: &mut M) -> Option<(f64, f64)> {
+    /// Place and value of its least value in the last step but where it rises from the start, or from local time `from`
+    /// where that is later; `None` if it only rises.
+    pub fn least<M: OneStep<F, Equations<'a, F>>>(
+        &mut self,
+        from: f64,
+        method: &mut M,
+    ) -> Option<(f64, f64)> {
         let end = method.state().clone();
         let (start, dense) = (method.start(), dense_of(method));
         let rate = |state, own: &mut Self| match own.watched.condition {
@@ -96,32 +101,36 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
             Some(false) => return Some((end.t, self.value(end.t, &end.q, &end.v))),
             None => {}
         }
-        let length = end.t - start.t;
+        let from = from.max(start.t);
+        if from >= end.t {
+            return None;
+        }
         let place = |k: usize| match k {
             PARTS => end.t,
-            k => start.t + k as f64 / PARTS as f64 * length,
+            k => from + k as f64 / PARTS as f64 * (end.t - from),
         };
         let values: [f64; PARTS + 1] = std::array::from_fn(|k| match k {
             // More accurate than the dense output.
             PARTS => self.value(end.t, &end.q, &end.v),
             k => self.value_within(dense, place(k)),
         });
-        let least = (0..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
-        // At an end its slope tells at once that it is least there.
-        if least == 0 && rate(start, self) >= 0.0 {
-            return None;
-        }
+        let falls = |&k: &usize| values[k + 1] < values[k];
+        // Between the first two places it may turn; at the start its slope tells at once that it falls.
+        let first = match from == start.t && rate(start, self) < 0.0 {
+            true => 0,
+            false => (0..PARTS).find(falls)?,
+        };
+        let least = (first..=PARTS).min_by(|&i, &j| values[i].total_cmp(&values[j]))?;
         if least == PARTS && rate(&end, self) <= 0.0 {
             return Some((end.t, values[PARTS]));
         }
         let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
         let mut own = |t: f64| self.value_within(dense, t);
         let (t, value) = minimum(&mut own, (place(low), place(high)));
-        match value < values[0] {
-            true if value < values[PARTS] => Some((t, value)),
-            true => Some((end.t, values[PARTS])),
-            false => None,
-        }
+        Some(match value < values[PARTS] {
+            true => (t, value),
+            false => (end.t, values[PARTS]),
+        })
     }
 
     /// Whether it rises in the whole of the last step, or falls: where the first coefficient of its slope outweighs

@@ -171,7 +171,7 @@ impl<'p> Simulation<'p> {
             at_start: zeros(n),
             drift: zeros(n),
             signs: Signs::default(),
-            doubts: Doubts::new(modes.len()),
+            doubts: Doubts::new(modes),
             margins: Margins::new(problem),
             next: zeros(2 * n + model.discretes.len()),
             accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
@@ -223,6 +223,7 @@ impl<'p> Simulation<'p> {
         self.initial = member.initial;
         self.context.set_parameters(model, member.parameters);
         self.expansion.set_parameters(member.parameters);
+        self.doubts.forget_errors();
         self.rewind(0);
         self.choose_initial_mode()?;
         self.set_context();

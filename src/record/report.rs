@@ -150,10 +150,11 @@ fn uncertain(f: &mut Formatter, summary: &Summary) -> fmt::Result {
         Question::Graze => format!("crosses zero by {value}, with an error of {error}"),
         Question::NearMiss => format!("turns back at {value}, with an error of {error}"),
         Question::Unresolved => "could not be resolved".to_owned(),
+        Question::Choice => format!("decides by {value}, with an error of {error}"),
     };
     writeln!(
         f,
-        "uncertain   {} times whether an event happens, first at t = {} s: {} {what} {}; tighten accuracy.relative",
+        "uncertain   {} times what happens, first at t = {} s: {} {what} {}; tighten accuracy.relative",
         uncertain.total,
         number(first.t),
         first.guard,

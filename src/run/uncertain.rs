@@ -11,19 +11,19 @@ pub struct Uncertain {
     pub first: Vec<Doubt>,
 }
 
-/// A place where a run cannot tell whether a guard falls through zero.
+/// A place where a run cannot tell whether a guard falls through zero, or which of its transitions is taken.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Doubt {
     /// Time (s).
     pub t: f64,
     /// Name of the mode.
     pub mode: String,
-    /// Name of the guard.
+    /// Name of the guard, or `condition of` the name of a transition.
     pub guard: String,
     /// What is in doubt.
     pub what: Question,
     /// Least value of the guard nearby, in `unit`; of a guard that was not resolved, its value at the
-    /// end of the step.
+    /// end of the step; of a condition, its value at the event.
     pub value: f64,
     /// Error of that value that the tolerances allow, in `unit`.
     pub error: f64,
@@ -41,6 +41,8 @@ pub enum Question {
     NearMiss,
     /// It could not be resolved on a step: events between single values may have been missed.
     Unresolved,
+    /// A condition that decides which transition is taken is no farther from zero than its error.
+    Choice,
 }
 
 impl Uncertain {

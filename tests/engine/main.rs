@@ -9,6 +9,7 @@ mod bouncing;
 mod contacts;
 mod coulomb;
 mod derivatives;
+mod doubts;
 mod extreme_damping;
 mod grazing;
 mod invariants;

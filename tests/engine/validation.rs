@@ -50,6 +50,19 @@ fn a_parameter_that_another_limits_is_refused() {
 }
 
 #[test]
+fn a_tank_with_more_bulging_liquid_than_contents_is_refused() {
+    // The liquid that does not bulge would have a negative mass.
+    let more = 50.3_f64.next_up();
+    assert_eq!(
+        refused(&problem("walking_tank", &[("M_I", more)])).to_string(),
+        format!("M_I = {more} exceeds M_0 = 50.3")
+    );
+    let mut tank = problem("walking_tank", &[("M_I", 50.3)]);
+    tank.end.time = 1e-3;
+    run(&tank);
+}
+
+#[test]
 fn initial_states_outside_their_bounds_are_refused() {
     let mut block = problem("rocking_block", &[]);
     for (name, value) in [

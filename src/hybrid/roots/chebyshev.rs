@@ -249,6 +249,13 @@ impl Chebyshev {
         let rest = self.sum_beyond_constant();
         (self.coefficients[0] - rest, self.coefficients[0] + rest)
     }
+
+    /// A bound of its slope on the window: that of Tₖ(2s − 1) is 2k² at most.
+    pub(super) fn steepest(&self) -> f64 {
+        let slope = |(k, c): (usize, &f64)| 2.0 * (k * k) as f64 * c.abs();
+        let coefficients = self.coefficients[..=self.degree].iter();
+        coefficients.enumerate().map(slope).sum()
+    }
 }
 
 impl Expansion for Chebyshev {

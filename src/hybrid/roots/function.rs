@@ -5,7 +5,7 @@ use super::chebyshev::{DEGREE, Interpolant, NODES, SAMPLES, place};
 use super::doubles::moved;
 use super::extrema::{Expansion, Places, extrema};
 use super::walk::{Pieces, walk};
-use super::{Kind, Search, Watch};
+use super::{Crossing, Kind, Search, Watch};
 
 /// Evaluations after which a search stops halving windows. One singular place (a jump, a kink at
 /// zero) is halved down to neighbouring doubles in 53 halvings, with two windows each.
@@ -219,12 +219,13 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
                     ));
                 }
                 let ends = (start, quotients[DEGREE]);
+                let bounds = (start, interpolant.expansion.steepest());
                 let mut quotient =
-                    Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed);
-                if let Some(search) = &mut quotient {
-                    search.of_quotient();
-                }
-                return quotient;
+                    Cut::new(self, samples, interpolant, ends, order, 0.0).search(Watch::Armed)?;
+                let place = |crossing: Crossing| samples.fraction(crossing.outside);
+                let place = quotient.crossing.map_or(1.0, place);
+                quotient.of_quotient(order, bounds, place);
+                return Some(quotient);
             }
             if !interpolant.is_resolved(noise) {
                 return None;

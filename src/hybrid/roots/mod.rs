@@ -153,7 +153,7 @@ pub struct Search {
     pub resolved: bool,
     /// How near to zero the guard turns, in its unit. With an event: a value down to which it falls (0
     /// for a touch), in the window or as its slope and curvature tell; −∞ where it does not turn. Without one, of a guard
-    /// that stays armed: a value that it stays above, but where it rises from its start; ∞ of others.
+    /// that stays armed: a value that it stays above, but where it rises from its start, be it zero; ∞ of others.
     pub turn: f64,
 }
 
@@ -193,12 +193,25 @@ impl Search {
         }
     }
 
-    /// Of what was found of the guard divided by a power of the time since its zero makes what is found of the
-    /// guard: the events are the same, the values are not.
-    pub(crate) fn of_quotient(&mut self) {
-        self.turn = match self.crossing {
-            Some(_) => f64::NEG_INFINITY,
-            None => f64::INFINITY,
+    /// Of what was found of a guard divided by sᵏ, k = `order`, makes what is found of the guard, whose events are the same:
+    /// only how near to zero it turns is another thing. The window is from the zero at s = 0 to the event or the end of the
+    /// window, `s`; beside its turn the quotient is no less than `least`, and it is no steeper than `steepest`.
+    ///
+    /// At a minimum of sᵏ h the quotient h falls with the slope −k h/s, so that s is no less than k h/|h′|. Behind a fall
+    /// sᵏ h is deeper than sᵏ times what h falls to.
+    pub(crate) fn of_quotient(&mut self, order: usize, (least, steepest): (f64, f64), s: f64) {
+        let power = |s: f64| (0..order).fold(1.0, |power, _| power * s);
+        if self.crossing.is_some() {
+            self.turn *= power(s);
+            return;
+        }
+        let least = least.min(self.turn);
+        let nearest = order as f64 * least / steepest;
+        // Not where it has no slope at all.
+        let place = if nearest < s { nearest } else { s };
+        self.turn = match least > 0.0 {
+            true => least * power(place),
+            false => least,
         };
     }
 

@@ -184,16 +184,20 @@ impl<const N: usize> Polynomial<N> {
         }
     }
 
-    /// The search, on 0 < s ≤ `to`, of a power of s times this polynomial, which is positive at s = 0: of a
+    /// The search, on 0 < s ≤ `to`, of sᵏ times this polynomial, k = `order`, which is positive at s = 0: of a
     /// guard that leaves zero upwards.
     pub(in crate::hybrid) fn search_of_multiple(
         &self,
+        order: usize,
         to: f64,
         isolation: Isolation,
         found: &mut Search,
     ) {
         self.search_armed((0.0, to), 0.0, isolation, found);
-        found.of_quotient();
+        let slope = |(k, c): (usize, &f64)| k as f64 * c.abs();
+        let steepest = self.coefficients.iter().enumerate().map(slope).sum();
+        let place = found.crossing.map_or(to, |crossing| crossing.outside);
+        found.of_quotient(order, (self.coefficients[0], steepest), place);
     }
 
     #[inline(never)]
@@ -212,15 +216,15 @@ impl<const N: usize> Polynomial<N> {
 
     /// Divides the zero at s = 0 out; the sign beside it is that of the first coefficient left.
     fn leave_zero(&self, to: f64) -> Search {
-        let mut quotient = Self::ZERO;
-        self.divide(self.leading_zeros(), &mut quotient);
+        let (order, mut quotient) = (self.leading_zeros(), Self::ZERO);
+        self.divide(order, &mut quotient);
         let coefficients = &quotient.coefficients;
         if coefficients[0] == 0.0 {
             return Search::quiet(Watch::Dormant);
         }
         if coefficients[0] > 0.0 {
             let mut found = Search::quiet(Watch::Armed);
-            quotient.search_of_multiple(to, Isolation::Bracket, &mut found);
+            quotient.search_of_multiple(order, to, Isolation::Bracket, &mut found);
             quotient.close_in(&mut found);
             return found;
         }
@@ -373,5 +377,45 @@ impl<const N: usize> Pieces for Monotone<'_, N> {
 
     fn own(&mut self, s: f64) -> f64 {
         self.polynomial.value(s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The least value of s·h behind its rise from zero, at a thousand places.
+    fn least_of_multiple(quotient: &Polynomial<6>) -> f64 {
+        let values: Vec<f64> = (0..=1000)
+            .map(|k| f64::from(k) * 1e-3)
+            .map(|s| s * quotient.value(s))
+            .collect();
+        let top = values.windows(2).position(|pair| pair[1] < pair[0]);
+        top.map_or(values[1000], |top| {
+            values[top..].iter().copied().fold(f64::INFINITY, f64::min)
+        })
+    }
+
+    #[test]
+    fn a_guard_that_rises_from_zero_does_not_come_nearer_to_it_than_is_said() {
+        let place = |i: usize| (i as f64 * 0.618_033_988_749_894_9).fract();
+        let mut near = 0;
+        for i in 0..4000 {
+            // (s − p)² + a, times a factor that is positive.
+            let (p, b) = (0.1 + 1.2 * place(i), 1.0 + place(3 * i + 1));
+            let a = 10f64.powf(-12.0 * place(7 * i + 5));
+            let [c0, c1, c2] = [p * p + a, -2.0 * p, 1.0];
+            let quotient = Polynomial {
+                coefficients: [b * c0, b * c1 + c0, b * c2 + c1, c2, 0.0, 0.0],
+            };
+            let mut found = Search::quiet(Watch::Dormant);
+            quotient.search_of_multiple(1, 1.0, Isolation::Place, &mut found);
+            assert_eq!(found.crossing, None, "{i}");
+            let least = least_of_multiple(&quotient);
+            assert!(found.turn <= least, "{i}: {:e} {least:e}", found.turn);
+            near += usize::from(found.turn < 1e-9);
+        }
+        // Most are far from zero, and said to be.
+        assert!(near < 2000, "{near}");
     }
 }
