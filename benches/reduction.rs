@@ -90,6 +90,7 @@ fn problem(scene: &str, overrides: &[&str]) -> Problem {
     let mut problem = scene.problem;
     problem.record.every = Some(f64::INFINITY);
     problem.record.columns = Recorded {
+        outputs: false,
         reactions: false,
         energies: false,
         inputs: false,
@@ -133,6 +134,7 @@ fn stretches(problem: &Problem) -> Vec<Stretch> {
         v: initial.v.clone(),
         discrete: initial.discrete.clone(),
         reactions: Vec::new(),
+        outputs: Vec::new(),
     };
     let mode = run.events.first().map_or(run.end.j as usize, |e| e.from);
     let starts = std::iter::once((0.0, mode, start));

@@ -57,10 +57,27 @@ def _expressions(model):
             yield value, f"transition `{t.name}`: reset", t.location
 
 
+def _watched(model):
+    """The expressions that a run is watched for, as `_expressions`: reactions may be those of whatever mode there is."""
+    for output in model.outputs:
+        yield output.expression, f"output `{output.name}`", output.location
+    for limit in model.limits:
+        yield limit.margin, f"limit `{limit.name}`", limit.location
+    for entry in model.validity:
+        yield entry.margin, "validity", entry.location
+
+
 def _check_symbols(model):
     """Symbols are those that the model declared: one made elsewhere may have the name of one of them."""
     own = {s.element_hash() for s in [*model.symbols.values(), *(entry[0] for entry in model.placeholders.values())]}
+    of_any_mode = {entry[0].element_hash(): entry[2] for entry in model.placeholders.values() if entry[1] is None}
     for expression, what, location in _expressions(model):
+        for symbol in ca.symvar(expression):
+            if symbol.element_hash() in of_any_mode:
+                raise ModelError(f"{what}: model.reaction({of_any_mode[symbol.element_hash()]}) is for outputs, limit states and"
+                                 " validity; here write the reaction of a mode, such as"
+                                 f" {model.modes[0].identifier}.reaction({of_any_mode[symbol.element_hash()]})", location)
+    for expression, what, location in itertools.chain(_expressions(model), _watched(model)):
         for symbol in ca.symvar(expression):
             if symbol.element_hash() not in own:
                 raise ModelError(f"{what}: symbol `{symbol.name()}` was not declared by this model: use what"

@@ -170,7 +170,7 @@ class ModeEquations:
         expression = self.freeze(ca.SX(expression))
         for symbol in ca.symvar(expression):
             entry = self.model.placeholders.get(symbol.name())
-            if entry is not None and entry[1] is not self.mode:
+            if entry is not None and entry[1] not in (None, self.mode):
                 raise ModelError(
                     f"the reaction `{symbol.name()}` of mode `{entry[1].name}` is used in mode `{self.mode.name}`, where it is not"
                     f" defined: take the one of that mode, {self.mode.name}.reaction({entry[2]})", location)
@@ -197,7 +197,10 @@ class ModeEquations:
     def _placeholders(self):
         old, new = [], []
         for symbol, mode, name, settings in self.model.placeholders.values():
-            if mode is self.mode:
+            if mode is None and _index(self.model, name) in self.free:
+                old.append(symbol)
+                new.append(ca.SX(0))
+            elif mode in (None, self.mode):
                 value = ca.SX(self.raw_reactions[_index(self.model, name)])
                 for key, setting in settings.items():
                     discrete = next(d.symbol for d in self.model.discretes if d.name == key)

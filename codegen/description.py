@@ -10,7 +10,7 @@ import casadi as ca
 from . import analysis, drawing, limits, units
 from .emit_c import KEPT_ANGLES
 
-MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions", "energies",
+MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions", "outputs", "energies",
                   "powers", "momenta", "requirements", "requirement_bounds", "held_rates", "held_values")
 """Functions that every mode has, each once."""
 
@@ -125,6 +125,8 @@ def _variant(variant, tables):
         "rests": [{"source": index[s.name], "target": index[t.name]} for s, t in model.rests],
         "limits": [{"name": limit.name, "message": limit.message, "text": limit.text, "ends": bool(limit.ends)}
                    for limit in model.limits],
+        "outputs": [{"name": o.name, "unit": o.unit, "meaning": o.meaning, "text": units.short(o.expression, 200)}
+                    for o in model.outputs],
         "valid_motion": [entry for of_parameters, entry in validity if not of_parameters],
         "valid_parameters": [entry for of_parameters, entry in validity if of_parameters],
         "bounds": [{"coordinate": i, "upper": bool(upper), "text": units.short(bound)}

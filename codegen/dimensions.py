@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from . import graph, limits, units
+from . import graph, limits, outputs, units
 from .errors import ModelError, report
 
 
@@ -55,8 +55,8 @@ def check(model):
     for mode in model.modes:
         for requirement, _, location in mode.requirements:
             _check_unit(requirement, None, table, "requirement", location)
-    limits.check_units(model, lambda expression, want, what, location: _check_unit(
-        expression, want, table, what, location))
+    for of in (limits, outputs):
+        of.check_units(model, lambda expression, want, what, location: _check_unit(expression, want, table, what, location))
 
 
 def _check_unit(expression, want, table, what, location):

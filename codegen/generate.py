@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from . import (analysis, bounds, check, combinations, derive, description, dimensions, emit_model, emit_series, graph, limits,
-               momentum, tape)
+               momentum, outputs, tape)
 from .arguments import NOT_FOLDERS
 from .context import build
 from .emit_c import Source
@@ -185,13 +185,13 @@ def _emit_series(source, prefix, variant, slot, function, constants):
 
 def check_same_declarations(models):
     def declared(model):
-        groups = (model.parameters, model.coordinates, model.motions, model.inputs, model.discretes)
+        groups = (model.parameters, model.coordinates, model.motions, model.inputs, model.discretes, model.outputs)
         return [[(d.name, d.unit) for d in group] for group in groups]
     for model in models[1:]:
         if declared(model) != declared(models[0]):
             raise ModelError(
-                "declarations differ between choices: parameters, coordinates, inputs and discrete"
-                " states must be the same for all of them", models[0].file)
+                "declarations differ between choices: parameters, coordinates, inputs, discrete"
+                " states, and names and units of outputs must be the same for all of them", models[0].file)
 
 
 def _signals(model):
@@ -333,6 +333,7 @@ def _mode_functions(variant, equations, slot, prefix):
         ("jerk_load", equations.jerk_load(signals, rates)),
         ("magnitude", equations.magnitude()),
         ("reactions", reactions),
+        ("outputs", outputs.values(equations, _check_smooth)),
         ("energies", equations.energies()),
         ("powers", equations.powers()),
         ("momenta", equations.momenta()),

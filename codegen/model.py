@@ -12,7 +12,7 @@ import re
 import casadi as ca
 from casadi import atan2, cos, exp, pi, sin, sqrt, tan  # noqa: F401  (for model files)
 
-from . import arguments, contacts, drawing, limits, units
+from . import arguments, contacts, drawing, limits, outputs, units
 from .context import CONTEXT
 from .declarations import Body, Coordinate, Declaration, Discrete, Falls, Transition
 from .errors import ModelError, caller_location
@@ -96,7 +96,7 @@ class Model:
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
         self.contacts = []
-        self.limits, self.validity = [], []
+        self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
         self.shapes = []
@@ -360,6 +360,29 @@ class Model:
         margin, text = limits.comparison(condition, "valid", location)
         self.validity.append(limits.Validity(sentence, margin, text, modes, location))
 
+    # ---- outputs ------------------------------------------------------------------------------
+
+    def output(self, name, unit, expression, meaning):
+        """A quantity that people look at: recorded, plotted, with its extremes, and usable in limit states.
+
+        `expression` may hold coordinates, rates, accelerations, motions of the ground, inputs, discrete states, parameters,
+        other outputs, and `model.reaction(…)`; it is smooth within a mode. Returns the expression.
+        """
+        arguments.name(self, "output", name)
+        what = f"output `{name}`"
+        if not isinstance(meaning, str):
+            raise self.error(f"{what}: its meaning is a text, not {arguments.shown(meaning)}")
+        self._declare("output", name, unit)
+        value = arguments.expression(self, what, expression)
+        self.outputs.append(outputs.Output(name, unit, meaning, value, caller_location(self.file)))
+        return value
+
+    def reaction(self, coordinate):
+        """In outputs, limit states and validity: the reaction of a coordinate or ground motion in whatever mode there is,
+        0 while the coordinate is free."""
+        coordinate = arguments.coordinate(self, "what a reaction is asked of", coordinate, motions=True)
+        return self._reaction_placeholder(f"R({coordinate.name()})", None, coordinate.name(), {})
+
     # ---- drawing ------------------------------------------------------------------------------
 
     def draw(self, name, points, *, kind="body", radius=None):
@@ -451,6 +474,10 @@ class Model:
                 raise self.error(f"reaction of `{name}`: there is no discrete state `{key}`")
         settings = "".join(f", {k}={v:+.17g}" for k, v in sorted(discrete.items()))
         key = f"R({name}{settings})@{mode.name}"
+        return self._reaction_placeholder(key, mode, name, discrete)
+
+    def _reaction_placeholder(self, key, mode, name, discrete):
+        """A symbol that stands for a reaction of a mode, or with `None` of whatever mode there is."""
         if key not in self.placeholders:
             symbol = ca.SX.sym(key)
             declaration = next(c for c in self.coordinates + self.motions if c.name == name)

@@ -31,6 +31,7 @@
 
 pub mod cli;
 pub mod folders;
+pub mod formula;
 pub mod hybrid;
 pub mod input;
 pub mod integrate;

@@ -34,6 +34,9 @@ model.transition("reversal", slips, slips, when=stops, reset=[(slip, -slip), (x.
 for direction in (+1, -1):
     model.transition("slip", sticks, slips, when=falls(limit + direction * sticks.reaction(x)), reset=[(slip, direction)])
 
+model.output("slip_rate", "m/s", x.rate - belt, "velocity of the mass relative to the belt")
+model.output("friction", "N", m * x.acceleration + k * x + c * x.rate - force, "force of the belt on the mass, in its direction")
+
 model.draw("belt", [(-1, -0.1), (2, -0.1)], kind="fixed")
 model.draw("wall", [(-1, -0.1), (-1, 0.4)], kind="fixed")
 model.draw("spring", [(-1, 0), (x - 0.1, 0)], kind="spring")

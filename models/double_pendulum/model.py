@@ -21,6 +21,9 @@ model.point_mass(m_2, position=lower)
 
 model.mode("swings", "both rods swing")
 
+model.output("lower_x", "m", lower[0], "place of the lower mass, to the right of the pivot")
+model.output("lower_y", "m", lower[1], "height of the lower mass above the pivot")
+
 model.draw("ceiling", [(0.25 * l_1, 0), (-0.25 * l_1, 0)], kind="fixed")
 model.draw("upper rod", [(0, 0), upper], kind="line")
 model.draw("lower rod", [upper, lower], kind="line")

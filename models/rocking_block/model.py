@@ -49,6 +49,13 @@ def place(along, up):
     return (side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
 
 
+model.output("rotation", "rad", side * theta, "rotation of the block, counter-clockwise: it leans to the left")
+model.output("centre_x", "m", side * R * (sin(alpha - theta) - sin(alpha)), "displacement of the centre to the right")
+model.output("centre_y", "m", y + R * (cos(alpha - theta) - cos(alpha)), "rise of the centre")
+model.output("left_edge", "m", y + (1 - side) * half_width * sin(theta), "height of the left bottom edge")
+model.output("right_edge", "m", y + (1 + side) * half_width * sin(theta), "height of the right bottom edge")
+model.output("shear_ratio", "1", model.reaction(z_h) / (m * g), "force of the ground to the right, over the weight")
+
 model.draw("ground", [(-2 * R, 0), (2 * R, 0)], kind="fixed")
 model.draw("block", [place(*p) for p in (
     (0, 0), (2 * half_width, 0), (2 * half_width, 2 * R * cos(alpha)), (0, 2 * R * cos(alpha)))])

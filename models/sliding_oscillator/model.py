@@ -38,6 +38,9 @@ model.transition("reversal", slips, slips, when=stops, reset=[(slip, -slip), (u.
 for direction in (+1, -1):
     model.transition("slip", sticks, slips, when=falls(limit + direction * sticks.reaction(u)), reset=[(slip, direction)])
 
+model.output("upper", "m", u + d, "displacement of the upper mass relative to the ground, to the right")
+model.output("shear_ratio", "1", model.reaction(z_h) / ((m_s + m_i) * g), "force of the ground to the right, over the weight")
+
 model.draw("ground", [(-0.5, -0.05), (0.8, -0.05)], kind="fixed")
 model.draw("lower mass", [(u - 0.1, -0.05), (u + 0.1, -0.05), (u + 0.1, 0.05), (u - 0.1, 0.05)])
 model.draw("spring", [(u + 0.1, 0), (u + d + 0.3, 0)], kind="spring")

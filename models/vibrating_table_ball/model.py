@@ -21,5 +21,7 @@ model.transition("impact", flies, flies, when=falls(gap), impact=True, reset=[(g
 model.transition("take_off", sticks, flies, when=falls(sticks.reaction(gap)))
 model.rest(flies, sticks)
 
+model.output("height", "m", table + gap, "height of the ball above where the table began")
+
 model.draw("table", [(-1, 0), (1, 0)], kind="fixed")
 model.draw("ball", [(0, gap)], kind="point")

@@ -219,6 +219,15 @@ def place(along, up):
     return (x + side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
 
 
+model.output("rotation", "rad", side * theta, "rotation of the tank, counter-clockwise: it leans to the left")
+model.output("centre_x", "m", x + side * R_0 * (sin(alpha_0 - theta) - sin(alpha_0)),
+             "displacement of the centre of the contents to the right, relative to the ground")
+model.output("centre_y", "m", y + R_0 * (cos(alpha_0 - theta) - cos(alpha_0)), "rise of the centre of the contents")
+model.output("left_edge", "m", y + (1 - side) * half_width * sin(theta), "height of the left bottom edge")
+model.output("right_edge", "m", y + (1 + side) * half_width * sin(theta), "height of the right bottom edge")
+model.output("shear_ratio", "1", model.reaction(z_h) / ((M_0 + M_S) * g),
+             "base shear, the force of the ground to the right, over the weight")
+
 model.draw("ground", [(-6 * half_width, 0), (6 * half_width, 0)], kind="fixed")
 levels = [(part * height, sin(part * pi / 2) * x_I * side) for part in (0, 0.25, 0.5, 0.75, 0.95)]
 model.draw("liquid", [place(bulge, up) for up, bulge in levels]

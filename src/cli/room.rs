@@ -4,7 +4,6 @@ use std::fs;
 use std::path::Path;
 
 use super::outcome::Failure;
-use crate::record::Layout;
 use crate::scene::Scene;
 
 /// Most bytes of a number in a table: sign, 17 digits, point, exponent and separator.
@@ -36,7 +35,7 @@ fn check(
     let (Some(every), Some(free)) = (problem.record.every, free) else {
         return Ok(());
     };
-    let layout = Layout::new(&problem.model, problem.variant(), problem.record.columns);
+    let layout = problem.layout();
     // With the time and the mode.
     let columns = (layout.columns().len() + 2) as f64;
     let rows = (problem.end.time / every).floor() + 1.0;

@@ -13,7 +13,7 @@ use crate::hybrid::{Invalid, Problem, Reason, Replay, check_same, resume_with, s
 use crate::model::Models;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
-use crate::record::{Earlier, Layout, OutputFolder, ProgressLine, Report, Run, Sketch, Stream};
+use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Run, Sketch, Stream};
 use crate::scene::{Disk, Files, Scene};
 
 #[derive(Debug, clap::Args)]
@@ -80,8 +80,8 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     let problem = &scene.problem;
     let earlier = match &arguments.resume {
         Some(folder) => {
-            let columns = problem.record.columns;
-            let earlier = Earlier::open(folder, &problem.model, problem.variant(), columns);
+            let (model, variant) = (&problem.model, problem.variant());
+            let earlier = Earlier::open(folder, model, variant, problem.layout());
             let earlier = earlier.map_err(Failure::wrong_input)?;
             check_same(problem, &earlier.run).map_err(|reason| other_run(folder, &reason))?;
             Some((folder, earlier))
@@ -94,7 +94,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     room::check_disk(&scene, out.map(PathBuf::as_path))?;
 
     warnings::before(problem);
-    let layout = Layout::new(&problem.model, problem.variant(), problem.record.columns);
+    let layout = problem.layout();
     let (page, compared) = (arguments.html.is_some(), arguments.error_estimate);
     let mut outputs = Outputs::new(&layout, folder.as_ref(), page, compared);
     let earlier = match earlier {

@@ -179,6 +179,7 @@ fn watched(problem: &Problem) -> [(String, String); 4] {
             Observed::Coordinate(i) => ("coordinate", i),
             Observed::Rate(i) => ("rate", i),
             Observed::Reaction(i) => ("reaction", i),
+            Observed::Output(i) => ("output", i),
         };
         let side = if limit.above { "above" } else { "below" };
         let ends = if limit.ends { ", ends the run" } else { "" };

@@ -142,7 +142,7 @@ impl<'p> Simulation<'p> {
             if self.observers.watch_extremes() {
                 let stored = self.stored_energy();
                 self.observers
-                    .jump(&self.here, &after.reactions, Some(stored));
+                    .jump(&self.here, [&after.reactions, &after.outputs], Some(stored));
             }
             (self.observers.recording).event(&jump, Some(&[before, after]));
         } else {

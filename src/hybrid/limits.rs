@@ -2,6 +2,7 @@
 //!
 //! Each is a margin, watched as [`super::margins`] says until it has been negative once.
 
+use super::outputs::Outputs;
 use super::problem::{Observed, OwnLimit, Problem};
 use super::start::ROUNDING;
 use super::validate::{Invalid, Unknown, within};
@@ -27,6 +28,9 @@ pub(super) struct Margins<'p> {
     pub starts: Box<[f64]>,
     /// Which of them bounds do not show to hold for the whole step.
     pub open: Box<[bool]>,
+    /// Outputs, and room for their values.
+    pub outputs: Outputs,
+    pub output_values: Box<[f64]>,
     /// Room for the reactions, and for the rates of frozen coordinates.
     pub reactions: Box<[f64]>,
     pub rates: Box<[f64]>,
@@ -56,6 +60,7 @@ impl<'p> Margins<'p> {
         let required = variant.modes.iter().map(|mode| mode.requirements.len());
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
         let room = required.max().unwrap_or(0) + ends.len();
+        let outputs = Outputs::new(problem);
         Margins {
             variant,
             own: problem.limits.own.clone().into(),
@@ -65,6 +70,8 @@ impl<'p> Margins<'p> {
             values: zeros(room),
             starts: zeros(room),
             open: vec![true; room].into(),
+            output_values: zeros(outputs.count()),
+            outputs,
             reactions: zeros(model.coordinates.len() + model.motions.len()),
             rates: zeros(model.coordinates.len()),
         }
@@ -114,7 +121,7 @@ impl<'p> Margins<'p> {
             Observed::Coordinate(i) => (i, false),
             Observed::Rate(i) => (i, true),
             Observed::Reaction(i) if mode.free.contains(&i) => return None,
-            Observed::Reaction(_) => return Some(general),
+            Observed::Reaction(_) | Observed::Output(_) => return Some(general),
         };
         match mode.free.iter().position(|&free| free == i) {
             Some(index) => Some(GuardShape::Linear {
@@ -243,6 +250,7 @@ impl Problem {
             let (found, expected) = match limit.of {
                 Observed::Coordinate(i) | Observed::Rate(i) => (i, n),
                 Observed::Reaction(i) => (i, n + self.model.motions.len()),
+                Observed::Output(i) => (i, self.variant().outputs.len() + self.outputs.len()),
             };
             if found >= expected {
                 let what = "index of what a limit is about";

@@ -62,6 +62,14 @@ impl Margins<'_> {
     ) {
         let of_model = mode.requirements.len() + mode.margins.len();
         kernel.requirements(context, at, &mut self.values[..of_model]);
+        if self
+            .own
+            .iter()
+            .any(|limit| matches!(limit.of, Observed::Output(_)))
+        {
+            let (outputs, values) = (&mut self.outputs, &mut self.output_values);
+            outputs.evaluate(kernel, context, mode, at, values);
+        }
         let own = self.values[of_model..].iter_mut().zip(&self.own);
         for (out, limit) in own {
             let free = |i| mode.free.iter().position(|&free| free == i);
@@ -78,6 +86,7 @@ impl Margins<'_> {
                     kernel.reactions(context, at, &mut self.reactions);
                     self.reactions[i]
                 }
+                Observed::Output(i) => self.output_values[i],
             };
             *out = match limit.above {
                 true => limit.level - value,

@@ -5,6 +5,8 @@ use super::equations::{Clock, Equations};
 use super::guards::motion;
 use super::instant::Instant;
 use super::observe::copy_drifting;
+use super::outputs::Outputs;
+use super::problem::Problem;
 use super::simulation::Simulation;
 use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::Motion;
@@ -54,6 +56,7 @@ impl View {
 #[derive(Debug)]
 pub struct Moment<'s> {
     model: &'s Model,
+    problem: &'s Problem,
     mode: &'s Mode,
     context: &'s Context,
     view: &'s View,
@@ -63,6 +66,7 @@ impl<'s> Moment<'s> {
     pub(super) fn new(simulation: &'s Simulation, view: &'s View) -> Self {
         Moment {
             model: &simulation.problem.model,
+            problem: simulation.problem,
             mode: simulation.mode(),
             context: &simulation.context,
             view,
@@ -123,6 +127,22 @@ impl<'s> Moment<'s> {
     /// If `out` has another length.
     pub fn reactions(&self, out: &mut [f64]) {
         with_kernel!(&self.mode.kernels, k => self.with(k.size(), |at| k.reactions(self.context, at, out)));
+    }
+
+    /// All outputs in their units: those of the model, then those of the problem ([`Problem::output_quantities`]).
+    pub fn outputs(&self) -> Vec<f64> {
+        let mut outputs = Outputs::new(self.problem);
+        let mut values = vec![0.0; outputs.count()];
+        with_kernel!(&self.mode.kernels, k => self.with(k.size(), |at| {
+            outputs.evaluate(k, self.context, self.mode, at, &mut values);
+        }));
+        values
+    }
+
+    /// Value of an output by its name, in its unit.
+    pub fn output(&self, name: &str) -> Option<f64> {
+        let index = self.problem.output(name).ok()?;
+        Some(self.outputs()[index])
     }
 
     /// Kinetic and potential energy, J.

@@ -1,5 +1,6 @@
 //! What is to be simulated, validated.
 
+use super::outputs::OwnOutput;
 use super::validate::{Invalid, Unknown, check_initial, within};
 use crate::input::{Function, Signals};
 use crate::model::{Model, Variant};
@@ -27,6 +28,8 @@ pub struct Problem {
     pub end: End,
     /// Limit states.
     pub limits: Limits,
+    /// Outputs besides those of the model: see [`Problem::add_output`].
+    pub outputs: Vec<OwnOutput>,
     /// Tolerances.
     pub accuracy: Accuracy,
     /// Method of integration.
@@ -108,6 +111,8 @@ pub enum Observed {
     /// A reaction, by its index: those of the coordinates, then those of the motions of the ground. It is 0 where the
     /// coordinate is free.
     Reaction(usize),
+    /// An output, by its index: those of the model, then those of the problem.
+    Output(usize),
 }
 
 /// Tolerances of the local error of a step: absolute + relative × magnitude.
@@ -166,12 +171,14 @@ impl Problem {
                 after: None,
             },
             limits: Limits::default(),
+            outputs: Vec::new(),
             accuracy: Accuracy::default(),
             method: Method::default(),
             record: Record {
                 every: Some(f64::INFINITY),
                 columns: Recorded {
                     reactions: false,
+                    outputs: false,
                     energies: false,
                     inputs: false,
                 },

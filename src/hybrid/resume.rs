@@ -3,6 +3,7 @@
 use super::failure::Reason;
 use super::instant::Instant;
 use super::observe::{Collected, Observer, Samples, sample_time};
+use super::outputs::OwnOutput;
 use super::problem::{Method, Problem};
 use super::simulation::Simulation;
 use crate::run::digest;
@@ -192,6 +193,13 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
         Method::Radau => "radau",
         Method::Taylor => "taylor",
     };
+    let outputs = problem
+        .outputs
+        .iter()
+        .map(|OwnOutput { quantity, formula }| {
+            format!("{}\n{}\n{}\n", quantity.name, quantity.unit, formula.text())
+        });
+    let outputs: Vec<String> = outputs.collect();
     let accuracy_lists = [&accuracy.q_absolute, &accuracy.v_absolute];
     let initial_lists = [&initial.q, &initial.v, &initial.discrete];
     let parts = [
@@ -210,6 +218,7 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
         ("inputs", content("", |put| problem.signals.content(put))),
         ("method", content(method, |_| {})),
         ("model", model.digest.to_owned()),
+        ("outputs", content(&outputs.concat(), |_| {})),
     ];
     parts.map(|(part, digest)| (part.to_owned(), digest)).into()
 }
@@ -328,6 +337,7 @@ mod tests {
             ("initial", "b56575d097d9e31e"),
             ("inputs", "24943f835e047dee"),
             ("method", "99501bbdabca4107"),
+            ("outputs", "6e340b9cffb37a98"),
         ];
         let named = known
             .iter()

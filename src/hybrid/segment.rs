@@ -416,10 +416,12 @@ impl<'p> Simulation<'p> {
 
             let mut flow = ControlFlow::Continue(());
             if problem.record.every.is_none() {
-                flow = self.observers.sample_end(&equations, &self.here, at);
+                flow = self
+                    .observers
+                    .sample_end(&equations, (mode, &self.here), at);
             }
             if event.is_some() {
-                self.observers.jump(&self.here, &[], None);
+                self.observers.jump(&self.here, [&[], &[]], None);
             }
             match ended {
                 Some(Ended::Unmet(reason)) => return Err(reason),

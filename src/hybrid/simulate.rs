@@ -55,7 +55,7 @@ impl Simulation<'_> {
         self.solver.method = named;
     }
 
-    fn place(&self) -> Place {
+    fn place(&mut self) -> Place {
         Place {
             t: self.here.now.seconds(),
             j: self.here.j,
@@ -82,7 +82,7 @@ impl Simulation<'_> {
         let end = self.place();
         if self.observers.watch_steps() {
             let stored = self.stored_energy();
-            self.observers.jump(&self.here, &[], Some(stored));
+            self.observers.jump(&self.here, [&[], &[]], Some(stored));
         }
         let energy = self
             .observers

@@ -211,7 +211,7 @@ impl<'p> Simulation<'p> {
         if self.observers.watch_steps() {
             let stored = self.stored_energy();
             self.observers.begin(stored);
-            self.observers.jump(&self.here, &[], Some(stored));
+            self.observers.jump(&self.here, [&[], &[]], Some(stored));
         }
     }
 
@@ -224,6 +224,8 @@ impl<'p> Simulation<'p> {
         self.context.set_parameters(model, member.parameters);
         self.expansion.set_parameters(member.parameters);
         self.doubts.forget_errors();
+        self.margins.outputs.set_parameters(member.parameters);
+        self.observers.outputs.set_parameters(member.parameters);
         self.rewind(0);
         self.choose_initial_mode()?;
         self.set_context();
@@ -376,14 +378,22 @@ impl<'p> Simulation<'p> {
         })
     }
 
-    /// The state here, with reactions where they are recorded.
-    pub fn snapshot(&self) -> Snapshot {
-        let mut reactions = vec![0.0; self.observers.layout.reactions.len()];
+    /// The state here, with reactions and outputs where they are recorded.
+    pub fn snapshot(&mut self) -> Snapshot {
+        let layout = &self.observers.layout;
+        let [mut reactions, mut outputs] =
+            [&layout.reactions, &layout.outputs].map(|group| vec![0.0; group.len()]);
         let mode = self.mode();
-        if !reactions.is_empty() {
+        if !reactions.is_empty() || !outputs.is_empty() {
             with_kernel!(&mode.kernels, k => {
                 let [q, v, a] = self.here.free(k.size(), &mode.free);
-                k.reactions(&self.context, Free { q: &q, v: &v, a: &a }, &mut reactions)
+                let at = Free { q: &q, v: &v, a: &a };
+                if !reactions.is_empty() {
+                    k.reactions(&self.context, at, &mut reactions);
+                }
+                if !outputs.is_empty() {
+                    self.observers.outputs.evaluate(k, &self.context, mode, at, &mut outputs);
+                }
             });
         }
         Snapshot {
@@ -391,6 +401,7 @@ impl<'p> Simulation<'p> {
             v: self.here.v.to_vec(),
             discrete: self.context.discrete().to_vec(),
             reactions,
+            outputs,
         }
     }
 }

@@ -288,6 +288,17 @@ impl<F: Size> ModeKernel<F> {
         unsafe { self.call(self.reactions, x, at, out.as_mut_ptr()) }
     }
 
+    /// The outputs of the model.
+    ///
+    /// # Panics
+    /// If `out` has not one entry an output.
+    pub fn outputs(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        let (function, count) = self.outputs;
+        assert_eq!(out.len(), count);
+        // SAFETY: the length was checked.
+        unsafe { self.call(function, x, at, out.as_mut_ptr()) }
+    }
+
     /// [kinetic, potential] energy, J, in the inertial frame.
     pub fn energies(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];

@@ -72,6 +72,7 @@ pub struct ModeKernel<F: Size> {
     pub(crate) jerk_load: Raw,
     pub(crate) magnitude: Raw,
     pub(crate) reactions: Raw,
+    pub(crate) outputs: (Raw, usize),
     pub(crate) energies: Raw,
     pub(crate) powers: Raw,
     pub(crate) momenta: Raw,

@@ -190,6 +190,8 @@ pub struct Variant {
     pub rests: Box<[Rest]>,
     /// Limit states.
     pub limits: Box<[Limit]>,
+    /// Outputs; names and units are the same under all options.
+    pub outputs: Box<[Output]>,
     /// Under which conditions on the motion the model is meant.
     pub valid_motion: Box<[Validity]>,
     /// Under which conditions on the parameters it is meant.
@@ -223,6 +225,19 @@ pub struct Limit {
     pub text: &'static str,
     /// Whether a run ends there if the scene does not say otherwise.
     pub ends: bool,
+}
+
+/// A quantity that people look at, which the motion does not depend on.
+#[derive(Debug)]
+pub struct Output {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Meaning and sign.
+    pub meaning: &'static str,
+    /// What it is, as text.
+    pub text: &'static str,
 }
 
 /// A condition under which the model is meant.

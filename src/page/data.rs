@@ -122,6 +122,7 @@ fn panel(sketch: &Sketch, group: &Grouped, notes: &mut Vec<String>) -> Option<Pa
             Group::Velocity => "velocity",
             Group::Reaction => "reaction",
             Group::Discrete => "discrete",
+            Group::Output => "output",
             Group::Energy => "energy",
             Group::Input => "input",
         },

@@ -73,9 +73,8 @@ pub(super) fn head(summary: &Summary) -> String {
 /// Extremes, transitions, energies, parameters, work.
 pub(super) fn all(summary: &Summary) -> String {
     let end = &summary.end;
-    let states = || end.q.0.iter().chain(&end.v.0).chain(&end.reactions.0);
     let at_end = |name: &str| {
-        states()
+        end.state()
             .find(|(n, _)| n == name)
             .map_or(String::new(), |(_, x)| number(*x))
     };

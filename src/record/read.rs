@@ -22,7 +22,7 @@ use crate::run::Uncertain;
 use crate::run::{
     EnergyJump, Event, Jump, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory,
 };
-use crate::run::{Layout, Quantity, Recorded};
+use crate::run::{Layout, Quantity};
 
 /// Why a run cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +64,7 @@ struct End {
     v: BTreeMap<String, f64>,
     discrete: BTreeMap<String, f64>,
     reactions: BTreeMap<String, f64>,
+    outputs: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]
@@ -90,15 +91,14 @@ pub struct Earlier {
 }
 
 impl Earlier {
-    /// Opens the run in a folder, which must be one of this model and variant, with these columns, and compares its
+    /// Opens the run in a folder, which must be one of this model and variant, with this layout, and compares its
     /// files with their digests.
     pub fn open(
         folder: &Path,
         model: &Model,
         variant: &Variant,
-        recorded: Recorded,
+        layout: Layout,
     ) -> Result<Earlier, ReadError> {
-        let layout = Layout::new(model, variant, recorded);
         let path = folder.join(SUMMARY);
         let error = |reason| ReadError {
             path: path.clone(),
@@ -206,9 +206,9 @@ impl Run {
         folder: &Path,
         model: &Model,
         variant: &Variant,
-        recorded: Recorded,
+        layout: Layout,
     ) -> Result<Run, ReadError> {
-        let mut earlier = Earlier::open(folder, model, variant, recorded)?;
+        let mut earlier = Earlier::open(folder, model, variant, layout)?;
         let mut recorder = Recorder::new(&earlier.run.layout, 0);
         earlier.rows(|t, mode, values| {
             recorder.push_row(t, mode, |row| row.copy_from_slice(values));
@@ -281,6 +281,7 @@ fn end(end: &End, layout: &Layout) -> Result<Place, String> {
             v: of(&layout.velocities, &end.v)?,
             discrete: of(&layout.discretes, &end.discrete)?,
             reactions: of(&layout.reactions, &end.reactions)?,
+            outputs: of(&layout.outputs, &end.outputs)?,
         },
     })
 }
@@ -314,6 +315,7 @@ fn snapshot(layout: &Layout, row: &mut Row) -> Result<Snapshot, String> {
         v: take(&layout.velocities)?,
         reactions: take(&layout.reactions)?,
         discrete: take(&layout.discretes)?,
+        outputs: take(&layout.outputs)?,
     })
 }
 

@@ -96,12 +96,12 @@ fn discrete(summary: &Summary) -> String {
     states.collect()
 }
 
-/// One row a coordinate, velocity or reaction.
+/// One row a coordinate, velocity, reaction, output or energy.
 fn states(summary: &Summary) -> Vec<[String; 7]> {
     let mut rows = vec![["", "unit", "end", "min", "at t/s", "max", "at t/s"].map(str::to_owned)];
     let end = &summary.end;
     for (name, peak) in &summary.peaks.0 {
-        let mut state = end.q.0.iter().chain(&end.v.0).chain(&end.reactions.0);
+        let mut state = end.state();
         let value = state.find(|(n, _)| n == name);
         rows.push([
             name.clone(),

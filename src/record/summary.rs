@@ -33,7 +33,7 @@ pub struct Summary {
     pub end: Point,
     /// Why and where the run stopped early; `null` when it reached its end.
     pub failure: Option<Stopped>,
-    /// Extremes of every coordinate, velocity, reaction and energy.
+    /// Extremes of every coordinate, velocity, reaction, output and energy.
     pub peaks: Named<Extremes>,
     /// The transitions.
     pub events: Events,
@@ -73,6 +73,8 @@ pub struct Point {
     pub discrete: Named<f64>,
     /// Reactions; none where they are not recorded.
     pub reactions: Named<f64>,
+    /// Outputs; none where they are not recorded.
+    pub outputs: Named<f64>,
 }
 
 /// Why and where a run stopped early.
@@ -178,6 +180,14 @@ impl<T: Serialize> Serialize for Named<T> {
     }
 }
 
+impl Point {
+    /// Coordinates, velocities, reactions and outputs, by name.
+    pub(crate) fn state(&self) -> impl Iterator<Item = &(String, f64)> {
+        let groups = [&self.q, &self.v, &self.reactions, &self.outputs];
+        groups.into_iter().flat_map(|group| &group.0)
+    }
+}
+
 impl Summary {
     /// The summary of a run.
     pub fn new(run: &Run) -> Summary {
@@ -267,6 +277,7 @@ fn point(run: &Run, place: &Place) -> Point {
         v: named(&run.layout.velocities, &place.state.v),
         discrete: named(&run.layout.discretes, &place.state.discrete),
         reactions: named(&run.layout.reactions, &place.state.reactions),
+        outputs: named(&run.layout.outputs, &place.state.outputs),
     }
 }
 

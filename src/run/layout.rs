@@ -10,6 +10,8 @@ use crate::model::{InputKind, Model, Variant};
 pub struct Recorded {
     /// The reactions.
     pub reactions: bool,
+    /// The outputs.
+    pub outputs: bool,
     /// The running energy ledger.
     pub energies: bool,
     /// The signals of the inputs.
@@ -40,6 +42,8 @@ pub struct Layout {
     pub reactions: Vec<Quantity>,
     /// The discrete states.
     pub discretes: Vec<Quantity>,
+    /// The outputs, those of the model first. Empty where they are not recorded.
+    pub outputs: Vec<Quantity>,
     /// The running ledger, in this order: `energy.stored` (kinetic and potential),
     /// `energy.input_work`, `energy.dissipated`, `energy.lost_at_impacts`. Empty where it is not
     /// recorded.
@@ -67,8 +71,13 @@ impl Quantity {
 }
 
 impl Layout {
-    /// The layout of a model's runs.
-    pub fn new(model: &Model, variant: &Variant, recorded: Recorded) -> Layout {
+    /// The layout of a model's runs, with outputs besides those of the model.
+    pub fn new<'o>(
+        model: &Model,
+        variant: &Variant,
+        recorded: Recorded,
+        outputs: impl IntoIterator<Item = &'o Quantity>,
+    ) -> Layout {
         let mut layout = Layout {
             coordinates: (model.coordinates.iter())
                 .map(|c| Quantity::new(c.name, c.unit, c.meaning))
@@ -88,6 +97,9 @@ impl Layout {
         if recorded.reactions {
             layout.reactions = reactions(model);
         }
+        if recorded.outputs {
+            layout.outputs = Layout::outputs_of(variant, outputs);
+        }
         if recorded.energies {
             layout.energies = ledger();
         }
@@ -97,13 +109,24 @@ impl Layout {
         layout
     }
 
+    /// The outputs of a variant, and further ones.
+    pub fn outputs_of<'o>(
+        variant: &Variant,
+        further: impl IntoIterator<Item = &'o Quantity>,
+    ) -> Vec<Quantity> {
+        let of_model = variant.outputs.iter();
+        let of_model = of_model.map(|o| Quantity::new(o.name, o.unit, o.meaning));
+        of_model.chain(further.into_iter().cloned()).collect()
+    }
+
     /// The groups in the order of a row.
-    fn groups(&self) -> [(Group, &[Quantity]); 6] {
+    fn groups(&self) -> [(Group, &[Quantity]); 7] {
         [
             (Group::Coordinate, &self.coordinates),
             (Group::Velocity, &self.velocities),
             (Group::Reaction, &self.reactions),
             (Group::Discrete, &self.discretes),
+            (Group::Output, &self.outputs),
             (Group::Energy, &self.energies),
             (Group::Input, &self.inputs),
         ]

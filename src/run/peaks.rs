@@ -16,6 +16,13 @@ pub struct Peak {
 }
 
 impl Run {
+    /// The extremes of a quantity by its name, as the trajectory names it; none where they were not looked for.
+    pub fn peak(&self, name: &str) -> Option<Peak> {
+        let column = self.trajectory.column(name)?;
+        let found = self.peaks.iter().find(|(i, _)| *i == column);
+        found.map(|(_, peak)| *peak)
+    }
+
     /// A column over time: the samples and, for what belongs to the state, both sides of every
     /// transition, in order of time. A sample at the time of a transition comes first.
     ///

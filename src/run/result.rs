@@ -118,6 +118,8 @@ pub enum Group {
     Reaction,
     /// A discrete state.
     Discrete,
+    /// An output.
+    Output,
     /// An entry of the energy ledger.
     Energy,
     /// A prescribed function of time.
@@ -174,6 +176,8 @@ pub struct Snapshot {
     /// Reaction of each coordinate (0 where it is free), then of each motion of the ground; empty
     /// where reactions are not recorded.
     pub reactions: Vec<f64>,
+    /// The outputs; empty where they are not recorded.
+    pub outputs: Vec<f64>,
 }
 
 /// What an impact does to the energy. In the inertial frame the energy changes by
@@ -283,7 +287,11 @@ impl Group {
     /// Whether a [`Snapshot`] holds values of this group.
     pub fn is_of_the_state(self) -> bool {
         match self {
-            Group::Coordinate | Group::Velocity | Group::Reaction | Group::Discrete => true,
+            Group::Coordinate
+            | Group::Velocity
+            | Group::Reaction
+            | Group::Discrete
+            | Group::Output => true,
             Group::Energy | Group::Input => false,
         }
     }
@@ -297,8 +305,10 @@ impl Snapshot {
             v,
             reactions,
             discrete,
+            outputs,
         } = self;
-        q.iter().chain(v).chain(reactions).chain(discrete).copied()
+        let state = q.iter().chain(v).chain(reactions).chain(discrete);
+        state.chain(outputs).copied()
     }
 }
 

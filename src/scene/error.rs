@@ -152,6 +152,12 @@ pub enum SceneErrorKind {
         /// The options, ` under …`.
         under: String,
     },
+    /// An output whose expression cannot be read, or does not fit its unit.
+    #[error("{message}")]
+    Formula {
+        /// What is wrong with it.
+        message: String,
+    },
     /// The initial state is at odds with its mode, or with what the scene freezes.
     #[error("{message}")]
     State {

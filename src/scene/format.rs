@@ -3,6 +3,7 @@
 //! Reading a scene and `dalembert schema` both follow these tables.
 
 use super::limits;
+use super::outputs;
 use super::record;
 use super::shape::{Key, Object, Quantity, Shape};
 use crate::hybrid::Method;
@@ -24,8 +25,8 @@ pub(crate) const METHODS: [(&str, Method); 3] = [
 pub(crate) const END: &str = "end";
 pub(crate) const CONTINUE: &str = "continue";
 
-/// The shape of a scene of a model; of any model, with less detail, for `None`.
-pub(crate) fn scene(model: Option<&Model>) -> Object {
+/// The shape of a scene of a model, with outputs of its own by name and unit, any for `None`; of any model, with less detail, for `None`.
+pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> Object {
     let name = match model {
         // The path of a folder was read before, and is not its name.
         Some(model) if model.is_loaded() => Shape::Text,
@@ -62,7 +63,12 @@ pub(crate) fn scene(model: Option<&Model>) -> Object {
         Key::new(
             "limits",
             "limit states: what becomes of those of the model, and further ones",
-            limits::shape(model),
+            limits::shape(model, own),
+        ),
+        Key::new(
+            "outputs",
+            "further quantities to record: expressions in names of the model",
+            outputs::shape(),
         ),
         Key::new("accuracy", "error tolerances", accuracy(model)),
         Key::new(
@@ -362,6 +368,7 @@ fn record() -> Object {
                 Quantity::positive("s"),
             ),
             flag("reactions", "whether reactions are computed and written"),
+            flag("outputs", "whether outputs are computed and written"),
             flag("energies", "whether the energy ledger is kept"),
             flag("inputs", "whether inputs are written"),
         ],

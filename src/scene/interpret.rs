@@ -10,8 +10,10 @@ use super::files::Files;
 use super::shape::Shape;
 use super::tree::{Node, Value};
 use super::wording::listing;
-use super::{Scene, SceneSource, format, inputs, limits, state};
-use crate::hybrid::{Accuracy, End, Exceeds, Method, Problem, Record, check_limits_of_parameters};
+use super::{Scene, SceneSource, format, inputs, limits, outputs, state};
+use crate::hybrid::{
+    Accuracy, End, Exceeds, Limits, Method, Problem, Record, check_limits_of_parameters,
+};
 use crate::model::{Model, Models, Variant};
 use crate::record::Recorded;
 
@@ -27,7 +29,7 @@ pub(crate) fn scene(
     let model = &*owned;
     let checked = check(
         &root,
-        &Shape::Object(format::scene(Some(model))),
+        &Shape::Object(format::scene(Some(model), Some(&outputs::named(&root)))),
         &mut errors,
     );
     errors.check()?;
@@ -50,7 +52,6 @@ pub(crate) fn scene(
     let parts = (&freeze[..], parameters.as_deref());
     let initial = state::initial(model, variant, &checked, parts, &mut errors);
     let end = errors.note(end(variant, &checked));
-    let limits = limits::limits(model, variant, &checked, &mut errors);
     errors.check()?;
     let (Some(parameters), Some(signals), Some(initial), Some(end)) =
         (parameters, signals, initial, end)
@@ -66,12 +67,17 @@ pub(crate) fn scene(
         initial,
         freeze,
         end,
-        limits,
+        limits: Limits::default(),
+        outputs: Vec::new(),
         accuracy: Accuracy::default(),
         method: method(&checked),
         record: record(&checked),
     };
     set_accuracy(&mut problem, &checked);
+    outputs::add(&mut problem, &checked, &mut errors);
+    errors.check()?;
+    problem.limits = limits::limits(&problem, &checked, &mut errors);
+    errors.check()?;
     let source = SceneSource { root };
     Ok(Scene { problem, source })
 }
@@ -297,6 +303,7 @@ fn record(scene: &Checked) -> Record {
         every: entry("every").map(Checked::number),
         columns: Recorded {
             reactions: flag("reactions"),
+            outputs: flag("outputs"),
             energies: flag("energies"),
             inputs: flag("inputs"),
         },

@@ -6,9 +6,9 @@ use super::format::{self, CONTINUE, END};
 use super::interpret::under;
 use super::shape::{Key, Object, Quantity, Shape};
 use super::wording::shown;
-use crate::hybrid::{Limits, Observed, OwnLimit};
+use crate::hybrid::{Limits, Observed, OwnLimit, Problem};
 use crate::model::{Model, Variant};
-use crate::record::{Layout, Recorded};
+use crate::record::{self, Layout, Recorded};
 
 /// A quantity that a limit may be about: its name, unit and place in the state.
 struct Observable {
@@ -17,21 +17,27 @@ struct Observable {
     of: Observed,
 }
 
-/// Coordinates, velocities and reactions, as the trajectory names them.
-fn observables(model: &Model, variant: &Variant) -> Vec<Observable> {
+/// Coordinates, velocities, reactions and outputs, as the trajectory names them; `own` are outputs of the scene.
+fn observables(model: &Model, variant: &Variant, own: &[(String, String)]) -> Vec<Observable> {
     let recorded = Recorded {
         reactions: true,
+        outputs: true,
         ..Recorded::default()
     };
-    let layout = Layout::new(model, variant, recorded);
+    let own = own
+        .iter()
+        .map(|(name, unit)| record::Quantity::new(name, unit, ""));
+    let own: Vec<_> = own.collect();
+    let layout = Layout::new(model, variant, recorded, &own);
     type Place = fn(usize) -> Observed;
-    let groups: [(_, Place); 3] = [
+    let groups: [(_, Place); 4] = [
         (layout.coordinates, Observed::Coordinate),
         (layout.velocities, Observed::Rate),
         (layout.reactions, Observed::Reaction),
+        (layout.outputs, Observed::Output),
     ];
     let all = groups.into_iter().flat_map(|(quantities, place)| {
-        let observable = move |(i, q): (usize, crate::record::Quantity)| Observable {
+        let observable = move |(i, q): (usize, record::Quantity)| Observable {
             name: q.name,
             unit: q.unit,
             of: place(i),
@@ -41,8 +47,8 @@ fn observables(model: &Model, variant: &Variant) -> Vec<Observable> {
     all.collect()
 }
 
-/// The shape of `limits`.
-pub(super) fn shape(model: Option<&Model>) -> Object {
+/// The shape of `limits` of a scene with these outputs, by name and unit; `None`: with any.
+pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String)]>) -> Object {
     let course = || Shape::Choice("course", vec![END, CONTINUE]);
     let bounds = |unit: &str| {
         Object::new(
@@ -62,28 +68,35 @@ pub(super) fn shape(model: Option<&Model>) -> Object {
         return Object::new("limit", Vec::new()).others(Shape::Either(vec![course(), own.into()]));
     };
     let variant = &model.variants[0];
-    own.extend(observables(model, variant).into_iter().map(|o| {
-        let meaning = format!("where {} is a limit", o.name);
-        Key::new(o.name, meaning, bounds(&o.unit))
-    }));
+    own.extend(
+        observables(model, variant, own_outputs.unwrap_or_default())
+            .into_iter()
+            .map(|o| {
+                let meaning = format!("where {} is a limit", o.name);
+                Key::new(o.name, meaning, bounds(&o.unit))
+            }),
+    );
     let of_model = format::limits(&model.variants).into_iter().map(|limit| {
         let default = if limit.ends { END } else { CONTINUE };
         Key::new(limit.name, limit.message, course()).default(default)
     });
     // A name that is not the model's, with the course of one, is a mistake that is named later.
-    let own = Object::new("quantity", own);
+    let own = match own_outputs {
+        Some(_) => Object::new("quantity", own),
+        None => Object::new("quantity", own).others(bounds("")),
+    };
     Object::new("limit", of_model.collect()).others(Shape::Either(vec![own.into(), course()]))
 }
 
 /// The limits of a checked scene.
-pub(super) fn limits(
-    model: &Model,
-    variant: &Variant,
-    scene: &Checked,
-    errors: &mut Errors,
-) -> Limits {
+pub(super) fn limits(problem: &Problem, scene: &Checked, errors: &mut Errors) -> Limits {
+    let (model, variant) = (&*problem.model, problem.variant());
     let mut limits = Limits::default();
-    let observables = observables(model, variant);
+    let own_outputs = problem.outputs.iter().map(|o| &o.quantity);
+    let own_outputs: Vec<_> = own_outputs
+        .map(|q| (q.name.clone(), q.unit.clone()))
+        .collect();
+    let observables = observables(model, variant, &own_outputs);
     for (name, said) in scene.get("limits").map_or(&[][..], Checked::entries) {
         if said.is_object() {
             limits.own.extend(own(name, said, &observables, errors));

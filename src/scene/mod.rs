@@ -12,6 +12,7 @@ mod inputs;
 mod interpret;
 mod limits;
 mod number;
+mod outputs;
 mod record;
 mod schema;
 mod set;
@@ -20,7 +21,6 @@ mod source;
 mod state;
 mod table;
 mod tree;
-mod unit;
 mod wording;
 
 use std::path::Path;

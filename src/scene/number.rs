@@ -3,7 +3,7 @@
 use super::error::{SceneError, SceneErrorKind};
 use super::shape::{Quantity, Shape};
 use super::tree::{Node, Value};
-use super::unit::{self, QuantityError};
+use crate::formula::unit::{self, QuantityError};
 
 /// The double that a JSON number stands for.
 fn parse_finite(node: &Node, text: &str) -> Result<f64, SceneError> {

@@ -8,8 +8,8 @@ use super::error::{SceneError, SceneErrorKind};
 use super::inputs::Reader;
 use super::shape::{Key, Object, Quantity, Shape};
 use super::source::{Source, Span};
-use super::unit::{QuantityError, convert};
 use super::wording::listing;
+use crate::formula::unit::{QuantityError, convert};
 use crate::input::{Interpolation, Outside, Table};
 use crate::model::Bounds;
 use crate::motion::{

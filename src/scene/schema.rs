@@ -11,7 +11,7 @@ use crate::model::Model;
 /// It is made of the same tables that scenes are checked against. What it cannot say is checked
 /// when a scene is read: dimensions of units, one parameter limiting another, the order of times.
 pub fn schema(model: Option<&Model>) -> Value {
-    let mut schema = object(&format::scene(model));
+    let mut schema = object(&format::scene(model, None));
     schema.insert(
         "$schema".into(),
         json!("https://json-schema.org/draft/2020-12/schema"),

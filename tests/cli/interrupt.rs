@@ -179,8 +179,8 @@ fn a_run_is_not_continued_with_a_model_that_was_changed_since() {
     let out = home.path().join("out");
     let scene = Scene::load(Path::new(&ball), &[], models()).unwrap();
     let problem = &scene.problem;
-    let columns = problem.record.columns;
-    let mut earlier = Run::read(&out, &problem.model, problem.variant(), columns).unwrap();
+    let layout = problem.layout();
+    let mut earlier = Run::read(&out, &problem.model, problem.variant(), layout).unwrap();
     let mut digests = earlier.subject.digests.iter_mut();
     let (_, digest) = digests.find(|(part, _)| part == "model").unwrap();
     assert_eq!(digest.len(), 16);

@@ -12,6 +12,7 @@ mod limits;
 mod motion;
 mod new;
 mod output;
+mod outputs;
 mod page;
 mod precision;
 mod run;

@@ -19,6 +19,7 @@ mod methods;
 mod newmark;
 mod onsets;
 mod order;
+mod outputs;
 mod overturning;
 mod painleve;
 mod peaks;

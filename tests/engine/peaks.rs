@@ -18,6 +18,7 @@ fn record_all(problem: &mut Problem, every: Option<f64>) {
     problem.record.every = every;
     problem.record.columns = Recorded {
         reactions: true,
+        outputs: false,
         energies: true,
         inputs: true,
     };

@@ -265,6 +265,7 @@ fn a_mode_that_is_left_at_once_is_in_the_strip() {
         v: vec![0.0],
         discrete: vec![1.0],
         reactions: vec![0.0],
+        outputs: vec![],
     };
     let leave = Event {
         t: 0.0,

@@ -245,9 +245,9 @@ fn a_run_is_read_back_row_by_row_or_whole() {
     let problem = &scene.problem;
     let out = home.path().join("out");
     observed(problem, &out);
-    let columns = problem.record.columns;
-    let run = Run::read(&out, &problem.model, problem.variant(), columns).unwrap();
-    let mut earlier = Earlier::open(&out, &problem.model, problem.variant(), columns).unwrap();
+    let layout = problem.layout();
+    let run = Run::read(&out, &problem.model, problem.variant(), layout.clone()).unwrap();
+    let mut earlier = Earlier::open(&out, &problem.model, problem.variant(), layout).unwrap();
     let (mut told, mut replay) = (Told::default(), Replay::new(problem));
     earlier
         .rows(|t, mode, values| {

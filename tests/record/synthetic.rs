@@ -27,6 +27,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             "force of the ground on the ball",
         )],
         discretes: vec![Quantity::new("side", "1", "which side of the ball is up")],
+        outputs: vec![],
         energies: vec![Quantity::new(
             "energy.stored",
             "J",
@@ -40,6 +41,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         v: vec![v],
         discrete: vec![side],
         reactions: vec![0.0],
+        outputs: vec![],
     };
     // Flights: (start, duration, speed at the start).
     let impact_speed = (2.0 * G * height).sqrt();
@@ -209,6 +211,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             "1",
             "pivot: +1 left edge, −1 right edge",
         )],
+        outputs: vec![],
         energies: [
             ("stored", "kinetic and potential energy"),
             ("input_work", "work of the inputs so far"),
@@ -263,6 +266,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             v,
             discrete: vec![if s.sin() > 0.0 { 1.0 } else { -1.0 }],
             reactions,
+            outputs: vec![],
         }
     };
     let names = ["slip", "stick", "lift_off", "landing", "reversal"];

@@ -14,6 +14,7 @@ fn mirrored(state: &Snapshot) -> Snapshot {
         v: flip(&state.v),
         discrete: state.discrete.iter().map(|d| -d).collect(),
         reactions: vec![],
+        outputs: vec![],
     }
 }
 

@@ -18,6 +18,7 @@ pub struct Description {
     pub parameters: Vec<Parameter>,
     pub parameter_sets: Vec<ParameterSet>,
     pub reactions: Vec<Reaction>,
+    pub outputs: Vec<Output>,
     pub modes: Vec<Mode>,
     pub limits: Vec<Limit>,
     pub validity: Vec<Validity>,
@@ -95,6 +96,16 @@ pub struct Reaction {
     pub name: String,
     pub unit: String,
     pub meaning: String,
+}
+
+/// An output.
+#[derive(Debug, Serialize)]
+pub struct Output {
+    pub name: &'static str,
+    pub unit: &'static str,
+    /// What it is.
+    pub expression: &'static str,
+    pub meaning: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -246,6 +257,14 @@ impl Description {
                 })
                 .collect(),
             reactions: reactions(model, variant),
+            outputs: (variant.outputs.iter())
+                .map(|o| Output {
+                    name: o.name,
+                    unit: o.unit,
+                    expression: o.text,
+                    meaning: o.meaning,
+                })
+                .collect(),
             modes: variant
                 .modes
                 .iter()
@@ -349,10 +368,10 @@ impl Mode {
 fn reactions(model: &Model, variant: &Variant) -> Vec<Reaction> {
     let recorded = Recorded {
         reactions: true,
-        energies: false,
-        inputs: false,
+        ..Recorded::default()
     };
-    let quantities = Layout::new(model, variant, recorded).reactions.into_iter();
+    let layout = Layout::new(model, variant, recorded, []);
+    let quantities = layout.reactions.into_iter();
     quantities
         .map(|q| Reaction {
             name: q.name,

@@ -94,6 +94,12 @@ impl Display for Text<'_> {
             &reactions,
         )?;
 
+        let mut outputs = Table::new(["output", "unit", "what it is", "meaning"]);
+        for o in &d.outputs {
+            outputs.row([o.name, o.unit, o.expression, o.meaning]);
+        }
+        section(f, "Outputs", &outputs)?;
+
         for mode in &d.modes {
             self::mode(f, mode)?;
         }

@@ -9,6 +9,7 @@ use std::ops::Range;
 pub struct Extremes {
     coordinates: usize,
     pub reactions: Range<usize>,
+    pub outputs: Range<usize>,
     pub energies: Range<usize>,
     /// By column; a column without a value yet has the times NaN.
     peaks: Box<[Peak]>,
@@ -26,6 +27,7 @@ impl Extremes {
         Extremes {
             coordinates: layout.coordinates.len(),
             reactions: layout.range(Group::Reaction),
+            outputs: layout.range(Group::Output),
             energies: layout.range(Group::Energy),
             peaks: vec![nothing; layout.columns().len()].into(),
         }
@@ -58,16 +60,9 @@ impl Extremes {
         }
     }
 
-    /// Reactions have these values at time `t`, s.
-    pub fn note_reactions(&mut self, t: f64, reactions: &[f64]) {
-        for (column, &x) in self.reactions.clone().zip(reactions) {
-            self.note(column, t, x);
-        }
-    }
-
-    /// Energies have these values at time `t`, s, as far as they are recorded.
-    pub fn note_energies(&mut self, t: f64, energies: &[f64; 4]) {
-        for (column, &x) in self.energies.clone().zip(energies) {
+    /// Columns, as far as there are any, have these values at time `t`, s.
+    pub fn note_all(&mut self, columns: Range<usize>, t: f64, values: &[f64]) {
+        for (column, &x) in columns.zip(values) {
             self.note(column, t, x);
         }
     }

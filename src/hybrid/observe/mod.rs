@@ -21,6 +21,7 @@ mod summit;
 
 use super::equations::Equations;
 use super::guards;
+use super::outputs::Outputs;
 use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
@@ -52,6 +53,8 @@ pub(super) struct Observers<'o> {
     /// Where rows and transitions go.
     pub recording: Recording<'o>,
     pub samples: Samples,
+    /// Evaluates outputs, where they are recorded.
+    pub outputs: Outputs,
     /// The energy ledger, where it is kept.
     pub ledger: Option<RunningLedger>,
     extremes: Option<Extremes>,
@@ -78,14 +81,16 @@ impl Persist for Observers<'_> {
     }
 }
 
-/// What is represented in the present mode, in this order: free coordinates, their rates, reactions, stored
-/// energy, powers.
+/// What is represented in the present mode, in this order: free coordinates, their rates, reactions, outputs,
+/// stored energy, powers.
 #[derive(Debug)]
 struct Functions {
     /// Columns of all but the powers.
     columns: Vec<usize>,
     /// Which reactions, by their index.
     reactions: Vec<usize>,
+    /// Number of outputs.
+    outputs: usize,
     stored: bool,
     /// Number of free coordinates.
     free: usize,
@@ -146,17 +151,18 @@ impl<'o> Observers<'o> {
     /// The observers of a run; rows and transitions go to `observer`, else to memory.
     pub fn new(problem: &Problem, observer: Option<&'o mut dyn Observer>) -> Self {
         let record = problem.record;
-        let layout = Layout::new(&problem.model, problem.variant(), record.columns);
+        let layout = problem.layout();
         let recording = match observer {
             None => Recording::collected(problem, &layout),
             Some(observer) => Recording::told(observer, &layout),
         };
         let n = layout.coordinates.len();
         let extremes = record.extremes.then(|| Extremes::new(&layout));
-        let most = 2 * n + layout.reactions.len() + 3;
+        let most = 2 * n + layout.reactions.len() + layout.outputs.len() + 3;
         Observers {
             recording,
             samples: Samples::from(record.every, 0),
+            outputs: Outputs::new(problem),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             interpolants: match extremes.is_some() || record.ledger || record.columns.energies {
                 true => Interpolants::new(most),
@@ -165,6 +171,7 @@ impl<'o> Observers<'o> {
             functions: Functions {
                 columns: Vec::with_capacity(most),
                 reactions: Vec::with_capacity(layout.reactions.len()),
+                outputs: layout.outputs.len(),
                 stored: false,
                 free: 0,
                 room: vec![0.0; layout.reactions.len()].into(),
@@ -181,6 +188,11 @@ impl<'o> Observers<'o> {
     /// Whether steps are looked at beyond the samples.
     pub fn watch_steps(&self) -> bool {
         self.ledger.is_some() || self.extremes.is_some() || self.recording.sees_steps
+    }
+
+    /// Whether what is recorded depends on the accelerations.
+    fn needs_accelerations(&self) -> bool {
+        self.record.columns.reactions || !self.layout.outputs.is_empty()
     }
 
     /// Whether extremes are looked for.
@@ -216,6 +228,7 @@ impl<'o> Observers<'o> {
         let all = 0..extremes.reactions.len();
         reactions.extend(all.filter(|i| !mode.free.contains(i)));
         columns.extend(reactions.iter().map(|i| extremes.reactions.start + i));
+        columns.extend(extremes.outputs.clone());
         *stored = !extremes.energies.is_empty();
         columns.extend(stored.then_some(extremes.energies.start));
         // What the mode holds moves along a straight line at most.
@@ -228,17 +241,18 @@ impl<'o> Observers<'o> {
         }
     }
 
-    /// The state is another one: after a transition, and where the run begins and ends. `reactions` are those of the
-    /// state, or none where they are not known.
-    pub fn jump(&mut self, here: &Here, reactions: &[f64], stored: Option<f64>) {
+    /// The state is another one: after a transition, and where the run begins and ends. `reactions` and `outputs` are those
+    /// of the state, or none where they are not known.
+    pub fn jump(&mut self, here: &Here, [reactions, outputs]: [&[f64]; 2], stored: Option<f64>) {
         let Some(extremes) = &mut self.extremes else {
             return;
         };
         let t = here.now.seconds();
         extremes.note_state(t, [&here.q, &here.v]);
-        extremes.note_reactions(t, reactions);
+        extremes.note_all(extremes.reactions.clone(), t, reactions);
+        extremes.note_all(extremes.outputs.clone(), t, outputs);
         if let (Some(ledger), Some(stored)) = (&self.ledger, stored) {
-            extremes.note_energies(t, &ledger.row(stored, [0.0; 2]));
+            extremes.note_all(extremes.energies.clone(), t, &ledger.row(stored, [0.0; 2]));
         }
     }
 

@@ -83,11 +83,12 @@ impl Observers<'_> {
     ) {
         let Functions {
             reactions,
+            outputs,
             stored,
             room,
             ..
         } = &mut self.functions;
-        let accelerated = powers || columns > 0 && !reactions.is_empty();
+        let accelerated = powers || columns > 0 && (!reactions.is_empty() || *outputs > 0);
         let [q, v, a] = guards::motion(step.equations, step.motion, tau, accelerated);
         let at = Free {
             q: &q,
@@ -105,6 +106,10 @@ impl Observers<'_> {
                 for (value, &i) in row[2 * n..].iter_mut().zip(&*reactions) {
                     *value = room[i];
                 }
+            }
+            if *outputs > 0 {
+                let row = &mut row[2 * n + reactions.len()..][..*outputs];
+                self.outputs.evaluate(kernel, context, step.mode, at, row);
             }
         }
         let first = node == 0;

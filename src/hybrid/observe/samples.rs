@@ -7,10 +7,12 @@ use crate::hybrid::equations::Equations;
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::guards;
 use crate::hybrid::instant::Instant;
+use crate::hybrid::outputs::Outputs;
 use crate::hybrid::simulation::{Here, Simulation};
 use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
+use crate::model::Mode;
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::{Group, Layout};
@@ -21,6 +23,8 @@ pub(super) struct Row<'a> {
     pub layout: &'a Layout,
     pub q: &'a [f64],
     pub v: &'a [f64],
+    /// Evaluates outputs, with the mode.
+    pub outputs: (&'a mut Outputs, &'a Mode),
     /// Stored energy is filled in here; the rest of the ledger is given.
     pub ledger: [f64; 4],
 }
@@ -42,6 +46,11 @@ impl Row<'_> {
             kernel.reactions(context, at, &mut row[reactions]);
         }
         row[self.layout.range(Group::Discrete)].copy_from_slice(context.discrete());
+        let outputs = self.layout.range(Group::Output);
+        if !outputs.is_empty() {
+            let (of, mode) = &mut self.outputs;
+            of.evaluate(kernel, context, mode, at, &mut row[outputs]);
+        }
         let energies = self.layout.range(Group::Energy);
         if !energies.is_empty() {
             let [kinetic, potential] = kernel.energies(context, at);
@@ -135,8 +144,7 @@ impl Observers<'_> {
         };
         while let Some(tau) = self.due(step.equations, to) {
             let equations = &mut *step.equations;
-            let [q, v, a] =
-                guards::motion(equations, step.motion, tau, self.record.columns.reactions);
+            let [q, v, a] = guards::motion(equations, step.motion, tau, self.needs_accelerations());
             let (mode, here) = (step.mode, &mut *step.here);
             here.set_free(&mode.free, [&q, &v, &a]);
             if !equations.clock.drift.is_empty() {
@@ -148,6 +156,7 @@ impl Observers<'_> {
                 layout: &self.layout,
                 q: &here.q,
                 v: &here.v,
+                outputs: (&mut self.outputs, mode),
                 ledger: row_of(self.ledger.as_ref(), work),
             };
             let at = Free {
@@ -172,13 +181,14 @@ impl Observers<'_> {
     pub fn sample_end<F: Size>(
         &mut self,
         equations: &Equations<F>,
-        here: &Here,
+        (mode, here): (&Mode, &Here),
         at: Free<F>,
     ) -> ControlFlow<()> {
         let row = Row {
             layout: &self.layout,
             q: &here.q,
             v: &here.v,
+            outputs: (&mut self.outputs, mode),
             ledger: row_of(self.ledger.as_ref(), [0.0; 2]),
         };
         let (kernel, context) = (equations.kernel, &*equations.context);
@@ -228,6 +238,7 @@ impl Simulation<'_> {
             layout: &observers.layout,
             q: &here.q,
             v: &here.v,
+            outputs: (&mut observers.outputs, mode),
             ledger: row_of(observers.ledger.as_ref(), [0.0; 2]),
         };
         with_kernel!(&mode.kernels, k => {

@@ -8,24 +8,34 @@ use crate::model::Guard;
 use crate::model::reader::{At, count, truth};
 use crate::numerics::{Const, Dynamic, Size};
 
+/// How many results functions of a mode have.
+#[derive(Clone, Copy)]
+pub(super) struct Counts {
+    /// Of what must hold, and of the margins.
+    pub required: usize,
+    pub outputs: usize,
+}
+
 impl Reader<'_> {
     pub(super) fn kernels(
         &self,
         at: &At,
         free: usize,
         guards: &[Guard],
-        held: usize,
+        counts: Counts,
     ) -> Read<ModeKernels> {
         Ok(match free {
-            _ if self.dynamic => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, held)?),
-            0 => ModeKernels::F0(self.kernel(at, Const, guards, held)?),
-            1 => ModeKernels::F1(self.kernel(at, Const, guards, held)?),
-            2 => ModeKernels::F2(self.kernel(at, Const, guards, held)?),
-            3 => ModeKernels::F3(self.kernel(at, Const, guards, held)?),
-            4 => ModeKernels::F4(self.kernel(at, Const, guards, held)?),
-            5 => ModeKernels::F5(self.kernel(at, Const, guards, held)?),
-            6 => ModeKernels::F6(self.kernel(at, Const, guards, held)?),
-            _ => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, held)?),
+            _ if self.dynamic => {
+                ModeKernels::Any(self.kernel(at, Dynamic(free), guards, counts)?)
+            }
+            0 => ModeKernels::F0(self.kernel(at, Const, guards, counts)?),
+            1 => ModeKernels::F1(self.kernel(at, Const, guards, counts)?),
+            2 => ModeKernels::F2(self.kernel(at, Const, guards, counts)?),
+            3 => ModeKernels::F3(self.kernel(at, Const, guards, counts)?),
+            4 => ModeKernels::F4(self.kernel(at, Const, guards, counts)?),
+            5 => ModeKernels::F5(self.kernel(at, Const, guards, counts)?),
+            6 => ModeKernels::F6(self.kernel(at, Const, guards, counts)?),
+            _ => ModeKernels::Any(self.kernel(at, Dynamic(free), guards, counts)?),
         })
     }
 
@@ -34,7 +44,7 @@ impl Reader<'_> {
         at: &At,
         size: F,
         guards: &[Guard],
-        held: usize,
+        counts: Counts,
     ) -> Read<ModeKernel<F>> {
         let value = |key: &str| at.get(key, |at| self.value(at));
         let series = |key: &str| at.get(key, |at| at.option(|at| self.series(at, self.functions)));
@@ -62,10 +72,11 @@ impl Reader<'_> {
             jerk_load: value("jerk_load")?,
             magnitude: value("magnitude")?,
             reactions: value("reactions")?,
+            outputs: (value("outputs")?, counts.outputs),
             energies: value("energies")?,
             powers: value("powers")?,
             momenta: value("momenta")?,
-            requirements: (value("requirements")?, held),
+            requirements: (value("requirements")?, counts.required),
             requirement_bounds: value("requirement_bounds")?,
             held_rates: value("held_rates")?,
             held_values: value("held_values")?,

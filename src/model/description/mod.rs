@@ -4,12 +4,14 @@
 mod functions;
 mod tapes;
 
+use functions::Counts;
+
 use super::name::intern;
 use super::reader::{At, count, number, text, truth};
 use super::{
     Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Limit, Mode, Model,
-    Motion, Parameter, ParameterSet, ParametricBound, Requirement, Rest, Transition, Validity,
-    Variant,
+    Motion, Output, Parameter, ParameterSet, ParametricBound, Requirement, Rest, Transition,
+    Validity, Variant,
 };
 use crate::kernel::{
     ContractError, Dimensions, Functions, GuardKernel, Library, Parts, TransitionKernel,
@@ -81,6 +83,7 @@ struct Modes<'f> {
     free: &'f [usize],
     /// Limits, and conditions on the motion under which the model is meant.
     margins: usize,
+    outputs: usize,
 }
 
 impl Reader<'_> {
@@ -140,12 +143,14 @@ impl Reader<'_> {
         }
         let index = |at: &At| at.index(free.len());
         let limits = at.get("limits", |at| at.list(limit))?;
+        let outputs = at.get("outputs", |at| at.list(output))?;
         let valid_motion = at.get("valid_motion", |at| at.list(validity))?;
         let valid_parameters = at.get("valid_parameters", |at| at.list(validity))?;
         let bounds = at.get("bounds", |at| at.list(|at| self.bound(at)))?;
         let modes = Modes {
             free: &free,
             margins: limits.len() + valid_motion.len(),
+            outputs: outputs.len(),
         };
         Ok(Variant {
             options: at.get("options", |at| at.list_of(choices, text))?,
@@ -162,6 +167,7 @@ impl Reader<'_> {
                 })
             })?,
             limits,
+            outputs,
             valid_motion,
             declared: at.get("declared", |at| {
                 self.of_parameters(at, valid_parameters.len() + bounds.len())
@@ -206,7 +212,10 @@ impl Reader<'_> {
                 at.option(|at| self.shape(at, free.len()))
             })
         })?;
-        let held = requirements.len() + margins.len();
+        let counts = Counts {
+            required: requirements.len() + margins.len(),
+            outputs: modes.outputs,
+        };
         Ok(Mode {
             name: at.get("name", text)?,
             meaning: at.get("meaning", text)?,
@@ -217,7 +226,7 @@ impl Reader<'_> {
                 self.tape(at, free.len() * free.len() + free.len())
             })?,
             guard_values: at.get("guard_values", |at| self.tape(at, guards.len()))?,
-            kernels: at.get("kernel", |at| self.kernels(at, free.len(), &guards, held))?,
+            kernels: at.get("kernel", |at| self.kernels(at, free.len(), &guards, counts))?,
             operations: at.get("operations", |at| {
                 at.list(|at| Ok((at.entry(0, 2, text)?, at.entry(1, 2, count)?)))
             })?,
@@ -386,6 +395,15 @@ fn limit(at: &At) -> Read<Limit> {
         message: at.get("message", text)?,
         text: at.get("text", text)?,
         ends: at.get("ends", truth)?,
+    })
+}
+
+fn output(at: &At) -> Read<Output> {
+    Ok(Output {
+        name: at.get("name", text)?,
+        unit: at.get("unit", text)?,
+        meaning: at.get("meaning", text)?,
+        text: at.get("text", text)?,
     })
 }
 

@@ -49,7 +49,7 @@ struct Panel {
     columns: Vec<(usize, (f64, f64))>,
 }
 
-/// Draws inputs, coordinates, velocities, reactions and energies over time, one below the other,
+/// Draws inputs, coordinates, velocities, outputs, reactions and energies over time, one below the other,
 /// with the modes and the transitions underneath, as SVG. Quantities of the same kind and unit
 /// share a panel where each is readable there; those that never change are listed.
 pub fn overview(run: &Run) -> String {
@@ -142,10 +142,11 @@ fn time_axis(run: &Run, sketch: &Sketch) -> Axis {
 
 /// Divides the columns among panels; also a sentence about those that never change.
 fn panels(run: &Run, sketch: &Sketch) -> (Vec<Panel>, String) {
-    const ORDER: [Group; 5] = [
+    const ORDER: [Group; 6] = [
         Group::Input,
         Group::Coordinate,
         Group::Velocity,
+        Group::Output,
         Group::Reaction,
         Group::Energy,
     ];
@@ -250,12 +251,13 @@ fn panel_curves(sketch: &Sketch, panel: &Panel) -> Vec<Curve> {
 /// The symbol of the only quantity of a panel, or the kind of its quantities.
 fn axis_title(sketch: &Sketch, panel: &Panel) -> String {
     match (&panel.columns[..], panel.group) {
-        ([(i, _)], Group::Coordinate | Group::Velocity | Group::Reaction) => {
+        ([(i, _)], Group::Coordinate | Group::Velocity | Group::Output | Group::Reaction) => {
             symbol(&sketch.columns()[*i].name)
         }
         (_, Group::Coordinate) => "coordinate".into(),
         (_, Group::Velocity) => "velocity".into(),
         (_, Group::Reaction) => "reaction".into(),
+        (_, Group::Output) => "output".into(),
         (_, Group::Energy) => "energy".into(),
         (_, Group::Input) => "input".into(),
         (_, Group::Discrete) => "state".into(),

@@ -6,7 +6,6 @@ mod mutation;
 mod overrides;
 mod records;
 mod states;
-mod units;
 mod values;
 
 use std::io;

@@ -51,6 +51,7 @@ fn smallest_scene_takes_every_default() {
             every: None,
             columns: Recorded {
                 reactions: true,
+                outputs: true,
                 energies: true,
                 inputs: true
             },
@@ -103,6 +104,7 @@ fn every_key_is_read() {
             every: Some(0.001),
             columns: Recorded {
                 reactions: true,
+                outputs: true,
                 energies: false,
                 inputs: true
             },

@@ -94,6 +94,22 @@ impl Unit {
         }
     }
 
+    /// Powers of m, kg and s; angles are numbers.
+    pub fn powers(&self) -> [i32; 3] {
+        let [m, kg, s, _] = self.dimensions;
+        [m, kg, s]
+    }
+
+    /// What a number in coherent units is multiplied with, and then divided by, to be in this one. Powers of ten are
+    /// whole, so that 0.4 m are 400 mm.
+    pub fn of_coherent(&self) -> [f64; 2] {
+        let power = 10f64.powi(self.exponent.abs());
+        match self.exponent < 0 {
+            true => [power, self.factor],
+            false => [1.0, power * self.factor],
+        }
+    }
+
     fn times(self, other: Unit, power: i32) -> Option<Unit> {
         let mut dimensions = self.dimensions;
         for (sum, d) in dimensions.iter_mut().zip(other.dimensions) {
@@ -233,7 +249,7 @@ fn unknown(symbol: &str) -> String {
         .iter()
         .map(|named| named.0)
         .chain(["mm", "kg", "kN", "ms"]);
-    match super::wording::nearest(symbol, known) {
+    match super::nearest(symbol, known) {
         Some(near) => format!("unknown unit `{symbol}`; did you mean `{near}`?"),
         None => format!("unknown unit `{symbol}`"),
     }

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 
+use crate::formula::unit::{QuantityError, Unit, convert};
 use crate::model::models;
-use crate::scene::unit::{QuantityError, Unit, convert};
 
 #[test]
 fn converts_to_the_nearest_double() {
