@@ -87,7 +87,10 @@ def variants(term, equation, paper):
                          and parse(x.unit) == parse(symbol.unit)]
                 if alike:
                     later = [n for n in alike if list(symbols).index(n) > list(symbols).index(symbol.name)]
-                    yield "swapped symbol", [term.subs(factor, sympy.Symbol((later or alike)[0], real=True))]
+                    other = sympy.Symbol((later or alike)[0], real=True)
+                    # what terms are divided by is printed once for all of them
+                    divided = any(f.is_Pow and f.exp < 0 and f.base.is_Add for f in sympy.Mul.make_args(term))
+                    yield "swapped symbol", [term / factor * other if divided else term.subs(factor, other)]
     accelerated = [c for c in paper.coordinates() if "dd" + c in rates]
     if equation.kind == "motion" and accelerated and accelerated[0] != equation.of:
         yield "asymmetric coupling", [term * sympy.Rational(3, 4)]
@@ -121,10 +124,15 @@ def run(name, folder=None):
     objections = detected(subject, motion)
     if objections:
         raise ArithmeticError(f"the correct equations of {name} are objected to by: {', '.join(objections)}")
+    return outcomes(name, subject, motion)
+
+
+def outcomes(name, subject, motion):
+    """The outcomes of all seeds of a system whose equations are right."""
     outcomes = []
-    for seed in seeds(name, case.paper, subject):
-        equation = case.paper.equations[seed.equation]
-        mutated = Subject(case.paper.with_equations([replace(equation, function=seed.terms, latex="")]), subject)
+    for seed in seeds(name, subject.paper, subject):
+        equation = subject.paper.equations[seed.equation]
+        mutated = Subject(subject.paper.with_equations([replace(equation, function=seed.terms, latex="")]), subject)
         before, after = subject.total(seed.equation), mutated.total(seed.equation)
         factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
         found, whole = repaired(mutated, motion)

@@ -32,6 +32,8 @@ def unjudged(subject, motion):
         reasons["lagrangian"] = reasons["definite"] = "there are no equations of motion"
         if any(equation.momentum for equation in paper.equations.values()):
             del reasons["lagrangian"]
+    elif subject.solved:
+        reasons["lagrangian"] = reasons["definite"] = "the equations are solved for the accelerations, and show no mass matrix"
     elif not paper.sets:
         reasons["definite"] = "the paper has no parameter sets"
     if motion is None:

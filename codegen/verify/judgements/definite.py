@@ -100,7 +100,7 @@ def prove(forms, fixed, box, limit=BISECTIONS) -> Verdict:
 def definite(subject, motion=None) -> List[Violation]:
     """Violations where the symmetric part of the printed mass matrix is not positive definite at
     rest, for one of the paper's parameter sets."""
-    if not subject.paper.sets or not subject.paper.motions():
+    if not subject.paper.sets or not subject.paper.motions() or subject.solved:
         return []
     zeros, _ = rest(subject.paper)
     matrix = [[form.substitute(zeros) for form in row] for row in printed_mass(subject, symmetric=True)]

@@ -11,7 +11,7 @@ from .violation import Violation
 def lagrangian(subject, motion=None) -> List[Violation]:
     """Judgement 2: the Helmholtz conditions on the part that is not dissipative. They hold
     exactly if some Lagrangian has these equations of motion, each multiplied by its constant."""
-    motions = subject.paper.motions()
+    motions = [] if subject.solved else subject.paper.motions()
     rows = [subject.multipliers[e.number] * subject.conservative(e.number) for e in motions]
     q = [e.of for e in motions]
     inputs = [x.name for x in subject.paper.symbols.values() if x.role == "input"]

@@ -1,5 +1,6 @@
-"""What a printed equation of motion was divided by: a monomial of parameters, found from dimensions
-and the symmetry of the mass matrix, so that an equation over a mass or m l^2 is judged as what it is.
+"""What a printed equation of motion was divided by, found from dimensions and the symmetry of the mass matrix: a monomial of
+parameters, or where another equation shows it a sum or a common function of the coordinates, so that an equation
+over a mass or m l^2 is judged as what it is.
 
 An equation most of whose terms have the unit that the energies give is taken as it is: what differs in
 it is a slip, not a multiplier."""
@@ -32,20 +33,33 @@ def scales(subject):
         if equation.number in result:
             continue
         # what makes a coupling the same as that of an equation that has its factor already
-        found = [ratio for j, other in enumerate(motions) if other.number in result
-                 for ratio in ratios(rows[equation.number][j], result[other.number] * rows[other.number][i])
-                 if measure(subject, ratio) == lacking[equation.number]]
+        found = []
+        for j, other in enumerate(motions):
+            mine, theirs = rows[equation.number][j], other.number in result and result[other.number] * rows[other.number][i]
+            if mine and theirs and not mine.names() & subject.ring.involutions:
+                found += [*ratios(mine, theirs), theirs * mine.inverse()]
+        found = [ratio for ratio in found if measure(subject, ratio) == lacking[equation.number]]
+        # the one with which the whole coupling is the same
+        found.sort(key=lambda ratio: min(_apart(ratio, rows, result, motions, i, sign) for sign in (1, -1)))
         found = found or _monomials(subject, lacking[equation.number])
         result[equation.number] = found[0] if found else one
     return result
 
 
+def _apart(ratio, rows, known, motions, i, sign):
+    """In how many terms the couplings of an equation, times a ratio, differ from those of the equations that are known."""
+    return sum(len((ratio * rows[motions[i].number][j] - known[other.number] * rows[other.number][i] * sign).terms)
+               for j, other in enumerate(motions) if other.number in known)
+
+
 def measure(subject, factor):
-    """The dimension of a monomial of parameters."""
+    """The dimension of a factor, by its first term (an equation whose terms differ is objected to as it is)."""
     total = units.NONE
-    for (monomial, _) in factor.terms:
+    for monomial, _ in list(factor.terms)[:1]:
         for name, exponent in monomial:
             total = total.times(subject.dimension[name], exponent)
+    for divisor, power in factor.over:
+        total = total.times(measure(subject, divisor), -power)
     return total
 
 

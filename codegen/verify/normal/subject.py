@@ -40,6 +40,7 @@ class Subject:
                 raise PaperError(f"equation ({number}) has no terms")
         if base:
             self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
+        self.solved = self._solved()
         self.scales = scales(self)
         self.multipliers = self._multipliers()
 
@@ -111,6 +112,14 @@ class Subject:
         one = self.ring.number(1)
         return [one, -one] + [sign * self.ring.symbol(n) for n in sorted(self.ring.involutions) for sign in (one, -one)]
 
+    def _solved(self):
+        """Whether the equations of motion are solved for the accelerations: none has that of another, and there is a divisor, a
+        sum that depends on the coordinates. A mass matrix is then not what they show."""
+        motions, q = self.paper.motions(), set(self.paper.coordinates())
+        alone = not any(self.total(e.number).diff("dd" + f.of) for e in motions for f in motions if e is not f)
+        return len(motions) > 1 and alone and any(len(divisor.terms) > 1 and divisor.names() & q for e in motions
+                                                  for form in self.forms[e.number] for divisor, _ in form.over)
+
     def _multipliers(self):
         """For each equation of motion, its scale times the constant that makes the mass matrix most
         nearly symmetric; the first equation keeps 1, and 1 is preferred."""
@@ -125,7 +134,23 @@ class Subject:
                        for i in range(len(motions)) for j in range(i))
             if best is None or cost < best[0]:
                 best = (cost, choice)
-        return self._uncoupled({e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}, motions, rows)
+        found = {e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}
+        return self._uncoupled(best[0] and self._common_functions(motions, rows) or found, motions, rows)
+
+    def _common_functions(self, motions, rows):
+        """The multipliers, where they are functions of the coordinates with which all Helmholtz conditions hold; or
+        None. What couples two equations says what one of them was divided by."""
+        for i in range(len(motions)):
+            found = {}
+            for j, other in enumerate(motions):
+                coupled = i != j and rows[i][j] and rows[j][i] and not rows[j][i].names() & self.ring.involutions
+                ratio = rows[i][j] * rows[j][i].inverse() if coupled else self.ring.number(1)
+                # a number is a slip in a coupling
+                found[other.number] = self.scales[other.number] * (self.ring.number(1) if ratio.is_number() else ratio)
+            self.multipliers = found
+            if not lagrangian(self):
+                return found
+        return None
 
     def _uncoupled(self, found, motions, rows):
         """The multipliers, where the mass matrix couples an equation to no other, and so says nothing of its

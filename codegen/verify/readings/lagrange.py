@@ -7,6 +7,7 @@ from ..errors import PaperError
 from ..input.printed import Symbol, latex_name
 from ..normal.algebra import Ring
 from ..normal.intervals import intervals, signs
+from .solved import solved
 
 
 @dataclass
@@ -56,7 +57,7 @@ class Mathematics:
     def __init__(self):
         import sympy
 
-        self.sin, self.cos, self.sign, self.Abs = sympy.sin, sympy.cos, sympy.sign, sympy.Abs
+        self.sin, self.cos, self.tan, self.sign, self.Abs = sympy.sin, sympy.cos, sympy.tan, sympy.sign, sympy.Abs
 
 
 def ring_of(paper):
@@ -95,7 +96,7 @@ class Motion:
         self.potential = self._read(energies.potential)
         self.dissipation = self._read(energies.dissipation) if energies.dissipation else self.ring.number(0)
         self.held = {p + n: 0 for n in energies.extra for p in ("", "d", "dd")}
-        self._residuals = {}
+        self._residuals, self._solved = {}, {}
         self._check(moving)
 
     def _check(self, moving):
@@ -127,6 +128,15 @@ class Motion:
                 form -= self._read(self.energies.forces[name])
             self._residuals[name] = form.substitute(self.held)
         return self._residuals[name]
+
+    def solved(self, name):
+        """The acceleration of a coordinate minus what gives it: the equations of motion solved for it."""
+        if name not in self._solved:
+            rows = self.paper.coordinates()
+            loads = [self.residual(row).substitute({"dd" + n: 0 for n in rows}) for row in rows]
+            accelerations = [self.ring.symbol("dd" + n) for n in rows]
+            self._solved[name] = solved(self.mass(), loads, rows.index(name), accelerations)
+        return self._solved[name]
 
     def at_rest(self, name, *held):
         """The reaction of a coordinate while the coordinates `held` stay still at zero."""

@@ -60,6 +60,10 @@ class Editor:
             self.known[term] = [(slip, expression) for expression, slip in found.items()]
         return self.known[term]
 
+    def exchanges(self):
+        """Pairs of parameters that can be taken for one another."""
+        return [(_symbol(name), _symbol(other)) for name in self.parameters for other in self.alike.get(name, ())]
+
     def _edits(self, term):
         yield "sign", -term
         for name in self.discrete:
@@ -90,6 +94,8 @@ class Editor:
         if base.func in (sympy.sin, sympy.cos):
             other = sympy.cos if base.func == sympy.sin else sympy.sin
             yield "function", term / factor * other(base.args[0])**exponent
+            if exponent > 1:
+                yield "function", term / base * other(base.args[0])
             summands = sympy.Add.make_args(base.args[0])
             for summand in summands if len(summands) > 1 else ():
                 yield "sign", term / factor * base.func(base.args[0] - 2 * summand)**exponent

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import List, Tuple
 
-from sympy import sympify
+from sympy import Mul, sympify
 
 from ..errors import NotInClass
 from ..judgements.comparison import compare
@@ -44,7 +44,7 @@ def repairs(subject, motion, number) -> List[Repair]:
     for difference in comparison.differences:
         # a factor with which far more differs cannot need fewer edits
         if len(difference.terms) <= 2 * least:
-            found = _search(subject, number, difference * comparison.weight)
+            found = _search(subject, number, difference * comparison.weight, comparison.clear)
             if best is None or len(found) < len(best):
                 best = found
     return best
@@ -65,42 +65,68 @@ def apply(equation, terms, found):
     return replace(equation, function=lambda s, m: result, latex="", margin=True)
 
 
-def _search(subject, number, difference):
-    """The repairs for a difference of printed and derived."""
+def _search(subject, number, difference, clear):
+    """The repairs for a difference of printed and derived, which is multiplied by `clear`, as all is that is compared here."""
     forms, terms, found = subject.forms[number], subject.expressions[number], []
+    if divided := _divisor(subject, forms, terms, difference, clear):
+        return [divided]
+    cleared = [form * clear for form in forms]
     open_terms = set(range(len(forms)))
     for depth in (SINGLE, DOUBLE):
         while difference:
-            choice = _best(subject, forms, terms, open_terms, difference, depth)
+            choice = _best(subject, cleared, terms, open_terms, difference, depth, clear)
             if choice is None:
                 break
             k, slip, form, written = choice
             found.append(Repair((k,), slip, [forms[k]], [form], [written]))
-            difference += form - forms[k]
+            difference += form * clear - cleared[k]
             open_terms.discard(k)
     for k in sorted(open_terms):
         # what is left of a term that differs, coefficient by coefficient
-        wrong = subject.ring.form({key: difference.terms[key] for key in forms[k].terms if key in difference.terms})
+        wrong = subject.ring.form({key: difference.terms[key] for key in cleared[k].terms if key in difference.terms})
         if wrong:
-            form = forms[k] - wrong
+            form = forms[k] - wrong * clear.inverse()
             found.append(Repair((k,), "other" if form else "surplus term", [forms[k]], [form] if form else [],
                                 [expression(form)] if form else []))
             difference -= wrong
-    for form in _lost(subject, -difference):
+    missing = -difference * clear.inverse()
+    # what is no polynomial without the divisor falls apart with it
+    parts = [part * clear.inverse() for part in _lost(subject, -difference)] if missing.over else _lost(subject, missing)
+    for form in parts:
         found.append(Repair((), "lost term", [], [form], [expression(form)]))
     return sorted(found, key=lambda r: r.ordinals or (len(forms),))
 
 
-def _best(subject, forms, terms, open_terms, difference, depth):
+def _divisor(subject, forms, terms, difference, clear):
+    """One slip in a sum that terms are divided by, or None: it is printed once, and changes all of them."""
+    for divisor in dict.fromkeys(f.base for term in terms for f in Mul.make_args(term) if _divides(f)):
+        chosen = [k for k, term in enumerate(terms) if divisor in [f.base for f in Mul.make_args(term) if _divides(f)]]
+        for part in divisor.args:
+            for slip, written in [*subject.editor.edits(part), ("number", 2 * part), ("number", part / 2), ("surplus term", sympify(0))]:
+                other = divisor - part + written
+                edited = [_read(subject, terms[k].xreplace({divisor: other})) for k in chosen]
+                if other != 0 and None not in edited \
+                        and not difference + sum((new - forms[k] for k, new in zip(chosen, edited)), forms[0] * 0) * clear:
+                    return Repair(tuple(chosen), slip, [forms[k] for k in chosen], edited, [terms[k].xreplace({divisor: other}) for k in chosen])
+    return None
+
+
+def _divides(factor):
+    """Whether a factor is a reciprocal of a sum."""
+    return factor.is_Pow and factor.exp.is_Integer and factor.exp < 0 and factor.base.is_Add
+
+
+def _best(subject, cleared, terms, open_terms, difference, depth, clear):
     """The edit of one term that removes most of the difference and adds nothing to it, or None."""
     best = None
     for k in sorted(open_terms):
-        if not forms[k].terms.keys() & difference.terms.keys():
+        if not cleared[k].terms.keys() & difference.terms.keys():
             continue
-        for rank, (slip, form, written) in enumerate(_candidates(subject, forms[k], terms[k], difference, depth)):
-            left = difference + form - forms[k]
+        for rank, (slip, form, written) in enumerate(_candidates(subject, subject.read(terms[k]), terms[k], cleared[k], difference, depth)):
+            made = form * clear
+            left = difference + made - cleared[k]
             # the edited term must agree, and nothing else may differ for it
-            if not form or form.terms.keys() & left.terms.keys() or left.terms.keys() - difference.terms.keys():
+            if not form or left.over or made.terms.keys() & left.terms.keys() or left.terms.keys() - difference.terms.keys():
                 continue
             gain = len(difference.terms) - len(left.terms)
             order = (-gain, slip == "number", rank)
@@ -109,23 +135,28 @@ def _best(subject, forms, terms, open_terms, difference, depth):
     return best and best[1]
 
 
-def _candidates(subject, form, term, difference, depth):
-    """(slip, form, expression) of the edits of a term."""
-    editor = subject.editor
-    singles = editor.edits(term)
+def _candidates(subject, form, term, cleared, difference, depth):
+    """(slip, form, expression) of the edits of a term; of what it is divided by, _divisor has the edits."""
+    divisors = [factor for factor in Mul.make_args(term) if _divides(factor)]
+    below = Mul(*divisors)
+    singles = [(slip, above * below) for slip, above in subject.editor.edits(term / below)] if divisors else subject.editor.edits(term)
+    if divisors:
+        # a wrong symbol may have cancelled with what the terms are divided by
+        singles += [("symbol", term * other / symbol) for symbol, other in subject.editor.exchanges()
+                    if symbol not in (term / below).free_symbols]
     if depth == SINGLE:
         for slip, written in singles:
             if (changed := _read(subject, written)) is not None:
                 yield slip, changed, written
-        for key, value in form.terms.items():
+        for key, value in cleared.terms.items():
             if key in difference.terms:
                 ratio = 1 - Fraction(difference.terms[key]) / value
                 yield "number", form * ratio, term * sympify(ratio)
         return
     for first, between in singles:
-        for second, written in editor.edits(between):
-            if (changed := _read(subject, written)) is not None:
-                yield f"{first} + {second}", changed, written
+        for second, above in subject.editor.edits(between / below):
+            if (changed := _read(subject, above * below)) is not None:
+                yield f"{first} + {second}", changed, above * below
 
 
 def _read(subject, written):
@@ -145,7 +176,20 @@ def _lost(subject, missing):
             if key in missing.terms and (form := _multiple(missing, key, unit)):
                 result.append(form)
                 missing -= form
-    return result + [subject.ring.form({key: value}) for key, value in missing.terms.items()]
+    return result + _products(subject, missing)
+
+
+def _products(subject, missing):
+    """The parts of a form: two that are the sum and the difference of the angles of one product are that product."""
+    result, rest = [], dict(missing.terms)
+    while rest:
+        key, value = next(iter(rest.items()))
+        (monomial, (kind, _)), parts = key, {key: rest.pop(key)}
+        same = [k for k in rest if k[0] == monomial and k[1][0] == kind and abs(rest[k]) == abs(value)]
+        if len(same) == 1 and key[1] != ONE != same[0][1]:
+            parts[same[0]] = rest.pop(same[0])
+        result.append(subject.ring.form(parts))
+    return result
 
 
 def _multiple(missing, key, unit):

@@ -84,7 +84,7 @@ def verify(case, thorough=True):
     report.transcribed = transcription.proved(printed)
     report.numbers = check(case.numbers)
     report.scores = scores(case)
-    if paper.motions():
+    if paper.motions() and not printed.solved:
         report.definiteness.append(_definiteness("as printed", paper, printed_mass(printed), None, False))
     for motion in motions:
         squares = _squares(motion) if motion.energies.squares else None

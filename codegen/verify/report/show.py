@@ -77,11 +77,22 @@ def _power(name, exponent, paper):
 
 def form_latex(form, paper):
     """LaTeX of a form."""
+    if form.over:
+        below = " ".join(_divisor_latex(divisor, power, len(form.over), paper) for divisor, power in form.over)
+        return rf"\frac{{{form_latex(form.numerator(), paper)}}}{{{below}}}"
     parts = []
     for key, value in sorted(form.terms.items(), key=lambda item: str(item[0])):
         sign = "- " if value < 0 else "+ " if parts else ""
         parts.append(sign + term_latex(key, value, paper))
     return " ".join(parts) or "0"
+
+
+def _divisor_latex(divisor, power, count, paper):
+    """LaTeX of a power of a sum below a fraction stroke."""
+    latex = form_latex(divisor, paper)
+    if len(divisor.terms) > 1 and (power > 1 or count > 1) or power > 1:
+        latex = rf"\left({latex}\right)"
+    return latex if power == 1 else f"{latex}^{power}"
 
 
 def plain(latex):
@@ -98,6 +109,9 @@ def plain(latex):
 
 def form_text(form, paper):
     """A form as plain text."""
+    if form.over:
+        above, below = form.numerator(), form.denominator()
+        return "/".join(f"({form_text(part, paper)})" if len(part.terms) > 1 else form_text(part, paper) for part in (above, below))
     return plain(form_latex(form, paper))
 
 

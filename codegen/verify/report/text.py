@@ -33,6 +33,14 @@ def scale_lines(report, show):
     for number, scale in report.printed.scales.items():
         if report.motions and (comparison := report.comparisons[report.motions[0].energies.name].get(number)):
             scale = comparison.scale
+            if comparison.solved:
+                of = report.printed.ring.symbol("dd" + report.case.paper.equations[number].of)
+                lines.append(f"Equation ({number}) is judged as solved for the acceleration {show(of)}"
+                             + ("." if scale == one else f", and multiplied by {show(scale)}."))
+                continue
+        elif report.printed.multipliers[number].names() - report.printed.ring.involutions:
+            # without energies, what makes the mass matrix symmetric
+            scale = report.printed.multipliers[number]
         if scale != one:
             lines.append(f"Equation ({number}) is judged as multiplied by {show(scale)}.")
     return lines

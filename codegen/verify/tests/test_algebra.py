@@ -79,7 +79,7 @@ class NormalForm(unittest.TestCase):
             self.assertEqual(self.ring.read(expression(form)), form)
 
     def test_rejects_what_it_cannot_prove_and_names_it(self):
-        for term in (sympy.exp(Q), sympy.sin(Q**2), 1 / (A + B), sympy.sqrt(Q), sympy.Float(0.1) * Q, sympy.sin(Q + 1)):
+        for term in (sympy.exp(Q), sympy.sin(Q**2), 1 / (1 + LAM), sympy.sqrt(Q), sympy.Float(0.1) * Q, sympy.sin(Q + 1)):
             with self.assertRaises(NotInClass, msg=str(term)):
                 self.ring.read(term)
 

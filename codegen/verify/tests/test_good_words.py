@@ -184,7 +184,7 @@ class Input(unittest.TestCase):
         for terms, expected in ((lambda s, m: [], "no terms"), (lambda s, m: ["m*ddq"], "not an expression"), (lambda s, m: [0.5 * s.q], "exact"),
                                 (lambda s, m: [1.5], "not an expression"), (lambda s, m: [[s.q]], r"\*group"), (lambda s, m: [True], "not an expression"),
                                 (lambda s, m: [sympy.Symbol("w")], "'w' is not declared"), (lambda s, m: [s.q / (s.m - s.m)], "equation"),
-                                (lambda s, m: s.q, "equation"), (lambda s, m: [sympy.oo * s.q], "equation"), (lambda s, m: [s.q / (s.m + s.m_2)], "multiply")):
+                                (lambda s, m: s.q, "equation"), (lambda s, m: [sympy.oo * s.q], "equation"), (lambda s, m: [m.sin(s.q**2)], "combination of angles")):
             paper = oscillator()
             paper.motion("1", of="q")(terms)
             with self.assertRaisesRegex(Exception, expected) as context:
