@@ -19,10 +19,11 @@ def main(argv):
         return verify(argv[1:])
     parser = argparse.ArgumentParser(prog="python -m codegen", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
-    generator = commands.add_parser("generate", help="write C, Rust tables and manifest of models")
+    generator = commands.add_parser("generate", help="write C and manifest of models")
     generator.add_argument("--model-dir", action="append", required=True, help="a folder with a model.py")
     generator.add_argument("--out", required=True, help="output root; each model gets a folder in it")
     generator.add_argument("--for-tests", action="store_true", help="mark the models as test models")
+    generator.add_argument("--owner", default="", help="what the names of C functions begin with")
     generator.add_argument("--only", action="append", metavar="CHOICE=OPTION", nargs="?", const="",
                            help="derive one variant, with these options and the defaults of other choices")
     generator.add_argument("--reads", action="store_true", help="also list the files that were read, in reads.json")
@@ -40,7 +41,7 @@ def main(argv):
     from .generate import generate
     try:
         for folder in arguments.model_dir:
-            files = generate(folder, arguments.for_tests, named)
+            files = generate(folder, arguments.for_tests, named, arguments.owner)
             target = os.path.join(arguments.out, os.path.basename(os.path.normpath(folder)))
             os.makedirs(target, exist_ok=True)
             if arguments.reads:

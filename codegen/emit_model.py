@@ -8,8 +8,8 @@ LEVELS = ("v1", "v3", "v4")
 """Levels of the processor for which lanes are compiled, as in codegen/build/compile.rs: the first for any, the others for x86-64."""
 
 
-def model_text(name, description, tables, has_lanes):
-    """The C file with the tables of a model.
+def model_text(name, prefix, description, tables, has_lanes):
+    """The C file with the tables of a model, whose functions have names that begin with `prefix`.
 
     The compiler is told DALEMBERT_DIGEST, the digest of what the model was made from, as a string; DALEMBERT_SYMBOL, the name of the
     constant; and DALEMBERT_WITH_LANES, if the functions for lanes are linked, too.
@@ -20,9 +20,9 @@ def model_text(name, description, tables, has_lanes):
         lines += [f"dalembert_{kind} {', '.join(sorted(set(names)))};" if names else ""]
     lines += _tables(list(tables.values), starts, runs)
     if has_lanes:
-        lines += ["#ifdef DALEMBERT_WITH_LANES", f"extern const struct dalembert_functions dalembert_{name}_lanes_v1;",
+        lines += ["#ifdef DALEMBERT_WITH_LANES", f"extern const struct dalembert_functions {prefix}_lanes_v1;",
                   "#ifdef __x86_64__",
-                  f"extern const struct dalembert_functions dalembert_{name}_lanes_v3, dalembert_{name}_lanes_v4;",
+                  f"extern const struct dalembert_functions {prefix}_lanes_v3, {prefix}_lanes_v4;",
                   "#endif", "#endif"]
     text = json.dumps(description, separators=(",", ":"), allow_nan=False)
     lines += ["static const char description[] =", *_string(text), ";", "",
@@ -35,17 +35,17 @@ def model_text(name, description, tables, has_lanes):
               "  .description_length = sizeof description - 1, .description = description,",
               f"  .functions = {_functions(tables)},"]
     if has_lanes:
-        lines += ["#ifdef DALEMBERT_WITH_LANES", f"  .lanes = {{&dalembert_{name}_lanes_v1", "#ifdef __x86_64__",
-                  f"    , &dalembert_{name}_lanes_v3, &dalembert_{name}_lanes_v4", "#endif", "  },", "#endif"]
+        lines += ["#ifdef DALEMBERT_WITH_LANES", f"  .lanes = {{&{prefix}_lanes_v1", "#ifdef __x86_64__",
+                  f"    , &{prefix}_lanes_v3, &{prefix}_lanes_v4", "#endif", "  },", "#endif"]
     return "\n".join(lines + ["};"]) + "\n"
 
 
-def lanes_text(name, tables, present):
+def lanes_text(prefix, tables, present):
     """The end of the C file for lanes: its tables, of the functions that are `present`."""
     own = lambda names: [n if n in present else "0" for n in names]
     starts, runs = [s for s, _ in tables.series], [r for _, r in tables.series]
     lines = _tables(own(tables.values), own(starts), own(runs))
-    table = f"const struct dalembert_functions LANES(dalembert_{name}_lanes)"
+    table = f"const struct dalembert_functions LANES({prefix}_lanes)"
     return "\n".join([*lines, f"extern {table};", f"{table} = {_functions(tables)};"]) + "\n"
 
 

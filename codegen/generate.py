@@ -87,8 +87,11 @@ def as_model_error(error, file):
     return ModelError(message, error_location(error, file))
 
 
-def generate(folder, for_tests=False, named=None):
-    """All files of a model: a dict from file name to text. With `named`, options by choices, that of the fitting variant alone."""
+def generate(folder, for_tests=False, named=None, owner=""):
+    """All files of a model: a dict from file name to text. With `named`, options by choices, that of the fitting variant alone.
+
+    What is linked has names that begin with `owner`, so that two crates of one program may have models of one name.
+    """
     models = load(folder)
     name = models[0].name
     check_same_declarations(models)
@@ -97,7 +100,7 @@ def generate(folder, for_tests=False, named=None):
     variants = [v for variant in chosen for v in (variant, variant.lean) if v]
     constants = _extract_constants(variants)
     source = Source()
-    prefix = f"dalembert_{name}"
+    prefix = f"dalembert_{owner + '_' if owner else ''}{name}"
     parameters = ca.vertcat(*[p.symbol for p in models[0].parameters])
     constants_symbol = source.add(f"{prefix}_constants", [("q", parameters)], constants.values)
     for variant in variants:
@@ -125,8 +128,8 @@ def generate(folder, for_tests=False, named=None):
     sources = [f"{name}.c"] + [f"{name}_{k + 1}.c" for k in range(1, len(c_texts))]
     described, tables = description.describe(name, models, chosen, (constants_symbol, constants.values.numel()), for_tests)
     for_lanes = _lane_functions(variants)
-    lanes_text = source.lanes_text(name, for_lanes, emit_model.lanes_text(name, tables, for_lanes))
-    model_text = emit_model.model_text(name, described, tables, bool(lanes_text))
+    lanes_text = source.lanes_text(name, for_lanes, emit_model.lanes_text(prefix, tables, for_lanes))
+    model_text = emit_model.model_text(name, prefix, described, tables, bool(lanes_text))
     manifest = {
         "name": name,
         "sources": sources,

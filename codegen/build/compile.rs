@@ -1,4 +1,4 @@
-//! From C to static libraries: one for each model, and one for the functions that all of them call.
+//! From C to static libraries: one for each model, and, in the engine, one for the functions that all models call.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,6 +8,7 @@ use super::error::Error;
 use super::fingerprint::Fingerprint;
 use super::generate::Generated;
 use super::generator::Generator;
+use super::owner::Owner;
 use super::{parallel, registry};
 
 /// Variable that has the C compiled with sanitizers of addresses and undefined behaviour: `.ci/sanitize`.
@@ -52,6 +53,7 @@ const X86_64: [Level; 2] = [
 
 /// What becomes a library.
 struct Library {
+    /// Its name for the linker.
     name: String,
     /// What the preprocessor is told.
     defines: Vec<(&'static str, String)>,
@@ -67,9 +69,14 @@ struct Library {
 ///
 /// A library is kept under the hash of its C files, the compiler and the flags, so that a model
 /// that generated the same C as before is not compiled again.
-pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> Result<(), Error> {
+pub fn compile(
+    generator: &Generator,
+    models: &[Generated],
+    owner: &Owner,
+    out_dir: &Path,
+) -> Result<(), Error> {
     let of_model = |model: &Generated| Library {
-        name: model.name.clone(),
+        name: owner.symbol(&model.name),
         defines: Vec::new(),
         level: None,
         origin: model.folder.clone(),
@@ -80,29 +87,29 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
     let tables = models.iter().map(|model| {
         let mut defines = vec![
             ("DALEMBERT_DIGEST", format!("\"{}\"", model.digest)),
-            ("DALEMBERT_SYMBOL", registry::symbol(&model.name)),
+            ("DALEMBERT_SYMBOL", registry::symbol(&model.name, owner)),
         ];
         if !model.lanes.is_empty() {
             defines.push(("DALEMBERT_WITH_LANES", "1".to_owned()));
         }
         Library {
-            name: format!("{}_model", model.name),
+            name: owner.symbol(&format!("{}_model", model.name)),
             sources: vec![model.tables.clone()],
             defines,
             ..of_model(model)
         }
     });
     let list = Library {
-        name: "_models".to_owned(),
+        // No model has this name, nor those of what all models call: a model's has no double underscore.
+        name: owner.symbol("_models"),
         defines: Vec::new(),
         level: None,
         origin: "the list of the models".to_owned(),
         directory: out_dir.to_owned(),
-        sources: vec![registry::write(models, out_dir)?],
+        sources: vec![registry::write(models, owner, out_dir)?],
     };
     let elementary = Library {
-        // No model has this name: a model's begins with a letter.
-        name: "_elementary".to_owned(),
+        name: owner.symbol("_elementary"),
         defines: Vec::new(),
         level: None,
         origin: ELEMENTARY.join(", "),
@@ -113,19 +120,22 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
     let levels = || levels(x86_64);
     let with_lanes = models.iter().filter(|model| !model.lanes.is_empty());
     let lanes = with_lanes.map(|model| Library {
-        name: format!("{}_lanes", model.name),
+        name: owner.symbol(&format!("{}_lanes", model.name)),
         sources: model.lanes.clone(),
         ..of_model(model)
     });
     let elementary_lanes = Library {
-        name: "_lanes".to_owned(),
+        name: owner.symbol("_lanes"),
         defines: Vec::new(),
         level: None,
         origin: LANES.to_owned(),
         directory: generator.folder(),
         sources: vec![generator.file(LANES)],
     };
-    let lanes = lanes.chain([elementary_lanes]).flat_map(|library| {
+    // Crates that depend on the engine find in it what all models call.
+    let is_engine = *owner == Owner::Engine;
+    let lanes = lanes.chain(is_engine.then_some(elementary_lanes));
+    let lanes = lanes.flat_map(|library| {
         levels().map(move |level| Library {
             name: format!("{}_{}", library.name, level.name),
             defines: Vec::new(),
@@ -139,7 +149,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
     let all: Vec<_> = (std::iter::once(list).chain(tables))
         .chain(models.iter().map(of_model))
         .chain(lanes)
-        .chain([elementary])
+        .chain(is_engine.then_some(elementary))
         .collect();
     let build = compiler();
     let failed = |what: &str, problem: String| Error::Compiler {
@@ -177,7 +187,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
                 .cargo_metadata(false)
                 .files(&library.sources)
                 .out_dir(folder)
-                .try_compile(&library.file())
+                .try_compile(&library.name)
                 .map_err(|error| {
                     failed(
                         &format!("the C code of {}", library.origin),
@@ -196,7 +206,7 @@ pub fn compile(generator: &Generator, models: &[Generated], out_dir: &Path) -> R
     for (library, result) in all.iter().zip(compiled) {
         let (key, folder) = result?;
         println!("cargo::rustc-link-search=native={}", folder.display());
-        println!("cargo::rustc-link-lib=static={}", library.file());
+        println!("cargo::rustc-link-lib=static={}", library.name);
         keys.push(key);
     }
     libraries.retain(KIND, &keys)
@@ -272,12 +282,5 @@ impl Level {
         for flag in self.flags {
             build.flag(flag);
         }
-    }
-}
-
-impl Library {
-    /// Its name for the linker.
-    fn file(&self) -> String {
-        format!("dalembert_{}", self.name)
     }
 }

@@ -51,7 +51,7 @@ pub enum Error {
         /// What Python wrote.
         output: String,
     },
-    /// A folder under `models/` whose name cannot be that of a Rust module and of C functions.
+    /// A folder under `models/` whose name cannot be that of a Python module and of C functions.
     ModelName {
         /// The folder, relative to the project.
         folder: String,
@@ -107,6 +107,39 @@ pub enum Error {
         path: PathBuf,
         /// The system's reason.
         source: io::Error,
+    },
+    /// The generator has no version of the contract.
+    NoContract {
+        /// What the line that is missing begins with.
+        line: &'static str,
+    },
+    /// A crate builds models and does not depend on the engine.
+    NoEngine {
+        /// Version of this crate.
+        build: &'static str,
+    },
+    /// The engine of a crate is of another version than this crate.
+    Skew {
+        /// Version of the engine.
+        engine: String,
+        /// Version of this crate.
+        build: &'static str,
+    },
+    /// The engine of a crate was built for another contract than the generator makes models for.
+    OtherContract {
+        /// Version of both crates.
+        version: &'static str,
+        /// Version and digest of the contract that the engine was built for.
+        engine: String,
+        /// Version and digest of the generator's.
+        build: String,
+    },
+    /// Models cannot be generated, and C that was generated before does not fit.
+    Packaged {
+        /// What is wrong with that C.
+        reasons: Vec<String>,
+        /// Why it cannot be generated.
+        cause: Box<Error>,
     },
     /// Cargo's own environment for build scripts is incomplete.
     NotUnderCargo {
@@ -192,7 +225,7 @@ impl fmt::Display for Error {
             }
             Error::ModelName { folder } => write!(
                 f,
-                "{folder}: a model's folder name becomes a Rust module and part of C names\n\
+                "{folder}: a model's folder name becomes a Python module and part of C names\n\
                  to do: rename the folder: lower-case letters, digits and single underscores, \
                  a letter first and no underscore last"
             ),
@@ -245,6 +278,38 @@ impl fmt::Display for Error {
             } => {
                 write!(f, "cannot {action} {}: {source}", path.display())
             }
+            Error::NoContract { line } => write!(
+                f,
+                "contract.h of the generator has no line `{line}NUMBER`\n\
+                 to do: restore the file; if DALEMBERT_GENERATOR is set, unset it"
+            ),
+            Error::NoEngine { build } => write!(
+                f,
+                "this crate builds models, but nothing to run them: dalembert is none of its dependencies\n\
+                 to do: add dalembert = \"{build}\" to [dependencies] in Cargo.toml"
+            ),
+            Error::Skew { engine, build } => write!(
+                f,
+                "this crate has dalembert {engine} and dalembert-build {build}: models that the one builds the other \
+                 cannot run\n\
+                 to do: in Cargo.toml give dalembert under [dependencies] and dalembert-build under [build-dependencies] \
+                 the same version"
+            ),
+            Error::OtherContract {
+                version,
+                engine,
+                build,
+            } => write!(
+                f,
+                "dalembert {version} was built for models of the contract {engine}, and the generator of dalembert-build \
+                 {version} makes those of the contract {build}\n\
+                 to do: take both crates from one source; DALEMBERT_GENERATOR, if it is set, must be the same for both"
+            ),
+            Error::Packaged { reasons, cause } => {
+                writeln!(f, "the C that was generated before does not fit:")?;
+                quote(f, &reasons.join("\n"))?;
+                write!(f, "and it cannot be generated anew: {cause}")
+            }
             Error::NotUnderCargo { variable } => {
                 write!(
                     f,
@@ -259,6 +324,7 @@ impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Error::Io { source, .. } => Some(source),
+            Error::Packaged { cause, .. } => Some(cause),
             _ => None,
         }
     }

@@ -11,6 +11,7 @@ use super::files;
 use super::fingerprint::Fingerprint;
 use super::generator::Generator;
 use super::install::Environment;
+use super::owner::Owner;
 use super::parallel;
 
 /// Kind of the cache entries that hold generated code.
@@ -91,25 +92,19 @@ pub fn discover(project: &Path, with_tests: bool) -> Result<Vec<Model>, Error> {
 pub fn generate(
     project: &Path,
     models: &[Model],
+    owner: &Owner,
     generator: &Generator,
     environment: &Environment,
     cache: &Cache,
-    target: &str,
 ) -> Result<Vec<Generated>, Error> {
-    let common = (Fingerprint::default().with(target)).with(&generator.digest);
     let results = parallel::map(models, |model| {
-        let folder = project.join(&model.folder);
-        let files = files::sources(&folder).map_err(Error::io("list", &folder))?;
-        let hash = common
-            .clone()
-            .with_files(project, files.iter().map(PathBuf::as_path))?
-            .finish();
-        let entry = cache.entry(KIND, &format!("{}-{hash}", model.name), |folder| {
+        let digest = digest(project, model, owner, generator)?;
+        let entry = cache.entry(KIND, &format!("{}-{digest}", model.name), |folder| {
             let for_tests = model.for_tests.then_some("--for-tests");
             run(
                 project,
                 model.folder.as_ref(),
-                for_tests,
+                ["--owner", owner.tag()].into_iter().chain(for_tests),
                 generator,
                 environment,
                 folder,
@@ -119,7 +114,7 @@ pub fn generate(
             &model.name,
             &model.folder,
             &entry.path.join(&model.name),
-            hash,
+            digest,
         )
     });
     let mut generated = Vec::new();
@@ -136,6 +131,22 @@ pub fn generate(
     } else {
         Err(Error::Models(failures))
     }
+}
+
+/// Digest of all that the code of a model is generated from. It is the same on every platform, as the code is.
+pub fn digest(
+    project: &Path,
+    model: &Model,
+    owner: &Owner,
+    generator: &Generator,
+) -> Result<String, Error> {
+    let folder = project.join(&model.folder);
+    let files = files::sources(&folder).map_err(Error::io("list", &folder))?;
+    let hash = Fingerprint::default()
+        .with(&generator.digest)
+        .with(owner.tag())
+        .with_files(project, files.iter().map(PathBuf::as_path))?;
+    Ok(hash.finish())
 }
 
 /// Runs the generator on one model, for which it makes a sub-folder of `out`. Paths in messages are relative to `directory`, as
@@ -209,8 +220,7 @@ pub fn read(name: &str, origin: &str, folder: &Path, digest: String) -> Result<G
     })
 }
 
-/// Whether a name can be that of a Rust module and part of a CasADi function name, in which
-/// CasADi allows no double underscore.
+/// Whether a name can be that of a Python module and part of the names of C functions, in which single underscores separate.
 pub fn is_module_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase())
         && name

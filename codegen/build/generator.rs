@@ -54,6 +54,14 @@ impl Bundle {
         })
     }
 
+    /// The text of one of its files, and a digest of it; nothing of one that it lacks.
+    pub fn text(&self, name: &str) -> (Cow<'_, str>, String) {
+        let found = self.files.iter().find(|(file, _)| file == name);
+        let content = found.map_or(&[][..], |(_, content)| content);
+        let digest = Fingerprint::default().with(content).finish();
+        (String::from_utf8_lossy(content), digest)
+    }
+
     /// Writes the generator into the cache, where it is not there already.
     pub fn extract(self, cache: &Cache) -> Result<Generator, Error> {
         let entry = cache.entry(KIND, &self.digest, |root| {

@@ -70,19 +70,47 @@ pub(crate) fn name_of_linked(raw: &'static RawModel) -> Result<&'static str, Con
     }
 }
 
-unsafe extern "C" {
-    /// The models that the build of this crate linked, and null after them: `codegen/build/registry.rs`.
-    static dalembert_models: [Option<&'static RawModel>; 1];
+/// A list of models as a build wrote it in C, with null after them: `codegen/build/registry.rs`.
+#[repr(C)]
+#[derive(Debug)]
+pub struct LinkedModels([Option<&'static RawModel>; 1]);
+
+impl LinkedModels {
+    /// The models of a list.
+    ///
+    /// # Safety
+    /// It must be a list that the build script of a crate wrote, which stays.
+    #[doc(hidden)]
+    pub unsafe fn all(list: *const LinkedModels) -> &'static [&'static RawModel] {
+        // SAFETY: the list ends with null, before which are pointers to constants.
+        unsafe {
+            let first = list.cast::<Option<&'static RawModel>>();
+            let count = (0..).take_while(|&i| (*first.add(i)).is_some()).count();
+            std::slice::from_raw_parts(first.cast(), count)
+        }
+    }
+}
+
+/// The list of the models that the build script of the calling crate linked.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! linked {
+    () => {{
+        unsafe extern "C" {
+            #[link_name = env!(
+                    "DALEMBERT_MODELS",
+                    "this crate has no build script that calls dalembert_build::models()"
+                )]
+            static LINKED: $crate::kernel::LinkedModels;
+        }
+        // SAFETY: the variable with the name is set by the build script that wrote the list.
+        unsafe { $crate::kernel::LinkedModels::all(&raw const LINKED) }
+    }};
 }
 
 /// The models that the build of this crate linked.
 pub(crate) fn linked_models() -> &'static [&'static RawModel] {
-    // SAFETY: the array ends with null, before which are pointers to constants.
-    unsafe {
-        let first = (&raw const dalembert_models).cast::<Option<&'static RawModel>>();
-        let count = (0..).take_while(|&i| (*first.add(i)).is_some()).count();
-        std::slice::from_raw_parts(first.cast(), count)
-    }
+    crate::linked!()
 }
 
 /// Compares mark, version and size.

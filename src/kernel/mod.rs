@@ -33,7 +33,7 @@ pub(crate) use lanes::{
     LaneSeries, LaneSystem,
 };
 pub use lanes::{LANES_OF_LEVELS, processor_level};
-pub use load::Library;
+pub use load::{Library, LinkedModels};
 pub(crate) use load::{linked_models, name_of_linked, open, parts_of_linked};
 pub(crate) use raw::Raw;
 pub use tables::{

@@ -15,7 +15,7 @@ mod tests;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
-pub use registry::{FolderRefused, FromFolder, Models, models};
+pub use registry::{FolderRefused, FromFolder, Models, SameName, models};
 pub use tape::{Instruction, JET_ORDERS, Name, Pick, Tape};
 pub(crate) use tape::{Operands, Row};
 

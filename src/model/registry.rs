@@ -31,6 +31,35 @@ pub struct FolderRefused {
     pub help: Option<String>,
 }
 
+/// The models that the build script of the calling crate linked, which calls `dalembert_build::models()`: those in the
+/// folder `models` of that crate, as [`Models`].
+///
+/// ```ignore
+/// let models = dalembert::models!();
+/// let scene = Scene::load(Path::new("scenes/upright.json"), &[], &models)?;
+/// ```
+///
+/// The models that come with dalembert are not among them: `Models::linked().and(dalembert::models!())?` has both.
+///
+/// # Panics
+/// If the program was put together from parts of different versions.
+#[macro_export]
+macro_rules! models {
+    () => {
+        $crate::model::Models::of_build($crate::linked!())
+    };
+}
+
+/// Two crates have a model of one name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "two crates of the program have a model `{name}`; rename one of the folders, or keep the two sets of models apart"
+)]
+pub struct SameName {
+    /// The name.
+    pub name: &'static str,
+}
+
 /// The models that come with this crate.
 ///
 /// # Panics
@@ -46,8 +75,36 @@ impl Models {
     /// # Panics
     /// As [`models`].
     pub fn linked() -> Models {
-        let models = Models::of(kernel::linked_models());
+        Models::of_build(kernel::linked_models())
+    }
+
+    /// What the build of a crate linked: see [`crate::models!`].
+    ///
+    /// # Panics
+    /// If a model is of another version of the contract.
+    #[doc(hidden)]
+    pub fn of_build(linked: &'static [&'static RawModel]) -> Models {
+        let models = Models::of(linked);
         models.unwrap_or_else(|error| panic!("a model that is linked into the program: {error}"))
+    }
+
+    /// These models and those of another crate.
+    ///
+    /// # Errors
+    /// [`SameName`] if both have a model of one name: neither hides the other.
+    pub fn and(self, other: Models) -> Result<Models, SameName> {
+        let mut linked = self.linked;
+        for (name, raw) in other.linked {
+            if linked.insert(name, raw).is_some() {
+                return Err(SameName { name });
+            }
+        }
+        Ok(Models {
+            linked,
+            read: Mutex::default(),
+            folders: self.folders.or(other.folders),
+            dynamic: self.dynamic || other.dynamic,
+        })
     }
 
     /// The same, with models from folders.
@@ -97,11 +154,7 @@ impl Models {
         make(folder, named)
     }
 
-    /// What a build linked.
-    ///
-    /// # Errors
-    /// [`ContractError`] if a model is of another version.
-    pub fn of(linked: &'static [&'static RawModel]) -> Result<Self, ContractError> {
+    fn of(linked: &'static [&'static RawModel]) -> Result<Self, ContractError> {
         let named = linked
             .iter()
             .map(|raw| Ok((kernel::name_of_linked(raw)?, *raw)));

@@ -2,6 +2,7 @@
 
 use super::description;
 use super::load::linked;
+use super::registry::Models;
 use crate::kernel::{
     CONTRACT_VERSION, ContractError, Parts, RawModel, linked_models, name_of_linked,
     parts_of_linked,
@@ -31,6 +32,13 @@ fn every_linked_model_is_as_the_contract_says() {
         assert_eq!(Ok(model.name), name_of_linked(raw));
         assert_eq!(model.digest.len(), 16, "{}", model.digest);
     }
+}
+
+#[test]
+fn two_models_of_one_name_are_refused() {
+    let both = Models::linked().and(Models::linked());
+    let error = both.unwrap_err().to_string();
+    assert!(error.contains("a model `belt_oscillator`"), "{error}");
 }
 
 #[test]

@@ -146,6 +146,7 @@ impl Fixture {
             .current_dir(self.path("project"))
             .env_clear()
             .env("CARGO_MANIFEST_DIR", self.path("project"))
+            .env("CARGO_MANIFEST_LINKS", "dalembert")
             .env("DALEMBERT_GENERATOR", self.path("project/codegen"))
             .env("TARGET", env!("DALEMBERT_TARGET"))
             .env("HOST", env!("DALEMBERT_TARGET"))
@@ -162,6 +163,43 @@ impl Fixture {
             .env("PROVISIONING_LOG", self.path("log"));
         self.out_dir(&mut command, "target");
         command
+    }
+
+    /// The build script of another crate, as [`Fixture::script`], which depends on the engine that the script belongs to.
+    pub fn script_of_crate(&self, name: &str, version: &str) -> Command {
+        let told = succeeds(&mut self.script()).directives;
+        self.log();
+        let told = |key: &str| {
+            let prefix = format!("cargo::metadata={key}=");
+            let found = told.iter().find_map(|line| line.strip_prefix(&prefix));
+            found.expect("the engine tells it").to_owned()
+        };
+        let mut command = self.script();
+        command
+            .env_remove("CARGO_MANIFEST_LINKS")
+            .env("CARGO_PKG_NAME", name)
+            .env("CARGO_PKG_VERSION", version)
+            .env("DEP_DALEMBERT_VERSION", told("version"))
+            .env("DEP_DALEMBERT_CONTRACT", told("contract"));
+        self.out_dir(&mut command, "target-of-crate");
+        command
+    }
+
+    /// Takes Python from a build script, and what it has cached.
+    pub fn without_python(&self, command: &mut Command) {
+        let tools = self.path("tools");
+        fs::create_dir_all(&tools).unwrap();
+        let path = std::env::var_os("PATH").unwrap();
+        for name in ["cc", "ar", "as", "ld", "ld.mold"] {
+            let found = std::env::split_paths(&path).map(|folder| folder.join(name));
+            if let Some(file) = found.into_iter().find(|file| file.exists()) {
+                let _ = std::os::unix::fs::symlink(file, tools.join(name));
+            }
+        }
+        command
+            .env_remove("DALEMBERT_PYTHON")
+            .env("PATH", tools)
+            .env("DALEMBERT_CACHE", self.path("no-cache"));
     }
 
     /// Lets the build script write below another target directory.

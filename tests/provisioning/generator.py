@@ -2,6 +2,7 @@
 and notes in the file PROVISIONING_LOG which models it was run on."""
 
 import argparse
+import hashlib
 import json
 import os
 import sys
@@ -14,6 +15,7 @@ parser.add_argument("command", choices=["generate"])
 parser.add_argument("--model-dir", required=True)
 parser.add_argument("--out", required=True)
 parser.add_argument("--for-tests", action="store_true")
+parser.add_argument("--owner", required=True)
 arguments = parser.parse_args()
 os.chdir(arguments.directory)
 
@@ -27,11 +29,11 @@ if model == "fault":
 if model == "crash":
     raise RuntimeError("the generator has a fault")
 
-files = {
-    f"{name}.c": f"double dalembert_{name}(void) {{ return {model}; }}\n",
-    f"{name}_model.c": f"const int DALEMBERT_SYMBOL = sizeof DALEMBERT_DIGEST;\n",
-    "manifest.json": json.dumps({"name": name, "tables": f"{name}_model.c", "sources": [f"{name}.c"], "lanes": []}),
-}
+text = f"double dalembert_{arguments.owner}{name}(void) {{ return {model}; }}\n"
+tables = "const int DALEMBERT_SYMBOL = sizeof DALEMBERT_DIGEST;\n"
+manifest = {"name": name, "tables": f"{name}_model.c", "sources": [f"{name}.c"], "lanes": [],
+            "content": hashlib.sha256((text + tables).encode()).hexdigest()}
+files = {f"{name}.c": text, f"{name}_model.c": tables, "manifest.json": json.dumps(manifest)}
 folder = os.path.join(arguments.out, name)
 os.makedirs(folder)
 for file, text in files.items():

@@ -4,8 +4,10 @@
 #![cfg(unix)]
 
 mod cache;
+mod crates;
 mod fixture;
 mod models;
+mod packaged;
 mod python;
 
 /// What a fixture's first build does, as its log tells.

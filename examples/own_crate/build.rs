@@ -1,0 +1,3 @@
+fn main() {
+    dalembert_build::models();
+}
