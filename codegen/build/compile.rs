@@ -151,7 +151,7 @@ pub fn compile(
         .chain(lanes)
         .chain(is_engine.then_some(elementary))
         .collect();
-    let build = compiler();
+    let build = compiler(cc::Build::new());
     let failed = |what: &str, problem: String| Error::Compiler {
         what: what.to_owned(),
         problem,
@@ -212,18 +212,16 @@ pub fn compile(
     libraries.retain(KIND, &keys)
 }
 
-/// The compiler and its flags. Generated code is the inner loop of every simulation: it is
+/// The compiler of `build`, with the flags of generated code. Generated code is the inner loop of every simulation: it is
 /// optimised in every profile, in the same way, so that a debug build and a release build give the
 /// same bits. For the same reason products and sums are not contracted (a fused multiply-add
 /// changes the last bits, and with them the time of an event), and the code is not tuned to the
 /// machine of the build.
-pub fn compiler() -> cc::Build {
-    let mut build = cc::Build::new();
+pub fn compiler(mut build: cc::Build) -> cc::Build {
     build
         // Level 3 makes vectors of the independent sums of a Taylor series; it changes no bit.
         .opt_level(3)
         .debug(false)
-        .flag_if_supported("-ffp-contract=off")
         // Generated functions have one signature, whether or not they use every argument.
         .flag_if_supported("-Wno-unused-parameter");
     if sanitizes() {
@@ -233,6 +231,14 @@ pub fn compiler() -> cc::Build {
             .flag("-fno-sanitize-recover=all")
             .flag("-fno-omit-frame-pointer");
     }
+    // Not only if it is supported: without it other bits would come out, and nobody would know. Microsoft's compiler does not
+    // contract unless it is asked to.
+    if !build
+        .try_get_compiler()
+        .is_ok_and(|tool| tool.is_like_msvc())
+    {
+        build.flag("-ffp-contract=off");
+    }
     build
 }
 
@@ -241,15 +247,24 @@ fn sanitizes() -> bool {
     std::env::var_os(SANITIZE).is_some_and(|value| !value.is_empty())
 }
 
-/// The command line of the compiler, once it is known to exist: otherwise the `cc` crate would
-/// warn once for every flag that it cannot try.
+/// The compiler and its flags, once it is known to exist: otherwise the `cc` crate would warn once for every flag that it
+/// cannot try.
 fn command(build: &cc::Build) -> Result<String, String> {
     let mut plain = cc::Build::new();
     exists(plain.cargo_metadata(false).cargo_warnings(false))?;
     let tool = build
         .try_get_compiler()
         .map_err(|error| error.to_string())?;
-    Ok(format!("{:?}", tool.to_command()))
+    Ok(line(&tool))
+}
+
+/// The command line of a compiler, without the environment that is handed on to it.
+pub fn line(tool: &cc::Tool) -> String {
+    let words = std::iter::once(tool.path().as_os_str()).chain(tool.args().iter().map(|a| &**a));
+    words
+        .map(|word| word.to_string_lossy())
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// The levels of a processor.

@@ -20,7 +20,7 @@ pub const TARGET: &str = env!("DALEMBERT_BUILD_TARGET");
 const SYMBOL: &str = "dalembert_model";
 
 /// Changes with the flags below and those in `compile.rs`, which a key cannot ask for without running the compiler.
-const FLAGS: &str = "1";
+const FLAGS: &str = "2";
 
 /// Name of a model's library.
 pub fn file(name: &str) -> String {
@@ -138,8 +138,8 @@ pub fn library(
     let mut plain = cc::Build::new();
     here(&mut plain, &objects);
     compile::exists(&plain).map_err(missing)?;
-    let mut build = compile::compiler();
-    here(&mut build, &objects)
+    let mut build = compile::compiler(plain);
+    build
         .pic(true)
         // One name is enough, and no two models can meet.
         .flag("-fvisibility=hidden")
@@ -178,9 +178,10 @@ pub fn library(
         if output.status.success() {
             return Ok(());
         }
+        let words: Vec<_> = arguments.iter().map(|a| a.to_string_lossy()).collect();
         Err(Error::Refused {
             what: what.clone(),
-            command: format!("{command:?}").replace('"', ""),
+            command: format!("{} {}", compile::line(&tool), words.join(" ")),
             output: String::from_utf8_lossy(&output.stderr).into_owned(),
             kept: generated.directory.clone(),
         })
