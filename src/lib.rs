@@ -23,13 +23,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! A crate with models of its own brings them in by [`models!`].
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `shipped-models` | the models under `models/` |
+//! | `plots` | pictures and pages of runs, output folders |
+//! | `folders` | models from folders, built while a program runs |
+//! | `cli` | the program `dalembert`, with the two before |
+//!
+//! All are on unless `default-features = false`.
+//!
 //! [`scene::Scene::load`] makes a [`hybrid::Problem`] of a JSON file, [`record::Run::write`] makes
 //! tables and plots of the result.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 
+#[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "folders")]
 pub mod folders;
 pub mod formula;
 pub mod hybrid;
@@ -42,6 +55,7 @@ pub mod kernel;
 pub mod model;
 pub mod motion;
 pub mod numerics;
+#[cfg(feature = "plots")]
 pub mod page;
 pub mod precision;
 pub mod record;

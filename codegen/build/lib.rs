@@ -1,12 +1,10 @@
 //! From model folders to compiled models: Python with CasADi, generated code, C.
 //!
 //! A crate with models of its own has them in folders `models/NAME/model.py`; in its `Cargo.toml`, in one version, `dalembert`
-//! under `[dependencies]` and `dalembert-build` under `[build-dependencies]`; and as the whole of its `build.rs`:
+//! under `[dependencies]` and `dalembert-build` under `[build-dependencies]`; and as all that `main` of its `build.rs` does:
 //!
 //! ```no_run
-//! fn main() {
-//!     dalembert_build::models();
-//! }
+//! dalembert_build::models();
 //! ```
 //!
 //! Then `dalembert::models!()` in that crate are its models, for scenes, runs and ensembles (`examples/own_crate`).
@@ -29,6 +27,7 @@
 //! | `compile` | from C to static libraries |
 //! | `model` | folders of models, wherever they are, and the judgement on one |
 //! | `library`, `index`, `link` | from such a folder to a shared library, while a program runs |
+//! | `verification` | the verification of printed equations, made ready to run |
 //! | `registry` | the C file that lists the models |
 //! | `cache`, `evict` | folders under content keys, and what becomes of old ones |
 //! | `fingerprint`, `parallel` | hashes; threads |
@@ -66,6 +65,7 @@ mod parallel;
 mod python;
 mod registry;
 mod script;
+mod verification;
 
 pub use cache::Cache;
 pub use error::{Error, InstallCause, ModelFailure};
@@ -74,3 +74,4 @@ pub use generate::is_module_name as is_model_name;
 pub use library::{Choices, Library, Options, Stage, library};
 pub use model::{Sources, check, sources};
 pub use script::models;
+pub use verification::{Verification, verification};

@@ -61,7 +61,12 @@ fn run() -> Result<(), Error> {
 
     let cache = Cache::shared(&out_dir)?;
     let generator = bundle.extract(&cache)?;
-    let models = generate::discover(&project, with_tests)?;
+    // The engine can do without its models.
+    let is_shipped = !is_engine || env::var_os("CARGO_FEATURE_SHIPPED_MODELS").is_some();
+    let models = match is_shipped {
+        true => generate::discover(&project, with_tests)?,
+        false => Vec::new(),
+    };
     let generated = match packaged::find(&project, &models, &owner, &generator)? {
         Packaged::Whole(generated) => generated,
         Packaged::Unfit(reasons) => {

@@ -1,18 +1,17 @@
-//! `dalembert verify`: runs the verification, which is written in Python, with the interpreter that
-//! the build has provided (`codegen/build/lib.rs`).
+//! `dalembert verify`: runs the verification, which is written in Python and travels inside the program.
 
 use std::env;
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+
+use include_dir::{Dir, include_dir};
 
 use super::outcome::{Failure, Outcome, Result};
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
-Runs codegen/verify, which codegen/verify/README.md describes, with the interpreter that the build \
-has found or provided. The environment variable DALEMBERT_PYTHON names another one, which must \
-have SymPy.")]
+Runs codegen/verify, which codegen/verify/README.md describes, with a Python that is found, and packages \
+that are installed for it once. The environment variable DALEMBERT_PYTHON names another one, which must have CasADi and \
+SymPy. A name is that of a model inside the program; anything else is a folder.")]
 pub struct VerifyArguments {
     /// Name of the model, or path of its folder
     #[arg(required_unless_present = "seeded")]
@@ -37,28 +36,26 @@ pub struct VerifyArguments {
     seeded: bool,
 }
 
-/// Variable that names another interpreter, at build time and here.
-const SETTING: &str = "DALEMBERT_PYTHON";
-
-/// Folder with `codegen/` and `models/`.
-const PROJECT: &str = env!("CARGO_MANIFEST_DIR");
+/// What ships with the program: names of models that are verified, and the scenes in which slips are simulated.
+static SHIPPED: [Dir; 2] = [
+    include_dir!("$CARGO_MANIFEST_DIR/models"),
+    include_dir!("$CARGO_MANIFEST_DIR/scenes"),
+];
 
 pub fn verify(arguments: &VerifyArguments) -> Result {
-    let sources = Path::new(PROJECT).join("codegen").join("verify");
-    if !sources.is_dir() {
-        return Err(Failure::system(format!(
-            "the verification is run from the sources that dalembert was built from, and {} is \
-             gone; build it again where the sources are",
-            sources.display()
-        )));
+    let mut shipped = Vec::new();
+    for (folder, name) in SHIPPED.iter().zip(["models", "scenes"]) {
+        collect(folder, Path::new(name), &mut shipped);
     }
-    let (program, mut command) = python()?;
-    command
-        .args(["-B", "-m", "codegen", "verify"])
-        .current_dir(PROJECT);
+    let shipped: Vec<_> = (shipped.iter())
+        .map(|(name, content)| (&**name, *content))
+        .collect();
+    let verification = dalembert_build::verification(&shipped, &super::folders::progress)?;
+    let folder = verification.folder.clone();
+    let mut command = verification.command;
     if let Some(model) = &arguments.model {
         // A name comes first: a folder of that name where the command is given is its output.
-        let is_name = Path::new(PROJECT).join("models").join(model).is_dir();
+        let is_name = folder.join("models").join(model).is_dir();
         let is_folder = !is_name && model.is_dir();
         command.arg(if is_folder {
             absolute(model)?
@@ -89,8 +86,8 @@ pub fn verify(arguments: &VerifyArguments) -> Result {
         command.arg("--program").arg(own);
     }
     let status = command.status().map_err(|error| {
-        let program = program.display();
-        Failure::system(format!("{program} does not run: {error}; {}", advice()))
+        let program = Path::new(command.get_program()).display();
+        Failure::system(format!("{program} does not run: {error}"))
     })?;
     match status.code() {
         Some(0) => Ok(Outcome::Done),
@@ -100,43 +97,17 @@ pub fn verify(arguments: &VerifyArguments) -> Result {
     }
 }
 
-/// The interpreter and a command that runs it, independent of the caller's Python environment.
-fn python() -> std::result::Result<(PathBuf, Command), Failure> {
-    let named = env::var_os(SETTING).filter(|value| !value.is_empty());
-    let (program, packages) = match named {
-        Some(program) => (PathBuf::from(program), OsString::new()),
-        None => (
-            PathBuf::from(env!("DALEMBERT_PYTHON_EXE")),
-            OsString::from(env!("DALEMBERT_PYTHON_PATH")),
-        ),
-    };
-    let mut command = Command::new(&program);
-    for (name, _) in env::vars_os() {
-        if name
-            .to_str()
-            .is_some_and(|name| name.starts_with("PYTHON") || name == "VIRTUAL_ENV")
-        {
-            command.env_remove(name);
-        }
+/// The files of a folder inside the program, by their names in a folder `name`. What Python leaves beside its sources is none.
+fn collect(folder: &Dir<'static>, name: &Path, files: &mut Vec<(PathBuf, &'static [u8])>) {
+    for file in folder.files() {
+        files.push((name.join(file.path()), file.contents()));
     }
-    // Without packages and start-up code of the user's own site.
-    command.arg("-s").env("PYTHONUTF8", "1");
-    if !packages.is_empty() {
-        if !Path::new(&packages).is_dir() {
-            let packages = Path::new(&packages).display();
-            return Err(Failure::system(format!(
-                "the Python packages of the build, {packages}, are gone; {}",
-                advice()
-            )));
-        }
-        command.arg("-S").env("PYTHONPATH", packages);
+    for inner in folder
+        .dirs()
+        .filter(|inner| !inner.path().ends_with("__pycache__"))
+    {
+        collect(inner, name, files);
     }
-    Ok((program, command))
-}
-
-/// What to do where Python or its packages are gone.
-fn advice() -> String {
-    format!("build dalembert again, or let {SETTING} name an interpreter that has SymPy")
 }
 
 fn absolute(path: &Path) -> std::result::Result<PathBuf, Failure> {

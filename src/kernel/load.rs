@@ -98,9 +98,9 @@ macro_rules! linked {
     () => {{
         unsafe extern "C" {
             #[link_name = env!(
-                    "DALEMBERT_MODELS",
-                    "this crate has no build script that calls dalembert_build::models()"
-                )]
+                            "DALEMBERT_MODELS",
+                            "this crate has no build script that calls dalembert_build::models()"
+                        )]
             static LINKED: $crate::kernel::LinkedModels;
         }
         // SAFETY: the variable with the name is set by the build script that wrote the list.

@@ -18,11 +18,15 @@ mod digest;
 pub mod folder;
 mod looks;
 mod number;
+#[cfg(feature = "plots")]
 pub mod plot;
+#[cfg(feature = "cli")]
 mod progress;
 mod read;
 mod report;
+#[cfg(feature = "plots")]
 mod sketch;
+#[cfg(feature = "plots")]
 mod stream;
 pub mod summary;
 pub mod table;
@@ -30,10 +34,14 @@ pub mod table;
 pub use crate::run::*;
 pub use folder::{FolderError, OutputFolder, StagedFile, Staging};
 pub(crate) use looks::Looks;
+#[cfg(feature = "plots")]
 pub(crate) use number::{exact, rounded};
+#[cfg(feature = "cli")]
 pub use progress::ProgressLine;
 pub use read::{Earlier, ReadError};
 pub use report::Report;
+#[cfg(feature = "plots")]
 pub use sketch::Sketch;
+#[cfg(feature = "plots")]
 pub use stream::{OVERVIEW, PHASE, Stream};
 pub use summary::Summary;

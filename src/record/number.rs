@@ -17,6 +17,7 @@ pub(super) fn push_exact(out: &mut String, x: f64) {
 }
 
 /// `x` as [`push_exact`] writes it.
+#[cfg(feature = "plots")]
 pub(crate) fn exact(x: f64) -> String {
     let mut out = String::new();
     push_exact(&mut out, x);

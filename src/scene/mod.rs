@@ -28,12 +28,15 @@ use std::sync::Arc;
 
 pub(crate) use format::METHODS;
 
+#[cfg(feature = "cli")]
 pub(crate) use error::rendered;
 pub use error::{SceneError, SceneErrorKind, SceneErrors};
 pub use files::{Disk, Files};
+#[cfg(feature = "cli")]
 pub(crate) use record::Record;
 pub use schema::schema;
 pub use source::Position;
+#[cfg(feature = "cli")]
 pub(crate) use wording::nearest;
 
 use crate::hybrid::Problem;

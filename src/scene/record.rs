@@ -56,6 +56,7 @@ impl Record {
     }
 
     /// Line of a note, from 1.
+    #[cfg(feature = "cli")]
     pub fn line(&self, note: &Note) -> usize {
         Span::new(&self.source, note.range.clone()).position().line
     }

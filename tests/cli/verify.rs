@@ -37,13 +37,11 @@ fn an_interpreter_that_is_gone_is_named_with_what_to_do() {
         .env("DALEMBERT_PYTHON", "/nowhere/python3")
         .args(["verify", "walking_tank"])
         .assert()
-        .code(1);
+        .code(2);
     let message = stderr(assert.get_output());
-    assert!(
-        message.contains("/nowhere/python3 does not run"),
-        "{message}"
-    );
-    assert!(message.contains("DALEMBERT_PYTHON"), "{message}");
+    let setting = "DALEMBERT_PYTHON=/nowhere/python3: no such program";
+    assert!(message.contains(setting), "{message}");
+    assert!(message.contains("to do: "), "{message}");
 }
 
 #[test]

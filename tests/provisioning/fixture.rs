@@ -147,6 +147,7 @@ impl Fixture {
             .env_clear()
             .env("CARGO_MANIFEST_DIR", self.path("project"))
             .env("CARGO_MANIFEST_LINKS", "dalembert")
+            .env("CARGO_FEATURE_SHIPPED_MODELS", "1")
             .env("DALEMBERT_GENERATOR", self.path("project/codegen"))
             .env("TARGET", env!("DALEMBERT_TARGET"))
             .env("HOST", env!("DALEMBERT_TARGET"))

@@ -17,7 +17,7 @@ fn the_first_build_does_everything_and_the_second_nothing() {
         &["{&dalembert_model_alpha, &dalembert_model_beta, 0}"],
     );
     let libraries = fixture.path("target/debug/build/project/out/libraries");
-    let library = only_folder(&libraries, "alpha-").join("libdalembert_alpha.a");
+    let library = only_folder(&libraries, "dalembert_alpha-").join("libdalembert_alpha.a");
     let compiled = fs::metadata(&library).unwrap().modified().unwrap();
 
     let second = succeeds(&mut fixture.installing());
@@ -56,7 +56,7 @@ fn a_touched_model_is_regenerated_alone() {
     // The library of the old model is gone.
     only_folder(
         &fixture.path("target/debug/build/project/out/libraries"),
-        "beta-",
+        "dalembert_beta-",
     );
     // A second file of a model counts, its prose does not.
     fixture.write("project/models/alpha/README.md", "prose");
@@ -73,12 +73,12 @@ fn a_changed_generator_regenerates_all_and_recompiles_nothing_that_came_out_the_
     succeeds(&mut fixture.script());
     fixture.log();
     let libraries = fixture.path("target/debug/build/project/out/libraries");
-    let before = only_folder(&libraries, "alpha-");
+    let before = only_folder(&libraries, "dalembert_alpha-");
     let compiled = fs::metadata(&before).unwrap().modified().unwrap();
     fixture.write("project/codegen/more.py", "");
     succeeds(&mut fixture.script());
     assert_eq!(fixture.log(), ["generate alpha", "generate beta"]);
-    assert_eq!(only_folder(&libraries, "alpha-"), before);
+    assert_eq!(only_folder(&libraries, "dalembert_alpha-"), before);
     assert_eq!(fs::metadata(&before).unwrap().modified().unwrap(), compiled);
     fixture.write("project/codegen/tests/test_more.py", "");
     succeeds(&mut fixture.script());
@@ -95,6 +95,15 @@ fn a_new_folder_is_a_new_model() {
     succeeds(&mut fixture.script());
     assert_eq!(fixture.log(), ["generate gamma"]);
     has(&fixture.models(), &["&dalembert_model_gamma"]);
+}
+
+#[test]
+fn an_engine_without_models_needs_no_python() {
+    let fixture = Fixture::new();
+    let mut script = fixture.script();
+    fixture.without_python(script.env_remove("CARGO_FEATURE_SHIPPED_MODELS"));
+    succeeds(&mut script);
+    has(&fixture.models(), &["dalembert_models[] = {0};"]);
 }
 
 #[test]
