@@ -21,6 +21,8 @@ mod motion;
 mod new;
 mod outcome;
 mod outputs;
+mod page;
+mod pictures;
 mod precision;
 mod print;
 mod room;

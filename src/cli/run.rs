@@ -1,6 +1,5 @@
 //! `dalembert run`.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -8,12 +7,15 @@ use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::outputs::{NotReplayed, Outputs};
+use super::page::{command_line, write_page};
+use super::pictures::{PictureArguments, WindowArguments};
 use super::{print, room, warnings, watch};
-use crate::hybrid::{Invalid, Problem, Reason, Replay, check_same, resume_with, simulate_with};
+use crate::hybrid::{Invalid, Reason, Replay, check_same, resume_with, simulate_with};
 use crate::model::Models;
 use crate::page::{Told, run_page};
 use crate::precision::estimate;
-use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Run, Sketch, Stream};
+use crate::record::plot::Look;
+use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Sketch, Stream};
 use crate::scene::{Disk, Files, Scene};
 
 #[derive(Debug, clap::Args)]
@@ -45,6 +47,14 @@ pub struct RunArguments {
     /// Also write a page with plots that zoom and the mechanism in motion
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Panels of the plots over time, from top to bottom: columns such as theta or theta.rate, several in one panel
+    /// as theta+phi, and coordinates, velocities, reactions, energies, inputs
+    #[arg(long, value_name = "PANEL,…", value_delimiter = ',')]
+    plot_panels: Vec<String>,
+    #[command(flatten)]
+    window: WindowArguments,
+    #[command(flatten)]
+    pictures: PictureArguments,
     /// Continue the run in this folder, and write the longer run to --out, or back
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
@@ -89,12 +99,19 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         None => None,
     };
     // Before the simulation, so that a folder that cannot be written costs no time.
+    let layout = problem.layout();
+    let look = Look {
+        window: arguments.window.window(),
+        panels: arguments.plot_panels.clone(),
+        ..arguments.pictures.look()?
+    };
+    let shown = look.check(&layout);
+    shown.map_err(|message| Failure::wrong_input(format!("--plot-panels: {message}")))?;
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
     room::check_disk(&scene, out.map(PathBuf::as_path))?;
 
     warnings::before(problem);
-    let layout = problem.layout();
     let (page, compared) = (arguments.html.is_some(), arguments.error_estimate);
     let mut outputs = Outputs::new(&layout, folder.as_ref(), page, compared);
     let earlier = match earlier {
@@ -141,9 +158,15 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     warnings::after(report.summary());
     let Outputs { stream, sketch, .. } = outputs;
     let sketch = sketch.unwrap_or_else(|| Sketch::new(&layout));
-    let written = stream.map(|stream| stream.finish(&run, &sketch));
+    let written = stream.map(|stream| stream.finish(&run, &sketch, &look));
     if let Some(page) = &arguments.html {
-        write_page(page, (&run, &sketch), &arguments.scene, problem)?;
+        let told = Told {
+            drawing: problem.variant().drawing,
+            scene: &scene.source.json(),
+            command: &command_line(),
+            units: &look.units,
+        };
+        write_page(page, &run_page(&run, &sketch, told))?;
     }
     written.transpose()?;
     if let Some(reason) = &no_estimate {
@@ -171,54 +194,6 @@ fn other_run(folder: &Path, reason: &Reason) -> Failure {
     Failure::wrong_input(format!(
         "{folder}: {reason}; continue it with the scene it was made with"
     ))
-}
-
-/// Writes the page of a run, whole or not at all.
-fn write_page(
-    path: &Path,
-    (run, sketch): (&Run, &Sketch),
-    scene: &Path,
-    problem: &Problem,
-) -> std::result::Result<(), Failure> {
-    let failed = |error: &dyn std::fmt::Display| {
-        Failure::system(format!("cannot write the page {}: {error}", path.display()))
-    };
-    let arguments: Vec<String> = std::env::args().skip(1).map(|a| quoted(&a)).collect();
-    let text = std::fs::read_to_string(scene).unwrap_or_default();
-    let page = run_page(
-        run,
-        sketch,
-        Told {
-            drawing: problem.variant().drawing,
-            scene: &text,
-            command: &format!("dalembert {}", arguments.join(" ")),
-        },
-    );
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::fs::Permissions;
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(Permissions::from_mode(0o666)); // less the umask
-    }
-    let mut file = builder
-        .tempfile_in(folder.unwrap_or(Path::new(".")))
-        .map_err(|e| failed(&e))?;
-    file.write_all(page.as_bytes())
-        .and_then(|()| file.as_file().sync_all())
-        .map_err(|e| failed(&e))?;
-    file.persist(path).map_err(|e| failed(&e.error))?;
-    Ok(())
-}
-
-/// An argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-=+,:@%".contains(c);
-    match !argument.is_empty() && argument.chars().all(plain) {
-        true => argument.to_owned(),
-        false => format!("'{}'", argument.replace('\'', "'\\''")),
-    }
 }
 
 /// Why a scene cannot even be started, pointing at the part of it that is to blame.

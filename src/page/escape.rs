@@ -1,6 +1,40 @@
 //! Text and data in a page, such that nothing in them is markup.
 
+use crate::record::plot::marked::{DOTS, END_SUB, SUB};
 use serde::Serialize;
+
+/// A text with marks of subscripts and dots ([`crate::record::plot::marked`]) as HTML.
+pub(super) fn symbols(marked: &str) -> String {
+    let mut out = String::new();
+    let mut chars = marked.chars();
+    while let Some(c) = chars.next() {
+        match (c, DOTS.iter().position(|&dots| dots == c)) {
+            (SUB, _) => out.push_str("<sub>"),
+            (END_SUB, _) => out.push_str("</sub>"),
+            (_, Some(i)) => {
+                let letter = chars.next().map_or(String::new(), |c| text(&c.to_string()));
+                out.push_str(&format!("<span class=\"dots{}\">{letter}</span>", i + 1));
+            }
+            _ => out.push_str(&text(&c.to_string())),
+        }
+    }
+    out
+}
+
+/// The same without any markup: `x_I`, `rate of θ`.
+pub(super) fn plain(marked: &str) -> String {
+    let mut out = String::new();
+    for c in marked.chars() {
+        match (c, DOTS.iter().position(|&dots| dots == c)) {
+            (SUB, _) => out.push('_'),
+            (END_SUB, _) => {}
+            (_, Some(0)) => out.push_str("rate of "),
+            (_, Some(_)) => out.push_str("acceleration of "),
+            _ => out.push(c),
+        }
+    }
+    out
+}
 
 /// A text for a place between tags or in a quoted attribute.
 pub(super) fn text(raw: &str) -> String {
@@ -40,6 +74,16 @@ mod tests {
             text("<b a=\"x\" c='y'>&\u{7}\n"),
             "&lt;b a=&quot;x&quot; c=&#39;y&#39;&gt;&amp;\u{fffd}\n"
         );
+    }
+
+    #[test]
+    fn marks_become_markup_and_nothing_else_does() {
+        let marked = format!("{}<{SUB}&{END_SUB}", DOTS[1]);
+        assert_eq!(
+            symbols(&marked),
+            "<span class=\"dots2\">&lt;</span><sub>&amp;</sub>"
+        );
+        assert_eq!(plain(&marked), "acceleration of <_&");
     }
 
     #[test]

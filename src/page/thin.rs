@@ -2,7 +2,7 @@
 
 /// Indices of at most about `most` rows, in order: all where there are no more, else of each of equally many
 /// rows in a row the first and those with the least and the largest number of each column. The last row is always kept.
-pub(super) fn thin(columns: &[Vec<f64>], rows: usize, most: usize) -> Vec<usize> {
+pub(super) fn thin(columns: &[&[f64]], rows: usize, most: usize) -> Vec<usize> {
     if rows <= most {
         return (0..rows).collect();
     }
@@ -37,14 +37,14 @@ mod tests {
         column[77_777] = 9.0;
         column[1] = -9.0;
         column[3] = f64::NAN;
-        let kept = thin(&[column.clone()], rows, 3000);
+        let kept = thin(&[&column], rows, 3000);
         assert!(kept.len() <= 3001 && kept.is_sorted_by(|a, b| a < b));
         assert!([0, 1, 77_777, rows - 1].iter().all(|i| kept.contains(i)));
     }
 
     #[test]
     fn short_curves_are_kept_whole() {
-        assert_eq!(thin(&[vec![1.0, 2.0]], 2, 2), [0, 1]);
+        assert_eq!(thin(&[&[1.0, 2.0]], 2, 2), [0, 1]);
         assert_eq!(thin(&[], 0, 2), [0; 0]);
     }
 }

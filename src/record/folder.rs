@@ -12,6 +12,7 @@
 //! Files are on the disk before they are put in place. What a killed program has left beside the target is removed
 //! by the next run into it: its lock is gone.
 
+use super::plot::Look;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -218,6 +219,14 @@ impl Staging {
         let mut file = self.create(name)?;
         write(&mut file).map_err(io_error("write", Path::new(name)))?;
         self.close(file)
+    }
+
+    /// Writes a picture in the formats that `look` asks for, into files called `stem` and the format.
+    pub fn picture(&mut self, stem: &str, svg: &str, look: &Look) -> Result<(), FolderError> {
+        for (format, bytes) in look.files(svg) {
+            self.file(&format!("{stem}.{format}"), |out| out.write_all(&bytes))?;
+        }
+        Ok(())
     }
 
     /// Creates a file that is filled while others are, until [`Staging::close`].

@@ -30,6 +30,7 @@ mod sketch;
 mod stream;
 pub mod summary;
 pub mod table;
+mod units;
 
 pub use crate::run::*;
 pub use folder::{FolderError, OutputFolder, StagedFile, Staging};
@@ -45,3 +46,4 @@ pub use sketch::Sketch;
 #[cfg(feature = "plots")]
 pub use stream::{OVERVIEW, PHASE, Stream};
 pub use summary::Summary;
+pub use units::Units;

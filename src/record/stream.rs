@@ -4,17 +4,17 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::folder::{StagedFile, Staging, io_error};
-use super::plot::{overview_of, phase_portraits_of};
+use super::plot::{Look, overview_of, phase_portraits_of};
 use super::sketch::Sketch;
 use super::summary::SUMMARY;
 use super::table::{EVENTS, EventsTable, METADATA, TRAJECTORY, TrajectoryTable, write_metadata};
 use super::{FolderError, Layout, OutputFolder, Summary};
 use crate::run::{Jump, Run, Snapshot};
 
-/// File name of the picture of everything over time.
-pub const OVERVIEW: &str = "overview.svg";
-/// File name of the phase portraits.
-pub const PHASE: &str = "phase.svg";
+/// Name of the picture of everything over time, without the format.
+pub const OVERVIEW: &str = "overview";
+/// Name of the phase portraits, without the format.
+pub const PHASE: &str = "phase";
 
 /// Numbers that are written at once: so many that looks at the clock cost nothing, and so few that nobody waits for them.
 const AT_ONCE: usize = 8192;
@@ -120,8 +120,9 @@ impl Stream {
         Ok(())
     }
 
-    /// Writes everything else of the run, and puts all of it in the place of the files of the last one.
-    pub fn finish(mut self, run: &Run, sketch: &Sketch) -> Result<(), FolderError> {
+    /// Writes everything else of the run, with pictures as `look` says, and puts all of it in the place of the files of
+    /// the last one.
+    pub fn finish(mut self, run: &Run, sketch: &Sketch, look: &Look) -> Result<(), FolderError> {
         self.write();
         if let Some(error) = self.failed {
             return Err(error);
@@ -137,11 +138,9 @@ impl Stream {
         staging.close(events.map_err(io_error("write", Path::new(EVENTS)))?)?;
         staging.file(METADATA, |out| write_metadata(run, out))?;
         staging.file(SUMMARY, |out| Summary::new(run).write(out))?;
-        staging.file(OVERVIEW, |out| {
-            out.write_all(overview_of(run, sketch).as_bytes())
-        })?;
-        if let Some(portraits) = phase_portraits_of(run, sketch) {
-            staging.file(PHASE, |out| out.write_all(portraits.as_bytes()))?;
+        staging.picture(OVERVIEW, &overview_of(run, sketch, look), look)?;
+        if let Some(portraits) = phase_portraits_of(run, sketch, look) {
+            staging.picture(PHASE, &portraits, look)?;
         }
         staging.put_in_place()
     }
@@ -172,6 +171,6 @@ impl Run {
         for event in &self.events {
             stream.event(&event.jump(), Some([&event.before, &event.after]));
         }
-        stream.finish(self, &Sketch::of(self))
+        stream.finish(self, &Sketch::of(self), &Look::default())
     }
 }

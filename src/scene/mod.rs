@@ -118,6 +118,11 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
+    /// The scene as it is run, with what `--set` has put into it, as JSON.
+    pub fn json(&self) -> String {
+        self.root.json()
+    }
+
     /// An error that points at `path` in the scene (`initial.theta.rate`), or, if the scene says
     /// nothing there, at what is nearest to it on the way. For what only the model's functions can
     /// find out: an initial state that violates its mode.

@@ -57,6 +57,42 @@ impl Node {
         }
     }
 
+    /// The value as JSON: on one line where that is short, else a line for each part.
+    pub fn json(&self) -> String {
+        self.json_at(0)
+    }
+
+    fn json_at(&self, depth: usize) -> String {
+        let quoted = |text: &str| serde_json::to_string(text).expect("texts are JSON");
+        let (brackets, parts) = match &self.value {
+            Value::Null => return "null".into(),
+            Value::Flag(flag) => return flag.to_string(),
+            Value::Number(digits) => return digits.clone(),
+            Value::Text(text) => return quoted(text),
+            Value::List(nodes) => {
+                let parts = nodes.iter().map(|node| node.json_at(depth + 1));
+                (["[", "]"], parts.collect::<Vec<_>>())
+            }
+            Value::Object(entries) => {
+                let part = |e: &Entry| format!("{}: {}", quoted(&e.key), e.node.json_at(depth + 1));
+                (["{", "}"], entries.iter().map(part).collect())
+            }
+        };
+        let [open, close] = brackets;
+        let line = format!("{open} {} {close}", parts.join(", "));
+        let is_short = !line.contains('\n') && 2 * depth + line.len() <= 100;
+        match (parts.is_empty(), is_short && depth > 0) {
+            (true, _) => format!("{open}{close}"),
+            (_, true) => line,
+            _ => {
+                let indent = "  ".repeat(depth);
+                let between = format!(",\n{indent}  ");
+                let parts = parts.join(&between);
+                format!("{open}\n{indent}  {parts}\n{indent}{close}")
+            }
+        }
+    }
+
     /// The value of a key, if this is an object that has it.
     pub fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {

@@ -58,7 +58,7 @@ fn extremes_of_long_runs_are_kept() {
     let page = page(0, home.path(), &scene("bouncing_ball"), &more);
     assert!(page.len() < 6_000_000, "{} bytes", page.len());
     let data = data(&page);
-    let heights: Vec<f64> = data["panels"][0]["y"][0]
+    let heights: Vec<f64> = data["plots"][0]["curves"][0]["y"]
         .as_array()
         .unwrap()
         .iter()
@@ -148,6 +148,52 @@ fn in_browser(home: &Path, page: &str, script: &str) -> Option<Vec<String>> {
     Some(serde_json::from_str(&format!("[{seen}")).unwrap())
 }
 
+/// The page of a command, seen by a browser.
+fn seen_page(home: &Path, arguments: &[&str], script: &str) -> Option<Vec<String>> {
+    ends_with(0, home, &[arguments, &["--html", "page.html"]].concat());
+    let page = fs::read_to_string(home.join("page.html")).unwrap();
+    assert!(page.len() < 1_000_000, "{} bytes", page.len());
+    in_browser(home, &page, script)
+}
+
+#[test]
+fn pages_of_comparisons_zoom_together_and_show_the_reader_s_units() {
+    let home = tempfile::tempdir().unwrap();
+    let of = scene("tank_free_release");
+    let arguments = [
+        "compare", &of, "--vary", "landing", "--set", "end=0.3", "--units", "mm,ms",
+    ];
+    let script = "
+        const { plots, zoomGroup } = dalembert;
+        const before = plots.map((plot) => plot.u.scales.x.max);
+        zoomGroup(plots[0], [0, 0.1], null);
+        setTimeout(() => {
+            const axes = plots.every((plot, i) => before[i] === 300 && plot.u.scales.x.max === 100);
+            const units = [...document.querySelectorAll('.unit')].map((unit) => unit.textContent);
+            done([`axes ${axes}`, `mm ${units.some((text) => text.includes('(mm)'))}`]);
+        }, 200);";
+    if let Some(seen) = seen_page(home.path(), &arguments, script) {
+        assert_eq!(seen, ["axes true", "mm true"]);
+    }
+}
+
+#[test]
+fn pages_of_studies_of_precision_read_points_out() {
+    let home = tempfile::tempdir().unwrap();
+    let of = scene("bouncing_ball");
+    let arguments = ["precision", &of, "--set", "end=0.7"];
+    let script = "
+        const [plot] = dalembert.plots, over = plot.u.over, box = over.getBoundingClientRect();
+        const { x, y } = plot.curves[0];
+        const at = (axis, v) => plot.pixel(axis, v) / devicePixelRatio;
+        const [left, top] = [at('x', x[0]) - plot.u.bbox.left / devicePixelRatio, at('y', y[0]) - plot.u.bbox.top / devicePixelRatio];
+        over.dispatchEvent(new MouseEvent('mousemove', { clientX: box.left + left, clientY: box.top + top, bubbles: true }));
+        setTimeout(() => done([`read ${document.querySelector('.key output').textContent.includes(' at ')}`]), 200);";
+    if let Some(seen) = seen_page(home.path(), &arguments, script) {
+        assert_eq!(seen, ["read true"]);
+    }
+}
+
 #[test]
 fn pages_work_in_a_browser() {
     let home = tempfile::tempdir().unwrap();
@@ -157,14 +203,15 @@ fn pages_work_in_a_browser() {
         };
         let page = page(0, home.path(), &scene(name), &[]);
         let script = "
-            const { show, plots, data, picture } = dalembert, [first, last] = data.span;
+            const { show, plots, motion, picture, zoomGroup } = dalembert, [first, last] = motion.span;
             const at = (t) => { show(t); return picture.toDataURL(); };
             const frames = new Set([0.11, 0.31, 0.57].map((part) => at(first + part * (last - first))));
-            const before = plots.map((plot) => plot.scales.x.max);
-            plots[0].setScale('x', { min: first, max: first + 0.25 * (last - first) });
+            const timed = plots.filter((plot) => plot.spec.time);
+            const before = timed.map((plot) => plot.u.scales.x.max);
+            zoomGroup(timed[0], [first, first + 0.25 * (last - first)], null);
             setTimeout(() => {
-                const moved = plots.every((plot, i) => plot.scales.x.max < before[i]);
-                done([`frames ${frames.size > 1}`, `zoom ${moved}`, `plots ${plots.length > 0}`]);
+                const moved = timed.every((plot, i) => plot.u.scales.x.max < before[i]);
+                done([`frames ${frames.size > 1}`, `zoom ${moved}`, `plots ${timed.length > 0}`]);
             }, 200);";
         let Some(seen) = in_browser(home.path(), &page, script) else {
             return;

@@ -220,7 +220,7 @@ fn observed(problem: &Problem, folder: &Path) -> Run {
     let folder = OutputFolder::new(folder).unwrap();
     let mut files = Files(Stream::new(&folder, &run.layout), Sketch::new(&run.layout));
     let run = simulate_with(problem, &mut files, &mut Silent).unwrap();
-    files.0.finish(&run, &files.1).unwrap();
+    files.0.finish(&run, &files.1, &Default::default()).unwrap();
     run
 }
 

@@ -1,6 +1,7 @@
 //! `dalembert compare`.
 
 mod measures;
+mod page;
 mod write;
 
 use std::path::PathBuf;
@@ -11,10 +12,13 @@ use rayon::prelude::*;
 use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
+use super::page::write_page;
+use super::pictures::{PictureArguments, WindowArguments};
 use super::run::refusal;
 use super::{models, print, room};
 use crate::hybrid::simulate;
 use crate::model::Model;
+use crate::record::plot::Look;
 use crate::record::{OutputFolder, Run, Silent};
 use crate::scene::Scene;
 
@@ -34,6 +38,13 @@ pub struct CompareArguments {
     /// Folder for the table and the plots
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Also write a page with plots that zoom
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    #[command(flatten)]
+    window: WindowArguments,
+    #[command(flatten)]
+    pictures: PictureArguments,
     /// Replace a value of the scene in all variants, such as `parameters.mu_s=0.3`
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -43,6 +54,8 @@ pub struct CompareArguments {
 #[derive(Debug)]
 struct Comparison<'m> {
     model: &'m Model,
+    /// How its plots look.
+    look: Look,
     /// Names of the choices that vary.
     choices: Vec<&'static str>,
     cases: Vec<Case>,
@@ -77,6 +90,10 @@ pub fn compare(arguments: &CompareArguments) -> Result {
         .as_deref()
         .map(OutputFolder::new)
         .transpose()?;
+    let look = Look {
+        window: arguments.window.window(),
+        ..arguments.pictures.look()?
+    };
     interrupt::listen()?;
 
     let combinations = combinations(model, &varied);
@@ -91,6 +108,7 @@ pub fn compare(arguments: &CompareArguments) -> Result {
     });
     let comparison = Comparison {
         model,
+        look,
         choices: varied.iter().map(|&i| model.choices[i].name).collect(),
         cases: cases.collect(),
     };
@@ -99,6 +117,9 @@ pub fn compare(arguments: &CompareArguments) -> Result {
 
     if let Some(folder) = &folder {
         comparison.write(folder)?;
+    }
+    if let Some(path) = &arguments.html {
+        write_page(path, &comparison.page(&scene))?;
     }
     print::output(&comparison)?;
     Ok(if interrupt::asked() {

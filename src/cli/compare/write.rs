@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use super::{Case, Comparison};
 use crate::cli::table::Table;
-use crate::record::plot::{Curve, comparison};
+use crate::record::plot::{Chart, Curve, comparison};
 use crate::record::{Failure, FolderError, Group, OutputFolder, Run, exact, rounded};
 
 /// File name of the table.
@@ -17,7 +17,7 @@ const DIGITS: usize = 6;
 
 impl Case {
     /// How it ended, in a word.
-    fn outcome(&self) -> &'static str {
+    pub(super) fn outcome(&self) -> &'static str {
         match &self.run {
             Ok(Run { failure: None, .. }) => "reached end",
             Ok(_) => "stopped early",
@@ -26,7 +26,7 @@ impl Case {
     }
 
     /// Why there is no complete run.
-    fn reason(&self) -> Option<String> {
+    pub(super) fn reason(&self) -> Option<String> {
         match &self.run {
             Ok(run) => run.failure.as_ref().map(|failure| stopped(run, failure)),
             Err(refusal) => Some(refusal.clone()),
@@ -74,9 +74,11 @@ impl Display for Comparison<'_> {
                 .chain(cases.iter().map(Case::outcome)),
         );
         for measure in self.measures() {
-            let value = |x: &Option<f64>| x.map_or("–".to_owned(), |x| rounded(x, DIGITS));
+            let (factor, unit) = self.look.units.show(1.0, &measure.unit);
+            let value =
+                |x: &Option<f64>| x.map_or("–".to_owned(), |x| rounded(x * factor, DIGITS));
             let values = measure.values.iter().map(value);
-            table.row([measure.name, measure.unit].into_iter().chain(values));
+            table.row([measure.name, unit].into_iter().chain(values));
         }
         write!(f, "{table}")?;
         for (i, case) in cases.iter().enumerate() {
@@ -101,8 +103,9 @@ impl Comparison<'_> {
         folder.replace(|files| {
             files.file(TABLE, |out| self.table(out))?;
             for i in self.coordinates() {
-                let name = format!("{}.svg", self.model.coordinates[i].name);
-                files.file(&name, |out| out.write_all(self.plot(i).as_bytes()))?;
+                let name = self.model.coordinates[i].name;
+                let svg = self.chart(i, Group::Coordinate).svg_as(PLOT, &self.look);
+                files.picture(name, &svg, &self.look)?;
             }
             Ok(())
         })
@@ -133,20 +136,23 @@ impl Comparison<'_> {
         csv.flush()
     }
 
-    /// A coordinate over time, one curve a run.
-    fn plot(&self, coordinate: usize) -> String {
+    /// A coordinate or its rate over time, one curve a run.
+    pub(super) fn chart(&self, coordinate: usize, group: Group) -> Chart {
         let curve = |(case, run): (&Case, &Run)| Curve {
             label: case.label(),
             points: run
-                .curve(run.layout.range(Group::Coordinate).start + coordinate)
+                .curve(run.layout.range(group).start + coordinate)
                 .collect(),
         };
         let curves: Vec<Curve> = self.runs().map(curve).collect();
-        let quantity = self
+        let (_, run) = self
             .runs()
-            .map(|(_, run)| &run.layout.coordinates[coordinate])
-            .next();
-        let quantity = quantity.expect("a coordinate is plotted where there is a run");
-        comparison(quantity, curves).svg(PLOT)
+            .next()
+            .expect("a coordinate is plotted where there is a run");
+        let quantities = match group {
+            Group::Velocity => &run.layout.velocities,
+            _ => &run.layout.coordinates,
+        };
+        comparison(&quantities[coordinate], curves)
     }
 }

@@ -1,6 +1,7 @@
 //! `dalembert precision`.
 
 mod json;
+mod page;
 mod write;
 
 use std::path::PathBuf;
@@ -10,9 +11,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Outcome, Result};
+use super::page::write_page;
+use super::pictures::PictureArguments;
 use super::print;
 use super::run::refusal;
 use crate::precision::Study;
+use crate::record::plot::Look;
 use crate::record::{OutputFolder, Silent};
 use crate::scene::Scene;
 
@@ -54,6 +58,11 @@ pub struct PrecisionArguments {
     /// Folder for the table and the plot
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Also write a page with a plot that zooms
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: PictureArguments,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -77,6 +86,8 @@ struct Precision {
     study: Study,
     /// Wanted errors.
     errors: Vec<f64>,
+    /// How its plot looks.
+    look: Look,
 }
 
 pub fn precision(arguments: &PrecisionArguments) -> Result {
@@ -88,6 +99,7 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
     let problem = &scene.problem;
     let folder = arguments.out.as_deref().map(OutputFolder::new);
     let folder = folder.transpose()?;
+    let look = arguments.pictures.look()?;
     interrupt::listen()?;
 
     let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}");
@@ -102,9 +114,13 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
         title: problem.title.clone().unwrap_or(problem.model.name.into()),
         study: study.map_err(|reason| refusal(&scene, &reason))?,
         errors: arguments.error.clone(),
+        look,
     };
     if let Some(folder) = &folder {
         precision.write(folder)?;
+    }
+    if let Some(path) = &arguments.html {
+        write_page(path, &precision.page(&scene))?;
     }
     match arguments.json {
         true => print::output(format_args!("{:#}", precision.json()))?,

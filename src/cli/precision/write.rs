@@ -9,9 +9,9 @@ use crate::precision::{Bound, GIVEN_UP, Measured, Reference, Row, Verdict, metho
 use crate::record::plot::{Chart, Curve, Dimension};
 use crate::record::{FolderError, OutputFolder, exact, rounded};
 
-/// File names of the table and of the plot.
+/// File name of the table, and that of the plot without the format.
 const TABLE: &str = "precision.csv";
-const PLOT: &str = "precision.svg";
+const PLOT: &str = "precision";
 /// Size of the plot, in pixels.
 const SIZE: (f64, f64) = (640.0, 420.0);
 
@@ -20,7 +20,7 @@ impl Precision {
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         folder.replace(|files| {
             files.file(TABLE, |out| self.table(out))?;
-            files.file(PLOT, |out| out.write_all(self.chart().svg(SIZE).as_bytes()))
+            files.picture(PLOT, &self.chart().svg_as(SIZE, &self.look), &self.look)
         })
     }
 
@@ -78,7 +78,7 @@ impl Precision {
     }
 
     /// Time over error, a curve a method, and the bound. Errors below the bound are drawn at the bound.
-    fn chart(&self) -> Chart {
+    pub(super) fn chart(&self) -> Chart {
         let bound = self.bound().map_or(0.0, |b| b.end);
         let mut curves: Vec<Curve> = Vec::new();
         for row in &self.study.rows {
@@ -195,56 +195,87 @@ impl Display for Precision {
         let Some(reference) = &study.reference else {
             return write!(f, "the reference is not there, so nothing can be compared");
         };
-        let heads = [
-            "method",
-            "tolerance",
-            "end error",
-            "event time/s",
-            "missed",
-            "extra",
-            "in tails",
-            "imbalance/J",
-            "steps",
-            "evaluations",
-            "time",
-        ];
-        let mut table = Table::new(heads).right(1..heads.len());
-        let mut rows: Vec<&Row> = study.rows.iter().collect();
-        rows.sort_by_key(|row| method_name(row.method));
-        for row in &rows {
-            let tolerance = format!("{:.0e}", row.tolerance);
-            let cells = cells(&row.verdict, reference.bound);
-            table.row(
-                [method_name(row.method).to_owned(), tolerance]
-                    .into_iter()
-                    .chain(cells),
-            );
+        let mut table = Table::new(HEADS).right(1..HEADS.len());
+        for row in self.shown_rows(reference.bound) {
+            table.row(row);
         }
         writeln!(f, "{table}\n")?;
-        for row in rows {
-            if let Verdict::Stopped { .. } = row.verdict {
-                let (method, how) = (method_name(row.method), outcome(&row.verdict));
-                writeln!(f, "{method} at {:.0e} {how}", row.tolerance)?;
-            }
+        for line in self.stopped() {
+            writeln!(f, "{line}")?;
         }
-        describe(reference, f)?;
-        for &wanted in &self.errors {
-            match study.advice(wanted) {
-                Some(row) => write!(
-                    f,
-                    "\nfor an error of {wanted:.0e}: method {}, tolerance {:.0e}, {}",
-                    method_name(row.method),
-                    row.tolerance,
-                    duration(row.measured().map_or(f64::NAN, |found| found.seconds))
-                )?,
-                None => write!(
-                    f,
-                    "\nfor an error of {wanted:.0e}: {}",
-                    no_advice(wanted, reference)
-                )?,
-            }
+        write!(f, "{}", described(reference))?;
+        for line in self.advice_lines(reference) {
+            write!(f, "\n{line}")?;
         }
         Ok(())
+    }
+}
+
+/// Heads of the table of runs.
+pub(super) const HEADS: [&str; 11] = [
+    "method",
+    "tolerance",
+    "end error",
+    "event time/s",
+    "missed",
+    "extra",
+    "in tails",
+    "imbalance/J",
+    "steps",
+    "evaluations",
+    "time",
+];
+
+impl Precision {
+    /// The rows, method by method.
+    fn sorted(&self) -> Vec<&Row> {
+        let mut rows: Vec<&Row> = self.study.rows.iter().collect();
+        rows.sort_by_key(|row| method_name(row.method));
+        rows
+    }
+
+    /// The rows of the table, as [`HEADS`] says.
+    pub(super) fn shown_rows(&self, bound: Bound) -> Vec<Vec<String>> {
+        let row = |row: &Row| {
+            let first = [
+                method_name(row.method).to_owned(),
+                format!("{:.0e}", row.tolerance),
+            ];
+            let cells = cells(&row.verdict, bound);
+            first.into_iter().chain(cells).collect()
+        };
+        self.sorted().into_iter().map(row).collect()
+    }
+
+    /// Which runs stopped early, and why.
+    pub(super) fn stopped(&self) -> Vec<String> {
+        let is_stopped = |row: &&Row| matches!(row.verdict, Verdict::Stopped { .. });
+        let line = |row: &Row| {
+            let (method, how) = (method_name(row.method), outcome(&row.verdict));
+            format!("{method} at {:.0e} {how}", row.tolerance)
+        };
+        self.sorted()
+            .into_iter()
+            .filter(is_stopped)
+            .map(line)
+            .collect()
+    }
+
+    /// What to use for each of the wanted errors.
+    pub(super) fn advice_lines(&self, reference: &Reference) -> Vec<String> {
+        let line = |&wanted: &f64| match self.study.advice(wanted) {
+            Some(row) => format!(
+                "for an error of {wanted:.0e}: method {}, tolerance {:.0e}, {}",
+                method_name(row.method),
+                row.tolerance,
+                duration(row.measured().map_or(f64::NAN, |found| found.seconds))
+            ),
+            None => format!(
+                "for an error of {wanted:.0e}: {}",
+                no_advice(wanted, reference)
+            ),
+        };
+        self.errors.iter().map(line).collect()
     }
 }
 
@@ -264,27 +295,25 @@ pub(super) fn compared_with(reference: &Reference) -> String {
     }
 }
 
-/// Says what the runs were compared with.
-fn describe(reference: &Reference, f: &mut Formatter) -> fmt::Result {
+/// What the runs were compared with, in lines that end.
+pub(super) fn described(reference: &Reference) -> String {
     let by = compared_with(reference);
     let (events, bound) = (reference.events(), reference.bound);
-    write!(
-        f,
+    let mut words = format!(
         "reference: {by}, {events} events; known to {:.0e} at the end",
         bound.end
-    )?;
+    );
     if events > 0 {
-        write!(f, " and {:.0e} s in an event's time", bound.event_time)?;
+        words += &format!(" and {:.0e} s in an event's time", bound.event_time);
     }
-    writeln!(f)?;
+    words.push('\n');
     if let Some(horizon) = &reference.horizon {
-        writeln!(
-            f,
-            "It is not determined beyond event {events}, at t = {} s: {}.\nAll runs end at t = {} s.",
+        words += &format!(
+            "It is not determined beyond event {events}, at t = {} s: {}.\nAll runs end at t = {} s.\n",
             rounded(horizon.until, 6),
             horizon.why,
             rounded(horizon.at, 6),
-        )?;
+        );
     }
-    Ok(())
+    words
 }

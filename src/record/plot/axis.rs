@@ -1,6 +1,7 @@
 //! Axes: ranges, scales, ticks.
 
 use super::symbol::{Display, display, printed, superscript};
+use crate::record::Units;
 use crate::record::number::rounded;
 
 /// How values are spread along an axis.
@@ -48,17 +49,23 @@ const PLAIN: std::ops::Range<f64> = 1e-280..1e280;
 impl Axis {
     /// The axis of values between `low` and `high`, in `unit`, with `margin` times their
     /// difference free at both ends.
-    pub fn new(scale: Scale, unit: &str, (low, high): (f64, f64), margin: f64) -> Axis {
+    pub fn new(
+        scale: Scale,
+        unit: &str,
+        units: &Units,
+        (low, high): (f64, f64),
+        margin: f64,
+    ) -> Axis {
         match scale {
-            Scale::Linear => Self::linear(unit, low, high, margin),
+            Scale::Linear => Self::linear(unit, units, low, high, margin),
             Scale::Log => {
-                let (low, high) = (low.log10(), high.log10());
+                let display = display(unit, 0.0, units);
+                let [low, high] = [low, high].map(|x| (x * display.factor).log10());
                 let room = if high > low {
                     (high - low) * margin
                 } else {
                     0.5
                 };
-                let display = display(unit, 0.0);
                 Axis {
                     scale,
                     low: low - room,
@@ -72,7 +79,7 @@ impl Axis {
         }
     }
 
-    fn linear(unit: &str, low: f64, high: f64, margin: f64) -> Axis {
+    fn linear(unit: &str, units: &Units, low: f64, high: f64, margin: f64) -> Axis {
         let largest = low.abs().max(high.abs());
         let exponent = match largest {
             0.0 => 0,
@@ -91,7 +98,8 @@ impl Axis {
             0.0
         };
         let largest = (low - offset).abs().max((high - offset).abs());
-        let mut display = display(unit, largest);
+        let mut display = display(unit, largest, units);
+        // Beyond what a factor of units can be multiplied with, the model's unit stays.
         if exponent != 0 {
             let unit = format!("10{} {}", superscript(exponent), printed(unit));
             display = Display {
@@ -126,7 +134,7 @@ impl Axis {
                 let value = value * self.powers[0] * self.powers[1];
                 (value - self.offset) * self.display.factor
             }
-            Scale::Log if value > 0.0 => value.log10(),
+            Scale::Log if value > 0.0 => (value * self.display.factor).log10(),
             Scale::Log => f64::NAN,
         };
         (shown - self.low) / (self.high - self.low)
@@ -205,7 +213,13 @@ mod tests {
 
     #[test]
     fn small_values_are_shown_in_a_smaller_unit() {
-        let axis = Axis::new(Scale::Linear, "m", (-3.2e-6, 1.1e-6), 0.0);
+        let axis = Axis::new(
+            Scale::Linear,
+            "m",
+            &Units::default(),
+            (-3.2e-6, 1.1e-6),
+            0.0,
+        );
         assert_eq!(axis.title("x"), "x (µm)");
         assert_eq!(labels(&axis, 5), ["−3", "−2", "−1", "0", "1"]);
         assert_eq!(labels(&axis, 4), ["−2", "0"]);
@@ -214,8 +228,29 @@ mod tests {
     }
 
     #[test]
+    fn the_reader_s_units_are_kept_whatever_the_values() {
+        let units = Units::new(["mm", "ms"]).unwrap();
+        let axis = Axis::new(Scale::Linear, "m", &units, (-3.2e-6, 1.1e-6), 0.0);
+        assert_eq!(axis.title("x"), "x (mm)");
+        assert_eq!(
+            labels(&axis, 5),
+            ["−0.003", "−0.002", "−0.001", "0.000", "0.001"]
+        );
+        let axis = Axis::new(Scale::Log, "s", &units, (1e-3, 1.0), 0.0);
+        assert_eq!(axis.title("t"), "t (ms)");
+        assert_eq!(labels(&axis, 10), ["10⁰", "10¹", "10²", "10³"]);
+        assert_eq!(axis.position(1.0), 1.0);
+    }
+
+    #[test]
     fn small_differences_are_shown_beside_an_offset() {
-        let axis = Axis::new(Scale::Linear, "m", (1.234_560_9, 1.234_563_1), 0.0);
+        let axis = Axis::new(
+            Scale::Linear,
+            "m",
+            &Units::default(),
+            (1.234_560_9, 1.234_563_1),
+            0.0,
+        );
         assert_eq!(axis.title("y"), "y − 1.23456 m (µm)");
         assert_eq!(labels(&axis, 3), ["1", "2", "3"]);
     }
@@ -233,7 +268,7 @@ mod tests {
             (most.next_down(), most),
             (1e280, 1e281),
         ] {
-            let axis = Axis::new(Scale::Linear, "m", (low, high), 0.05);
+            let axis = Axis::new(Scale::Linear, "m", &Units::default(), (low, high), 0.05);
             let [left, right] = [low, high].map(|x| axis.position(x));
             assert!(
                 -1e-9 <= left && left <= right && right <= 1.0 + 1e-9,
@@ -241,7 +276,7 @@ mod tests {
             );
             assert!(axis.ticks(8).len() <= 9, "{low} {high}");
         }
-        let axis = Axis::new(Scale::Linear, "m", (0.0, 4.5e-310), 0.0);
+        let axis = Axis::new(Scale::Linear, "m", &Units::default(), (0.0, 4.5e-310), 0.0);
         assert_eq!(axis.title("x"), "x (10⁻³¹⁰ m)");
         assert_eq!(labels(&axis, 5), ["0", "1", "2", "3", "4"]);
     }
@@ -249,7 +284,7 @@ mod tests {
     #[test]
     fn a_constant_has_an_axis() {
         for value in [0.0, 5.0, -1e-9] {
-            let axis = Axis::new(Scale::Linear, "1", (value, value), 0.05);
+            let axis = Axis::new(Scale::Linear, "1", &Units::default(), (value, value), 0.05);
             assert!((axis.position(value) - 0.5).abs() < 1e-12);
             assert!(!axis.ticks(4).is_empty());
         }
@@ -257,7 +292,7 @@ mod tests {
 
     #[test]
     fn decades_are_the_ticks_of_a_logarithmic_axis() {
-        let axis = Axis::new(Scale::Log, "s", (1e-3, 1.0), 0.0);
+        let axis = Axis::new(Scale::Log, "s", &Units::default(), (1e-3, 1.0), 0.0);
         assert_eq!(labels(&axis, 10), ["10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
         assert!(axis.position(0.0).is_nan());
     }

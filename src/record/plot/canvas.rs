@@ -1,5 +1,7 @@
 //! Drawing in pixels, on plotters' SVG backend.
 
+use super::marked::{DOTS, END_SUB, SUB};
+use super::palette::PAPER;
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{
@@ -13,11 +15,6 @@ const UNITS: f64 = 10.0;
 /// The backend writes font sizes divided by this.
 const FONT_FACTOR: f64 = 1.24;
 
-/// Opens a subscript in a text (a code point for private use).
-pub(super) const SUB: char = '\u{e000}';
-/// Closes a subscript in a text.
-pub(super) const END_SUB: char = '\u{e001}';
-
 /// Which point of a text is at the given position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
@@ -29,6 +26,10 @@ pub(super) enum Anchor {
     Right,
     /// Middle, halfway up, of a text that reads upwards.
     Upwards,
+    /// Its start.
+    UpwardsFrom,
+    /// Its end.
+    UpwardsTo,
 }
 
 /// How a text looks.
@@ -54,7 +55,7 @@ pub(super) fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -
     let mut canvas = Canvas {
         backend: SVGBackend::with_string(&mut svg, (w, h)),
     };
-    canvas.rectangle((0.0, 0.0), (width, height), RGBColor(255, 255, 255));
+    canvas.rectangle((0.0, 0.0), (width, height), PAPER);
     draw(&mut canvas);
     canvas.backend.present().expect(INTO_A_STRING);
     drop(canvas);
@@ -122,8 +123,73 @@ impl Canvas<'_> {
             .expect(INTO_A_STRING);
     }
 
-    /// A text.
+    /// A text, in which letters may have dots above. Viewers place combining dots as their fonts please, some of them
+    /// across the letter or across each other; so the dots are discs, and a letter that has some stands in a place of
+    /// its own.
     pub fn text(&mut self, text: &str, at: (f64, f64), anchor: Anchor, font: Font) {
+        let parts = parts(text);
+        if let [Part::Plain(text)] = parts[..] {
+            return self.plain(text, at, anchor, font);
+        }
+        let widths = parts.iter().map(|part| part.width(font.size));
+        let total: f64 = widths.clone().sum();
+        let mut along = match anchor {
+            Anchor::Left | Anchor::UpwardsFrom => 0.0,
+            Anchor::Centre | Anchor::Upwards => -total / 2.0,
+            Anchor::Right | Anchor::UpwardsTo => -total,
+        };
+        let upwards = matches!(
+            anchor,
+            Anchor::Upwards | Anchor::UpwardsFrom | Anchor::UpwardsTo
+        );
+        // From the position so far along the text, and up from its middle.
+        let place = |along: f64, up: f64| match upwards {
+            true => (at.0 - up, at.1 - along),
+            false => (at.0 + along, at.1 - up),
+        };
+        let last_plain = parts.len() - 1;
+        for (i, (part, width)) in parts.iter().zip(widths).enumerate() {
+            match *part {
+                // Beside its letter, whatever width the viewer's font gives it.
+                Part::Plain(text) => {
+                    let at_end = i < last_plain;
+                    let edge = if at_end { along + width } else { along };
+                    let anchor = match (upwards, at_end) {
+                        (true, false) => Anchor::UpwardsFrom,
+                        (true, true) => Anchor::UpwardsTo,
+                        (false, false) => Anchor::Left,
+                        (false, true) => Anchor::Right,
+                    };
+                    self.plain(text, place(edge, 0.0), anchor, font);
+                }
+                Part::Dotted(letter, dots) => {
+                    let middle = along + width / 2.0;
+                    let centred = match upwards {
+                        true => Anchor::Upwards,
+                        false => Anchor::Centre,
+                    };
+                    self.plain(letter, place(middle, 0.0), centred, font);
+                    let tall = letter.chars().any(is_tall);
+                    let up = font.size * if tall { ABOVE_TALL } else { ABOVE_SMALL };
+                    for dot in 0..dots {
+                        let aside = (dot as f64 - (dots - 1) as f64 / 2.0) * DOT_DISTANCE;
+                        let centre = place(middle + aside * font.size, up);
+                        self.disc(centre, font.size * DOT, font.colour);
+                    }
+                }
+            }
+            along += width;
+        }
+    }
+
+    /// A text without dots.
+    fn plain(&mut self, text: &str, at: (f64, f64), anchor: Anchor, font: Font) {
+        // SVG drops a space at the start, and the height of a text where a subscript, with a height of its own, starts it.
+        let text = &match text.chars().next() {
+            Some(' ') => text.replacen(' ', "\u{a0}", 1),
+            Some(SUB) => format!("\u{200b}{text}"),
+            _ => text.to_owned(),
+        };
         let style = if font.bold {
             FontStyle::Bold
         } else {
@@ -135,6 +201,8 @@ impl Canvas<'_> {
             Anchor::Centre => (HPos::Center, FontTransform::None),
             Anchor::Right => (HPos::Right, FontTransform::None),
             Anchor::Upwards => (HPos::Center, FontTransform::Rotate270),
+            Anchor::UpwardsFrom => (HPos::Left, FontTransform::Rotate270),
+            Anchor::UpwardsTo => (HPos::Right, FontTransform::Rotate270),
         };
         let style = TextStyle::from(FontDesc::new(FontFamily::SansSerif, size, style))
             .color(&font.colour)
@@ -146,10 +214,61 @@ impl Canvas<'_> {
     }
 }
 
+/// A piece of a text.
+enum Part<'t> {
+    Plain(&'t str),
+    /// A letter with so many dots above.
+    Dotted(&'t str, usize),
+}
+
+/// The pieces of a text, at least one.
+fn parts(text: &str) -> Vec<Part<'_>> {
+    let (mut parts, mut rest) = (Vec::new(), text);
+    while let Some(at) = rest.find(DOTS) {
+        if at > 0 {
+            parts.push(Part::Plain(&rest[..at]));
+        }
+        let mut chars = rest[at..].chars();
+        let mark = chars.next().expect("there is a mark");
+        let letter = chars.next().map_or(0, char::len_utf8);
+        let dots = 1 + usize::from(mark == DOTS[1]);
+        let start = at + mark.len_utf8();
+        parts.push(Part::Dotted(&rest[start..start + letter], dots));
+        rest = &rest[start + letter..];
+    }
+    if !rest.is_empty() || parts.is_empty() {
+        parts.push(Part::Plain(rest));
+    }
+    parts
+}
+
+impl Part<'_> {
+    fn width(&self, size: f64) -> f64 {
+        match self {
+            Part::Plain(text) => text_width(text, size),
+            Part::Dotted(..) => LETTER * size,
+        }
+    }
+}
+
+/// Sizes in em: the width of a letter with dots, which no small letter but m exceeds in the usual fonts; radius and
+/// distance of dots; their height above the middle of small letters, and of letters with an ascender.
+const LETTER: f64 = 0.62;
+const DOT: f64 = 0.075;
+const DOT_DISTANCE: f64 = 0.28;
+const ABOVE_SMALL: f64 = 0.45;
+const ABOVE_TALL: f64 = 0.64;
+
+/// Whether a letter has an ascender.
+fn is_tall(letter: char) -> bool {
+    letter.is_uppercase() || "bdfhijklt0123456789βδζθλξφψ".contains(letter)
+}
+
 /// Width of a text in pixels, a little more than in the usual sans-serif fonts: the font is the
 /// viewer's choice.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
-    let wide = |c: char| if c == SUB || c == END_SUB { 0.0 } else { 0.58 };
+    let is_mark = |c: char| c == SUB || c == END_SUB || DOTS.contains(&c);
+    let wide = |c: char| if is_mark(c) { 0.0 } else { 0.58 };
     size * text.chars().map(wide).sum::<f64>()
 }
 
@@ -185,6 +304,23 @@ mod tests {
             simplified(path.into_iter()),
             [(0, 0), (5, 5), (4, 4), (4, 9)]
         );
+    }
+
+    #[test]
+    fn dots_are_discs_above_their_letter() {
+        let font = Font {
+            size: 10.0,
+            colour: RGBColor(0, 0, 0),
+            bold: false,
+        };
+        for (dots, anchor) in [(0, Anchor::Left), (1, Anchor::Upwards)] {
+            let text = format!("{}θ{SUB}I{END_SUB} (s)", DOTS[dots]);
+            let svg = picture(90.0, 90.0, |canvas| {
+                canvas.text(&text, (40.0, 40.0), anchor, font)
+            });
+            assert_eq!(svg.matches("<circle").count(), dots + 1, "{svg}");
+            assert!(!svg.contains(DOTS), "{svg}");
+        }
     }
 
     #[test]

@@ -2,12 +2,13 @@
 
 use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, Font, picture};
+use super::look::{Look, windowed};
 use super::palette::INK;
 use super::panel::{
     Area, Curve, curves, entries, grid, horizontal_axis, legend, legend_height, range,
 };
 use super::symbol::symbol;
-use crate::record::Quantity;
+use crate::record::{Quantity, Units};
 
 /// What one axis of a chart shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,7 +65,7 @@ impl Dimension {
     }
 
     /// The axis that shows all the values; from 0 to 1 (or 1 to 10) when there are none.
-    fn axis(&self, values: impl Iterator<Item = f64>, margin: f64) -> Axis {
+    fn axis(&self, values: impl Iterator<Item = f64>, margin: f64, units: &Units) -> Axis {
         let shown = |x: f64| self.scale == Scale::Linear || x > 0.0;
         let none = if self.scale == Scale::Log {
             (1.0, 10.0)
@@ -74,6 +75,7 @@ impl Dimension {
         Axis::new(
             self.scale,
             &self.unit,
+            units,
             range(values, shown).unwrap_or(none),
             margin,
         )
@@ -93,22 +95,33 @@ pub fn comparison(quantity: &Quantity, runs: Vec<Curve>) -> Chart {
 
 impl Chart {
     /// The chart as SVG, `width` × `height` pixels.
-    pub fn svg(&self, (width, height): (f64, f64)) -> String {
+    pub fn svg(&self, size: (f64, f64)) -> String {
+        self.svg_as(size, &Look::default())
+    }
+
+    /// The chart as SVG, in the size that `look` has or else in `size`. A window is one of time: it cuts the curves of
+    /// a chart over time.
+    pub fn svg_as(&self, size: (f64, f64), look: &Look) -> String {
+        let (width, height) = look.size.unwrap_or(size);
+        let mut shown = self.clone();
+        if self.x.unit == "s" && self.x.scale == Scale::Linear {
+            for curve in &mut shown.curves {
+                curve.points = windowed(curve.points.iter().copied(), look.window);
+            }
+        }
         picture(width, height, |canvas| {
-            self.draw(
-                canvas,
-                Area {
-                    left: 0.0,
-                    top: 0.0,
-                    width,
-                    height,
-                },
-            )
+            let area = Area {
+                left: 0.0,
+                top: 0.0,
+                width,
+                height,
+            };
+            shown.draw(canvas, area, &look.units);
         })
     }
 
-    /// Draws the chart into an area of a picture.
-    pub(super) fn draw(&self, canvas: &mut Canvas, area: Area) {
+    /// Draws the chart into an area of a picture; gives where its axes are, and the axes.
+    pub(super) fn draw(&self, canvas: &mut Canvas, area: Area, units: &Units) -> (Area, [Axis; 2]) {
         let width = area.width - LEFT - RIGHT;
         let left = area.left + LEFT;
         let mut top = area.top + 10.0;
@@ -134,10 +147,12 @@ impl Chart {
         let x = self.x.axis(
             points().map(|p| p.0),
             if in_order && !self.marks { 0.0 } else { 0.06 },
+            units,
         );
-        let y = self.y.axis(points().map(|p| p.1), 0.06);
+        let y = self.y.axis(points().map(|p| p.1), 0.06, units);
         grid(canvas, inner, &x, &y, &self.y.title);
         horizontal_axis(canvas, inner, &x, &self.x.title);
         curves(canvas, inner, &x, &y, &self.curves, self.marks);
+        (inner, [x, y])
     }
 }

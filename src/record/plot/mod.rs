@@ -6,7 +6,10 @@
 mod axis;
 mod canvas;
 mod chart;
+mod coincide;
 mod decimate;
+mod look;
+pub(crate) mod marked;
 mod overview;
 mod palette;
 mod panel;
@@ -16,8 +19,10 @@ mod symbol;
 
 pub use axis::Scale;
 pub use chart::{Chart, Dimension, comparison};
+pub use look::{Format, LEAST, Look};
 pub use overview::overview;
 pub(crate) use overview::{Grouped, grouped, overview_of};
 pub use panel::Curve;
 pub use phase::phase_portraits;
-pub(crate) use phase::phase_portraits_of;
+pub(crate) use phase::{phase_portraits_of, portraits};
+pub(crate) use symbol::symbol;

@@ -2,6 +2,7 @@
 
 use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, Font, picture, text_width};
+use super::look::{Asked, Look, windowed};
 use super::palette::{ALARM, INK, LINE_COLOURS};
 use super::panel::{
     Area, Curve, ROW, SMALL, TEXT, curves, entries, grid, horizontal_axis, legend, legend_height,
@@ -12,14 +13,14 @@ use super::symbol::symbol;
 use crate::record::number::rounded;
 use crate::record::{Column, Group, Run, Sketch};
 
-/// Width of the picture and of its margins, which hold the labels of the axes and, on the right,
-/// the numbers of transitions.
+/// Width of the picture where no other is asked for, and of its margins, which hold the labels of the axes and, on the
+/// right, the numbers of transitions.
 const WIDTH: f64 = 960.0;
 const LEFT: f64 = 104.0;
 const RIGHT: f64 = 46.0;
-const INNER: f64 = WIDTH - LEFT - RIGHT;
-/// Height of the axes of a panel, and the space below them.
+/// Height of the axes of a panel, at least where another is asked for, and the space below them.
 const PANEL: f64 = 92.0;
+const LEAST_PANEL: f64 = 40.0;
 const GAP: f64 = 10.0;
 /// Height of the labels and the title of the axis of time.
 const TIME_AXIS: f64 = 38.0;
@@ -49,56 +50,66 @@ struct Panel {
     columns: Vec<(usize, (f64, f64))>,
 }
 
-/// Draws inputs, coordinates, velocities, outputs, reactions and energies over time, one below the other,
+/// Draws coordinates, velocities, outputs, reactions, energies and inputs over time, one below the other,
 /// with the modes and the transitions underneath, as SVG. Quantities of the same kind and unit
 /// share a panel where each is readable there; those that never change are listed.
 pub fn overview(run: &Run) -> String {
-    overview_of(run, &Sketch::of(run))
+    overview_of(run, &Sketch::of(run), &Look::default())
 }
 
-/// The same from a sketch of a run.
-pub(crate) fn overview_of(run: &Run, sketch: &Sketch) -> String {
-    let (panels, constants) = panels(run, sketch);
-    let time = time_axis(run, sketch);
-    let strip = Strip::new(run, sketch);
-    let with_curves = |panel| (panel_curves(sketch, &panel), panel);
+/// The same from a sketch of a run, as `look` says, whose panels are those of the run.
+pub(crate) fn overview_of(run: &Run, sketch: &Sketch, look: &Look) -> String {
+    let (panels, constants) = panels(run, sketch, look);
+    let time = time_axis(run, sketch, look);
+    let strip = Strip::new(run, sketch, look.window);
+    let with_curves = |panel| (panel_curves(sketch, &panel, look), panel);
     let panels: Vec<(Vec<Curve>, Panel)> = panels.into_iter().map(with_curves).collect();
-    let notes = wrapped(&constants, INNER);
-    let panel_height = |c: &[Curve]| legend_height(&entries(c), INNER) + PANEL + GAP;
-    let height = HEAD
-        + panels.iter().map(|(c, _)| panel_height(c)).sum::<f64>()
+    let width = look.size.map_or(WIDTH, |size| size.0);
+    let inner = width - LEFT - RIGHT;
+    let notes = wrapped(&constants, inner);
+    let legends = panels
+        .iter()
+        .map(|(c, _)| legend_height(&entries(c), inner) + GAP);
+    let without_panels = HEAD
+        + legends.sum::<f64>()
         + TIME_AXIS
-        + strip.height(INNER)
+        + strip.height(inner)
         + notes.len() as f64 * ROW
         + 2.0 * GAP;
-    picture(WIDTH, height, |canvas| {
-        head(canvas, run);
+    let count = panels.len() as f64;
+    let panel_height = match look.size {
+        Some((_, height)) => ((height - without_panels) / count.max(1.0)).max(LEAST_PANEL),
+        None => PANEL,
+    };
+    let height = without_panels + count * panel_height;
+    picture(width, height, |canvas| {
+        head(canvas, run, width);
         let mut top = HEAD;
         let mut last = Area {
             left: LEFT,
             top,
-            width: INNER,
+            width: inner,
             height: 0.0,
         };
         for (c, panel) in &panels {
             let legend_entries = entries(c);
-            legend(canvas, &legend_entries, (LEFT, top), INNER);
-            top += legend_height(&legend_entries, INNER);
+            legend(canvas, &legend_entries, (LEFT, top), inner);
+            top += legend_height(&legend_entries, inner);
             last = Area {
                 left: LEFT,
                 top,
-                width: INNER,
-                height: PANEL,
+                width: inner,
+                height: panel_height,
             };
-            let y = Axis::new(Scale::Linear, &panel.unit, panel.range, 0.06);
+            let y = Axis::new(Scale::Linear, &panel.unit, &look.units, panel.range, 0.06);
             grid(canvas, last, &time, &y, &axis_title(sketch, panel));
             curves(canvas, last, &time, &y, c, false);
-            top += PANEL + GAP;
+            top += panel_height + GAP;
         }
         horizontal_axis(canvas, last, &time, "time t");
         top = last.bottom() + TIME_AXIS;
-        strip.draw(canvas, &time, (LEFT, top), INNER);
-        top += strip.height(INNER) + GAP;
+        strip.draw(canvas, &time, (LEFT, top), inner);
+        top += strip.height(inner) + GAP;
         for note in &notes {
             canvas.text(note, (LEFT, top + ROW / 2.0), Anchor::Left, SMALL);
             top += ROW;
@@ -106,7 +117,7 @@ pub(crate) fn overview_of(run: &Run, sketch: &Sketch) -> String {
     })
 }
 
-fn head(canvas: &mut Canvas, run: &Run) {
+fn head(canvas: &mut Canvas, run: &Run, width: f64) {
     let subject = &run.subject;
     let title = if subject.title.is_empty() {
         &subject.model
@@ -127,49 +138,63 @@ fn head(canvas: &mut Canvas, run: &Run) {
         line = vec![format!("{place}: {}", failure.reason)];
         font.colour = ALARM;
     }
-    let line = wrapped(&line.join(" · "), WIDTH - LEFT);
+    let line = wrapped(&line.join(" · "), width - LEFT);
     let first = line.first().map_or("", String::as_str);
     let more = if line.len() > 1 { " …" } else { "" };
     canvas.text(&format!("{first}{more}"), (LEFT, 34.0), Anchor::Left, font);
 }
 
-/// The axis from the first instant of a run to its end.
-fn time_axis(run: &Run, sketch: &Sketch) -> Axis {
+/// The axis of the window, or from the first instant of a run to its end.
+fn time_axis(run: &Run, sketch: &Sketch, look: &Look) -> Axis {
     let times = sketch.times().chain([run.end.t]);
-    let (from, to) = range(times, |_| true).unwrap_or((0.0, 0.0));
-    Axis::new(Scale::Linear, "s", (from, to), 0.0)
+    let all = range(times, |_| true).unwrap_or((0.0, 0.0));
+    let shown = look.window.unwrap_or(all);
+    Axis::new(Scale::Linear, "s", &look.units, shown, 0.0)
 }
 
+/// The order of groups where none is asked for: the response before what causes it.
+const ORDER: [Group; 6] = [
+    Group::Coordinate,
+    Group::Velocity,
+    Group::Output,
+    Group::Reaction,
+    Group::Energy,
+    Group::Input,
+];
+
 /// Divides the columns among panels; also a sentence about those that never change.
-fn panels(run: &Run, sketch: &Sketch) -> (Vec<Panel>, String) {
-    const ORDER: [Group; 6] = [
-        Group::Input,
-        Group::Coordinate,
-        Group::Velocity,
-        Group::Output,
-        Group::Reaction,
-        Group::Energy,
-    ];
+fn panels(run: &Run, sketch: &Sketch, look: &Look) -> (Vec<Panel>, String) {
+    let asked = look.asked(&run.layout).unwrap_or_default();
+    let asked = match asked.is_empty() {
+        true => ORDER.map(Asked::Group).to_vec(),
+        false => asked,
+    };
     let mut panels: Vec<Panel> = Vec::new();
     let mut constants = Vec::new();
-    for group in ORDER {
+    for asked in asked {
         let start = panels.len();
-        for i in run.layout.range(group) {
+        let (columns, in_one) = match asked {
+            Asked::Group(group) => (run.layout.range(group).collect(), false),
+            Asked::Columns(columns) => (columns, true),
+        };
+        for i in columns {
             let column = &sketch.columns()[i];
-            let Some(range) = range(sketch.curve(i).map(|p| p.1), |_| true) else {
+            let values = windowed(sketch.curve(i), look.window);
+            let Some(range) = range(values.iter().map(|p| p.1), |_| true) else {
                 continue;
             };
-            if !varies(range) {
-                let value = rounded(range.0, 6).replace('-', "−");
-                let constant = format!("{} = {value} {}", column.name, column.unit);
+            if !varies(range) && !in_one {
+                let (value, unit) = look.units.show(range.0, &column.unit);
+                let value = rounded(value, 6).replace('-', "−");
+                let constant = format!("{} = {value} {unit}", column.name);
                 constants.push(constant.replace(' ', NO_BREAK));
                 continue;
             }
-            let fits = |panel: &&mut Panel| panel.takes(column, range);
+            let fits = |panel: &&mut Panel| in_one || panel.takes(column, range);
             match panels[start..].iter_mut().find(fits) {
                 Some(panel) => panel.add(i, range),
                 None => panels.push(Panel {
-                    group,
+                    group: column.group,
                     unit: column.unit.clone(),
                     range,
                     columns: vec![(i, range)],
@@ -187,24 +212,17 @@ fn panels(run: &Run, sketch: &Sketch) -> (Vec<Panel>, String) {
 /// Columns that are drawn together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Grouped {
-    /// What they are.
-    pub group: Group,
     /// Their indices.
     pub columns: Vec<usize>,
 }
 
-/// How a run's columns are divided among panels, the response before the inputs; also a sentence about those that never
-/// change.
-pub(crate) fn grouped(run: &Run, sketch: &Sketch) -> (Vec<Grouped>, String) {
-    let (panels, constants) = panels(run, sketch);
-    let mut groups: Vec<Grouped> = (panels.into_iter())
-        .map(|panel| Grouped {
-            group: panel.group,
-            columns: panel.columns.iter().map(|c| c.0).collect(),
-        })
-        .collect();
-    groups.sort_by_key(|g| g.group == Group::Input);
-    (groups, constants)
+/// How a run's columns are divided among panels; also a sentence about those that never change.
+pub(crate) fn grouped(run: &Run, sketch: &Sketch, look: &Look) -> (Vec<Grouped>, String) {
+    let (panels, constants) = panels(run, sketch, look);
+    let grouped = |panel: Panel| Grouped {
+        columns: panel.columns.iter().map(|c| c.0).collect(),
+    };
+    (panels.into_iter().map(grouped).collect(), constants)
 }
 
 fn varies((low, high): (f64, f64)) -> bool {
@@ -231,7 +249,7 @@ impl Panel {
     }
 }
 
-fn panel_curves(sketch: &Sketch, panel: &Panel) -> Vec<Curve> {
+fn panel_curves(sketch: &Sketch, panel: &Panel, look: &Look) -> Vec<Curve> {
     let curve = |&(i, _): &(usize, (f64, f64))| {
         let column = &sketch.columns()[i];
         // Of a rate the symbol says it all, and a lone one has it beside its axis.
@@ -242,7 +260,7 @@ fn panel_curves(sketch: &Sketch, panel: &Panel) -> Vec<Curve> {
         };
         Curve {
             label,
-            points: sketch.curve(i).collect(),
+            points: windowed(sketch.curve(i), look.window),
         }
     };
     panel.columns.iter().map(curve).collect()

@@ -2,6 +2,8 @@
 
 use plotters::style::RGBColor;
 
+/// What is drawn on.
+pub(super) const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
 /// Text and axes.
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 /// What is said on the side.

@@ -4,6 +4,7 @@ use plotters::style::RGBColor;
 
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, Font, text_width};
+use super::coincide::shared;
 use super::decimate::decimate;
 use super::palette::{FAINT, GRID, INK, ZERO, line};
 
@@ -170,7 +171,8 @@ fn horizontal_ticks(area: Area) -> usize {
     (area.width / 55.0) as usize
 }
 
-/// Draws curves into an area, each in its colour, with marks at the points if wanted.
+/// Draws curves into an area, each in its colour, with marks at the points if wanted. Where curves lie on each other
+/// their colours alternate.
 pub(super) fn curves(
     canvas: &mut Canvas,
     area: Area,
@@ -179,18 +181,27 @@ pub(super) fn curves(
     curves: &[Curve],
     marks: bool,
 ) {
+    let pixels = |curve: &Curve| -> Vec<(f64, f64)> {
+        let at = |&(a, b): &(f64, f64)| area.at(x.position(a), y.position(b));
+        curve.points.iter().map(at).collect()
+    };
+    let in_order = |curve: &Curve| curve.points.is_sorted_by(|a, b| a.0 <= b.0);
+    if curves.iter().all(in_order) {
+        let decimated = |curve| decimate(pixels(curve).into_iter());
+        let lines: Vec<_> = curves.iter().map(decimated).collect();
+        let parts = shared(&lines, area.left, area.width);
+        for (i, part) in parts.into_iter().enumerate() {
+            for piece in part {
+                canvas.line(piece, CURVE, line(i));
+            }
+            if marks {
+                lines[i].iter().for_each(|&p| canvas.disc(p, MARK, line(i)));
+            }
+        }
+        return;
+    }
     for (i, curve) in curves.iter().enumerate() {
-        let in_order = curve.points.is_sorted_by(|a, b| a.0 <= b.0);
-        let pixels = curve
-            .points
-            .iter()
-            .map(|&(a, b)| area.at(x.position(a), y.position(b)));
-        let pixels: Vec<_> = if in_order {
-            decimate(pixels)
-        } else {
-            pixels.collect()
-        };
-        for piece in pixels.split(|p| !p.0.is_finite() || !p.1.is_finite()) {
+        for piece in pixels(curve).split(|p| !p.0.is_finite() || !p.1.is_finite()) {
             canvas.line(piece.iter().copied(), CURVE, line(i));
             if marks {
                 piece.iter().for_each(|&p| canvas.disc(p, MARK, line(i)));

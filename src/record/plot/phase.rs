@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 
-use super::canvas::picture;
+use super::canvas::{Anchor, Canvas, picture};
 use super::chart::{Chart, Dimension};
-use super::panel::{Area, Curve, range};
+use super::look::Look;
+use super::palette::{PAPER, line};
+use super::panel::{Area, Curve, SMALL, range};
 use super::symbol::symbol;
 use crate::record::number::rounded;
 use crate::record::{Group, Run, Sketch};
@@ -20,47 +22,92 @@ const PIECES: usize = 16_000;
 
 /// Draws the phase portrait of every coordinate that moves, as SVG; `None` when none does.
 pub fn phase_portraits(run: &Run) -> Option<String> {
-    phase_portraits_of(run, &Sketch::of(run))
+    phase_portraits_of(run, &Sketch::of(run), &Look::default())
 }
 
-/// The same from a sketch of a run; of a long one what is kept whole.
-pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch) -> Option<String> {
-    let coordinates = run.layout.range(Group::Coordinate);
-    let velocities = run.layout.range(Group::Velocity);
-    let charts: Vec<Chart> = coordinates
-        .zip(velocities)
-        .filter_map(|(q, v)| portrait(sketch, q, v))
-        .collect();
+/// The same from a sketch of a run, as `look` says; of a long one what is kept whole.
+pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Option<String> {
+    let charts = portraits(run, sketch, look);
     if charts.is_empty() {
         return None;
     }
-    let across = charts.len().min(ACROSS);
-    let (width, height) = SIZE;
-    let picture_size = (
-        width * across as f64,
-        height * charts.len().div_ceil(ACROSS) as f64,
-    );
-    Some(picture(picture_size.0, picture_size.1, |canvas| {
+    let (across, down) = (charts.len().min(ACROSS), charts.len().div_ceil(ACROSS));
+    let (width, height) = match look.size {
+        Some((width, height)) => (width / across as f64, height / down as f64),
+        None => SIZE,
+    };
+    let size = (width * across as f64, height * down as f64);
+    Some(picture(size.0, size.1, |canvas| {
         for (i, chart) in charts.iter().enumerate() {
-            let (left, top) = ((i % across) as f64 * width, (i / across) as f64 * height);
-            chart.draw(
-                canvas,
-                Area {
-                    left,
-                    top,
-                    width,
-                    height,
-                },
-            );
+            let area = Area {
+                left: (i % across) as f64 * width,
+                top: (i / across) as f64 * height,
+                width,
+                height,
+            };
+            let (inner, [x, y]) = chart.draw(canvas, area, &look.units);
+            let at = |p: &(f64, f64)| inner.at(x.position(p.0), y.position(p.1));
+            let path: Vec<_> = chart.curves[0].points.iter().map(at).collect();
+            way(canvas, &path);
+            let corner = (area.left + area.width - 24.0, area.top + 12.0);
+            canvas.text("○ start", corner, Anchor::Right, SMALL);
         }
     }))
 }
 
-fn portrait(sketch: &Sketch, q: usize, v: usize) -> Option<Chart> {
+/// The phase portraits of the coordinates that move, as charts of a path in the plane.
+pub(crate) fn portraits(run: &Run, sketch: &Sketch, look: &Look) -> Vec<Chart> {
+    let coordinates = run.layout.range(Group::Coordinate);
+    let velocities = run.layout.range(Group::Velocity);
+    let of = |(q, v)| portrait(sketch, (q, v), look.window);
+    coordinates.zip(velocities).filter_map(of).collect()
+}
+
+/// Way along a path from one arrow to the next, px, and how many there are at least and at most.
+const BETWEEN_ARROWS: f64 = 150.0;
+const ARROWS: (f64, f64) = (2.0, 12.0);
+/// Length and half width of an arrow, and radius of the mark at the start, px.
+const ARROW: (f64, f64) = (9.0, 3.6);
+const START: f64 = 4.0;
+
+/// Draws the direction of a path of pixels, and where it starts.
+fn way(canvas: &mut Canvas, path: &[(f64, f64)]) {
+    let length = |ends: &[(f64, f64)]| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1);
+    let lengths = || path.windows(2).map(|ends| (ends, length(ends)));
+    let drawn = || lengths().filter(|(_, l)| l.is_finite() && *l > 0.0);
+    let total: f64 = drawn().map(|(_, l)| l).sum();
+    let count = (total / BETWEEN_ARROWS).clamp(ARROWS.0, ARROWS.1).floor();
+    let mut next = total / count / 2.0;
+    let mut gone = 0.0;
+    for (ends, length) in drawn() {
+        gone += length;
+        if gone >= next {
+            let (a, b) = (ends[0], ends[1]);
+            let (ux, uy) = ((b.0 - a.0) / length, (b.1 - a.1) / length);
+            let side = |s: f64| {
+                let back = (b.0 - ux * ARROW.0, b.1 - uy * ARROW.0);
+                (back.0 - uy * s * ARROW.1, back.1 + ux * s * ARROW.1)
+            };
+            canvas.polygon([b, side(1.0), side(-1.0)], line(0));
+            next += total / count;
+        }
+    }
+    if let Some(start) = path.iter().find(|p| p.0.is_finite() && p.1.is_finite()) {
+        canvas.disc(*start, START, line(0));
+        canvas.disc(*start, START - 1.5, PAPER);
+    }
+}
+
+fn portrait(sketch: &Sketch, (q, v): (usize, usize), window: Option<(f64, f64)>) -> Option<Chart> {
     // Between rows that are apart there is no line to draw.
     let since = sketch.whole_since();
+    let (from, to) = window.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let since = since.max(from);
     let left_out = sketch.curve(q).take_while(|p| p.0 < since).count();
-    let values = |i: usize| sketch.curve(i).skip(left_out).map(|p| p.1);
+    let values = |i: usize| {
+        let shown = sketch.curve(i).skip(left_out);
+        shown.take_while(|p| p.0 <= to).map(|p| p.1)
+    };
     let points: Vec<_> = values(q).zip(values(v)).collect();
     let (low, high) = range(points.iter().map(|p| p.0), |_| true)?;
     let (slow, fast) = range(points.iter().map(|p| p.1), |_| true)?;

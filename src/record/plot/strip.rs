@@ -24,15 +24,21 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// The strip of a run.
-    pub fn new(run: &Run, sketch: &Sketch) -> Strip {
+    /// The strip of a run, or of what a window of time shows of it; transitions are counted in the whole run.
+    pub fn new(run: &Run, sketch: &Sketch, window: Option<(f64, f64)>) -> Strip {
         let marks = sketch.marks();
         let mut intervals = marks.visits.clone();
         let since = intervals.last().map(|visit| visit.1);
         let since = since.or(sketch.first_row()).unwrap_or(run.end.t);
         intervals.push((since, run.end.t, run.end.mode));
+        let (from, to) = window.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        intervals.retain(|&(since, until, _)| since <= to && until >= from);
         let lane = |&(name, count): &(&'static str, usize)| {
-            let of_name = marks.events.iter().filter(|event| event.1 == name);
+            let shown = |t: f64| from <= t && t <= to;
+            let of_name = marks
+                .events
+                .iter()
+                .filter(|event| event.1 == name && shown(event.0));
             (name, count, of_name.map(|event| event.0).collect())
         };
         let lanes = marks.counts.iter().map(lane).collect();

@@ -1,6 +1,7 @@
 //! Names and units as a textbook prints them.
 
-use super::canvas::{END_SUB, SUB};
+use super::marked::{DOTS, END_SUB, SUB};
+use crate::record::Units;
 
 const GREEK: [(&str, char); 24] = [
     ("alpha", 'α'),
@@ -29,20 +30,31 @@ const GREEK: [(&str, char); 24] = [
     ("omega", 'ω'),
 ];
 
-/// The symbol of a column: `theta.rate` is dθ/dt, `reaction.x` is R with the subscript x,
+/// The symbol of a column: `theta.rate` is θ with a dot, `ground_velocity.rate` is "rate of ground velocity", `reaction.x` is R with the subscript x,
 /// `energy.stored` is "stored", and a name of more than one word stays in words.
-pub(super) fn symbol(name: &str) -> String {
+pub(crate) fn symbol(name: &str) -> String {
     if let Some(of) = name.strip_prefix("reaction.") {
         format!("R{SUB}{}{END_SUB}", greek(of))
     } else if let Some(what) = name.strip_prefix("energy.") {
         what.replace('_', " ")
     } else if let Some(of) = name.strip_suffix(".rate") {
-        format!("d{}/dt", quantity(of))
+        let quantity = quantity(of);
+        // A dot stands above a letter; of a name in words the words say it.
+        match is_letter(&quantity) {
+            true => format!("{}{quantity}", DOTS[0]),
+            false => format!("rate of {quantity}"),
+        }
     } else if let Some((of, what)) = name.split_once('.') {
         format!("{what} of {}", quantity(of))
     } else {
         quantity(name)
     }
+}
+
+/// Whether a quantity is a single letter, which may have a subscript.
+fn is_letter(quantity: &str) -> bool {
+    let mut chars = quantity.chars();
+    chars.next().is_some() && matches!(chars.next(), None | Some(SUB))
 }
 
 /// `x_I` with a subscript, `theta1` as θ with the subscript 1, `ground_acceleration` in words.
@@ -96,9 +108,15 @@ pub(super) struct Display {
     pub factor: f64,
 }
 
-/// The display of `unit` in which values up to `largest` have one to three digits before the
+/// The display of `unit`: the reader's choice, or what gives values up to `largest` one to three digits before the
 /// point. Values of at least 0.1 are left as they are.
-pub(super) fn display(unit: &str, largest: f64) -> Display {
+pub(super) fn display(unit: &str, largest: f64, units: &Units) -> Display {
+    if let Some((shown, factor)) = units.convert(unit) {
+        return Display {
+            unit: printed(&shown),
+            factor,
+        };
+    }
     let plain = Display {
         unit: printed(unit),
         factor: 1.0,
@@ -162,12 +180,19 @@ mod tests {
 
     #[test]
     fn names_become_symbols() {
-        let shown = |name| symbol(name).replace(SUB, "[").replace(END_SUB, "]");
+        let shown = |name| {
+            symbol(name)
+                .replace(SUB, "[")
+                .replace(END_SUB, "]")
+                .replace(DOTS[0], "˙")
+        };
         for (name, symbol) in [
             ("theta", "θ"),
             ("theta1", "θ[1]"),
             ("x_I", "x[I]"),
-            ("x_I.rate", "dx[I]/dt"),
+            ("x_I.rate", "˙x[I]"),
+            ("theta.rate", "˙θ"),
+            ("gap.rate", "rate of gap"),
             ("reaction.theta", "R[θ]"),
             ("reaction.z_h", "R[z_h]"),
             ("energy.input_work", "input work"),
@@ -196,7 +221,7 @@ mod tests {
             ("1", 5e-3, "10⁻³", 1e3),
             ("J", 0.0, "J", 1.0),
         ] {
-            let display = display(unit, largest);
+            let display = display(unit, largest, &Units::default());
             assert_eq!(display.unit, shown);
             assert!(
                 (display.factor / factor - 1.0).abs() < 1e-12,

@@ -1,20 +1,19 @@
-//! The data of a run's page.
+//! The mechanism of a run over time: modes, transitions, and what its drawing depends on.
 
 use super::thin::thin;
-use crate::record::plot::{Grouped, grouped};
-use crate::record::{Group, Run, Sketch, exact};
+use crate::record::{Group, Run, Sketch};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Most points of a panel, frames of the drawing, and marks of events: more than a screen is wide, also after a zoom
-/// tenfold, and some megabytes at most.
-const MOST_POINTS: usize = 20_000;
+/// Most frames of the drawing, and marks of events: more than a screen is wide, also after a zoom tenfold, and some
+/// megabytes at most.
+const MOST_FRAMES: usize = 20_000;
 const MOST_MARKS: usize = 4_000;
 
-/// Everything that the script of the page reads.
+/// A run over time, as the scripts of its page show it.
 #[derive(Debug, Serialize)]
-pub(super) struct Data {
+pub(super) struct Motion {
     /// First and last time, s.
     span: [f64; 2],
     /// Names of the modes.
@@ -23,26 +22,17 @@ pub(super) struct Data {
     visits: Vec<(f64, f64, usize)>,
     /// Times and names of transitions.
     events: Vec<(f64, &'static str)>,
-    panels: Vec<Panel>,
     frames: Option<Frames>,
     /// The drawing of the model.
     drawing: Option<Value>,
     /// Names of the coordinates.
     coordinates: Vec<String>,
     parameters: BTreeMap<String, f64>,
+    /// Reactions that never change, which have no curve, with their units.
+    held: BTreeMap<String, (f64, String)>,
     /// What is left out.
     #[serde(skip)]
     pub notes: Vec<String>,
-}
-
-/// Curves over the same times.
-#[derive(Debug, Serialize)]
-struct Panel {
-    kind: &'static str,
-    unit: String,
-    names: Vec<String>,
-    t: Vec<f64>,
-    y: Vec<Vec<f64>>,
 }
 
 /// What the drawing depends on, over time; between two frames the script takes the cubic of positions and rates.
@@ -53,84 +43,38 @@ struct Frames {
     columns: BTreeMap<String, Vec<f32>>,
 }
 
-impl Data {
-    /// The data of a run, with the drawing of its model as `codegen/drawing.py` wrote it.
-    pub fn new(run: &Run, sketch: &Sketch, drawing: &str) -> Data {
+impl Motion {
+    /// That of a run, with the drawing of its model as `codegen/drawing.py` wrote it.
+    /// `drawn` are the columns that have curves.
+    pub fn new(run: &Run, sketch: &Sketch, drawing: &str, drawn: &[usize]) -> Motion {
         let mut notes = Vec::new();
-        let (groups, constants) = grouped(run, sketch);
-        let panels = (groups.iter())
-            .filter_map(|group| panel(sketch, group, &mut notes))
-            .collect();
-        notes.extend((!constants.is_empty()).then_some(constants));
         let drawing: Option<Value> = serde_json::from_str(drawing).ok();
         let times = sketch.times().chain([run.end.t]);
         let span = times.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], t| {
             [low.min(t), high.max(t)]
         });
         let (visits, events) = marks(run, sketch, span, &mut notes);
-        Data {
+        Motion {
             span,
             modes: run.layout.modes.clone(),
             visits,
             events,
-            panels,
             frames: drawing.as_ref().map(|drawing| frames(run, sketch, drawing)),
             drawing,
             coordinates: (run.layout.coordinates.iter())
                 .map(|c| c.name.clone())
                 .collect(),
             parameters: run.subject.parameters.iter().cloned().collect(),
+            held: (run.layout.range(Group::Reaction))
+                .filter(|i| !drawn.contains(i))
+                .filter_map(|i| {
+                    let (column, first) = (&sketch.columns()[i], sketch.curve(i).next()?);
+                    Some((column.name.clone(), (first.1, column.unit.clone())))
+                })
+                .collect(),
             notes,
         }
     }
-}
-
-/// The curves of a panel; none where their range is not to be drawn.
-fn panel(sketch: &Sketch, group: &Grouped, notes: &mut Vec<String>) -> Option<Panel> {
-    let name = |i: usize| sketch.columns()[i].name.clone();
-    let drawable = |&i: &usize| {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (_, x) in sketch.curve(i).filter(|(_, x)| !x.is_nan()) {
-            (low, high) = (low.min(x), high.max(x));
-        }
-        // Scales of a canvas divide by the range and multiply by pixels.
-        let range = high - low;
-        let is_drawable = range.is_finite()
-            && (range == 0.0 || range > 1e-290)
-            && high.abs().max(low.abs()) < 1e300;
-        if !is_drawable {
-            notes.push(format!(
-                "not drawn: {}, from {} to {} {}",
-                name(i),
-                exact(low),
-                exact(high),
-                sketch.columns()[i].unit
-            ));
-        }
-        is_drawable
-    };
-    let columns: Vec<usize> = group.columns.iter().copied().filter(drawable).collect();
-    let &first = columns.first()?;
-    let t: Vec<f64> = sketch.curve(first).map(|(t, _)| t).collect();
-    let values = |&i: &usize| sketch.curve(i).map(|(_, x)| x).collect();
-    let y: Vec<Vec<f64>> = columns.iter().map(values).collect();
-    let kept = thin(&y, t.len(), MOST_POINTS);
-    let pick = |column: &Vec<f64>| kept.iter().map(|&i| column[i]).collect();
-    Some(Panel {
-        kind: match group.group {
-            Group::Coordinate => "coordinate",
-            Group::Velocity => "velocity",
-            Group::Reaction => "reaction",
-            Group::Discrete => "discrete",
-            Group::Output => "output",
-            Group::Energy => "energy",
-            Group::Input => "input",
-        },
-        unit: sketch.columns()[first].unit.clone(),
-        names: columns.iter().map(|&i| name(i)).collect(),
-        t: pick(&t),
-        y: y.iter().map(pick).collect(),
-    })
 }
 
 /// Visits of modes and times of transitions; of many, one in each of [`MOST_MARKS`] parts of the run.
@@ -194,7 +138,11 @@ fn frames(run: &Run, sketch: &Sketch, drawing: &Value) -> Frames {
     let values: Vec<Vec<f64>> = (columns.iter())
         .map(|(_, i)| sketch.curve(*i).map(|(_, x)| x).collect())
         .collect();
-    let kept = thin(&values, t.len(), MOST_POINTS);
+    let kept = thin(
+        &values.iter().map(Vec::as_slice).collect::<Vec<_>>(),
+        t.len(),
+        MOST_FRAMES,
+    );
     Frames {
         t: kept.iter().map(|&i| t[i]).collect(),
         columns: (columns.into_iter().zip(&values))

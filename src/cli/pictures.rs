@@ -1,0 +1,89 @@
+//! What pictures and pages are to look like: arguments that commands share.
+
+use super::outcome::Failure;
+use crate::record::Units;
+use crate::record::plot::{Format, LEAST, Look};
+
+#[derive(Debug, Clone, clap::Args)]
+pub struct UnitsArguments {
+    /// Show lengths, times, angles, forces, … in these units: mm,ms,deg,kN; tables in files keep the model's
+    #[arg(long, value_name = "UNIT,…", value_delimiter = ',')]
+    units: Vec<String>,
+}
+
+#[derive(Debug, Clone, clap::Args)]
+pub struct PictureArguments {
+    /// Formats of plots: svg, png, pdf; several are separated by commas
+    #[arg(long, value_name = "FORMAT,…", value_delimiter = ',', default_value = "svg", value_parser = format)]
+    plot_format: Vec<Format>,
+    /// Width and height of plots in pixels, such as 1200x800
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    plot_size: Option<(f64, f64)>,
+    #[command(flatten)]
+    units: UnitsArguments,
+}
+
+#[derive(Debug, Clone, clap::Args)]
+pub struct WindowArguments {
+    /// Plot this part of the time only, in s, such as 0.2:0.5
+    #[arg(long, value_name = "FROM:TO", value_parser = window)]
+    plot_window: Option<(f64, f64)>,
+}
+
+impl UnitsArguments {
+    /// The units.
+    pub fn units(&self) -> Result<Units, Failure> {
+        Units::new(self.units.iter().map(String::as_str))
+            .map_err(|message| Failure::wrong_input(format!("--units: {message}")))
+    }
+}
+
+impl PictureArguments {
+    /// How pictures look, with all of time and all panels.
+    pub fn look(&self) -> Result<Look, Failure> {
+        let mut formats = self.plot_format.clone();
+        formats.dedup();
+        Ok(Look {
+            units: self.units.units()?,
+            size: self.plot_size,
+            formats,
+            ..Look::default()
+        })
+    }
+}
+
+impl WindowArguments {
+    /// The window, s.
+    pub fn window(&self) -> Option<(f64, f64)> {
+        self.plot_window
+    }
+}
+
+fn format(text: &str) -> Result<Format, String> {
+    Format::named(text).ok_or_else(|| "write svg, png or pdf".to_owned())
+}
+
+fn size(text: &str) -> Result<(f64, f64), String> {
+    let (width, height) = LEAST;
+    let wrong =
+        || format!("a size is two numbers of pixels, at least {width}x{height}, such as 1200x800");
+    let (w, h) = text.split_once(['x', '×']).ok_or_else(wrong)?;
+    // A picture of more pixels is no picture that a program opens.
+    let number = |text: &str, least: f64| {
+        let found = text.trim().parse::<u32>().ok().map(f64::from);
+        found
+            .filter(|n| (least..=20_000.0).contains(n))
+            .ok_or_else(wrong)
+    };
+    Ok((number(w, width)?, number(h, height)?))
+}
+
+fn window(text: &str) -> Result<(f64, f64), String> {
+    let wrong = "a window is two times in s, the first before the second, such as 0.2:0.5";
+    let (from, to) = text.split_once(':').ok_or(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|t| t.is_finite());
+    match (number(from), number(to)) {
+        (Some(from), Some(to)) if from < to => Ok((from, to)),
+        _ => Err(wrong.into()),
+    }
+}
