@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from . import graph, units
+from . import arguments, graph, units
 from .errors import ModelError
 
 POINTS = {"body": (3, None), "liquid": (3, None), "line": (2, None), "fixed": (2, None), "spring": (2, 2),
@@ -37,9 +37,17 @@ class Shape:
     points: list
     radius: object
     location: str
+    force: list
+    """Of a contact the names of the reactions that act at it along X and Y."""
+    states: dict
+    """Of a contact its state by the name of the mode, where it is not open."""
 
 
-def shape(model, name, points, kind, radius, location):
+STATES = ("closed", "sticks", "slides")
+"""States of contacts, besides `open`."""
+
+
+def shape(model, name, points, kind, radius, location, force=None, states=None):
     """A checked shape."""
     what = f"drawing of `{name}`"
     if kind not in POINTS:
@@ -71,7 +79,26 @@ def shape(model, name, points, kind, radius, location):
             if found != units.parse("m") and not ca.SX(term).is_zero():
                 raise ModelError(
                     f"{what}: the term `{units.short(term)}` has the dimension {units.text(found)}, expected m (numbers alone are metres)", location)
-    return Shape(name, kind, pairs, None if radius is None else ca.SX(radius), location)
+    return Shape(name, kind, pairs, None if radius is None else ca.SX(radius), location,
+                 *_contact(model, what, kind, force, states, location))
+
+
+def _contact(model, what, kind, force, states, location):
+    """Forces and states of a contact, checked."""
+    if kind != "contact" and (force is not None or states is not None):
+        raise ModelError(f"{what}: only a `contact` has a force and states", location)
+    parts = (None, None) if force is None else force
+    if not isinstance(parts, (tuple, list)) or len(parts) != 2:
+        raise ModelError(f"{what}: its force is a pair, what has the reactions along X and Y, or None for one of them", location)
+    names = [None if part is None else "reaction." + arguments.coordinate(model, f"{what}: its force", part, motions=True).name()
+             for part in parts]
+    named = {}
+    for mode, state in arguments.pairs(model, f"{what}: its states", states or [], "(mode, state)"):
+        if state not in STATES:
+            raise ModelError(f"{what}: there is no state {state!r}; write one of {', '.join(STATES)}; in other modes it is open",
+                             location)
+        named[arguments.mode(model, f"{what}: its states", mode).name] = state
+    return ([] if force is None else names), named
 
 
 def symbols(model):
@@ -114,6 +141,7 @@ def program(model):
     return json.dumps({
         "symbols": [name for name, _ in chosen],
         "registers": function.sz_w(), "outputs": len(outputs), "program": instructions,
-        "shapes": [dict(name=s.name, kind=s.kind, start=start, points=len(s.points), radius=s.radius is not None)
+        "shapes": [dict(name=s.name, kind=s.kind, start=start, points=len(s.points), radius=s.radius is not None,
+                        **({"force": s.force} if s.force else {}), **({"states": s.states} if s.states else {}))
                    for s, start in shapes],
     }, separators=(",", ":"))

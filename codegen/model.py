@@ -385,13 +385,15 @@ class Model:
 
     # ---- drawing ------------------------------------------------------------------------------
 
-    def draw(self, name, points, *, kind="body", radius=None):
+    def draw(self, name, points, *, kind="body", radius=None, force=None, states=None):
         """A shape of the drawing that pages animate; `points` are (X, Y) in m, in the frame of the ground.
 
         Kinds: `body` and `liquid` (closed outlines), `line`, `spring`, `fixed` (ground or wall, hatched to the right of
-        the way along it), `point` (a disc; `radius` in m), `contact` (where a body touches the ground).
+        the way along it), `point` (a disc; `radius` in m), `contact` (where a body touches the ground). Of a contact
+        `force` is a pair of coordinates or motions of the ground, whose reactions act at it along X and Y (or None),
+        and `states` lists (mode, `closed`, `sticks` or `slides`); in other modes it is open.
         """
-        self.shapes.append(drawing.shape(self, name, points, kind, radius, caller_location(self.file)))
+        self.shapes.append(drawing.shape(self, name, points, kind, radius, caller_location(self.file), force, states))
 
     # ---- helpers ------------------------------------------------------------------------------
 

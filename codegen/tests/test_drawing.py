@@ -51,6 +51,16 @@ class Programs(unittest.TestCase):
                 self.assertAlmostEqual(given, want, places=12, msg=name)
 
 
+class Contacts(unittest.TestCase):
+    def test_contacts_name_reactions_and_the_states_of_modes(self):
+        model = generate.load(os.path.join(ROOT, "models", "walking_tank"))[0]
+        shapes = json.loads(drawing.program(model))["shapes"]
+        pivot = next(shape for shape in shapes if shape["name"] == "pivot")
+        self.assertEqual(pivot["force"], ["reaction.z_h", "reaction.y"])
+        self.assertEqual(pivot["states"], dict(
+            stands_sticks="sticks", rocks_sticks="sticks", stands_slides="slides", rocks_slides="slides"))
+
+
 class Refusals(ScratchTest):
     def refused(self, call, words):
         self.assertIn(words, self.refusal(HEAD + BODY + MODE + call, 8))
@@ -63,6 +73,11 @@ class Refusals(ScratchTest):
         self.refused('model.draw("b", [(x, k)], kind="point")', "the term `k` has the dimension")
         self.refused('model.draw("b", [(x.rate, 0)], kind="point")', "`x.rate` is no coordinate, parameter or discrete state")
         self.refused('model.draw("b", [(x, 0), (0, 0)], kind="line", radius=x)', "only a `point` has a radius")
+        self.refused('model.draw("b", [(x, 0)], kind="point", force=(x, None))', "only a `contact` has a force and states")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", force=x)', "its force is a pair")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", force=(k, None))', "not a coordinate or a motion of the ground")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", states=[(model.modes[0], "shut")])', "there is no state 'shut'")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", states=[("m", "closed")])', "not a mode")
 
 
 if __name__ == "__main__":

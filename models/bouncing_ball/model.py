@@ -22,3 +22,4 @@ model.rest(flies, rests)
 
 model.draw("floor", [(-1, 0), (1, 0)], kind="fixed")
 model.draw("ball", [(0, h)], kind="point")
+model.draw("lowest point", [(0, h)], kind="contact", force=(None, h), states=[(rests, "closed")])

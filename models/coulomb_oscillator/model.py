@@ -47,3 +47,5 @@ model.draw("ground", [(-3, -0.1), (3, -0.1)], kind="fixed")
 model.draw("wall", [(-3, -0.1), (-3, 0.4)], kind="fixed")
 model.draw("spring", [(-3, 0), (x - 0.1, 0)], kind="spring")
 model.draw("mass", [(x - 0.1, -0.1), (x + 0.1, -0.1), (x + 0.1, 0.1), (x - 0.1, 0.1)])
+model.draw("base", [(x, -0.1)], kind="contact", force=(x, None),
+           states=[(slides, "slides"), (sticks, "sticks")] + [(rests, "sticks") for rests in at_stops.values()])

@@ -60,7 +60,8 @@ model.draw("ground", [(-2 * R, 0), (2 * R, 0)], kind="fixed")
 model.draw("block", [place(*p) for p in (
     (0, 0), (2 * half_width, 0), (2 * half_width, 2 * R * cos(alpha)), (0, 2 * R * cos(alpha)))])
 model.draw("centre", [place(half_width, R * cos(alpha))], kind="point")
-model.draw("pivot", [place(0, 0)], kind="contact")
+model.draw("pivot", [place(0, 0)], kind="contact", force=(z_h, y), states=[(stands, "closed"), (rocks, "closed")])
+model.draw("other edge", [place(2 * half_width, 0)], kind="contact", states=[(stands, "closed")])
 
 model.limit("past_balance", "the centre is beyond the pivot edge: at rest the block would fall, shaken it may come back",
             when=theta > alpha, ends=False)

@@ -43,5 +43,6 @@ model.output("shear_ratio", "1", model.reaction(z_h) / ((m_s + m_i) * g), "force
 
 model.draw("ground", [(-0.5, -0.05), (0.8, -0.05)], kind="fixed")
 model.draw("lower mass", [(u - 0.1, -0.05), (u + 0.1, -0.05), (u + 0.1, 0.05), (u - 0.1, 0.05)])
+model.draw("base", [(u, -0.05)], kind="contact", force=(u, y), states=[(sticks, "sticks"), (slips, "slides")])
 model.draw("spring", [(u + 0.1, 0), (u + d + 0.3, 0)], kind="spring")
 model.draw("upper mass", [(u + d + 0.3, -0.04), (u + d + 0.4, -0.04), (u + d + 0.4, 0.04), (u + d + 0.3, 0.04)])

@@ -25,3 +25,4 @@ model.output("height", "m", table + gap, "height of the ball above where the tab
 
 model.draw("table", [(-1, 0), (1, 0)], kind="fixed")
 model.draw("ball", [(0, gap)], kind="point")
+model.draw("lowest point", [(0, gap)], kind="contact", force=(None, gap), states=[(sticks, "closed")])

@@ -233,7 +233,10 @@ levels = [(part * height, sin(part * pi / 2) * x_I * side) for part in (0, 0.25,
 model.draw("liquid", [place(bulge, up) for up, bulge in levels]
            + [place(2 * half_width + bulge, up) for up, bulge in reversed(levels)], kind="liquid")
 model.draw("shell", [place(0, height), place(0, 0), place(2 * half_width, 0), place(2 * half_width, height)], kind="line")
-model.draw("pivot", [place(0, 0)], kind="contact")
+sticking, sliding = (stands_sticks, rocks_sticks), (stands_slides, rocks_slides)
+model.draw("pivot", [place(0, 0)], kind="contact", force=(z_h, y),
+           states=[(mode, "sticks") for mode in sticking] + [(mode, "slides") for mode in sliding])
+model.draw("other edge", [place(2 * half_width, 0)], kind="contact", states=[(stands_sticks, "sticks"), (stands_slides, "slides")])
 
 # Where the weight of tank and rocking liquid turns about the pivot edge the other way.
 weight_moment = M_E * R_0 * sin(alpha_0 - theta) + M_S * R_S * sin(alpha_S - theta)

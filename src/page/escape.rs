@@ -1,6 +1,6 @@
 //! Text and data in a page, such that nothing in them is markup.
 
-use crate::record::plot::marked::{DOTS, END_SUB, SUB};
+use crate::record::plot::marked::{DOTS, END_SUB, SUB, is_tall};
 use serde::Serialize;
 
 /// A text with marks of subscripts and dots ([`crate::record::plot::marked`]) as HTML.
@@ -12,8 +12,10 @@ pub(super) fn symbols(marked: &str) -> String {
             (SUB, _) => out.push_str("<sub>"),
             (END_SUB, _) => out.push_str("</sub>"),
             (_, Some(i)) => {
-                let letter = chars.next().map_or(String::new(), |c| text(&c.to_string()));
-                out.push_str(&format!("<span class=\"dots{}\">{letter}</span>", i + 1));
+                let letter = chars.next().unwrap_or_default();
+                let (dots, tall) = (i + 1, if is_tall(letter) { " tall" } else { "" });
+                let letter = text(&letter.to_string());
+                out.push_str(&format!("<span class=\"dots{dots}{tall}\">{letter}</span>"));
             }
             _ => out.push_str(&text(&c.to_string())),
         }

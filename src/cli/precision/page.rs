@@ -4,6 +4,7 @@ use super::Precision;
 use super::write::{HEADS, described};
 use crate::cli::page::command_line;
 use crate::page::{Page, Table};
+use crate::record::plot::Chart;
 use crate::scene::Scene;
 
 impl Precision {
@@ -27,7 +28,11 @@ impl Precision {
             .for_each(|line| page.paragraph(line));
         page.heading("Time against error");
         page.note("Drag to zoom, double-click for the whole; beside a point its values are shown.");
-        page.chart(&self.chart());
+        // The page has the title.
+        page.chart(&Chart {
+            title: String::new(),
+            ..self.chart()
+        });
         page.heading("Runs");
         let mut table = Table::new(HEADS);
         for row in self.shown_rows(reference.bound) {

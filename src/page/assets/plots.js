@@ -244,9 +244,31 @@ data.plots.forEach((spec, index) => {
   // ---- the plot -----------------------------------------------------------------------------
   const axes = place.querySelector(".axes");
   const size = () => ({ width: Math.max(axes.clientWidth, 120), height: axes.clientHeight });
+  // Round values: the finest multiples of 1, 2 or 5 times a power of ten that leave enough space; uPlot's own end at 1e-16.
+  const step = (min, max, dim, space) => {
+    const least = (max - min) * space / dim, power = 10 ** Math.floor(Math.log10(least));
+    return [1, 2, 5, 10].map((digit) => digit * power).find((found) => found >= least) ?? 10 * power;
+  };
+  const lineMultiples = (min, max, by) => {
+    const out = [];
+    for (let i = Math.ceil(min / by); i * by <= max; i++) out.push(i * by);
+    return out;
+  };
+  const logMultiples = (min, max, count) => {
+    const [low, high] = [Math.log10(min), Math.log10(max)], by = Math.max(1, Math.ceil((high - low) / count));
+    const powers = lineMultiples(Math.floor(low), high, by), digits = high - low < 2 ? [1, 2, 5] : [1];
+    return powers.flatMap((e) => digits.map((d) => d * 10 ** e)).filter((v) => v >= min && v <= max);
+  };
   const axis = (side) => ({
+    incrs: () => [Number.MAX_VALUE], // what uPlot accepts whatever the range is; splits below are what is drawn
+    splits: (u, _, min, max, found, space) => {
+      const dim = (side ? u.bbox.height : u.bbox.width) / devicePixelRatio;
+      return spec[side ? "y" : "x"].log ? logMultiples(min, max, dim / (side ? 26 : 60))
+        : lineMultiples(min, max, step(min, max, dim, side ? 26 : 60));
+    },
+    filter: (_, splits) => splits,
     stroke: () => style("--ink"), grid: { stroke: () => style("--rule"), width: 1 }, font: "12px system-ui, sans-serif",
-    ticks: { stroke: () => style("--rule"), width: 1, size: 4 }, size: side ? 62 : 26, gap: 4, space: side ? 26 : 60,
+    ticks: { stroke: () => style("--rule"), width: 1, size: 4 }, size: side ? 62 : 26, gap: 4, space: side ? 26 : 60, 
     values: (_, splits) => splits.map((v) => v == null ? "" : digits(v)),
   });
   const scale = (name) => ({ time: false, distr: spec[name].log ? 3 : 1, range: () => shown(name) });
@@ -261,7 +283,7 @@ data.plots.forEach((spec, index) => {
   };
   plot.view = whole();
   plot.u = new uPlot({
-    ...size(), padding: [8, 14, 0, 0], legend: { show: false },
+    ...size(), padding: [8, 24, 0, 0], legend: { show: false },
     cursor: {
       points: { show: false }, y: byPoint, drag: { x: true, y: !sorted || spec.marks, setScale: false, uni: 30 },
       bind: { dblclick: () => () => { grouped().forEach((other) => other.reset()); plots.moved?.(); } },

@@ -1,6 +1,6 @@
 //! Drawing in pixels, on plotters' SVG backend.
 
-use super::marked::{DOTS, END_SUB, SUB};
+use super::marked::{DOTS, END_SUB, SUB, is_tall};
 use super::palette::PAPER;
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -258,11 +258,6 @@ const DOT: f64 = 0.075;
 const DOT_DISTANCE: f64 = 0.28;
 const ABOVE_SMALL: f64 = 0.45;
 const ABOVE_TALL: f64 = 0.64;
-
-/// Whether a letter has an ascender.
-fn is_tall(letter: char) -> bool {
-    letter.is_uppercase() || "bdfhijklt0123456789βδζθλξφψ".contains(letter)
-}
 
 /// Width of a text in pixels, a little more than in the usual sans-serif fonts: the font is the
 /// viewer's choice.
