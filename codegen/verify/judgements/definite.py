@@ -10,26 +10,37 @@ from fractions import Fraction
 from itertools import product
 from typing import Dict, List, Optional, Tuple
 
-from ..normal.intervals import intervals, signs
+from ..normal.algebra import ONE, Opaque
+from ..normal.intervals import intervals, known, signs
 from .violation import Violation
 
 # A budget of some ten seconds. What is undecided by then lies at a point where the matrix is nearly
 # singular; the verdict then says "undecided" and names the box.
 BISECTIONS = 400
 
+# Minors of more rows have too many terms to be multiplied out: 6 links take half a minute, 8 links hours. Pivots of
+# intervals take no time, and prove less over large boxes.
+MULTIPLIED_OUT = 4
+
 HALF = Fraction(1, 2)
 
 
 def determinant(matrix):
-    """Determinant of a square matrix of forms, by expansion (the matrices are small)."""
-    if len(matrix) == 1:
-        return matrix[0][0]
-    total = matrix[0][0] * 0
-    for j, entry in enumerate(matrix[0]):
-        if entry:
-            minor = [row[:j] + row[j + 1:] for row in matrix[1:]]
-            total += entry * determinant(minor) * (-1) ** j
-    return total
+    """Determinant of a square matrix of forms, by expansion; each minor of the last rows is made once."""
+    known = {}
+
+    def minor(row, columns):
+        if not columns:
+            return 1
+        if columns not in known:
+            total = matrix[0][0] * 0
+            for k, column in enumerate(columns):
+                if entry := matrix[row][column]:
+                    total += entry * minor(row + 1, columns[:k] + columns[k + 1:]) * (-1) ** k
+            known[columns] = total
+        return known[columns]
+
+    return minor(0, tuple(range(len(matrix))))
 
 
 def minors(matrix):
@@ -73,20 +84,66 @@ class Verdict:
     point: Optional[Dict[str, Tuple[float, float]]] = None
 
 
-def prove(forms, fixed, box, limit=BISECTIONS) -> Verdict:
-    """Whether all forms are positive over a box {name: (low, high)} with the other values fixed."""
+def prove_matrix(matrix, fixed, box) -> Verdict:
+    """Whether a symmetric matrix is positive definite over a box, with the other values fixed."""
+    if len(matrix) <= MULTIPLIED_OUT:
+        return prove(minors(matrix), fixed, box)
+    known(intervals({**fixed, **box}), [form for row in matrix for form in row])
+    still = intervals({n: value for n, value in fixed.items() if n not in box})
+    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, judge=pivots)
+
+
+def _collected(form, still):
+    """The parts of a form, [(what is constant in them, as an interval, the rest as a form)], each rest once."""
+    from mpmath import iv
+
+    found = {}
+    for (monomial, harmonic), value in form.terms.items():
+        moving = tuple(item for item in monomial if item[0] not in still)
+        constant = form.ring.form({(tuple(item for item in monomial if item[0] in still), ONE): value})
+        rest = form.ring.form({(moving, harmonic): 1}).divided(dict(form.over))
+        found[rest] = found.get(rest, 0) + constant.evaluate(still, iv.sin, iv.cos, iv.mpf(0))
+    return [(constant, rest) for rest, constant in found.items()]
+
+
+def pivots(matrix, values):
+    """The signs of the pivots of a symmetric matrix (entries as `_collected` gives them) over intervals by name: +1, -1 or 0 (not decided, as are all after one
+    that is not positive). All are positive only where the matrix is positive definite, and the first that
+    is not positive has the sign of its leading minor."""
+    from mpmath import iv
+
+    if any(isinstance(name, Opaque) for row in matrix for entry in row for _, form in entry for monomial, _ in form.terms
+           for name, _ in monomial):
+        return [0] * len(matrix)
+    rows = [[sum((constant * form.evaluate(values, iv.sin, iv.cos, iv.mpf(0)) for constant, form in entry), iv.mpf(0))
+             for entry in row[:i + 1]] for i, row in enumerate(matrix)]
+    found = []
+    for k, row in enumerate(rows):
+        pivot = row[k]
+        found.append(1 if pivot.a > 0 else -1 if pivot.b < 0 else 0)
+        if found[-1] != 1:
+            return found + [0] * (len(rows) - k - 1)
+        for i in range(k + 1, len(rows)):
+            for j in range(k + 1, i + 1):
+                rows[i][j] -= rows[i][k] * rows[j][k] / pivot if i != j else rows[i][k] ** 2 / pivot
+    return found
+
+
+def prove(forms, fixed, box, limit=BISECTIONS, judge=signs) -> Verdict:
+    """Whether all forms are positive over a box {name: (low, high)} with the other values fixed; `judge(forms, values)`
+    gives their signs over intervals."""
     fixed = intervals(fixed)
     queue, count = [dict(box)], 0
     while queue:
         part = queue.pop()
         count += 1
-        found = signs(forms, {**fixed, **intervals(part)})
+        found = judge(forms, {**fixed, **intervals(part)})
         if -1 in found:
             return Verdict("refuted", count, part)
         if all(sign == 1 for sign in found):
             continue
         middle = {n: ((low + high) / 2,) * 2 for n, (low, high) in part.items()}
-        if -1 in signs(forms, {**fixed, **intervals(middle)}):
+        if -1 in judge(forms, {**fixed, **intervals(middle)}):
             return Verdict("refuted", count, middle)
         widths = {n: (part[n][1] - part[n][0]) / (box[n][1] - box[n][0]) for n in part if box[n][1] > box[n][0]}
         if count >= limit or not widths:

@@ -10,7 +10,7 @@ from ..input import transcription
 from ..input.corrections import apply
 from ..judgements import unjudged, unreferenced
 from ..judgements.comparison import compare
-from ..judgements.definite import critical, determinant, minors, printed_mass, prove, rest, states
+from ..judgements.definite import critical, determinant, printed_mass, prove_matrix, rest, states
 from ..judgements.numbers import check
 from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
@@ -158,11 +158,12 @@ def _squares(motion):
 
 def _definiteness(name, paper, mass, squares, thorough):
     """The sixth judgement on one mass matrix."""
-    at_rest = determinant(mass).substitute(rest(paper)[0])
+    zeros = rest(paper)[0]
+    at_rest = determinant([[form.substitute(zeros) for form in row] for row in mass])
     neglected = at_rest.substitute({n: 0 for n in paper.negligible}) if paper.negligible else None
     decided = critical(at_rest, paper.negligible[0], paper) if paper.negligible else None
-    boxes, forms = {}, minors(mass)
-    moving = set(paper.coordinates()) & set().union(*(form.names() for form in forms))
+    boxes = {}
+    moving = set(paper.coordinates()) & set().union(*(form.names() for row in mass for form in row))
     # without bounds of all that the matrix depends on there is no box to speak of
     thorough = thorough and moving <= paper.box.keys()
     for set_name, values in paper.sets.items() if thorough else ():
@@ -171,7 +172,7 @@ def _definiteness(name, paper, mass, squares, thorough):
                 continue  # singular at rest: the exact zero above says so
             fixed = {**values, **({n: 0 for n in paper.negligible} if neglect else {})}
             for state in states(paper):
-                verdict = prove(forms, {**fixed, **state}, paper.box)
+                verdict = prove_matrix(mass, {**fixed, **state}, paper.box)
                 label = set_name + (", " + " = ".join([*paper.negligible, "0"]) if neglect else "")
                 key = ", ".join([label] + [f"{n} = {v:+d}" for n, v in state.items()])
                 boxes[key] = verdict

@@ -8,9 +8,9 @@ from fractions import Fraction
 
 import sympy
 
-from codegen.verify.errors import NotInClass
+from codegen.verify.errors import NotInClass, PaperError
 from codegen.verify.input.load import load
-from codegen.verify.judgements.definite import determinant, prove
+from codegen.verify.judgements.definite import determinant, prove, prove_matrix
 from codegen.verify.normal.algebra import Ring, expression
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.seeded import EXAMPLES
@@ -138,6 +138,23 @@ class Definiteness(unittest.TestCase):
         self.assertLess(0.99 + math.cos((low + high) / 2), 0)
         touching = self.ring.read(Q**2)
         self.assertEqual(prove([touching], {}, {"q": (-1.0, 2.0)}, limit=50).status, "undecided")
+
+    def test_matrices_whose_minors_are_not_multiplied_out(self):
+        def chain(diagonal):
+            """Six rows, coupled to their neighbours by m cos q: definite where the diagonal is above 2 m cos(pi/7) = 1.80 m."""
+            entries = {0: diagonal * M, 1: M * sympy.cos(Q)}
+            return [[self.ring.read(entries.get(abs(i - j), sympy.Integer(0))) for j in range(6)] for i in range(6)]
+
+        box = {"q": (-2.0, 2.0)}
+        for diagonal, status in ((sympy.Rational(19, 10), "proved"), (sympy.Rational(17, 10), "refuted"), (sympy.Abs(B), "undecided")):
+            self.assertEqual(prove_matrix(chain(diagonal), {"m": "3", "b": "2"}, box).status, status)
+        with self.assertRaisesRegex(PaperError, "no value for m"):
+            prove_matrix(chain(2), {}, box)
+
+    def test_a_large_determinant_is_made_minor_by_minor(self):
+        rows = [[A if i == j else sympy.Integer(1) for j in range(8)] for i in range(8)]
+        mine = determinant([[self.ring.read(x) for x in row] for row in rows])
+        self.assertEqual(mine, self.ring.read(sympy.expand((A - 1)**7 * (A + 7))))
 
     def test_fractions_stay_exact(self):
         self.assertEqual(self.ring.read(sympy.Rational(1, 3) * Q).terms[((("q", 1),), ("cos", ()))], Fraction(1, 3))
