@@ -3,6 +3,7 @@
 use super::contract::{
     CONTRACT_VERSION, ContractError, Functions, MARK, Parts, RawFunctions, RawModel,
 };
+use super::library_file;
 use std::ffi::CStr;
 use std::mem::size_of;
 use std::path::Path;
@@ -29,6 +30,12 @@ pub(crate) fn open(file: &Path, digest: Option<&str>) -> Result<(Parts, Library)
     let refused = |error: libloading::Error| ContractError::Library {
         message: error.to_string(),
     };
+    let told = |message: String| ContractError::Library { message };
+    match library_file::fault(file) {
+        Ok(None) => {}
+        Ok(Some(fault)) => return Err(told(fault)),
+        Err(error) => return Err(told(error.to_string())),
+    }
     // SAFETY: a library of generated code has no initializers; that it is one the caller answers for.
     let loaded = unsafe { libloading::Library::new(file) }.map_err(refused)?;
     // SAFETY: the constant is only read once its mark, version and size were compared, and then is what they say.

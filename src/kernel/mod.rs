@@ -18,6 +18,7 @@ mod elementary;
 mod lane_calls;
 mod lane_functions;
 mod lanes;
+mod library_file;
 mod load;
 mod raw;
 mod tables;

@@ -325,10 +325,18 @@ fn a_damaged_library_is_made_again() {
 fn folders_are_refused_with_reasons() {
     let place = Place::new();
     fs::write(place.path("file"), "").unwrap();
+    fs::create_dir_all(place.path("hollow/model.py")).unwrap();
     for (name, says) in [
         ("./nowhere", "no model folder: No such file"),
         ("./file", "a file, not a model folder"),
-        ("./", "the model folder has no readable model.py"),
+        (
+            "./",
+            "the model folder has no readable model.py: No such file",
+        ),
+        (
+            "./hollow",
+            "the model folder has no readable model.py: Is a directory",
+        ),
     ] {
         fs::write(
             place.path("scene.json"),

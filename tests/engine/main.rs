@@ -14,6 +14,7 @@ mod extreme_damping;
 mod grazing;
 mod invariants;
 mod knots;
+mod libraries;
 mod limits;
 mod methods;
 mod newmark;
