@@ -223,7 +223,7 @@ impl Function {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The first time after `t` at which the function is not smooth, in s; infinite if there is
+    /// The first time after `t` at which the function breaks, in s; infinite if there is
     /// none.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
         self.terms
@@ -232,8 +232,8 @@ impl Function {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The first time after `t` at which a third derivative jumps that no breakpoint tells of: a knot of
-    /// a spline; in s, infinite if there is none.
+    /// The first time after `t` at which a slope or a third derivative jumps that no breakpoint tells of: a kink of
+    /// a table, a knot of a spline; in s, infinite if there is none.
     pub fn next_joint(&self, t: f64) -> f64 {
         self.terms
             .iter()

@@ -4,10 +4,10 @@
 //! displacement of the ground. The last two are the exact antiderivatives of the first, both zero
 //! at t = 0, for tables and sums too; nothing is integrated numerically.
 //!
-//! Functions may jump or have kinks. At such a breakpoint there are two limits:
+//! Functions may jump, start and end. At such a breakpoint there are two limits:
 //! [`Signals::evaluate`] gives the right-hand one and [`Signals::evaluate_left`] the left-hand one.
 //! Over a segment `(t0, t1]` without a breakpoint inside, `evaluate` at `t0` and `evaluate_left`
-//! after it give the values of one smooth function.
+//! after it give the values of one continuous function, whose slope or higher derivatives may jump at joints.
 
 mod commanded;
 mod context;
@@ -159,8 +159,8 @@ impl Signals {
         (self.channels.iter()).any(|c| c.function != Function::zero() && wants(c))
     }
 
-    /// The first time after `t` at which some input is not smooth (a jump, a kink, the start or
-    /// the end of a pulse), in s; infinite if there is none.
+    /// The first time after `t` at which some input breaks (a jump, the start or
+    /// the end of a pulse or a table), in s; infinite if there is none. The motion starts anew there.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
         self.channels
             .iter()
@@ -168,7 +168,7 @@ impl Signals {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The first time after `t` at which the third derivative of some input jumps, and no breakpoint
+    /// The first time after `t` at which the slope or the third derivative of some input jumps, and no breakpoint
     /// tells of it, in s; infinite if there is none. Methods of a fixed order lose it across such a time.
     pub fn next_joint(&self, t: f64) -> f64 {
         self.channels

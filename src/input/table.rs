@@ -7,11 +7,11 @@ use crate::numerics::persist;
 /// How a table is read between its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
-    /// Straight lines; every knot with a kink is a breakpoint.
+    /// Straight lines. Inner knots, where nothing jumps but the slope, are not breakpoints, but
+    /// [joints](Table::next_joint).
     Linear,
     /// Twice continuously differentiable cubic spline with the not-a-knot condition at both ends,
-    /// so that a table of a cubic polynomial gives that polynomial. Its inner knots are not
-    /// breakpoints, but [joints](Table::next_joint).
+    /// so that a table of a cubic polynomial gives that polynomial. Its inner knots are joints, too.
     Cubic,
     /// Each value holds until the time of the next row; every jump is a breakpoint.
     Previous,
@@ -77,7 +77,7 @@ pub struct Table {
     knots: Vec<f64>,
     /// `pieces[i]` reaches from `knots[i - 1]` to `knots[i]`; the first and the last are outside.
     pieces: Vec<Piece>,
-    /// Knots at which value, slope or curvature jump.
+    /// Knots at which the value jumps, and ends at which anything does.
     breakpoints: Vec<f64>,
     interpolation: Interpolation,
     /// Knots a second, on average.
@@ -167,7 +167,7 @@ impl Table {
             density: last as f64 / (times[last] - times[0]),
         };
         table.breakpoints = (0..=last)
-            .filter(|&i| !table.is_smooth_at(i))
+            .filter(|&i| table.breaks_at(i))
             .map(|i| times[i])
             .collect();
         table.integrate();
@@ -190,18 +190,25 @@ impl Table {
         self.knots.get(next).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The first knot after `t` at which value, slope or curvature jump.
+    /// The first knot after `t` at which the motion is to start anew: where the value jumps, or at an end of the table where
+    /// anything does.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
         let next = self.breakpoints.partition_point(|&b| b <= t);
         self.breakpoints.get(next).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// The first time after `t` at which two pieces of a spline join, so that its third derivative may
-    /// jump, in s. Infinite for the other tables, whose pieces between two breakpoints are one polynomial.
+    /// The first time after `t` at which two polynomials join, so that the slope, or of a spline the third derivative, may
+    /// jump, in s. Infinite where each value holds until it jumps.
     pub fn next_joint(&self, t: f64) -> f64 {
         match self.interpolation {
             Interpolation::Cubic => self.next_knot(t),
-            Interpolation::Linear | Interpolation::Previous => f64::INFINITY,
+            Interpolation::Linear => {
+                let first = self.piece_index(t, Side::Right);
+                let slope = |i: usize| self.pieces[i].coefficients[1];
+                let joint = (first..self.knots.len()).find(|&i| slope(i) != slope(i + 1));
+                joint.map_or(f64::INFINITY, |i| self.knots[i])
+            }
+            Interpolation::Previous => f64::INFINITY,
         }
     }
 
@@ -224,27 +231,27 @@ impl Table {
             .unwrap_or_else(|| self.knots.partition_point(is_before))
     }
 
-    /// Whether value, slope and curvature go on unchanged at a knot. The inner knots of a spline
-    /// do so by construction; whether their rounded values agree to the last bit does not matter.
-    fn is_smooth_at(&self, knot: usize) -> bool {
+    /// Whether a knot is a breakpoint. At inner knots lines and splines go on continuously by construction; whether their
+    /// rounded values agree to the last bit does not matter.
+    fn breaks_at(&self, knot: usize) -> bool {
         let (left, right) = (&self.pieces[knot], &self.pieces[knot + 1]);
         let last = self.knots.len() - 1;
         if knot == 0 {
-            return left.coefficients[..3] == right.coefficients[..3];
+            return left.coefficients[..3] != right.coefficients[..3];
         }
         match self.interpolation {
-            Interpolation::Previous => left.coefficients == right.coefficients,
-            Interpolation::Linear if knot < last => left.coefficients[1] == right.coefficients[1],
-            Interpolation::Cubic if knot < last => true,
+            Interpolation::Previous => left.coefficients != right.coefficients,
+            Interpolation::Linear | Interpolation::Cubic if knot < last => false,
             // At the last knot the outside is constant: zero, or the last value.
             Interpolation::Linear | Interpolation::Cubic => {
                 let span = self.knots[last] - left.origin;
                 let [_, c1, c2, c3] = left.coefficients;
                 let continuous =
                     right.coefficients[0] != 0.0 || left.at(self.knots[last]).value == 0.0;
-                continuous
+                let smooth = continuous
                     && c1 + span * (2.0 * c2 + span * 3.0 * c3) == 0.0
-                    && 2.0 * c2 + span * 6.0 * c3 == 0.0
+                    && 2.0 * c2 + span * 6.0 * c3 == 0.0;
+                !smooth
             }
         }
     }

@@ -34,13 +34,13 @@ fn quadrature(f: impl Fn(f64) -> f64, a: f64, b: f64, panels: usize) -> f64 {
 }
 
 /// Checks both antiderivatives of `f` at `times` (increasing, from 0 on) by quadrature of `f` and
-/// of its first antiderivative between breakpoints; `panels` for each interval. Errors are
+/// of its first antiderivative between knots; `panels` for each interval. Errors are
 /// measured against `scale` of f, and its powers of time.
 fn check_antiderivatives(f: &Function, times: &[f64], panels: usize, scale: f64) {
     let (mut at, mut integral, mut double) = (0.0, 0.0, 0.0);
     for &end in times {
         while at < end {
-            let next = f.next_breakpoint(at).min(end);
+            let next = f.next_knot(at).min(end);
             // A quadrature node never falls on an end of its interval.
             integral += quadrature(|t| f.at(t, Side::Right).value, at, next, panels);
             double += quadrature(|t| f.at(t, Side::Right).integral, at, next, panels);
@@ -147,7 +147,7 @@ const ROWS: [(f64, f64); 5] = [
 ];
 
 #[test]
-fn linear_table_interpolates_and_has_a_breakpoint_at_every_kink() {
+fn linear_table_interpolates_and_has_a_joint_at_every_kink() {
     let f = Function::from(table(&ROWS, Interpolation::Linear, Outside::Zero).unwrap());
     assert_eq!(f.at(0.25, Side::Right).value, 0.5);
     assert_eq!(f.at(0.5, Side::Right).value, 1.0);
@@ -158,15 +158,21 @@ fn linear_table_interpolates_and_has_a_breakpoint_at_every_kink() {
     assert_eq!(f.at(2.5, Side::Right).value, 0.0);
     // ∫ = 0.25 − 0.125 − 1.5 − 0.5
     assert_eq!(f.at(7.0, Side::Right).integral, -1.875);
-    assert_eq!(breakpoints(&f), [0.0, 0.5, 0.75, 1.5, 2.0]);
+    // The value jumps at the start; at the end the slope.
+    assert_eq!(breakpoints(&f), [0.0, 2.0]);
+    assert_eq!(
+        [0.0, 0.5, 0.75, 1.5].map(|t| f.next_joint(t)),
+        [0.5, 0.75, 1.5, 2.0]
+    );
     assert_eq!(f.resolution(0.1), f64::INFINITY);
 }
 
 #[test]
-fn knots_on_a_straight_line_are_no_breakpoints() {
+fn knots_on_a_straight_line_are_no_joints() {
     let rows = [(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 2.0), (4.0, 2.0)];
     let f = Function::from(table(&rows, Interpolation::Linear, Outside::Hold).unwrap());
-    assert_eq!(breakpoints(&f), [0.0, 2.0]);
+    assert_eq!(breakpoints(&f), [0.0]);
+    assert_eq!([0.0, 2.0].map(|t| f.next_joint(t)), [2.0, f64::INFINITY]);
 }
 
 #[test]
@@ -255,6 +261,9 @@ fn spline_converges_with_order_four_up_to_its_ends() {
     assert!((3.8..4.3).contains(&order), "{order}");
 }
 
+/// Rows of which the last is zero.
+const STEPS: [(f64, f64); 3] = [(0.0, 1.0), (1.0, -2.0), (2.0, 0.0)];
+
 #[test]
 fn pieces_of_a_spline_join_at_its_rows() {
     let f = Function::from(table(&ROWS, Interpolation::Cubic, Outside::Zero).unwrap());
@@ -262,8 +271,8 @@ fn pieces_of_a_spline_join_at_its_rows() {
     assert_eq!(f.next_joint(0.5), 0.75);
     assert_eq!(f.next_joint(1.75), 2.0);
     assert_eq!(f.next_joint(2.0), f64::INFINITY);
-    let lines = Function::from(table(&ROWS, Interpolation::Linear, Outside::Zero).unwrap());
-    assert_eq!(lines.next_joint(0.25), f64::INFINITY);
+    let steps = Function::from(table(&STEPS, Interpolation::Previous, Outside::Zero).unwrap());
+    assert_eq!(steps.next_joint(0.25), f64::INFINITY);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Knots of splines, where the third derivative of an input jumps: errors follow the tolerance across them,
+//! Knots of lines and splines, where the slope or the third derivative of an input jumps: errors follow the tolerance across them,
 //! and steps end there without starting anew.
 
 use crate::common::{at_end, problem, run, tighten};
@@ -11,14 +11,21 @@ const VALUES: [f64; 9] = [0.4, 1.0, -3.0, 2.5, 4.0, -1.0, -5.0, 2.0, 1.0];
 /// Before the last row, behind the last knot, s.
 const END: f64 = 1.25;
 
-fn spline() -> Function {
-    let table = Table::new(&TIMES, &VALUES, Interpolation::Cubic, Outside::Hold);
+const INTERPOLATIONS: [Interpolation; 2] = [Interpolation::Linear, Interpolation::Cubic];
+
+fn rows(interpolation: Interpolation) -> Function {
+    let table = Table::new(&TIMES, &VALUES, interpolation, Outside::Hold);
     table.expect("the rows make a table").into()
 }
 
-fn over_the_knots(problem: Problem, input: &str, method: Method, relative: f64) -> Problem {
+fn over_the_knots(
+    problem: Problem,
+    (input, rows): (&str, Function),
+    method: Method,
+    relative: f64,
+) -> Problem {
     let mut problem = problem;
-    problem.set_input(input, spline()).unwrap();
+    problem.set_input(input, rows).unwrap();
     problem.method = method;
     problem.set_tolerance(relative);
     problem.end.time = END;
@@ -28,14 +35,18 @@ fn over_the_knots(problem: Problem, input: &str, method: Method, relative: f64) 
 /// A ball that never lands moves by g t²/2 and the table under it.
 #[test]
 fn a_flight_over_knots_is_as_accurate_as_the_tolerance() {
-    for method in [Method::Radau, Method::Taylor] {
+    for (method, interpolation) in [Method::Radau, Method::Taylor]
+        .into_iter()
+        .flat_map(|method| INTERPOLATIONS.map(|interpolation| (method, interpolation)))
+    {
         for relative in [1e-4, 1e-8, 1e-11, 1e-13] {
             let mut ball = problem("vibrating_table_ball", &[]);
             ball.set_initial("gap", 20.0).unwrap();
-            let problem = over_the_knots(ball, "table_acceleration", method, relative);
+            let input = ("table_acceleration", rows(interpolation));
+            let problem = over_the_knots(ball, input, method, relative);
             let run = run(&problem);
             assert!(run.events.is_empty());
-            let moved = spline().at(END, Side::Left).double_integral;
+            let moved = rows(interpolation).at(END, Side::Left).double_integral;
             let error = at_end(&run, "gap") - (20.0 - 9.81 * END * END / 2.0 - moved);
             // The rounding of some ten sums of 20 m.
             assert!(error.abs() < 20.0 * 1e-15 * 10.0, "{method:?}: {error:e}");
@@ -47,22 +58,25 @@ fn a_flight_over_knots_is_as_accurate_as_the_tolerance() {
 /// than a piece.
 #[test]
 fn errors_of_an_oscillator_follow_the_tolerance_across_knots() {
-    let oscillator = |method, relative| {
-        let problem = problem(
-            "sliding_oscillator",
-            &[("mu_s", 10.0), ("k", 100.0), ("c", 5.0)],
-        );
-        over_the_knots(problem, "ground_acceleration", method, relative)
-    };
-    let mut exact = oscillator(Method::Taylor, 1e-13);
-    tighten(&mut exact, 1.0);
-    let exact = at_end(&run(&exact), "d");
-    for relative in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-        let run = run(&oscillator(Method::Radau, relative));
-        let error = (at_end(&run, "d") - exact).abs();
-        println!("{relative:e}: {error:e} m, {} steps", run.solver.steps);
-        // The size of d is 1 m, of its rate 1 m/s.
-        assert!(error < relative, "{relative:e}: {error:e} m");
+    for interpolation in INTERPOLATIONS {
+        let oscillator = |method, relative| {
+            let parameters = [("mu_s", 10.0), ("k", 100.0), ("c", 5.0)];
+            let problem = problem("sliding_oscillator", &parameters);
+            let input = ("ground_acceleration", rows(interpolation));
+            over_the_knots(problem, input, method, relative)
+        };
+        let mut exact = oscillator(Method::Taylor, 1e-13);
+        tighten(&mut exact, 1.0);
+        let exact = at_end(&run(&exact), "d");
+        for method in [Method::Radau, Method::Taylor] {
+            for relative in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+                let run = run(&oscillator(method, relative));
+                let error = (at_end(&run, "d") - exact).abs();
+                println!("{relative:e}: {error:e} m, {} steps", run.solver.steps);
+                // The size of d is 1 m, of its rate 1 m/s.
+                assert!(error < relative, "{relative:e}: {error:e} m");
+            }
+        }
     }
 }
 
@@ -70,9 +84,13 @@ fn errors_of_an_oscillator_follow_the_tolerance_across_knots() {
 /// tolerance lets it.
 #[test]
 fn an_implicit_step_goes_on_beyond_a_knot() {
+    INTERPOLATIONS.into_iter().for_each(implicit_steps);
+}
+
+fn implicit_steps(interpolation: Interpolation) {
     let times: Vec<_> = (0..=1000).map(|i| i as f64 * 1e-2).collect();
     let values: Vec<_> = times.iter().map(|t| (t * 0.7).sin()).collect();
-    let table = Table::new(&times, &values, Interpolation::Cubic, Outside::Hold);
+    let table = Table::new(&times, &values, interpolation, Outside::Hold);
     let mut problem = problem("vibrating_table_ball", &[]);
     problem
         .set_input("table_acceleration", table.unwrap().into())
