@@ -29,6 +29,10 @@ KINDS = ("coordinate", "input", "parameter", "damping", "force", "friction", "si
 
 DISPLAY = re.compile(r"\\begin\{(?P<name>equation|align|multline|gather|eqnarray|displaymath)(?P<star>\*?)\}(?P<body>.*?)\\end\{(?P=name)(?P=star)\}"
                      r"|\\\[(?P<bracket>.*?)\\\]|\$\$(?P<dollars>.*?)\$\$", re.DOTALL)
+# displays that may hold several equations, and what parts them
+MANY = ("align", "gather", "eqnarray")
+BREAK = re.compile(r"\\\\\*?(?:\[[^\]]*\])?")
+RELATION = re.compile(r"[=<>≤≥]|\\(?:lt|gt|leq?|geq?|leqslant|geqslant)(?![A-Za-z])")
 ROLES = {"motion of": "motion", "value of": "value", "reaction": "reaction", "condition on": "condition", "rule for": "rule",
          "impact of": "reset", "constraint with": "constraint", "definition of": "definition", "force on": "force",
          "kinetic energy": "T", "potential energy": "V", "dissipation": "D", "lagrangian": "L", "skip": "skip"}
@@ -182,23 +186,49 @@ def _displayed(text, shown, file):
     found, counter, before = [], 0, 0
     for match in DISPLAY.finditer(shown):
         group = next(name for name in ("body", "bracket", "dollars") if match.group(name) is not None)
-        latex = Placed(text, *match.span(group), file)
-        tag = re.search(r"\\tag\*?\{([^{}]*)\}", match.group(group))
-        numbered = group == "body" and match.group("name") != "displaymath" and not match.group("star") \
-            and not re.search(r"\\(?:nonumber|notag)\b", match.group(group))
-        counter += numbered and not tag
-        number = tag.group(1).strip() if tag else str(counter) if numbered else f"unnumbered {len(found) + 1}"
+        numbers = group == "body" and match.group("name") != "displaymath" and not match.group("star")
         # a comment speaks of the equation in which or directly above which it stands
-        above = text[before:match.start()]
-        lines = re.search(r"(?:^[ \t]*%[^\n]*\n)+[ \t]*\Z", above, re.MULTILINE)
-        notes = list(NOTE.finditer((lines.group() if lines else "") + "\n" + latex))
-        if len(notes) > 1:
-            raise error_at(latex, 0, "two comments say what this equation is")
-        found.append(Displayed(latex, number, notes[0] if notes else None))
+        lines = re.search(r"(?:^[ \t]*%[^\n]*\n)+[ \t]*\Z", text[before:match.start()], re.MULTILINE)
+        above = lines.group() if lines else ""
+        for rows in _rows(text, shown, match.span(group), match.group("name") in MANY):
+            latex, number = Placed(text, rows[0][0], rows[-1][1], file), None
+            for start, end in rows:
+                tag = re.search(r"\\tag\*?\{([^{}]*)\}", shown[start:end])
+                counted = numbers and not tag and not re.search(r"\\(?:nonumber|notag)\b", shown[start:end])
+                counter += counted
+                number = number or (tag.group(1).strip() if tag else str(counter) if counted else None)
+            notes = list(NOTE.finditer(above + "\n" + latex))
+            if len(notes) > 1:
+                raise error_at(latex, 0, "two comments say what this equation is")
+            found.append(Displayed(latex, number or f"unnumbered {len(found) + 1}", notes[0] if notes else None))
+            above = ""
         before = match.end()
     if not found:
         raise PaperError(f"{file}: no displayed equation is found: \\begin{{equation}} ... \\end{{equation}}, \\[ ... \\] or $$ ... $$")
     return found
+
+
+def _rows(text, shown, span, many):
+    """The equations of a display, each as the spans of its rows. Of displays that may hold several, a row with a relation in it, but not
+    at its start, begins another one, as does a comment that says what it is; of others the rows are one equation."""
+    start, end = span
+    body = shown[start:end]
+    if not many or "\\begin" in body:
+        return [[span]]
+    cuts = [0, *(match.end() for match in BREAK.finditer(body)), len(body)]
+    result = []
+    for low, high in zip(cuts, cuts[1:]):
+        row = BREAK.sub("", body[low:high])
+        if not row.strip(" &\t\n") and result:
+            continue
+        begins = RELATION.search(row) and not RELATION.match(row.strip(" &\t\n"))
+        # what stands before the first relation belongs to it
+        said = NOTE.search(text[start + low:start + high])
+        if result and not said and (not begins or not RELATION.search(shown[result[-1][0][0]:result[-1][-1][1]])):
+            result[-1].append((start + low, start + high))
+        else:
+            result.append([(start + low, start + high)])
+    return result
 
 
 def _sort(equation, paper, rows, printed):

@@ -49,6 +49,30 @@ class Judged(Folder):
         self.assertEqual([(n, e.of) for n, e in result.case.paper.equations.items()], [("5", "x"), ("6", "theta")])
         self.assertIn("(5), (6) are judged from their LaTeX", text.as_text(result))
 
+    def test_a_display_of_several_equations(self):
+        path = self.folder / "paper.tex"
+        head = path.read_text(encoding="utf-8").split(r"\begin{equation}")[0]
+        path.write_text(head + r"""\begin{align}
+T &= \tfrac12 M \dot{x}^2 + \tfrac12 m (\dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} \nonumber \\
+  &\quad + l^2 \dot{\theta}^2 ), \\[1ex]
+V &= - m g l \cos\theta, \qquad \\
+D &= \tfrac12 c \dot{x}^2, \notag \\ Q_x &= F.
+\end{align}
+\begin{gather}
+% motion of x
+(M + m) \ddot{x} + m l \cos\theta \, \ddot{\theta} - m l \sin\theta \, \dot{\theta}^2 + c \dot{x} = F, \\
+% motion of \theta
+m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} \nonumber
+\\ + m g l \sin\theta = 0 \tag{A.1}
+\end{gather}
+""", encoding="utf-8")
+        result = self.judged()
+        self.assertEqual(result.findings, [])
+        self.assertEqual([(n, e.of) for n, e in result.case.paper.equations.items()], [("4", "x"), ("A.1", "theta")])
+        # each is judged by itself
+        self.change((r"m g l \sin\theta = 0 \tag", r"m g \sin\theta = 0 \tag"))
+        self.assertEqual([(f.equation, f.slip, f.proved) for f in self.judged().findings], [("A.1", "factor lost", True)])
+
     def test_a_slip_in_it_is_found_and_named(self):
         for old, new, slip in ((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot", "sign"), (r"m l \cos\theta \, \ddot{x}", r"m l \sin\theta \, \ddot{x}",
                                "function"), ("+ c \\dot{x} = F", "+ 2 c \\dot{x} = F", "number"), ("+ c \\dot{x} = F", "+ c \\ddot{x} = F", "dot"),
