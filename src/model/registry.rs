@@ -70,10 +70,10 @@ pub fn models() -> &'static Models {
 }
 
 impl Models {
-    /// As [`models`], to which more can be added.
+    /// As [`models()`], to which more can be added.
     ///
     /// # Panics
-    /// As [`models`].
+    /// As [`models()`].
     pub fn linked() -> Models {
         Models::of_build(kernel::linked_models())
     }
