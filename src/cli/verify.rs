@@ -9,7 +9,7 @@ use super::outcome::{Failure, Outcome, Result};
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
-Runs codegen/verify, which codegen/verify/README.md describes, with a Python that is found, and packages \
+Runs codegen/verify, which docs/verification.md describes, with a Python that is found, and packages \
 that are installed for it once. The environment variable DALEMBERT_PYTHON names another one, which must have CasADi and \
 SymPy. A name is that of a model inside the program; anything else is a folder.")]
 pub struct VerifyArguments {
