@@ -168,7 +168,10 @@ def terms(tree, paper, s, m, latex=""):
         if node.kind == "power":
             return value(node.children[0]) ** int(node.text)
         if node.kind == "fraction":
-            return value(node.children[0]) / value(node.children[1])
+            below = value(node.children[1])
+            if below == 0:
+                raise error_at(latex, node.at, "a division by zero")
+            return value(node.children[0]) / below
         return value(node.children[0])
 
     found = {}

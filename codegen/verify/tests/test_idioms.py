@@ -80,7 +80,7 @@ REFUSED = [
     (r"x'", "'", "prime"), (r"x_1_2", "_2", "second index"), (r"\vec{x}", r"\vec", "components"), (r"\int m", r"\int", "integral"),
     (r"\begin{cases} m \end{cases}", r"\begin", "equation of its own"), (r"m ? k", "?", "cannot be read"), (r"\exp(x)", r"\exp", "exponential"),
     (r"m \\ k", "k", "after the line break"), (r"\frac{m}", None, "braces around the arguments"), (r"\frac1.5", "1.5", "two ways|braces around"),
-    (r"x(t+1)", "t", "not declared"), (r"m q", "q", "'q' is not declared"), (r"m_2", "m_2", "'m_2' is not declared"),
+    (r"\frac{m}{0}", r"\frac", "division by zero"), (r"m/0", "m", "division by zero"), (r"x(t+1)", "t", "not declared"), (r"m q", "q", "'q' is not declared"), (r"m_2", "m_2", "'m_2' is not declared"),
     (r"\dot{m}", r"\dot", "neither a coordinate nor an input"), (r"\dddot{x}", r"\dddot", "3 dots"), (r"", None, "term is missing"), (r"\theta \le", None, "term is missing"),
 ]
 
