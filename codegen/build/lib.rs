@@ -67,6 +67,9 @@ mod registry;
 mod script;
 mod verification;
 
+/// The style of pages: of this crate's reports, and of the engine's pages.
+pub const PAGE_STYLE: &str = include_str!("../page.css");
+
 pub use cache::Cache;
 pub use error::{Error, InstallCause, ModelFailure};
 pub use evict::Item;

@@ -39,8 +39,8 @@ const OF_MOTION: [&str; 2] = [
     include_str!("assets/mechanism.js"),
     include_str!("assets/player.js"),
 ];
-/// The style, which the report of `verify` has too.
-const STYLE: &str = include_str!("assets/page.css");
+/// The style, which the report of `verify` has too: `codegen/page.css`, which the build puts there.
+const STYLE: &str = include_str!(concat!(env!("OUT_DIR"), "/page.css"));
 const PLOTS: &str = include_str!("assets/uplot.js");
 const PLOTS_STYLE: &str = include_str!("assets/uplot.css");
 const PLOTS_LICENCE: &str = include_str!("assets/uplot-LICENSE");

@@ -6,6 +6,7 @@ mod observers;
 mod synthetic;
 
 use std::fs;
+use std::path::Path;
 
 use dalembert::record::plot::{Chart, Curve, Dimension, overview, phase_portraits};
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
@@ -28,25 +29,28 @@ fn header(table: &str) -> Vec<&str> {
 #[test]
 fn a_small_run_gives_these_files() {
     let run = bouncing_ball(1.0, 2, 5);
-    assert_eq!(
-        text(|out| write_trajectory(&run, out)),
-        include_str!("golden/trajectory.csv")
-    );
-    assert_eq!(
-        text(|out| write_events(&run, out)),
-        include_str!("golden/events.csv")
-    );
-    assert_eq!(
-        text(|out| write_metadata(&run, out)),
-        include_str!("golden/csv-metadata.json")
-    );
-    assert_eq!(
-        text(|out| Summary::new(&run).write(out)),
-        include_str!("golden/summary.json")
-    );
-    assert_eq!(
-        Report::new(&run).to_string(),
-        include_str!("golden/report.txt")
+    golden("trajectory.csv", &text(|out| write_trajectory(&run, out)));
+    golden("events.csv", &text(|out| write_events(&run, out)));
+    golden("csv-metadata.json", &text(|out| write_metadata(&run, out)));
+    golden("summary.json", &text(|out| Summary::new(&run).write(out)));
+    golden("report.txt", &Report::new(&run).to_string());
+}
+
+/// Renews golden files.
+const RENEW: &str = "DALEMBERT_RENEW";
+
+/// Holds a text against its golden file, or renews that.
+fn golden(name: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/record/golden");
+    let path = path.join(name);
+    if std::env::var_os(RENEW).is_some() {
+        return fs::write(path, text).unwrap();
+    }
+    let kept = fs::read_to_string(path).unwrap_or_default();
+    assert!(
+        text == kept,
+        "{name} has changed\nfrom\n{kept}\nto\n{text}\nIf that is meant, renew it by\n  {RENEW}=1 cargo test --test record\n\
+         and look at what `git diff` says."
     );
 }
 

@@ -1,6 +1,7 @@
 """The report as one self-contained HTML page: MathML, no script, no network."""
 
 from html import escape
+from pathlib import Path
 
 from ..input import transcription
 from ..judgements import TITLES
@@ -12,17 +13,23 @@ from .text import (agreement_text, consistent_label, consistent_text, effect_lin
                    undefined_symbols, verdict_text)
 
 STYLE = """
-body { font: 16px/1.5 Georgia, serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1b1b1b; background: #fff; }
-h1, h2, h3 { font-family: Helvetica, Arial, sans-serif; line-height: 1.2; }
-h2 { border-bottom: 1px solid #ccc; padding-bottom: .2em; margin-top: 2em; }
-table { border-collapse: collapse; margin: 1em 0; } th, td { border: 1px solid #ddd; padding: .3em .6em; text-align: left; }
+body { font-family: Georgia, "DejaVu Serif", serif; max-width: 62rem; line-height: 1.5; }
+h1, h2, h3, table { font-family: system-ui, "DejaVu Sans", "Liberation Sans", sans-serif; }
+h2 { border-bottom: 1px solid var(--rule); padding-bottom: .2em; } h3 { font-size: 1rem; }
 .equation { overflow-x: auto; padding: .3em 0; }
-.differ { color: #b3261e; background: #fdecea; } .agree { color: inherit; } .absent { color: #1f5fa8; }
-.finding { border-left: 4px solid #b3261e; padding-left: 1em; margin: 1.2em 0; }
-.finding.approximation { border-color: #b7791f; } .finding.choice { border-color: #1f5fa8; }
-.tag { font: 13px Helvetica, Arial, sans-serif; background: #eee; border-radius: 3px; padding: .1em .5em; margin-right: .3em; }
-.bad { color: #b3261e; } .good { color: #1c6b3a; }
+.differ { color: var(--alarm); background: color-mix(in srgb, var(--alarm) 12%, transparent); } .agree { color: inherit; }
+.absent { color: var(--accent); }
+.finding { border-left: 4px solid var(--alarm); padding-left: 1em; margin: 1.2em 0; break-inside: avoid; }
+.finding.approximation { border-color: var(--s5); } .finding.choice { border-color: var(--accent); }
+.tag { font: 13px system-ui, sans-serif; background: var(--wash); border-radius: 3px; padding: .1em .5em; margin-right: .3em; }
+.bad { color: var(--alarm); } .good { color: var(--good); }
 """
+"""What is of reports alone; the rest of the style they share with the pages of runs."""
+
+
+def _shared():
+    """The style of all pages."""
+    return (Path(__file__).parents[2] / "page.css").read_text(encoding="utf-8")
 
 
 def inline(form, paper):
@@ -36,7 +43,7 @@ def as_html(report):
     """The page as text."""
     case, paper = report.case, report.case.paper
     out = ["<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{escape(case.name)}: verification</title>",
-           f"<style>{STYLE}</style></head><body>", f"<h1>{escape(paper.title)}</h1>", f"<p>{escape(paper.source)}</p>"]
+           f"<style>{_shared()}{STYLE}</style></head><body>", f"<h1>{escape(paper.title)}</h1>", f"<p>{escape(paper.source)}</p>"]
     out += _equations(report) + _candidates(report) + _judgements(report)
     out.append(f"<h2>{escape(headline(report))}</h2>")
     for finding in report.findings:

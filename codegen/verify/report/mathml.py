@@ -10,6 +10,17 @@ BREAK = object()
 OVER = {"bar": "¯", "overline": "¯", "hat": "^", "widehat": "^", "tilde": "~", "widetilde": "~"}
 
 
+DOT = '<mspace class="dot" width="0.2em" height="0.2em"/>'
+
+
+def dotted(body, count):
+    """A symbol with dots above. They are drawn by the style of the page: the dots of fonts touch their letter, or each
+    other, so that a letter with one looks like one with two."""
+    label = ("one dot", "two dots", "three dots")[count - 1]
+    dots = '<mspace width="0.18em"/>'.join([DOT] * count)
+    return f'<mover aria-label="{label}">{body}<mrow>{dots}</mrow></mover>'
+
+
 def mathml(tree, marks=None):
     """MathML of a tree; `marks` gives a CSS class by ordinal."""
     marks = marks or {}
@@ -20,7 +31,7 @@ def mathml(tree, marks=None):
         if node.accent:
             body = f'<mover accent="true">{body}<mo>{OVER[node.accent]}</mo></mover>'
         if node.dots:
-            body = f'<mover accent="true">{body}<mo>{"˙¨⃛"[node.dots - 1]}</mo></mover>'
+            body = dotted(body, node.dots)
         if node.index:
             index = "".join(ENTITIES.get(part, part) for part in node.index.split("\\"))
             body = f"<msub>{body}<mi mathvariant=\"normal\">{escape(index)}</mi></msub>"
