@@ -85,8 +85,8 @@ def _judge(arguments):
     case = load(folder)
     result = report.verify(case, thorough=not arguments.quick)
     if arguments.program and case.effects and not arguments.quick:
-        simulated = effects.simulate(case.effects, case.corrections, arguments.program)
-        effects.attach(result.findings, case.corrections, simulated)
+        simulated = effects.simulate(case.effects, result.case.corrections, arguments.program)
+        effects.attach(result.findings, result.case.corrections, simulated)
         result.variants = simulated.variants
     _show(machine.as_json(result) if arguments.json else text.as_text(result))
     if arguments.html:

@@ -5,7 +5,7 @@ import sys
 import types
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import List, Optional
+from typing import Dict, List, Optional
 
 from ...errors import error_location
 from ..errors import PaperError
@@ -17,7 +17,8 @@ from .printed import Paper
 @dataclass
 class Case:
     """All that a model folder offers to verification: `paper.py` (`paper`) or `paper.tex` with `symbols.csv`, `paper_energies.py`
-    (`energies`, a list, the best first; also `candidates` for that place), `corrections.py` (`corrections`),
+    (`energies`, a list of readings in any order), `corrections.py` (`corrections`, those of one reading, and where there are
+    several, `readings`: the corrections of each by its name),
     `paper_numbers.py` (`numbers`) and `paper_effects.py` (`effects`)."""
 
     name: str
@@ -26,7 +27,7 @@ class Case:
     energies: List = field(default_factory=list)
     corrections: List = field(default_factory=list)
     numbers: List = field(default_factory=list)
-    candidates: List = field(default_factory=list)
+    readings: Dict = field(default_factory=dict)
     effects: object = None
 
 
@@ -66,7 +67,9 @@ def load(folder, name: Optional[str] = None) -> Case:
         return found
 
     energies = offered("paper_energies", "energies", derived)
-    candidates = getattr(sys.modules.get(f"{package}.paper_energies"), "candidates", [])
-    return Case(name, folder, offered("paper", "paper", printed, Paper), list(energies),
-                list(offered("corrections", "corrections", [])), list(offered("paper_numbers", "numbers", [])), list(candidates),
-                offered("paper_effects", "effects", None, Effects))
+    corrections = offered("corrections", "corrections", [])
+    readings = offered("corrections", "readings", {}, dict) if hasattr(sys.modules.get(f"{package}.corrections"), "readings") else {}
+    if unknown := sorted(readings.keys() - {e.name for e in energies}):
+        raise PaperError(f"{folder / 'corrections.py'}: 'readings' has corrections of '{unknown[0]}', which is none of the energies")
+    return Case(name, folder, offered("paper", "paper", printed, Paper), list(energies), list(corrections),
+                list(offered("paper_numbers", "numbers", [])), dict(readings), offered("paper_effects", "effects", None, Effects))

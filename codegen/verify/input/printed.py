@@ -61,7 +61,8 @@ class Equation:
     - reset: they sum to the rate of the coordinate `of` after an impact, in the state before it
 
     `margin` marks a condition whose function already gives the terms of its margin, `momentum` a
-    force that is the rate of a momentum: the reaction of a translation of the whole system. Without a
+    force that is the rate of a momentum: the reaction of a translation of the whole system, `flips` the
+    discrete states that change their sign at an impact. Without a
     `function` the terms follow from the LaTeX, with the symbols of `paper`.
     """
 
@@ -75,6 +76,7 @@ class Equation:
     result: int = 0
     margin: bool = False
     momentum: bool = False
+    flips: Tuple[str, ...] = ()
     paper: object = field(default=None, compare=False, repr=False)
 
     def terms(self, s, m):
@@ -108,6 +110,15 @@ def group(factor, *terms):
     return [factor * term for term in terms]
 
 
+@dataclass(frozen=True)
+class Release:
+    """A scene at its start: the system at rest with the coordinates `at` (all others zero), `held` the coordinates
+    that do not move; no force acts that the paper gives by a symbol of its own (friction)."""
+
+    at: Dict[str, str]
+    held: Tuple[str, ...] = ()
+
+
 @dataclass
 class Paper:
     """The symbols and equations of one paper, in the order in which it prints them.
@@ -133,6 +144,7 @@ class Paper:
     box: Dict[str, Tuple[float, float]] = field(default_factory=dict)
     negligible: Tuple[str, ...] = ()
     special: Dict[str, Dict[str, object]] = field(default_factory=dict)
+    releases: Dict[str, Release] = field(default_factory=dict)
 
     def _declare(self, symbol):
         """Adds a symbol. No two may have a name, a rate's name or a LaTeX in common: one would be
@@ -184,18 +196,18 @@ class Paper:
 
         return register
 
-    def _equation(self, number, kind, of, latex, title, relation="", result=0, momentum=False):
+    def _equation(self, number, kind, of, latex, title, relation="", result=0, momentum=False, flips=()):
         if number in self.equations:
             raise PaperError(f"equation ({number}) is given twice")
         if latex:
             # until a function is written beside it, the LaTeX says what the terms are
-            self.equations[number] = Equation(number, kind, of, latex, None, title, relation, result, momentum=momentum, paper=self)
+            self.equations[number] = Equation(number, kind, of, latex, None, title, relation, result, momentum=momentum, flips=flips, paper=self)
 
         def register(function):
             if number in self.equations and self.equations[number].function:
                 raise PaperError(f"equation ({number}) is given twice")
             self.equations[number] = Equation(
-                number, kind, of, latex, function, title, relation, result, momentum=momentum)
+                number, kind, of, latex, function, title, relation, result, momentum=momentum, flips=flips)
             return function
 
         return register
@@ -217,9 +229,20 @@ class Paper:
         """Register a sign rule for the discrete state `of`."""
         return self._equation(number, "rule", of, latex, title, relation, result)
 
-    def reset(self, number, of, title="", latex=""):
-        """Register an impact law for the rate of the coordinate `of`."""
-        return self._equation(number, "reset", of, latex, title)
+    def reset(self, number, of, title="", latex="", flips=()):
+        """Register an impact law for the rate of the coordinate `of`, at whose bound it happens; `flips` are the discrete
+        states that change their sign at the same time."""
+        return self._equation(number, "reset", of, latex, title, flips=tuple(flips))
+
+    def release(self, name, at, held=()):
+        """Declare a release from rest at the coordinates `at` (decimal strings), while the coordinates `held` do not move:
+        a scene in which the reactions of what pushes must be positive."""
+        if name in self.releases:
+            raise PaperError(f"the release '{name}' is declared twice")
+        for coordinate in [*at, *held]:
+            if coordinate not in self.coordinates():
+                raise PaperError(f"the release '{name}' names '{coordinate}', which is no coordinate")
+        self.releases[name] = Release({n: str(v) for n, v in at.items()}, tuple(held))
 
     def check(self):
         """Raises a PaperError where the declarations do not fit together."""
@@ -233,6 +256,9 @@ class Paper:
                 raise PaperError(f"equation ({number}) is of '{equation.of}', which is not declared as a {' or '.join(wanted)}")
             if equation.kind in ("condition", "rule") and equation.relation not in ("<", ">"):
                 raise PaperError(f"equation ({number}) has the relation '{equation.relation}': it is '<' or '>'")
+            for name in equation.flips:
+                if name not in self.symbols or self.symbols[name].role != "discrete":
+                    raise PaperError(f"equation ({number}) flips '{name}', which is no discrete state")
             if equation.kind == "rule" and equation.result not in symbol.values:
                 raise PaperError(f"equation ({number}) sets {equation.of} to {equation.result}, which is none of its values")
         of = [equation.of for equation in self.motions()]

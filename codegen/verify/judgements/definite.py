@@ -84,13 +84,13 @@ class Verdict:
     point: Optional[Dict[str, Tuple[float, float]]] = None
 
 
-def prove_matrix(matrix, fixed, box) -> Verdict:
+def prove_matrix(matrix, fixed, box, limit=BISECTIONS) -> Verdict:
     """Whether a symmetric matrix is positive definite over a box, with the other values fixed."""
     if len(matrix) <= MULTIPLIED_OUT:
-        return prove(minors(matrix), fixed, box)
+        return prove(minors(matrix), fixed, box, limit)
     known(intervals({**fixed, **box}), [form for row in matrix for form in row])
     still = intervals({n: value for n, value in fixed.items() if n not in box})
-    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, judge=pivots)
+    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, limit, judge=pivots)
 
 
 def _collected(form, still):

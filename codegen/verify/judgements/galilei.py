@@ -1,5 +1,6 @@
 """Judgement 5: Galilean invariance."""
 
+from itertools import combinations
 from typing import List
 
 from .violation import Violation
@@ -35,6 +36,27 @@ def galilei(subject, motion=None) -> List[Violation]:
             violations.append(Violation("galilei", (number,), (), [
                 f"the accelerations of {x} and {z} do not enter as their sum; the factor of dd{x} less that of dd{z} is ",
                 excess or "not a number"], [(number, excess * ring.symbol("dd" + z)), (number, -excess * ring.symbol("dd" + x))]))
-        return violations
+        return violations + _split(subject, number)
 
     return subject.each("galilei", judge)
+
+
+def _split(subject, number):
+    return [Violation("galilei", (number,), (), [
+        f"the accelerations of {first} and {second} in ({number}) do not belong to one first moment: the slope by {second} of the "
+        f"factor of dd{first} less the slope by {first} of that of dd{second} is ", form]) for first, second, form in split(subject, number)]
+
+
+def split(subject, number):
+    """(coordinate, coordinate, form) where the masses of a momentum are split. A force on a translation of the whole system
+    is the second rate of a first moment, masses times positions: the factors of its accelerations are the slopes of one function.
+    Where one mass stands by one acceleration and another by the next, there is no such function, and a steady motion of the frame
+    exerts a force."""
+    equation = subject.paper.equations[number]
+    if subject.paper.translation is None or not (
+            equation.momentum or equation.kind == "motion" and equation.of == subject.paper.translation[0]):
+        return []
+    total = subject.scales.get(number, subject.ring.number(1)) * subject.conservative(number)
+    factors = {name: total.diff("dd" + name) for name in subject.paper.coordinates()}
+    return [(first, second, form) for first, second in combinations(factors, 2)
+            if (form := factors[first].diff(second) - factors[second].diff(first))]

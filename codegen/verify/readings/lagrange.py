@@ -1,7 +1,7 @@
 """Equations of motion and reactions from energies, by Lagrange's equations, in normal form."""
 
 from dataclasses import dataclass, field
-from typing import Callable, Dict, Optional
+from typing import Callable, Dict, List, Optional
 
 from ..errors import PaperError
 from ..input.printed import Symbol, latex_name
@@ -33,9 +33,13 @@ class Energies:
     references: Dict[str, Callable] = field(default_factory=dict)
     scales: Dict[str, Callable] = field(default_factory=dict)
     extra: Dict[str, Symbol] = field(default_factory=dict)
+    pushes: List[str] = field(default_factory=list)
 
-    def coordinate(self, name, unit, meaning, mirror=1):
-        """Declare a coordinate that is held at zero in all equations."""
+    def coordinate(self, name, unit, meaning, mirror=1, pushes=False):
+        """Declare a coordinate that is held at zero in all equations; `pushes` where what holds it cannot pull (the ground),
+        so that its reaction must be positive."""
+        if pushes:
+            self.pushes.append(name)
         self.extra[name] = Symbol(name, unit, meaning, "coordinate", latex_name(name), mirror)
 
     def reference(self, number, scale=None):

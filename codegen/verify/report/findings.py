@@ -5,25 +5,38 @@ from dataclasses import dataclass, field
 from typing import List, Optional, Tuple
 
 from ..errors import NotInClass
+from ..construct.small import special_cases as cases
 from ..input.corrections import apply, without
 from ..judgements import JUDGEMENTS, TITLES
 from ..judgements.comparison import compare
 from ..normal.subject import Subject
-from ..readings.lagrange import Motion
 from ..repairs import search as repairs
 from ..repairs.locate import locate
 from .show import message_text
 
+
+# what findings are, beside the kinds of corrections
+FURTHER = {
+    "repair": "a slip, found here: with what is called consistent the equation is that of the reading",
+    "objection": "an objection that no slip explains",
+    "principle": "a principle of mechanics that the paper does not keep",
+    "undefined": "a symbol that the paper uses and does not define",
+}
+# beside the judgements on equations
+IMPACT = "Impact laws: bound, energy and momenta"
+
+
 @dataclass
 class Finding:
-    """One slip, or one objection that no slip explains. `kind` is that of a correction, `repair`
-    (found here) or `objection`. `printed` and `consistent` are forms (terms) or words, `ordinals`
+    """One slip, or one objection that no slip explains. `kind` is that of a correction or one of `FURTHER`. `printed` and `consistent` are forms (terms) or words, `ordinals`
     those of the printed terms (from 0); `proved` says whether the equation raises no objection
     with all that is called consistent; `slip` is a kind of slip (edits.SLIPS) or empty;
     `judgements` the names of those that find it when everything else is right; `order` the lowest
     degree in the coordinates of what it changes (None: not a term); `vanishes` the special cases in
     which it changes nothing; `effects` what a simulation made of it, by scene; `possible` the edits,
-    as (equation number, Repair), with each of which alone an objection vanishes and none comes."""
+    as (equation number, Repair), with each of which alone an objection vanishes and none comes; `readings` the names of the
+    readings in which what is printed is wrong (None: there is one reading, or none), and `alternatives` what would be consistent in
+    those whose forms are not `consistent`: {name: forms}."""
 
     key: str
     equation: str
@@ -39,6 +52,8 @@ class Finding:
     vanishes: List[str] = field(default_factory=list)
     effects: dict = field(default_factory=dict)
     possible: list = field(default_factory=list)
+    readings: Optional[List[str]] = None
+    alternatives: dict = field(default_factory=dict)
 
 
 def judge(subject, motion):
@@ -60,9 +75,9 @@ def judged_right(subject, motion, violations, number):
 
 
 def special_cases(paper, form):
-    """Names of the paper's special cases in which a form is zero."""
+    """Names of the special cases in which a form is zero."""
     result = []
-    for name, values in paper.special.items():
+    for name, values in cases(paper).items():
         put = {n: form.ring.symbol(v) if isinstance(v, str) else v for n, v in values.items()}
         try:
             if not form.substitute(put):
@@ -70,6 +85,14 @@ def special_cases(paper, form):
         except (NotInClass, ZeroDivisionError):
             continue  # the case does not exist for this form: it divides by what would be zero
     return result
+
+
+def consistent_terms(correction, whole):
+    """The forms of the terms that a correction puts in, where all corrections of a reading are applied."""
+    if correction.whole:
+        return whole.forms[correction.equation]
+    made = [make(whole.s, whole.m, lambda key: True) for make in (correction.terms or {}).values() if make]
+    return [whole.ring.read(x) for x in made + [make(whole.s, whole.m) for make in correction.adds]]
 
 
 def from_corrections(case, motion, printed, whole, violations):
@@ -82,18 +105,11 @@ def from_corrections(case, motion, printed, whole, violations):
         slipped = Subject(apply(case.paper, corrections, others), printed)
         right = Subject(apply(case.paper, corrections, [*others, correction.key]), printed)
         number = correction.equation
-        if correction.whole:
-            ordinals = tuple(range(len(printed.forms[number])))
-            consistent = whole.forms[number]
-        else:
-            ordinals = tuple(k - 1 for k in correction.terms or {})
-            made = [make(whole.s, whole.m, lambda key: True) for make in (correction.terms or {}).values() if make]
-            made += [make(whole.s, whole.m) for make in correction.adds]
-            consistent = [whole.ring.read(x) for x in made]
+        ordinals = tuple(range(len(printed.forms[number]))) if correction.whole else tuple(k - 1 for k in correction.terms or {})
         change = slipped.total(number) - right.total(number)
         findings.append(Finding(
             correction.key, number, correction.kind, correction.reason, ordinals,
-            [printed.forms[number][k] for k in ordinals], consistent, judged_right(whole, motion, violations, number),
+            [printed.forms[number][k] for k in ordinals], consistent_terms(correction, whole), judged_right(whole, motion, violations, number),
             detected(slipped, motion, violations), change.order(case.paper.coordinates()),
             vanishes=special_cases(case.paper, change)))
     return findings
@@ -157,17 +173,3 @@ def _objection(key, subject, violations, equations, terms, possible=()):
     printed = [subject.forms[equations[0]][k] for k in terms]
     return Finding(key, ", ".join(dict.fromkeys(equations)), "objection", reason, terms, printed, [], False, judgements, None,
                    possible=list(possible))
-
-
-def scores(case):
-    """For every candidate of the energies: its name and, over equations of motion, forces and
-    reactions, how many printed terms agree, of how many, and how many derived terms are absent."""
-    subject = Subject(case.paper)
-    result = []
-    for energies in case.candidates:
-        motion = Motion(case.paper, energies)
-        chosen = [n for n, e in case.paper.equations.items() if e.kind in ("motion", "value")]
-        found = [c for c in (compare(subject, motion, n) for n in chosen) if c]
-        result.append((energies.name, sum(len(c.agree) for c in found),
-                       sum(c.terms() for c in found), sum(len(c.absent) for c in found)))
-    return result

@@ -1,22 +1,23 @@
-"""The report of a verification: gathered once, then written as text (text.py), JSON (machine.py)
-or HTML (html.py), which say the same."""
+"""The report of a verification: gathered once, then written as text (text.py), JSON (machine.py), HTML (html.py) or
+LaTeX (tex.py), which say the same."""
 
-from dataclasses import dataclass, field
-from itertools import product
+from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional
 
-from ..errors import NotInClass
+from ..construct.balance import energy_balance, momentum_balances
+from ..construct.conserved import conserved
+from ..construct.lagrangian import construct, motion_rows
+from ..construct.small import small_motion
 from ..input import transcription
 from ..input.corrections import apply
 from ..judgements import unjudged, unreferenced
 from ..judgements.comparison import compare
-from ..judgements.definite import critical, determinant, printed_mass, prove_matrix, rest, states
+from ..judgements.definite import critical, determinant, printed_mass, rest
 from ..judgements.numbers import check
-from ..normal.algebra import expression
-from ..normal.intervals import intervals, signs
 from ..normal.subject import Subject
-from ..readings.lagrange import Motion
-from .findings import Finding, from_corrections, from_locations, from_objections, from_repairs, judge, repaired, scores
+from ..readings.ranking import Reading, ranked
+from . import principles
+from .findings import Finding, consistent_terms, from_corrections, from_locations, from_objections, from_repairs, judge, repaired
 
 
 @dataclass
@@ -29,32 +30,60 @@ class Definiteness:
     at_rest: object
     neglected: object
     critical: object
-    boxes: Dict[str, object]
-    squares: Optional[bool]
+    boxes: Dict[str, object] = field(default_factory=dict)
+    squares: Optional[bool] = None
+
+
+@dataclass
+class Constructed:
+    """What is constructed from equations: `lagrangian`, or `why` there is none; balances and conserved quantities;
+    small motions. `of` says of which equations: as printed, or with what is consistent."""
+
+    of: str
+    lagrangian: object
+    why: Optional[str]
+    energy: object = None
+    momenta: List = field(default_factory=list)
+    conserved: List = field(default_factory=list)
+    small: object = None
 
 
 @dataclass
 class Report:
-    """All results on one case. `corrected` has all corrections of the model folder (`by_hand`), or
+    """All results on one case. `readings` are the energies that the paper may mean, the best first, and the findings are
+    those of the first; `corrected` has all corrections of the model folder (`by_hand`) for it, or
     the repairs found here; `unjudged` says why a judgement had nothing to judge by, `unreferenced`
-    which equations the energies say nothing about."""
+    which equations the energies say nothing about; `constructed` what follows from the equations as printed and as
+    corrected; `impacts` the impact laws by equation and reading."""
 
     case: object
     printed: object
     corrected: object
     by_hand: bool
-    motions: List
+    readings: List[Reading]
     comparisons: Dict[str, Dict[str, object]]
     violations: Dict[str, list]
     corrected_violations: Dict[str, list]
-    findings: List
+    findings: List[Finding]
     unjudged: Dict[str, str]
     unreferenced: List[str]
-    definiteness: List = field(default_factory=list)
+    definiteness: List[Definiteness] = field(default_factory=list)
     numbers: List = field(default_factory=list)
-    scores: List = field(default_factory=list)
     transcribed: List[str] = field(default_factory=list)
     variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
+    constructed: List[Constructed] = field(default_factory=list)
+    impacts: Dict = field(default_factory=dict)
+
+    @property
+    def motions(self):
+        """What follows from the energies of each reading."""
+        return [reading.motion for reading in self.readings]
+
+    def wrong_terms(self):
+        """The printed terms, as (equation number, ordinal), that differ in every reading, and those that do in some."""
+        sets = [{(n, k) for n, ordinals in r.differing.items() for k in ordinals} for r in self.readings]
+        always = set.intersection(*sets) if sets else set()
+        return always, set().union(*sets) - always
 
 
 def verify(case, thorough=True):
@@ -62,13 +91,12 @@ def verify(case, thorough=True):
     objected to where there are no energies."""
     paper = case.paper
     printed = Subject(paper)
-    motions = [Motion(paper, energies) for energies in case.energies]
-    first = motions[0] if motions else None
+    readings = ranked(printed, case.energies, thorough)
+    first = readings[0].motion if readings else None
+    case = replace(case, corrections=_corrections(case, readings))
     violations = judge(printed, first)
-    comparisons = {}
-    for motion in motions:
-        found = {n: compare(printed, motion, n) for n in paper.equations}
-        comparisons[motion.energies.name] = {n: c for n, c in found.items() if c}
+    comparisons = {r.name: {n: c for n in paper.equations if (c := compare(printed, r.motion, n))} for r in readings}
+    found = {}
     if case.corrections:
         whole = Subject(apply(paper, case.corrections), printed)
         after = judge(whole, first)
@@ -77,117 +105,115 @@ def verify(case, thorough=True):
         found, whole = repaired(printed, first)
         after = judge(whole, first)
         findings = from_repairs(printed, first, found, whole, after)
-    blind = thorough and not motions and not case.corrections
+    blind = thorough and not readings and not case.corrections
     findings += from_locations(whole) if blind else from_objections(whole, after)
-    report = Report(case, printed, whole, bool(case.corrections), motions, comparisons, violations, after, findings,
+    report = Report(case, printed, whole, bool(case.corrections), readings, comparisons, violations, after, findings,
                     unjudged(printed, first), unreferenced(printed, first))
     report.transcribed = transcription.proved(printed)
     report.numbers = check(case.numbers)
-    report.scores = scores(case)
     if paper.motions() and not printed.solved:
-        report.definiteness.append(_definiteness("as printed", paper, printed_mass(printed), None, False))
-    for motion in motions:
-        squares = _squares(motion) if motion.energies.squares else None
-        report.definiteness.append(_definiteness(motion.energies.name, paper, motion.mass(), squares, thorough))
-    report.findings += _neglected(report) + _wrong_numbers(report)
+        report.definiteness.append(_definiteness("as printed", paper, printed_mass(printed)))
+    for r in readings:
+        report.definiteness.append(replace(_definiteness(r.name, paper, r.motion.mass()), boxes=r.boxes if r.whole else {}, squares=r.squares))
+    _attribute(report)
+    _principles(report)
+    report.constructed = [] if printed.solved else [_construct("as printed", printed)]
+    if findings and not printed.solved:
+        report.constructed.append(_construct("with what is consistent", whole))
+    report.findings.sort(key=_order)
     return report
 
 
-def _neglected(report):
-    """A finding for each energy whose mass matrix does not survive what the paper neglects."""
-    paper, findings = report.case.paper, []
-    for motion, d in zip(report.motions, report.definiteness[1:]):
-        if d.neglected is None:
-            continue
-        found = [signs([d.neglected], intervals({**values, **rest(paper)[1], **state}))[0] for values in paper.sets.values() for state in states(paper)]
-        if not d.neglected:
-            verdict = "singular: the determinant at rest is exactly 0, and accelerations along its null vector are not determined"
-        elif -1 in found:
-            verdict = (f"indefinite for {found.count(-1)} of {len(found)} parameter sets and states: "
-                       f"the determinant at rest is {closed(d.neglected)}")
-        elif 0 in found:
-            verdict = f"not shown to be positive definite for {found.count(0)} of {len(found)} parameter sets and states"
+def _corrections(case, readings):
+    """The corrections by hand of the best reading. Those of another explain nothing here."""
+    if not readings or readings[0].name in case.readings:
+        return list(case.readings[readings[0].name]) if readings else list(case.corrections)
+    return list(case.corrections) if readings[0].motion.energies is case.energies[0] else []
+
+
+def _attribute(report):
+    """Says of each finding in which readings what is printed is wrong, and what would be consistent there. What depends on the
+    reading is a choice."""
+    if len(report.readings) < 2:
+        return
+    names = [r.name for r in report.readings]
+    wholes = {}
+    for name in names:
+        if name in report.case.readings:
+            wholes[name] = Subject(apply(report.case.paper, report.case.readings[name]), report.printed)
         else:
-            continue
-        limits = _regular(paper, d)
-        if limits:
-            limits = "; the determinant is positive between " + ", and between ".join(limits)
-        names = " and ".join(paper.negligible)
-        findings.append(Finding(
-            f"neglect-{len(findings) + 1}", "text", "approximation",
-            f"With {' = '.join(paper.negligible)} = 0 the mass matrix of '{motion.energies.name}' is {verdict}.", (),
-            [f"{names} can be negligible"], [f"the kinetic energy needs {paper.negligible[0]}{limits}"], True, ["definite"], None))
-    return findings
+            wholes[name] = repaired(report.printed, next(r.motion for r in report.readings if r.name == name))
+    for finding in report.findings:
+        if finding.equation in report.case.paper.equations and finding.kind != "objection":
+            forms = {name: _forms(report, finding, name, wholes[name]) for name in names}
+            finding.readings = [name for name in names if forms[name] is not None]
+            finding.alternatives = {name: forms[name] for name in finding.readings if forms[name] != finding.consistent}
+            if len(finding.readings) < len(names) and finding.kind in ("misprint", "repair"):
+                finding.kind = "choice"
 
 
-def _regular(paper, d):
-    """Where the determinant is positive between two critical values: shown halfway between them."""
-    result = []
-    for (name, values), state in product(paper.sets.items(), states(paper, d.critical.coefficients if d.critical else None)):
-        key = ", ".join([name] + [f"{n} = {v:+d}" for n, v in state.items()])
-        roots = d.critical.roots[key] if d.critical else []
-        if len(roots) == 2:
-            put = {**values, **rest(paper)[1], **state, d.critical.parameter: sum(roots) / 2}
-            if signs([d.at_rest], intervals(put)) == [1]:
-                result.append(f"{roots[0]:.4g} and {roots[1]:.4g} ({key})")
-    return result
+def _forms(report, finding, name, whole):
+    """What would be consistent with a reading in the place of a finding; None where what is printed is right there."""
+    if name in report.case.readings:
+        correction = next((c for c in report.case.readings[name] if c.key == finding.key), None)
+        return correction and consistent_terms(correction, whole)
+    repairs = whole[0].get(finding.equation, [])
+    same = next((r for r in repairs if r.ordinals == finding.ordinals and (r.ordinals or r.consistent == finding.consistent)), None)
+    return same and same.consistent
 
 
-def _wrong_numbers(report):
-    """A finding for each printed number whose value or unit is not confirmed."""
-    findings = []
-    for x in report.numbers:
-        n = x.number
-        if x.agrees is False:
-            findings.append(Finding(f"number-{n.name}", "text", "misprint", f"{n.meaning}: it does not follow from the other "
-                                    "printed numbers within their rounding", (), [f"{n.name} = {n.printed} {n.unit}"],
-                                    [f"{x.low:.6g} to {x.high:.6g} {n.unit}"], True, ["difference"], None))
-        if not x.unit_agrees:
-            findings.append(Finding(f"unit-{n.name}", "text", "misprint", f"{n.meaning}: {n.note}", (),
-                                    [f"{n.printed} {n.unit_printed}"], [f"{n.printed} {n.unit}"], True, ["dimensions"], None))
-    return findings
+def _principles(report):
+    """Adds what is no slip of a term."""
+    paper, printed = report.case.paper, report.printed
+    certain = [c.key for c in report.case.corrections if all(f.readings is None or len(f.readings) == len(report.readings)
+                                                             for f in report.findings if f.key == c.key)]
+    mended = apply(paper, report.case.corrections, _closed(report.case.corrections, certain)) if report.case.corrections else report.corrected.paper
+    struck = {c.equation for c in report.case.corrections for make in (c.terms or {}).values() if make is None}
+    struck |= {f.equation for f in report.findings if f.kind == "repair" and f.ordinals and not f.consistent}
+    report.findings += principles.split_masses(printed, mended, struck)
+    if report.readings:
+        gains, report.impacts = principles.impacts(printed, report.corrected, report.readings)
+        report.findings += gains
+        kinetic = report.readings[0].motion.kinetic.substitute(report.readings[0].motion.held)
+        for finding in report.findings:
+            equation = paper.equations.get(finding.equation)
+            if equation and equation.kind == "reset" and finding.ordinals and principles.through_the_bound(printed, finding.equation, kinetic) \
+                    and not principles.through_the_bound(report.corrected, finding.equation, kinetic):
+                finding.judgements.append("impact")
+    report.findings += principles.neglected(paper, report.readings, report.definiteness[-len(report.readings):] if report.readings else [])
+    report.findings += principles.wrong_numbers(report.numbers) + principles.undefined(printed)
 
 
-def _squares(motion):
-    """Whether the declared sum of squares is the kinetic energy: an identity in normal form."""
-    total = motion.ring.number(0)
-    for coefficient, velocity in motion.energies.squares(motion.s, motion.m):
-        total += motion.ring.read(coefficient) * motion.ring.read(velocity) ** 2
-    return not (total - motion.kinetic.substitute(motion.held) * 2)
+def _closed(corrections, keys):
+    """The keys whose required corrections are among them."""
+    needed = {c.key: set(c.requires) for c in corrections}
+    while gone := [key for key in keys if not needed[key] <= set(keys)]:
+        keys = [key for key in keys if key not in gone]
+    return keys
 
 
-def _definiteness(name, paper, mass, squares, thorough):
+# what weighs most comes first
+KINDS = ("misprint", "repair", "objection", "principle", "approximation", "choice", "undefined")
+
+
+def _order(finding):
+    """What is wrong in every reading comes first, then what depends on one, then what is no slip of an equation."""
+    return (finding.equation == "text", KINDS.index(finding.kind))
+
+
+def _construct(of, subject):
+    """What follows from equations alone."""
+    lagrangian, why = construct(subject)
+    if lagrangian is None:
+        return Constructed(of, None, why)
+    _, q, rows = motion_rows(subject, conservative=False)
+    return Constructed(of, lagrangian, None, energy_balance(subject, lagrangian), momentum_balances(subject, lagrangian),
+                       conserved(subject, lagrangian), small_motion(subject.paper, rows, q))
+
+
+def _definiteness(name, paper, mass):
     """The sixth judgement on one mass matrix."""
     zeros = rest(paper)[0]
     at_rest = determinant([[form.substitute(zeros) for form in row] for row in mass])
     neglected = at_rest.substitute({n: 0 for n in paper.negligible}) if paper.negligible else None
-    decided = critical(at_rest, paper.negligible[0], paper) if paper.negligible else None
-    boxes = {}
-    moving = set(paper.coordinates()) & set().union(*(form.names() for row in mass for form in row))
-    # without bounds of all that the matrix depends on there is no box to speak of
-    thorough = thorough and moving <= paper.box.keys()
-    for set_name, values in paper.sets.items() if thorough else ():
-        for neglect in (False, True) if paper.negligible else (False,):
-            if neglect and not neglected:
-                continue  # singular at rest: the exact zero above says so
-            fixed = {**values, **({n: 0 for n in paper.negligible} if neglect else {})}
-            for state in states(paper):
-                verdict = prove_matrix(mass, {**fixed, **state}, paper.box)
-                label = set_name + (", " + " = ".join([*paper.negligible, "0"]) if neglect else "")
-                key = ", ".join([label] + [f"{n} = {v:+d}" for n, v in state.items()])
-                boxes[key] = verdict
-    return Definiteness(name, at_rest, neglected, decided, boxes, squares)
-
-
-def closed(form):
-    """A form as a SymPy expression, factored where the factored one is proved equal to it."""
-    import sympy
-
-    expanded = sympy.expand(sympy.expand_trig(expression(form)))
-    angles = sorted({a for f in expanded.atoms(sympy.sin) for a in f.free_symbols}, key=str)
-    expanded = sympy.expand(expanded.subs({sympy.sin(a)**2: 1 - sympy.cos(a)**2 for a in angles}))
-    result = sympy.factor(expanded)
-    try:
-        return result if form.ring.read(result) == form else expression(form)
-    except NotInClass:
-        return expression(form)
+    return Definiteness(name, at_rest, neglected, critical(at_rest, paper.negligible[0], paper) if paper.negligible else None)

@@ -6,10 +6,10 @@ from pathlib import Path
 from ..input import transcription
 from ..judgements import TITLES
 from . import mathml
-from .gather import closed
+from .closed import closed
 from .show import form_latex
-from .text import (agreement_text, consistent_label, consistent_text, effect_lines, extent_lines, headline, judged_text,
-                   judgement_text, number_text, possible_lines, printed_text, reason_lines, scale_lines, squares_text, transcription_lines,
+from .text import (READING_HEAD, agreement_text, consistent_label, consistent_text, effect_lines, extent_lines, headline, judged_text,
+                   judgement_text, number_text, possible_lines, printed_text, reading_rows, reason_lines, scale_lines, squares_text, title, transcription_lines,
                    undefined_symbols, verdict_text)
 
 STYLE = """
@@ -44,7 +44,7 @@ def as_html(report):
     case, paper = report.case, report.case.paper
     out = ["<!DOCTYPE html>", '<html lang="en"><head><meta charset="utf-8">', f"<title>{escape(case.name)}: verification</title>",
            f"<style>{_shared()}{STYLE}</style></head><body>", f"<h1>{escape(paper.title)}</h1>", f"<p>{escape(paper.source)}</p>"]
-    out += _equations(report) + _candidates(report) + _judgements(report)
+    out += _equations(report) + _readings(report) + _judgements(report)
     out.append(f"<h2>{escape(headline(report))}</h2>")
     for finding in report.findings:
         out += _finding(finding, paper)
@@ -61,7 +61,7 @@ def _equations(report):
     found = report.comparisons[report.motions[0].energies.name] if report.motions else {}
     out += [f"<p>{escape(line)}</p>" for line in transcription_lines(report)]
     out += [f"<p>{line}</p>" for line in scale_lines(report, lambda form: inline(form, paper))]
-    out += [f"<p>{escape(agreement_text(motion, report.comparisons[motion.energies.name]))}.</p>" for motion in report.motions]
+    out += [f"<p>{escape(agreement_text(motion, report.comparisons[motion.energies.name]))}.</p>" for motion in report.motions[:1]]
     for number, equation in paper.equations.items():
         comparison = found.get(number)
         marks = {k: "differ" for k in comparison.differ} if comparison else {}
@@ -82,14 +82,13 @@ def _equations(report):
     return out
 
 
-def _candidates(report):
-    """How well each candidate of the energies explains the paper."""
-    if not report.scores:
+def _readings(report):
+    """The readings, the best first."""
+    if len(report.readings) < 2:
         return []
-    rows = "".join(f"<tr><td>{escape(name)}</td><td>{agree} of {total}</td><td>{absent}</td></tr>"
-                   for name, agree, total, absent in report.scores)
-    return ["<h2>Which energies explain the paper best</h2>",
-            f"<table><tr><th>energies</th><th>printed terms that agree</th><th>derived terms not printed</th></tr>{rows}</table>"]
+    head = "".join(f"<th>{escape(x)}</th>" for x in READING_HEAD)
+    rows = "".join("<tr>" + "".join(f"<td>{escape(x)}</td>" for x in row) + "</tr>" for row in reading_rows(report))
+    return ["<h2>Readings: energies that the paper may mean, the best first</h2>", f"<table><tr>{head}</tr>{rows}</table>"]
 
 
 def _judgements(report):
@@ -115,7 +114,7 @@ def _finding(finding, paper):
            f'{consistent_label(finding)}: {consistent_text(finding, show)}</p>']
     out += [f"<p>{escape(line)}</p>" for line in reason_lines(finding)]
     out += [f"<p>{line}</p>" for line in possible_lines(finding, show)]
-    out.append("<p>" + ("".join(f'<span class="tag">{escape(TITLES[name])}</span>' for name in finding.judgements)
+    out.append("<p>" + ("".join(f'<span class="tag">{escape(title(name))}</span>' for name in finding.judgements)
                         or escape(judged_text(finding))) + "</p>")
     out += [f"<p>{escape(line)}</p>" for line in extent_lines(finding) + effect_lines(finding)]
     return out + ["</div>"]

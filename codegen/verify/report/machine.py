@@ -3,13 +3,22 @@
 import json
 
 from ..judgements import TITLES
-from .gather import closed
+from .closed import closed
+from .construction import construction_parts
 from .show import form_latex, form_text, message_text
 from .text import undefined_symbols
 
 
 # raised when a key changes its meaning or goes
-SCHEMA = 2
+SCHEMA = 3
+
+
+def _terms(found):
+    """Terms as the numbers of equations with those of their terms, from 1."""
+    result = {}
+    for number, k in sorted(found):
+        result.setdefault(number, []).append(k + 1)
+    return result
 
 
 def as_dictionary(report):
@@ -37,7 +46,13 @@ def as_dictionary(report):
                 "absent": [show(x) for x in c.absent],
             } for n, c in report.comparisons[m.energies.name].items()},
         } for m in report.motions],
-        "candidates": [dict(zip(("name", "agree", "terms", "absent"), row)) for row in report.scores],
+        "readings": [{
+            "name": r.name, "definiteness": r.verdict(), "agree": r.agree, "terms": r.terms, "absent": r.absent,
+            "reactions": [{"release": x.release, "case": x.case, "coordinate": x.coordinate, "low": x.low, "high": x.high} for x in r.reactions],
+            "objections": {name: [message_text(v.message, paper) for v in found] for name, found in r.objections.items()},
+        } for r in report.readings],
+        "terms_wrong_in_every_reading": _terms(report.wrong_terms()[0]) if len(report.readings) > 1 else None,
+        "terms_wrong_in_some_readings": _terms(report.wrong_terms()[1]) if len(report.readings) > 1 else None,
         "judgements": {name: {
             "title": title, "judged": name not in report.unjudged, "not_judged_because": report.unjudged.get(name),
             "objections": [{"equations": v.equations, "terms": [k + 1 for k in v.terms],
@@ -47,11 +62,22 @@ def as_dictionary(report):
         "findings": [{
             "id": f.key, "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": f.reason,
             "term": [k + 1 for k in f.ordinals], "printed": [show(x) for x in f.printed],
-            "consistent": None if f.kind == "objection" else [show(x) for x in f.consistent], "proved": f.proved,
+            "consistent": None if not f.consistent and f.kind in ("objection", "principle") else [show(x) for x in f.consistent], "proved": f.proved,
             "possible": [{"equation": n, "term": [k + 1 for k in r.ordinals], "slip": r.slip,
                           "printed": [show(x) for x in r.printed], "edited": [show(x) for x in r.consistent]} for n, r in f.possible],
+            "readings": "all" if f.readings is None or len(f.readings) == len(report.readings) else f.readings,
+            "alternatives": [{"reading": name, "consistent": [show(x) for x in forms]} for name, forms in f.alternatives.items()],
             "judgements": f.judgements, "order": f.order, "vanishes": f.vanishes, "effects": f.effects or None,
         } for f in report.findings],
+        "constructed": [{
+            "of": c.of, "lagrangian": c.lagrangian is not None, "why_not": c.why,
+            "statements": [{"text": words, "form": None if form is None else show(form)} for words, form in construction_parts(c, paper)],
+        } for c in report.constructed],
+        "impacts": [{
+            "equation": number, "reading": name, "change_of_energy": show(i.change),
+            "can_rise": {"case": i.rises[0], "rates": i.rises[1]} if i.rises else False if i.rises is None else None,
+            "impulses": {n: show(form) for n, form in i.impulses.items()}, "goes_through_its_bound": i.penetrates,
+        } for (number, name), i in report.impacts.items()],
         "variants": report.variants or None,
         "definiteness": [{
             "name": d.name, "determinant_at_rest": str(closed(d.at_rest)),

@@ -3,7 +3,9 @@
 from ..input.corrections import KINDS
 from ..judgements import TITLES
 from ..repairs.edits import slip_text
-from .gather import closed
+from .closed import closed
+from .construction import construction_lines
+from .findings import FURTHER, IMPACT
 from .show import message_text, shown
 
 
@@ -44,6 +46,68 @@ def scale_lines(report, show):
         if scale != one:
             lines.append(f"Equation ({number}) is judged as multiplied by {show(scale)}.")
     return lines
+
+
+def title(name):
+    """The name of a judgement in words."""
+    return IMPACT if name == "impact" else TITLES[name]
+
+
+def summary_lines(report):
+    """The verdict in a few sentences."""
+    lines = []
+    if report.readings:
+        best = report.readings[0]
+        lines.append(agreement_text(best.motion, report.comparisons[best.name]) + ".")
+    if len(report.readings) > 1:
+        always, sometimes = report.wrong_terms()
+        lines.append(f"{count(len(report.readings), 'reading')}: {count(len(always), 'printed term')} "
+                     f"{'is' if len(always) == 1 else 'are'} wrong in every one, {len(sometimes)} only in some, and what these say is a choice.")
+    kinds = {}
+    for finding in report.findings:
+        kinds[finding.kind] = kinds.get(finding.kind, 0) + 1
+    if kinds:
+        lines.append("Findings by kind: " + ", ".join(f"{number} {kind}" for kind, number in kinds.items()) + ".")
+    return lines
+
+
+VERDICT = {"squares": "T is a sum of squares", "proved": "positive definite (proved)", "undecided": "definiteness undecided", "refuted": "NOT positive definite"}
+
+
+def reading_rows(report):
+    """The readings, the best first: name, definiteness, reactions, invariances, terms."""
+    rows = []
+    for r in report.readings:
+        refuted = [key for key, v in r.boxes.items() if v.status == "refuted"]
+        undecided = [key for key, v in r.boxes.items() if v.status == "undecided"]
+        definite = VERDICT[r.verdict()] + (f" for {len(refuted)} of {len(r.boxes)} cases: {'; '.join(refuted)}" if refuted
+                                           else f" for {len(undecided)} of {len(r.boxes)} cases" if undecided and r.verdict() == "undecided" else "")
+        worst = min(r.reactions, key=lambda x: x.low, default=None)
+        reactions = "not judged" if worst is None else (
+            f"at least {worst.low:.4g} N" if worst.low > 0 else f"{worst.low:.4g} N ({worst.release}; {worst.case}): what only pushes would pull")
+        objected = [f"{len(v)} to {TITLES[name].lower()}" for name, v in r.objections.items() if v]
+        rows.append((r.name, definite, reactions, ", ".join(objected) or "none", f"{r.agree} of {r.terms}", str(r.absent)))
+    return rows
+
+
+READING_HEAD = ("reading", "kinetic energy", "reactions in the scenes", "objections to invariance", "printed terms that agree", "derived, not printed")
+
+
+def reading_text(finding, report):
+    """In which readings a finding holds."""
+    if finding.readings is None or finding.kind == "undefined":
+        return ""
+    if len(finding.readings) == len(report.readings):
+        return "holds in every reading" + ("; what would be consistent depends on it" if finding.alternatives else "")
+    return "a choice: holds in " + ", ".join(f"'{name}'" for name in finding.readings) + "; in the others what is printed is right"
+
+
+def alternative_lines(finding, show):
+    """What would be consistent in other readings than the first."""
+    by_forms = {}
+    for name, forms in finding.alternatives.items():
+        by_forms.setdefault(",  ".join(show(form) for form in forms) or "(no such term)", []).append(name)
+    return [f"consistent in {', '.join(repr(n) for n in names)}: {forms}" for forms, names in by_forms.items()]
 
 
 def agreement_text(motion, comparisons):
@@ -118,12 +182,15 @@ def consistent_label(finding):
 def reason_lines(finding):
     """What kind of slip a finding is, and why."""
     lines = [f"slip: {slip_text(finding.slip)}"] if finding.slip else []
-    lines += [KINDS[finding.kind]] if finding.kind in KINDS else []
+    known = {**KINDS, **{k: v for k, v in FURTHER.items() if k not in ("repair", "objection")}}
+    lines += [known[finding.kind]] if finding.kind in known else []
     return lines + ([finding.reason] if finding.reason else [])
 
 
 def judged_text(finding):
     """Who finds it."""
+    if finding.kind == "undefined":
+        return "the table of symbols"
     return ", ".join(finding.judgements) or "no judgement: nothing here shows that what is printed is wrong"
 
 
@@ -136,15 +203,16 @@ def as_text(report):
 
     lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", "", *transcription_lines(report),
              *scale_lines(report, show), ""]
-    for motion in report.motions:
-        found = report.comparisons[motion.energies.name]
-        lines.append(agreement_text(motion, found))
-        for number, c in found.items():
+    lines += summary_lines(report) + [""]
+    if report.readings:
+        for number, c in report.comparisons[report.readings[0].name].items():
             lines.append(f"  ({number})  {len(c.agree)} of {c.terms()} terms agree")
         lines.append("")
-    if report.scores:
-        lines.append("Candidate energies (equations of motion, forces and reactions): agreeing terms, absent terms")
-        lines += [f"  {agree:3d} of {total}, {absent:2d} absent   {name}" for name, agree, total, absent in report.scores] + [""]
+    if len(report.readings) > 1:
+        lines.append("Readings (energies that the paper may mean), the best first")
+        for row in reading_rows(report):
+            lines += [f"  {row[0]}"] + [f"    {head}: {cell}" for head, cell in zip(READING_HEAD[1:], row[1:])]
+        lines.append("")
     lines.append("Judgements on the printed equations")
     for name in TITLES:
         lines.append("  " + judgement_text(report, name))
@@ -156,7 +224,8 @@ def as_text(report):
         label = consistent_label(f) + ":"
         lines += ["", f"  [{f.key}] equation ({f.equation}){where}", f"    printed:    {printed_text(f, show)}",
                   f"    {label:11} {consistent_text(f, show)}"]
-        lines += [f"    {line}" for line in reason_lines(f) + possible_lines(f, show)]
+        lines += [f"    {line}" for line in alternative_lines(f, show) + reason_lines(f) + possible_lines(f, show)]
+        lines += [f"    {line}" for line in [reading_text(f, report)] if line]
         lines.append("    found by: " + judged_text(f))
         lines += [f"    {line}" for line in extent_lines(f) + effect_lines(f)]
     if report.variants:
@@ -164,6 +233,8 @@ def as_text(report):
     for scene, results in report.variants.items():
         lines.append(f"  {scene}")
         lines += [f"    {name}: {outcome_text(result)}" for name, result in results.items()]
+    for constructed in report.constructed:
+        lines += ["", f"What follows from the equations {constructed.of}"] + [f"  {line}" for line in construction_lines(constructed, paper)]
     if report.definiteness:
         lines += ["", "Positive definite kinetic energy"]
     for d in report.definiteness:

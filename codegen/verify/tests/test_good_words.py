@@ -428,7 +428,7 @@ class Findings(unittest.TestCase):
     def test_text_page_and_json_say_the_same(self):
         for folder in (seeded.EXAMPLES / "rocking_block", Path(__file__).resolve().parents[3] / "models" / "walking_tank"):
             whole = load(folder)
-            for case in (whole, replace(whole, corrections=[]), replace(whole, corrections=[], energies=[], candidates=[])):
+            for case in (whole, replace(whole, corrections=[]), replace(whole, corrections=[], energies=[], readings={})):
                 result = report.verify(case, thorough=False)
                 terminal, page, data = text.as_text(result), html.as_html(result), json.loads(machine.as_json(result))
                 plain = "".join(xml.fromstring(page.replace("<!DOCTYPE html>", "").replace('<meta charset="utf-8">', "")).itertext())

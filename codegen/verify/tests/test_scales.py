@@ -12,7 +12,9 @@ from codegen.verify.input import transcription
 from codegen.verify.input.load import Case, load
 from codegen.verify.normal.subject import Subject
 from codegen.verify.readings.lagrange import Energies
+from codegen.verify.readings.lagrange import Motion
 from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report.findings import judge
 
 DIVISORS = (
     (lambda s: s.m_2 * s.l_1**2, lambda s: s.m_2 * s.l_2**2), (lambda s: s.m_2 * s.l_1, lambda s: s.m_2 * s.l_2),
@@ -117,7 +119,7 @@ class SignInAnAngle(unittest.TestCase):
         wrong = report.Subject(paper(-1))
         with self.assertRaisesRegex(Exception, "differ from term 3"):
             transcription.proved(wrong)
-        self.assertTrue(report.judge(Subject(paper(-1)), report.Motion(paper(-1), energies))["difference"])
+        self.assertTrue(judge(Subject(paper(-1)), Motion(paper(-1), energies))["difference"])
 
 
 if __name__ == "__main__":

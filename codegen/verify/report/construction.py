@@ -1,0 +1,45 @@
+"""What is constructed from equations, in words and formulas that all forms of the report share."""
+
+from .show import form_text
+
+
+def construction_parts(constructed, paper):
+    """[(words, form or None)]: T and V, balances, conserved quantities, small motions."""
+    if constructed.lagrangian is None:
+        return [(f"No Lagrangian: {constructed.why}.", None)]
+    found, parts = constructed.lagrangian, []
+    parts.append((f"A Lagrangian exists (proved: Lagrange's equations of it are ({'), ('.join(found.equations)}), each times a constant, but for "
+                  "what is dissipative). Its kinetic energy, up to a function of time, T = ", found.kinetic))
+    if found.gyroscopic:
+        parts.append(("What is linear in the rates: ", found.gyroscopic))
+    parts.append(("Its potential energy, up to a constant, V = ", found.potential))
+    energy = constructed.energy
+    if energy.rate:
+        parts.append(("The energy (the sum of v dL/dv, less L) changes at the rate ", energy.rate))
+    else:
+        parts.append(("The energy is conserved: ", energy.quantity))
+    for balance in constructed.momenta:
+        parts.append((f"{balance.name} is cyclic; its momentum is ", balance.quantity))
+        parts.append(("and changes at the rate ", balance.rate) if balance.rate else ("and is conserved.", None))
+    cyclic = {str(b.quantity) for b in constructed.momenta}
+    rest = [c for c in constructed.conserved if str(c.quantity) not in cyclic and not _cyclic(c, constructed)]
+    for c in rest:
+        parts.append((f"Conserved without dissipation, forces and inputs, of degree {c.degree} in the rates: ", c.quantity))
+    if not rest:
+        parts.append(("No further conserved quantity of first or second degree in the rates was found with multipliers of low degree.", None))
+    small = constructed.small
+    for name, force in zip(small.coordinates, small.forces):
+        if force:
+            parts.append((f"Rest is no equilibrium: there the equation of {name} leaves ", force))
+    return parts
+
+
+def _cyclic(conserved, constructed):
+    """Whether a conserved quantity is the momentum of a cyclic coordinate: its multipliers are constants of one equation."""
+    used = [f for f in conserved.factors if f]
+    return conserved.degree == 1 and len(used) == 1 and used[0].is_number() and bool(constructed.momenta)
+
+
+def construction_lines(constructed, paper):
+    """The same as text."""
+    return [words + (form_text(form, paper) if form is not None else "") for words, form in construction_parts(constructed, paper)]
