@@ -36,6 +36,7 @@ def parser():
     result.add_argument("--fail-on", choices=sorted(FAILS), help="exit with status 1 where there is a misprint (a slip that is repaired or "
                         "corrected as one), or any finding")
     result.add_argument("--waivers", metavar="FILE", help="findings that --fail-on excuses: lines 'id: reason'")
+    result.add_argument("--certificate", metavar="FILE", help="also write the claims that check_certificate.py checks again")
     result.add_argument("--seeded", action="store_true", help="print the detection table of seeded errors instead")
     return result
 
@@ -73,7 +74,7 @@ def _show(text):
 
 def _judge(arguments):
     """Judge one model and write the report."""
-    from .report import effects, gather as report, html, machine, text
+    from .report import certificate, effects, gather as report, html, machine, text
     from .input.load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
@@ -89,11 +90,13 @@ def _judge(arguments):
         effects.attach(result.findings, result.case.corrections, simulated)
         result.variants = simulated.variants
     _show(machine.as_json(result) if arguments.json else text.as_text(result))
-    if arguments.html:
-        path = Path(arguments.html)
+    for name, write in ((arguments.html, html.as_html), (arguments.certificate, certificate.as_certificate)):
+        if not name:
+            continue
+        path = Path(name)
         partial = path.with_name(path.name + ".tmp")
         try:
-            partial.write_text(html.as_html(result), encoding="utf-8")
+            partial.write_text(write(result), encoding="utf-8")
             partial.replace(path)
         except OSError as error:
             print(f"verify: cannot write {path}: {error.strerror}", file=sys.stderr)

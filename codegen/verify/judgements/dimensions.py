@@ -38,7 +38,7 @@ def dimensions(subject, motion=None) -> List[Violation]:
                     "the term ", subject.forms[number][index], f" has no dimension: it is or contains {dimension}"]))
             elif dimension != expected:
                 violations.append(Violation("dimensions", (number,), (index,), [
-                    "the term ", subject.forms[number][index], f" is in {dimension}, the equation in {expected}"]))
+                    "the term ", subject.forms[number][index], " is in ", dimension, ", the equation in ", expected]))
         return violations
 
     return subject.each("dimensions", judge)

@@ -36,7 +36,8 @@ class Finding:
     which it changes nothing; `effects` what a simulation made of it, by scene; `possible` the edits,
     as (equation number, Repair), with each of which alone an objection vanishes and none comes; `readings` the names of the
     readings in which what is printed is wrong (None: there is one reading, or none), and `alternatives` what would be consistent in
-    those whose forms are not `consistent`: {name: forms}."""
+    those whose forms are not `consistent`: {name: forms}; `slipped` the terms of the equation with this slip alone, as SymPy
+    expressions; `violations` what is objected to."""
 
     key: str
     equation: str
@@ -54,6 +55,8 @@ class Finding:
     possible: list = field(default_factory=list)
     readings: Optional[List[str]] = None
     alternatives: dict = field(default_factory=dict)
+    slipped: list = field(default_factory=list)
+    violations: list = field(default_factory=list)
 
 
 def judge(subject, motion):
@@ -111,7 +114,7 @@ def from_corrections(case, motion, printed, whole, violations):
             correction.key, number, correction.kind, correction.reason, ordinals,
             [printed.forms[number][k] for k in ordinals], consistent_terms(correction, whole), judged_right(whole, motion, violations, number),
             detected(slipped, motion, violations), change.order(case.paper.coordinates()),
-            vanishes=special_cases(case.paper, change)))
+            vanishes=special_cases(case.paper, change), slipped=slipped.expressions[number]))
     return findings
 
 
@@ -139,7 +142,7 @@ def from_repairs(subject, motion, found, whole, violations):
             findings.append(Finding(
                 f"{number}-{k}", number, "repair", "", repair.ordinals, repair.printed, repair.consistent, proved,
                 detected(slipped, motion, violations), change.order(subject.paper.coordinates()), repair.slip,
-                special_cases(subject.paper, change)))
+                special_cases(subject.paper, change), slipped=slipped.expressions[number]))
     return findings
 
 
@@ -172,4 +175,4 @@ def _objection(key, subject, violations, equations, terms, possible=()):
     judgements = list(dict.fromkeys(v.judgement for v in violations))
     printed = [subject.forms[equations[0]][k] for k in terms]
     return Finding(key, ", ".join(dict.fromkeys(equations)), "objection", reason, terms, printed, [], False, judgements, None,
-                   possible=list(possible))
+                   possible=list(possible), violations=list(violations))

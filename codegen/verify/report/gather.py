@@ -54,7 +54,7 @@ class Report:
     those of the first; `corrected` has all corrections of the model folder (`by_hand`) for it, or
     the repairs found here; `unjudged` says why a judgement had nothing to judge by, `unreferenced`
     which equations the energies say nothing about; `constructed` what follows from the equations as printed and as
-    corrected; `impacts` the impact laws by equation and reading."""
+    corrected; `impacts` the impact laws by equation and reading, `splits` what is left over where masses are split, by finding."""
 
     case: object
     printed: object
@@ -73,6 +73,7 @@ class Report:
     variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
     constructed: List[Constructed] = field(default_factory=list)
     impacts: Dict = field(default_factory=dict)
+    splits: Dict = field(default_factory=dict)
 
     @property
     def motions(self):
@@ -170,7 +171,8 @@ def _principles(report):
     mended = apply(paper, report.case.corrections, _closed(report.case.corrections, certain)) if report.case.corrections else report.corrected.paper
     struck = {c.equation for c in report.case.corrections for make in (c.terms or {}).values() if make is None}
     struck |= {f.equation for f in report.findings if f.kind == "repair" and f.ordinals and not f.consistent}
-    report.findings += principles.split_masses(printed, mended, struck)
+    split, report.splits = principles.split_masses(printed, mended, struck)
+    report.findings += split
     if report.readings:
         gains, report.impacts = principles.impacts(printed, report.corrected, report.readings)
         report.findings += gains

@@ -1,9 +1,11 @@
 """The report as one self-contained HTML page: MathML, no script, no network."""
 
+import re
 from html import escape
 from pathlib import Path
 
 from ..input import transcription
+from ..input.units import Dimension
 from ..judgements import TITLES
 from . import mathml
 from .closed import closed
@@ -36,6 +38,8 @@ def inline(form, paper):
     """A form, or words, inside a sentence."""
     if isinstance(form, str):
         return escape(form)
+    if isinstance(form, Dimension):
+        return re.sub(r"\^(-?[\d/]+)", lambda power: f"<sup>{power[1].replace('-', '−')}</sup>", escape(str(form))).replace("*", " ")
     return mathml.mathml_inline(form_latex(form, paper))
 
 

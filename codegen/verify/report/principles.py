@@ -4,6 +4,7 @@ not be neglected."""
 from ..construct.impacts import impact
 from ..judgements.definite import rest, states
 from ..judgements.galilei import split
+from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
 from ..normal.subject import Subject
 from ..readings.lagrange import sympy_namespace
@@ -14,8 +15,9 @@ from .show import form_text
 
 def split_masses(printed, certain, struck):
     """For each equation of a translation whose first moment has split masses, a finding. Judged are the equations with
-    what every reading corrects put right (`certain`): what is left is no misprint of one term, since each may be right."""
-    findings, paper = [], printed.paper
+    what every reading corrects put right (`certain`): what is left is no misprint of one term, since each may be right. With them,
+    by the finding's name: (the equation, coordinate, coordinate, what is left over)."""
+    findings, found, paper = [], {}, printed.paper
     subject = Subject(certain, printed)
     for number in paper.equations:
         for first, second, left in split(subject, number):
@@ -32,7 +34,9 @@ def split_masses(printed, certain, struck):
                 "with them a steady motion of the frame exerts a force. Every reading takes one mass.",
                 tuple(taken), [printed.forms[number][k] for k in taken], ["one mass in all of these terms"], False, ["galilei"],
                 left.order(paper.coordinates())))
-    return findings
+            total = subject.scales.get(number, subject.ring.number(1)) * subject.conservative(number)
+            found.setdefault(key, []).append((str(expression(total)), first, second, left))
+    return findings, found
 
 
 def impacts(printed, corrected, readings):

@@ -4,6 +4,7 @@ import re
 
 from ..input.latex import ENTITIES
 from ..input.printed import latex_name
+from ..input.units import Dimension
 from ..normal.algebra import Opaque
 
 # combining dots above, by their number
@@ -116,8 +117,8 @@ def form_text(form, paper):
 
 
 def shown(part, paper):
-    """A form, or words, as plain text."""
-    return part if isinstance(part, str) else form_text(part, paper)
+    """A form, a dimension, or words, as plain text."""
+    return part if isinstance(part, str) else str(part) if isinstance(part, Dimension) else form_text(part, paper)
 
 
 def message_text(message, paper):
