@@ -29,7 +29,14 @@ pub fn sources(folder: &Path) -> io::Result<Vec<PathBuf>> {
 
 /// The files of the generator in the folder `codegen`: this crate's own Rust is not among them.
 pub fn of_generator(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let own = ["build", "build.rs", "Cargo.toml", "Cargo.lock", "target"];
+    let own = [
+        "build",
+        "build.rs",
+        "Cargo.toml",
+        "Cargo.toml.orig",
+        "Cargo.lock",
+        "target",
+    ];
     let mut files = sources(folder)?;
     files.retain(|file| !own.iter().any(|name| file.starts_with(folder.join(name))));
     Ok(files)
