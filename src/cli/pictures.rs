@@ -2,7 +2,7 @@
 
 use super::outcome::Failure;
 use crate::record::Units;
-use crate::record::plot::{Format, LEAST, Look};
+use crate::record::plot::{LEAST, Look};
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct UnitsArguments {
@@ -13,9 +13,6 @@ pub struct UnitsArguments {
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct PictureArguments {
-    /// Formats of plots: svg, png, pdf; several are separated by commas
-    #[arg(long, value_name = "FORMAT,…", value_delimiter = ',', default_value = "svg", value_parser = format)]
-    plot_format: Vec<Format>,
     /// Width and height of plots in pixels, such as 1200x800
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     plot_size: Option<(f64, f64)>,
@@ -41,12 +38,9 @@ impl UnitsArguments {
 impl PictureArguments {
     /// How pictures look, with all of time and all panels.
     pub fn look(&self) -> Result<Look, Failure> {
-        let mut formats = self.plot_format.clone();
-        formats.dedup();
         Ok(Look {
             units: self.units.units()?,
             size: self.plot_size,
-            formats,
             ..Look::default()
         })
     }
@@ -57,10 +51,6 @@ impl WindowArguments {
     pub fn window(&self) -> Option<(f64, f64)> {
         self.plot_window
     }
-}
-
-fn format(text: &str) -> Result<Format, String> {
-    Format::named(text).ok_or_else(|| "write svg, png or pdf".to_owned())
 }
 
 fn size(text: &str) -> Result<(f64, f64), String> {

@@ -22,6 +22,9 @@ pub struct VerifyArguments {
     /// Also write a page with the equations typeset and the differing terms marked
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Also write claims that the script check_certificate.py checks again, with SymPy alone
+    #[arg(long, value_name = "FILE")]
+    certificate: Option<PathBuf>,
     /// Skip the proof of definiteness over the whole box of parameters
     #[arg(long)]
     quick: bool,
@@ -32,7 +35,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE", requires = "fail_on")]
     waivers: Option<PathBuf>,
     /// Instead, put errors into correct equations and show which judgement finds which
-    #[arg(long, conflicts_with_all = ["model", "html", "quick", "fail_on"])]
+    #[arg(long, conflicts_with_all = ["model", "html", "certificate", "quick", "fail_on"])]
     seeded: bool,
 }
 
@@ -70,8 +73,13 @@ pub fn verify(arguments: &VerifyArguments) -> Result {
     ] {
         command.args(given.then_some(flag));
     }
-    if let Some(html) = &arguments.html {
-        command.arg("--html").arg(absolute(html)?);
+    for (option, file) in [
+        ("--html", &arguments.html),
+        ("--certificate", &arguments.certificate),
+    ] {
+        if let Some(file) = file {
+            command.arg(option).arg(absolute(file)?);
+        }
     }
     if let Some(kind) = &arguments.fail_on {
         command.args(["--fail-on", kind]);

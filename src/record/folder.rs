@@ -221,12 +221,9 @@ impl Staging {
         self.close(file)
     }
 
-    /// Writes a picture in the formats that `look` asks for, into files called `stem` and the format.
-    pub fn picture(&mut self, stem: &str, svg: &str, look: &Look) -> Result<(), FolderError> {
-        for (format, bytes) in look.files(svg) {
-            self.file(&format!("{stem}.{format}"), |out| out.write_all(&bytes))?;
-        }
-        Ok(())
+    /// Writes a picture into the file that is called `stem` with the ending of its format.
+    pub fn picture(&mut self, stem: &str, svg: &str) -> Result<(), FolderError> {
+        self.file(&format!("{stem}.svg"), |out| out.write_all(svg.as_bytes()))
     }
 
     /// Creates a file that is filled while others are, until [`Staging::close`].

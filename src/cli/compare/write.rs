@@ -105,7 +105,7 @@ impl Comparison<'_> {
             for i in self.coordinates() {
                 let name = self.model.coordinates[i].name;
                 let svg = self.chart(i, Group::Coordinate).svg_as(PLOT, &self.look);
-                files.picture(name, &svg, &self.look)?;
+                files.picture(name, &svg)?;
             }
             Ok(())
         })

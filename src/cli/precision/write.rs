@@ -20,7 +20,7 @@ impl Precision {
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         folder.replace(|files| {
             files.file(TABLE, |out| self.table(out))?;
-            files.picture(PLOT, &self.chart().svg_as(SIZE, &self.look), &self.look)
+            files.picture(PLOT, &self.chart().svg_as(SIZE, &self.look))
         })
     }
 

@@ -5,30 +5,6 @@ use crate::record::{Column, Group, Layout, Units};
 /// Least width and height of a picture, in pixels: below that labels cover each other.
 pub const LEAST: (f64, f64) = (320.0, 200.0);
 
-/// A format of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Lines and texts, for browsers and papers.
-    Svg,
-}
-
-impl Format {
-    /// All of them, with their names, which also end the names of files.
-    const NAMES: [(Format, &str); 1] = [(Format::Svg, "svg")];
-
-    /// The format of a name.
-    pub fn named(name: &str) -> Option<Format> {
-        let mut names = Self::NAMES.iter();
-        names.find(|n| n.1 == name).map(|n| n.0)
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        let mut names = Self::NAMES.iter();
-        names.find(|n| n.0 == self).expect("all have one").1
-    }
-}
-
 /// How pictures look; by default everything, in the size and the units that suit it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Look {
@@ -41,8 +17,6 @@ pub struct Look {
     /// The panels, from top to bottom, each by a column, by columns of the same unit as `theta+x`, or by a group of
     /// columns, which is divided as it suits; everything where there is none.
     pub panels: Vec<String>,
-    /// Formats of files; SVG where there is none.
-    pub formats: Vec<Format>,
 }
 
 /// Columns that are asked for in one panel, or a whole group.
@@ -63,18 +37,6 @@ const GROUPS: [(&str, Group); 6] = [
 ];
 
 impl Look {
-    /// A picture in all formats that are asked for, each with its name.
-    pub(crate) fn files(&self, svg: &str) -> Vec<(&'static str, Vec<u8>)> {
-        let formats = match self.formats.is_empty() {
-            true => &[Format::Svg][..],
-            false => &self.formats,
-        };
-        let file = |format: &Format| match format {
-            Format::Svg => (format.name(), svg.as_bytes().to_vec()),
-        };
-        formats.iter().map(file).collect()
-    }
-
     /// The panels that are asked for, of a run with this layout.
     ///
     /// # Errors

@@ -19,7 +19,7 @@ mod symbol;
 
 pub use axis::Scale;
 pub use chart::{Chart, Dimension, comparison};
-pub use look::{Format, LEAST, Look};
+pub use look::{LEAST, Look};
 pub use overview::overview;
 pub(crate) use overview::{Grouped, grouped, overview_of};
 pub use panel::Curve;
