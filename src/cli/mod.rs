@@ -28,6 +28,7 @@ mod print;
 mod room;
 mod run;
 mod schema;
+mod study;
 mod table;
 mod verify;
 mod warnings;
@@ -61,6 +62,8 @@ enum Command {
     Precision(precision::PrecisionArguments),
     /// Show what ground-motion records hold: peaks, intensity, spectra
     Motion(motion::MotionArguments),
+    /// Vary a scene: sweeps, Monte Carlo, stripes, incremental dynamic analysis, critical values
+    Study(study::StudyArguments),
     /// Fit a fragility curve to a table of runs or capacities
     Fragility(fragility::FragilityArguments),
     /// Make a model folder to start from
@@ -90,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Precision(arguments) => precision::precision(&arguments),
         Command::Motion(arguments) => motion::motion(&arguments),
+        Command::Study(arguments) => study::study(&arguments),
         Command::Fragility(arguments) => fragility::fragility(&arguments),
         Command::New(arguments) => new::new(&arguments),
         Command::Check(arguments) => check::check(&arguments),

@@ -24,6 +24,24 @@ pub fn check_memory(scene: &Scene, runs: usize) -> Result<(), Failure> {
     check(scene, "memory", bytes, free_memory())
 }
 
+/// Fewest bytes of a run in the table of a study, while it goes on and in memory when it is written.
+const RUN: f64 = 128.0;
+
+/// Says that a study with so many cases exceeds the disk on which `out` is to be, or the memory that holds its table in the end.
+pub fn check_rows(cases: f64, out: &Path) -> Result<(), String> {
+    let needed = cases * RUN;
+    for (what, free) in [("disk", free_disk(out)), ("memory", free_memory())] {
+        if let Some(free) = free
+            && needed > free
+        {
+            return Err(format!(
+                "{cases:.4e} cases would take at least {needed:.3e} bytes of {what}, of which {free:.3e} are free"
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a scene whose rows, each of so many `bytes` for its columns, exceed what is `free`.
 fn check(
     scene: &Scene,

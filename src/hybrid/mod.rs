@@ -56,6 +56,6 @@ pub use observe::{Collected, MadeStep, Observer};
 pub use outputs::OwnOutput;
 pub use problem::{Accuracy, End, Initial, Limits, Method, Observed, OwnLimit, Problem, Record};
 pub use resume::{Replay, check_same, resume, resume_with};
-pub use simulate::{simulate, simulate_with};
+pub use simulate::{simulate, simulate_member, simulate_with};
 pub use simulator::Simulator;
 pub use validate::{Exceeds, Invalid, Unknown, check_limits_of_parameters};

@@ -85,7 +85,8 @@ impl Problem {
         Layout::new(&self.model, self.variant(), columns, self.own_quantities())
     }
 
-    fn own_quantities(&self) -> impl Iterator<Item = &Quantity> {
+    /// Names, units and meanings of the outputs besides those of the model.
+    pub fn own_quantities(&self) -> impl Iterator<Item = &Quantity> {
         self.outputs.iter().map(|output| &output.quantity)
     }
 }

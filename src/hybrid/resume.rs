@@ -56,7 +56,8 @@ fn go_on<'p>(
     let mut simulation = Simulation::observed(problem, observer)?;
     simulation.restore(run, replayed);
     let outcome = simulation.run(progress);
-    let mut run = simulation.finish(outcome.err(), clock);
+    let subject = super::simulate::subject(problem);
+    let mut run = simulation.finish(outcome.err(), subject, clock);
     run.wall += wall;
     Ok(run)
 }

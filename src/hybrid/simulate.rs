@@ -38,7 +38,40 @@ fn simulate_and_tell<'p>(
     let mut simulation = Simulation::observed(problem, observer)?;
     simulation.begin()?;
     let outcome = simulation.run(progress);
-    Ok(simulation.finish(outcome.err(), clock))
+    let subject = subject(problem);
+    Ok(simulation.finish(outcome.err(), subject, clock))
+}
+
+/// One of many runs: as [`simulate_with`], without the names and digests that say what was simulated, which of a short run
+/// cost more than its motion.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_member(
+    problem: &Problem,
+    observer: &mut dyn Observer,
+    progress: &mut dyn Progress,
+) -> Result<Run, Reason> {
+    let clock = WallClock::now();
+    let mut simulation = Simulation::observed(problem, Some(observer))?;
+    simulation.begin()?;
+    let outcome = simulation.run(progress);
+    Ok(simulation.finish(outcome.err(), Subject::default(), clock))
+}
+
+/// What a problem is, by names and digests.
+pub(super) fn subject(problem: &Problem) -> Subject {
+    Subject {
+        model: problem.model.name.into(),
+        title: problem.title.clone().unwrap_or_default(),
+        choices: (problem.model.choices.iter().zip(&problem.variant().options))
+            .map(|(choice, option)| (choice.name.into(), (*option).into()))
+            .collect(),
+        parameters: (problem.model.parameters.iter().zip(&problem.parameters))
+            .map(|(p, &value)| (p.name.into(), value))
+            .collect(),
+        digests: super::resume::digests(problem),
+    }
 }
 
 impl Simulation<'_> {
@@ -65,7 +98,7 @@ impl Simulation<'_> {
     }
 
     /// Everything that was recorded, as far as it came.
-    pub fn finish(mut self, reason: Option<Reason>, clock: WallClock) -> Run {
+    pub fn finish(mut self, reason: Option<Reason>, subject: Subject, clock: WallClock) -> Run {
         self.set_context();
         let last = self.observers.recording.last_row();
         if last.is_none_or(|t| t < self.here.now.seconds()) {
@@ -97,17 +130,7 @@ impl Simulation<'_> {
         } = self.observers;
         let (trajectory, events, tally) = recording.finish(&layout);
         Run {
-            subject: Subject {
-                model: problem.model.name.into(),
-                title: problem.title.clone().unwrap_or_default(),
-                choices: (problem.model.choices.iter().zip(&problem.variant().options))
-                    .map(|(choice, option)| (choice.name.into(), (*option).into()))
-                    .collect(),
-                parameters: (problem.model.parameters.iter().zip(&problem.parameters))
-                    .map(|(p, &value)| (p.name.into(), value))
-                    .collect(),
-                digests: super::resume::digests(problem),
-            },
+            subject,
             peaks,
             layout,
             trajectory,

@@ -16,6 +16,8 @@ mod escape;
 mod frames;
 mod plots;
 mod run;
+#[cfg(feature = "cli")]
+pub(crate) mod study;
 mod table;
 mod thin;
 

@@ -11,7 +11,7 @@
 //! | `overview.svg` | everything over time, with the modes and the transitions |
 //! | `phase.svg` | phase portraits, where a coordinate moves |
 //!
-//! Numbers have 17 significant digits, so they are read back bit for bit. The same run gives the
+//! Numbers have the fewest digits that read back to the same bits. The same run gives the
 //! same bytes, but for `wall_seconds` in the summary.
 
 mod digest;

@@ -2,17 +2,21 @@
 
 use std::fmt::Write;
 
-/// Significant digits that determine a double.
+/// Most significant digits that a double needs.
 const EXACT: usize = 17;
 
-/// Appends `x` with 17 significant digits, trailing zeros dropped: reading it back gives the same
-/// bits (of a NaN: some NaN). Whole numbers have no decimal point; the negative zero keeps one,
-/// because `-0` is read as an integer by many. Non-finite numbers become `NaN`, `inf`, `-inf`.
+/// Appends `x` with the fewest digits that read back to the same bits (of a NaN: some NaN). Whole numbers have no decimal
+/// point; the negative zero keeps one, because `-0` is read as an integer by many. Non-finite numbers become `NaN`, `inf`,
+/// `-inf`.
 pub(super) fn push_exact(out: &mut String, x: f64) {
     if x == 0.0 {
         out.push_str(if x.is_sign_negative() { "-0.0" } else { "0" });
+    } else if x.is_finite() {
+        let start = out.len();
+        write!(out, "{:e}", x.abs()).expect("writing to a string succeeds");
+        push_positional(out, start, x < 0.0, EXACT);
     } else {
-        push_general(out, x, EXACT);
+        write!(out, "{x}").expect("writing to a string succeeds");
     }
 }
 
@@ -39,6 +43,12 @@ fn push_general(out: &mut String, x: f64, digits: usize) {
     }
     let start = out.len();
     write!(out, "{:.*e}", digits - 1, x.abs()).expect("writing to a string succeeds");
+    push_positional(out, start, x < 0.0, digits);
+}
+
+/// Rewrites a number in scientific notation, which stands from `start` on, with its sign and without trailing zeros: positional
+/// where the exponent is in `-4..digits`.
+fn push_positional(out: &mut String, start: usize, negative: bool, digits: usize) {
     let (mantissa, exponent) = out[start..]
         .split_once('e')
         .expect("{:e} writes an exponent");
@@ -56,7 +66,7 @@ fn push_general(out: &mut String, x: f64, digits: usize) {
         trimmed => trimmed,
     };
     out.truncate(start);
-    if x < 0.0 {
+    if negative {
         out.push('-');
     }
     let last = figures.len() as i32 - 1;
@@ -100,14 +110,15 @@ mod tests {
             (-0.0, "-0.0"),
             (1.0, "1"),
             (-20.0, "-20"),
-            (0.1, "0.10000000000000001"),
+            (0.1, "0.1"),
             (0.001, "0.001"),
             (1.5e-5, "1.5e-5"),
             (1e16, "10000000000000000"),
             (1e17, "1e17"),
-            (std::f64::consts::PI, "3.1415926535897931"),
+            (std::f64::consts::PI, "3.141592653589793"),
             (f64::MIN_POSITIVE, "2.2250738585072014e-308"),
-            (5e-324, "4.9406564584124654e-324"),
+            (5e-324, "5e-324"),
+            (0.1 + 0.2, "0.30000000000000004"),
             (f64::NAN, "NaN"),
             (f64::NEG_INFINITY, "-inf"),
         ] {

@@ -252,7 +252,7 @@ impl Summary {
         }
     }
 
-    /// Writes the summary as JSON, numbers with 17 significant digits.
+    /// Writes the summary as JSON, numbers with the digits that read back to the same.
     pub fn write(&self, out: impl Write) -> io::Result<()> {
         let mut out = out;
         let formatter = ExactFormatter(PrettyFormatter::new());

@@ -24,6 +24,8 @@ pub(crate) enum Datum {
     Text(String),
     List(Vec<Checked>),
     Object(Vec<(String, Checked)>),
+    /// Of a place where any value may be.
+    Any(Node),
 }
 
 /// The accessors are for places whose shape has been checked; at another place they panic, as that
@@ -80,6 +82,22 @@ impl Checked {
         matches!(self.datum, Datum::Object(_))
     }
 
+    /// The value as it was written, where any may be.
+    pub fn any(&self) -> &Node {
+        match &self.datum {
+            Datum::Any(node) => node,
+            _ => unreachable!("checked to be any value: {self:?}"),
+        }
+    }
+
+    /// The number, if it is one.
+    pub fn as_number(&self) -> Option<f64> {
+        match self.datum {
+            Datum::Number(x) => Some(x),
+            _ => None,
+        }
+    }
+
     /// The value of a key; `None` if it is absent, or if this is not an object.
     pub fn get(&self, key: &str) -> Option<&Checked> {
         match &self.datum {
@@ -128,8 +146,9 @@ pub(crate) fn check(node: &Node, shape: &Shape, errors: &mut Errors) -> Option<C
             checked.into_iter().collect::<Option<_>>().map(Datum::List)
         }
         (Shape::Object(shape), Value::Object(entries)) => object(node, shape, entries, errors),
-        (Shape::Tagged(shapes), Value::Object(entries)) => {
-            let shape = errors.note(alternative(node, shapes, entries))?;
+        (Shape::Any, _) => Some(Datum::Any(node.clone())),
+        (Shape::Tagged(what, shapes), Value::Object(entries)) => {
+            let shape = errors.note(alternative(node, what, shapes, entries))?;
             object(node, shape, entries, errors)
         }
         _ => wrong_type(node, shape, errors),
@@ -149,7 +168,8 @@ fn accepts_type(shape: &Shape, value: &Value) -> bool {
         Shape::Count | Shape::Values(_) => matches!(value, Value::Number(_)),
         Shape::Quantity(_) => matches!(value, Value::Number(_) | Value::Text(_)),
         Shape::List(_) | Shape::Tuple(..) => matches!(value, Value::List(_)),
-        Shape::Object(_) | Shape::Tagged(_) => matches!(value, Value::Object(_)),
+        Shape::Object(_) | Shape::Tagged(..) => matches!(value, Value::Object(_)),
+        Shape::Any => true,
         Shape::Either(shapes) => shapes.iter().any(|s| accepts_type(s, value)),
     }
 }
@@ -168,7 +188,7 @@ fn wrong_type(node: &Node, shape: &Shape, errors: &mut Errors) -> Option<Datum> 
     let error = SceneError::new(kind, &node.place());
     errors.push(match shape {
         Shape::Choice(_, names) => error.help(one_of_these(names.iter().copied())),
-        Shape::Tagged(shapes) => error.help(one_of_these(shapes.iter().map(tag))),
+        Shape::Tagged(_, shapes) => error.help(one_of_these(shapes.iter().map(tag))),
         _ => error,
     });
     None
@@ -227,6 +247,7 @@ fn tag(object: &Object) -> &str {
 
 fn alternative<'a>(
     node: &Node,
+    what: &str,
     shapes: &'a [Object],
     entries: &[Entry],
 ) -> Result<&'a Object, SceneError> {
@@ -240,10 +261,18 @@ fn alternative<'a>(
     match (found.next(), found.next()) {
         (Some((_, shape)), None) => Ok(shape),
         (Some((first, _)), Some((second, _))) => {
-            Err(conflict(first, second).help("keep one of them; a `sum` adds several functions"))
+            Err(conflict(first, second).help(match tags.contains(&"sum") {
+                true => "keep one of them; a `sum` adds several functions",
+                false => "keep one of them",
+            }))
         }
         (None, _) => Err(match entries.first() {
-            Some(entry) => unknown_name("kind of input", &entry.key, &tags, &entry.key_span),
+            Some(entry) => unknown_name(
+                &format!("kind of {what}"),
+                &entry.key,
+                &tags,
+                &entry.key_span,
+            ),
             None => {
                 let keys = tags.iter().map(|t| (*t).to_owned()).collect();
                 SceneError::new(SceneErrorKind::MissingKey { keys }, &node.place())

@@ -126,12 +126,12 @@ fn inputs(model: Option<&Model>) -> Object {
 /// An input: nothing, one function, or a sum.
 fn input(unit: &str) -> Shape {
     let mut alternatives = functions(unit);
-    let summand = Shape::List(Box::new(Shape::Tagged(functions(unit))));
+    let summand = Shape::List(Box::new(Shape::Tagged("input", functions(unit))));
     alternatives.push(Object::new(
         "key of a sum",
         vec![Key::new("sum", "functions that add up", summand).required()],
     ));
-    Shape::Either(vec![Shape::Null, Shape::Tagged(alternatives)])
+    Shape::Either(vec![Shape::Null, Shape::Tagged("input", alternatives)])
 }
 
 fn functions(unit: &str) -> Vec<Object> {

@@ -7,7 +7,7 @@ use super::check::{Checked, Datum};
 use super::error::{Errors, SceneError, SceneErrorKind};
 use super::files::Files;
 use super::interpret::{options, under};
-use super::record;
+use super::record::{self, Records};
 use super::source::Span;
 use super::table;
 use super::wording::shown;
@@ -19,6 +19,8 @@ pub(crate) struct Reader<'a> {
     pub files: &'a dyn Files,
     /// The folder of the scene.
     pub folder: &'a Path,
+    /// Records that were read before, where many scenes have the same.
+    pub records: Option<&'a Records>,
 }
 
 /// The functions of all inputs; inputs that the scene does not name are zero.

@@ -24,14 +24,26 @@ pub(crate) fn scene(
     files: &dyn Files,
     folder: &Path,
 ) -> Result<Scene, SceneErrors> {
+    let model = model(&root, models, folder)?;
+    let shape = Shape::Object(format::scene(Some(&model), Some(&outputs::named(&root))));
+    let reader = inputs::Reader {
+        files,
+        folder,
+        records: None,
+    };
+    scene_of(root, &model, &shape, &reader)
+}
+
+/// The same with a model that is known, and the shape of its scenes.
+pub(super) fn scene_of(
+    root: Node,
+    owned: &Arc<Model>,
+    shape: &Shape,
+    reader: &inputs::Reader,
+) -> Result<Scene, SceneErrors> {
     let mut errors = Errors::default();
-    let owned = model(&root, models, folder)?;
-    let model = &*owned;
-    let checked = check(
-        &root,
-        &Shape::Object(format::scene(Some(model), Some(&outputs::named(&root)))),
-        &mut errors,
-    );
+    let model = &**owned;
+    let checked = check(&root, shape, &mut errors);
     errors.check()?;
     // Without an error there is a value.
     let Some(checked) = checked else {
@@ -41,12 +53,7 @@ pub(crate) fn scene(
     let chosen = variant(model, &checked)?;
     let variant = &model.variants[chosen];
     let parameters = errors.note(parameters(model, &checked));
-    let signals = inputs::signals(
-        model,
-        &checked,
-        &inputs::Reader { files, folder },
-        &mut errors,
-    );
+    let signals = inputs::signals(model, &checked, reader, &mut errors);
     inputs::refuse_barred(model, variant, &checked, &mut errors);
     let freeze = state::freeze(model, variant, &checked, &mut errors);
     let parts = (&freeze[..], parameters.as_deref());
@@ -82,7 +89,7 @@ pub(crate) fn scene(
     Ok(Scene { problem, source })
 }
 
-fn model(root: &Node, models: &Models, folder: &Path) -> Result<Arc<Model>, SceneError> {
+pub(super) fn model(root: &Node, models: &Models, folder: &Path) -> Result<Arc<Model>, SceneError> {
     let known: Vec<&str> = models.names().collect();
     let wrong_type = |node: &Node, expected: &str| {
         let (expected, found) = (expected.to_owned(), node.type_name().to_owned());

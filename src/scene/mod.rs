@@ -4,24 +4,26 @@
 //! files in; a [`Scene`] or all [`SceneErrors`] out. Each error knows its file, line and column and
 //! what would be right.
 
-mod check;
-mod error;
+pub(crate) mod check;
+pub(crate) mod error;
 mod files;
-mod format;
+pub(crate) mod format;
 mod inputs;
 mod interpret;
 mod limits;
-mod number;
+pub(crate) mod number;
 mod outputs;
 mod record;
 mod schema;
-mod set;
-mod shape;
-mod source;
+pub(crate) mod set;
+pub(crate) mod shape;
+pub(crate) mod source;
 mod state;
 mod table;
-mod tree;
-mod wording;
+#[cfg(feature = "cli")]
+pub(crate) mod template;
+pub(crate) mod tree;
+pub(crate) mod wording;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -35,6 +37,8 @@ pub use files::{Disk, Files};
 #[cfg(feature = "cli")]
 pub(crate) use record::Record;
 pub use schema::schema;
+#[cfg(feature = "cli")]
+pub(crate) use schema::schema_of;
 pub use source::Position;
 #[cfg(feature = "cli")]
 pub(crate) use wording::nearest;
@@ -93,7 +97,7 @@ impl Scene {
 }
 
 /// The text of a file, which must be UTF-8. A byte-order mark, which some editors put in front of it, says only that.
-fn decode(bytes: &[u8], path: &Path) -> Result<Arc<Source>, SceneError> {
+pub(crate) fn decode(bytes: &[u8], path: &Path) -> Result<Arc<Source>, SceneError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let name = path.display().to_string();
     let text = String::from_utf8_lossy(bytes).into_owned();

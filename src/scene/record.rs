@@ -1,7 +1,8 @@
 //! Ground-motion records as inputs.
 
-use std::path::Path;
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::check::{Checked, unknown_name};
 use super::error::{SceneError, SceneErrorKind};
@@ -20,6 +21,13 @@ use crate::motion::{
 const DAMPING: f64 = 0.05;
 /// Order of a filter that states none.
 const ORDER: f64 = 4.0;
+
+/// Records by their files and by what was said of them: unit and bits of the step.
+type Known = BTreeMap<(PathBuf, Option<String>, Option<u64>), Arc<Record>>;
+
+/// Records that were read: many scenes have the same.
+#[derive(Default)]
+pub(crate) struct Records(Mutex<Known>);
 
 /// A record and its text.
 pub(crate) struct Record {
@@ -242,7 +250,7 @@ fn must<'a>(described: &'a Checked, key: &str) -> &'a Checked {
     value
 }
 
-fn read(described: &Checked, file: &Checked, reader: &Reader) -> Result<Record, SceneError> {
+fn read(described: &Checked, file: &Checked, reader: &Reader) -> Result<Arc<Record>, SceneError> {
     let unit = match described.get("unit") {
         None => None,
         Some(name) => match Unit::parse(name.text()) {
@@ -260,6 +268,15 @@ fn read(described: &Checked, file: &Checked, reader: &Reader) -> Result<Record, 
     };
     let dt = described.get("dt").map(Checked::number);
     let path = reader.folder.join(file.text());
+    let said = described.get("unit").map(|unit| unit.text().to_owned());
+    let key = (path.clone(), said, dt.map(f64::to_bits));
+    let known = || {
+        let records = reader.records?;
+        Some(records.0.lock().unwrap_or_else(PoisonError::into_inner))
+    };
+    if let Some(record) = known().and_then(|known| known.get(&key).cloned()) {
+        return Ok(record);
+    }
     let bytes = reader.files.read(&path).map_err(|error| {
         let reason = error.to_string();
         let kind = SceneErrorKind::Unreadable {
@@ -268,7 +285,11 @@ fn read(described: &Checked, file: &Checked, reader: &Reader) -> Result<Record, 
         };
         SceneError::new(kind, &file.place).help("the path is relative to the folder of the scene")
     })?;
-    Record::read(&bytes, &path, &Given { unit, dt })
+    let record = Arc::new(Record::read(&bytes, &path, &Given { unit, dt })?);
+    if let Some(mut known) = known() {
+        known.insert(key, record.clone());
+    }
+    Ok(record)
 }
 
 fn channel<'a>(

@@ -11,15 +11,20 @@ use crate::model::Model;
 /// It is made of the same tables that scenes are checked against. What it cannot say is checked
 /// when a scene is read: dimensions of units, one parameter limiting another, the order of times.
 pub fn schema(model: Option<&Model>) -> Value {
-    let mut schema = object(&format::scene(model, None));
-    schema.insert(
-        "$schema".into(),
-        json!("https://json-schema.org/draft/2020-12/schema"),
-    );
     let title = match model {
         Some(model) => format!("dalembert scene of the model {}", model.name),
         None => "dalembert scene".into(),
     };
+    schema_of(&format::scene(model, None), &title)
+}
+
+/// JSON Schema of files of a shape.
+pub(crate) fn schema_of(shape: &Object, title: &str) -> Value {
+    let mut schema = object(shape);
+    schema.insert(
+        "$schema".into(),
+        json!("https://json-schema.org/draft/2020-12/schema"),
+    );
     schema.insert("title".into(), json!(title));
     Value::Object(schema)
 }
@@ -42,7 +47,8 @@ fn shape(shape: &Shape) -> Value {
             json!({ "type": "array", "minItems": items.len(), "prefixItems": items, "items": false })
         }
         Shape::Object(o) => Value::Object(object(o)),
-        Shape::Tagged(objects) => {
+        Shape::Any => json!({}),
+        Shape::Tagged(_, objects) => {
             json!({ "oneOf": objects.iter().map(|o| Value::Object(object(o))).collect::<Vec<_>>() })
         }
         Shape::Either(shapes) => {

@@ -27,7 +27,12 @@ pub(crate) fn apply(root: &mut Node, argument: &str) -> Result<(), SceneError> {
         value: Value::Text(span.text().to_owned()),
         span,
     });
-    *descend(root, &path)? = value;
+    put(root, &path, value)
+}
+
+/// Puts a value where the names of a path lead.
+pub(crate) fn put(root: &mut Node, path: &[Span], value: Node) -> Result<(), SceneError> {
+    *descend(root, path)? = value;
     Ok(())
 }
 
@@ -46,15 +51,19 @@ pub(crate) fn segments(path: &Span) -> Vec<Span> {
     segments
 }
 
-/// The place in the tree where a path leads.
-fn descend<'t>(mut node: &'t mut Node, path: &[Span]) -> Result<&'t mut Node, SceneError> {
-    for segment in path {
+/// The place in the tree where a path leads. A key that is itself a path, as those of studies are, is one name.
+fn descend<'t>(mut node: &'t mut Node, mut path: &[Span]) -> Result<&'t mut Node, SceneError> {
+    while let Some((segment, mut rest)) = path.split_first() {
         let found = node.type_name();
         if node.value == Value::Null {
             *node = new_object(segment);
         }
         node = match &mut node.value {
-            Value::Object(entries) => member(entries, segment),
+            Value::Object(entries) => {
+                let (name, after) = longest(entries, path);
+                rest = after;
+                member(entries, &name)
+            }
             Value::List(items) => {
                 let length = items.len();
                 let index = segment.text().parse().ok().filter(|&i: &usize| i < length);
@@ -74,8 +83,21 @@ fn descend<'t>(mut node: &'t mut Node, path: &[Span]) -> Result<&'t mut Node, Sc
                 );
             }
         };
+        path = rest;
     }
     Ok(node)
+}
+
+/// The first name of a path: as many as make a key that is there, else one; and the names after it.
+fn longest<'p>(entries: &[Entry], path: &'p [Span]) -> (Span, &'p [Span]) {
+    for count in (2..=path.len()).rev() {
+        let mut joined = path[0].clone();
+        joined.range.end = path[count - 1].range.end;
+        if entries.iter().any(|entry| entry.key == joined.text()) {
+            return (joined, &path[count..]);
+        }
+    }
+    (path[0].clone(), &path[1..])
 }
 
 fn member<'t>(entries: &'t mut Vec<Entry>, segment: &Span) -> &'t mut Node {

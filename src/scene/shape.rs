@@ -31,10 +31,13 @@ pub(crate) enum Shape {
     Tuple(&'static str, Vec<Shape>),
     /// An object with known keys.
     Object(Object),
-    /// An object with exactly one of some keys, each of which allows keys beside it.
-    Tagged(Vec<Object>),
+    /// An object with exactly one of some keys, each of which allows keys beside it; the text says of what they are the
+    /// kinds.
+    Tagged(&'static str, Vec<Object>),
     /// Values of different JSON types.
     Either(Vec<Shape>),
+    /// Any value: it is judged where it is used.
+    Any,
 }
 
 /// A number with a unit and a range.
@@ -197,7 +200,8 @@ impl Shape {
             Shape::Choice(what, _) => format!("the name of a {what}"),
             Shape::List(_) => "a list".into(),
             Shape::Tuple(what, _) => format!("a list {what}"),
-            Shape::Object(_) | Shape::Tagged(_) => "an object".into(),
+            Shape::Object(_) | Shape::Tagged(..) => "an object".into(),
+            Shape::Any => "a value".into(),
             Shape::Either(shapes) => shapes
                 .iter()
                 .map(Shape::describe)

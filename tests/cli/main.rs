@@ -16,6 +16,7 @@ mod outputs;
 mod page;
 mod precision;
 mod run;
+mod study;
 mod verify;
 mod watch;
 

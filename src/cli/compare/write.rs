@@ -111,7 +111,7 @@ impl Comparison<'_> {
         })
     }
 
-    /// One row a variant, numbers with 17 significant digits.
+    /// One row a variant, numbers with the digits that read back to the same.
     fn table(&self, out: impl Write) -> io::Result<()> {
         let measures = self.measures();
         let mut csv = csv::Writer::from_writer(out);

@@ -107,7 +107,7 @@ impl Report<'_> {
         self.channels().map(curve).collect()
     }
 
-    /// One row a channel, numbers with 17 significant digits.
+    /// One row a channel, numbers with the digits that read back to the same.
     fn measures(&self, out: impl Write) -> io::Result<()> {
         let mut csv = csv::Writer::from_writer(out);
         csv.write_record([

@@ -28,7 +28,7 @@ impl Precision {
         self.study.reference.as_ref().map(|r| r.bound)
     }
 
-    /// One row a run, numbers with 17 significant digits.
+    /// One row a run, numbers with the digits that read back to the same.
     fn table(&self, out: impl Write) -> io::Result<()> {
         let bound = self.bound();
         let mut csv = csv::Writer::from_writer(out);

@@ -1,10 +1,12 @@
 //! Fragility curves: the lognormal probability of failure Φ(ln(x/θ)/β) at an intensity x, by maximum likelihood.
 
+mod bootstrap;
 mod likelihood;
 mod limits;
 mod problem;
 mod table;
 
+pub use bootstrap::{Bootstrap, Units};
 pub use problem::Problem;
 pub use table::Table;
 
@@ -82,6 +84,14 @@ pub fn fit(data: &Data) -> Result<Fit, Problem> {
 }
 
 fn stripes_fit(stripes: &[Stripe]) -> Result<Fit, Problem> {
+    let (likelihood, point, share) = stripes_maximum(stripes)?;
+    Ok(limits::fit(&likelihood, point, Some(share)))
+}
+
+/// A likelihood, where it is largest, and how many runs and failures there are in all.
+type Maximum = (Likelihood, [f64; 2], (f64, f64));
+
+fn stripes_maximum(stripes: &[Stripe]) -> Result<Maximum, Problem> {
     for stripe in stripes {
         let Stripe {
             intensity,
@@ -104,19 +114,32 @@ fn stripes_fit(stripes: &[Stripe]) -> Result<Fit, Problem> {
     // No slope at all is no bad beginning: the function is concave.
     let (a, b) = (0.0, 0.0);
     let [a, b] = likelihood.maximum([a, b]);
-    if b <= 0.0 {
-        return Err(Problem::Falls {
-            share: problem::share(&stripes),
-        });
+    let share = problem::share(&stripes);
+    match b <= 0.0 {
+        true => Err(Problem::Falls { share }),
+        false => Ok((likelihood, [a, b], share)),
     }
-    Ok(limits::fit(
-        &likelihood,
-        [a, b],
-        Some(problem::share(&stripes)),
-    ))
 }
 
 fn capacities_fit(capacities: &[Capacity]) -> Result<Fit, Problem> {
+    let (likelihood, point) = capacities_maximum(capacities)?;
+    let mut fit = limits::fit(&likelihood, point, None);
+    if capacities.iter().all(|c| !c.censored) {
+        // Both are known in closed form.
+        (fit.theta, fit.beta) = known(capacities);
+    }
+    Ok(fit)
+}
+
+/// Median and dispersion of capacities that are all known.
+fn known(capacities: &[Capacity]) -> (f64, f64) {
+    let logarithms: Vec<f64> = capacities.iter().map(|c| libm::log(c.intensity)).collect();
+    let (mean, deviation) = moments(&logarithms);
+    (libm::exp(mean), deviation)
+}
+
+/// The likelihood of capacities, and where it is largest.
+fn capacities_maximum(capacities: &[Capacity]) -> Result<(Likelihood, [f64; 2]), Problem> {
     for capacity in capacities {
         let positive = capacity.intensity > 0.0 && capacity.intensity.is_finite();
         assert!(positive, "a capacity is positive");
@@ -135,12 +158,25 @@ fn capacities_fit(capacities: &[Capacity]) -> Result<Fit, Problem> {
     let likelihood = Likelihood::new(observations);
     let b = 1.0 / deviation;
     let point = likelihood.maximum([-(mean - likelihood.centre) * b, b]);
-    let mut fit = limits::fit(&likelihood, point, None);
-    if capacities.iter().all(|c| !c.censored) {
-        // Both are known in closed form.
-        (fit.theta, fit.beta) = (libm::exp(mean), deviation);
-    }
-    Ok(fit)
+    Ok((likelihood, point))
+}
+
+/// Median and dispersion alone, without intervals; `None` where the data do not determine them.
+fn median_and_dispersion(data: &Data) -> Option<(f64, f64)> {
+    let (likelihood, [a, b]) = match data {
+        Data::Stripes(stripes) => {
+            let (likelihood, point, _) = stripes_maximum(stripes).ok()?;
+            (likelihood, point)
+        }
+        Data::Capacities(capacities) => {
+            let maximum = capacities_maximum(capacities).ok()?;
+            if capacities.iter().all(|c| !c.censored) {
+                return Some(known(capacities));
+            }
+            maximum
+        }
+    };
+    Some((libm::exp(-a / b + likelihood.centre), 1.0 / b))
 }
 
 /// Mean and standard deviation of a sample (with n − 1).
@@ -160,7 +196,11 @@ pub fn fractile(sorted: &[f64], p: f64) -> f64 {
     let place = p * (sorted.len() - 1) as f64;
     let below = sorted[place as usize];
     let above = sorted[(place as usize + 1).min(sorted.len() - 1)];
-    below + (place - place.floor()) * (above - below)
+    match place - place.floor() {
+        // Whatever is above, be it infinite.
+        0.0 => below,
+        part => below + part * (above - below),
+    }
 }
 
 #[cfg(test)]
