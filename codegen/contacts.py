@@ -1,9 +1,10 @@
 """Contacts and friction, declared once: the modes, guards, impacts and rests that follow.
 
 A contact has a gap g ≥ 0 with a normal force λ_N ≥ 0, one of which is zero; with a slip it has Coulomb friction, static and
-kinetic. Friction without a gap acts all the time, under a normal force that the model gives. Here the reduced form is built,
-in which a closed gap and a sticking slip are coordinates that a mode freezes: a mode is a set of contact states, and its
-reactions are the forces. (J. J. Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics.)
+kinetic. Friction without a gap acts all the time, under a normal force that the model gives. Where gaps
+and slips are coordinates the reduced form is built, in which a mode is a set of contact states that freezes them, and its
+reactions are the forces; else the form with multipliers (`multipliers.py`). (J. J. Moreau 1988, Unilateral contact and dry
+friction in finite freedom dynamics.)
 
 Signs: λ_N pushes the gap open; λ_T acts along the slip; a direction is the sign of the slip rate.
 """
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from . import arguments, limits, units
+from . import arguments, graph, limits, multipliers, units
 from .declarations import Transition
 from .errors import ModelError, caller_location
 
@@ -41,13 +42,26 @@ class Line:
         return -self.sign * self.offset
 
 
+class NotReducible(ModelError):
+    """Why contacts have no reduced form."""
+
+
+@dataclass
+class Smooth:
+    """A gap, or a slip, that is any smooth function of the coordinates."""
+
+
 @dataclass
 class Contact:
-    """A contact, or friction without a gap (`gap` is None, `normal` given)."""
+    """A contact, or friction without a gap (`gap` is None, `normal` given). Gap and slip are `Line`s where they are coordinates,
+    else `Smooth`."""
 
     name: str
-    gap: Line
-    slip: Line
+    gap: object
+    gap_expression: ca.SX
+    slip: object
+    slip_expression: ca.SX
+    slips_by_rate: bool
     normal: ca.SX
     static: ca.SX
     kinetic: ca.SX
@@ -59,6 +73,14 @@ class Contact:
         """What it can do."""
         slipping = [STICKS, SLIDES] if self.slip else [CLOSED]
         return ([OPEN] if self.gap else []) + slipping
+
+    def is_reducible(self):
+        """Whether its gap and its slip are coordinates."""
+        return isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
+
+    def slip_rate_of(self, x):
+        """The slip rate as an expression in coordinates and rates (`derive.Configuration`)."""
+        return self.slip_expression if self.slips_by_rate else ca.jtimes(self.slip_expression, x.q, x.v)
 
     def slip_rate(self):
         """Positive along the slip."""
@@ -79,53 +101,88 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution):
     arguments.name(model, kind, name)
     if any(known.name == name for known in model.contacts):
         raise model.error(f"{what}: there is a contact or a friction of this name above")
-    gap = None if gap is None else _line(model, f"{what}: its gap", arguments.expression(model, f"{what}: its gap", gap), False)
+    of = lambda key, value: arguments.expression(model, f"{what}: {key}", value)
+    gap_expression = None if gap is None else _of_motion(model, f"{what}: its gap", of("its gap", gap), rates=False)
     if slip is None and (static is not None or kinetic is not None):
         raise model.error(f"{what}: it has friction but no `slip`: give the place or the rate along which it slips")
+    slip_expression = None
     if slip is not None:
         if kinetic is None:
             raise model.error(f"{what}: `slip` is given, but no coefficient `kinetic`; without friction leave `slip` out")
-        slip = _slip(model, what, arguments.expression(model, f"{what}: its slip", slip))
-    of = lambda key, value: arguments.expression(model, f"{what}: `{key}`", value)
-    kinetic = None if kinetic is None else of("kinetic", kinetic)
-    static = kinetic if static is None else of("static", static)
+        slip_expression = _of_motion(model, f"{what}: its slip", of("its slip", slip), rates=True)
+    kinetic = None if kinetic is None else of("`kinetic`", kinetic)
+    static = kinetic if static is None else of("`static`", static)
+    rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates + model.motions])
+    by_rate = slip_expression is not None and bool(rates.numel()) and ca.depends_on(slip_expression, rates)
+    gap = None if gap is None else _line(model, gap_expression, False) or Smooth()
+    slip = None if slip is None else _slip_line(model, slip_expression, by_rate) or Smooth()
     for known in model.contacts:
-        if slip and known.slip and known.slip.name == slip.name:
+        lines = isinstance(slip, Line) and isinstance(known.slip, Line) and gap is None and known.gap is None
+        if lines and known.slip.name == slip.name:
             raise model.error(f"{what}: `{known.name}` slips along `{slip.name}` too; of two friction forces along one coordinate"
                               " only the sum is determined: declare one friction with the sum of both")
     direction = None if slip is None else model.discrete(
         f"{name}_direction", (+1, -1), f"sign of the slip rate of `{name}` when it slides")
-    contact = Contact(name, gap, slip, None if normal is None else of("normal", normal), static, kinetic,
-                      of("restitution", restitution), direction, caller_location(model.file))
-    if gap is not None:
-        _bound(model, contact)
-    model.contacts.append(contact)
+    model.contacts.append(Contact(
+        name, gap, gap_expression, slip, slip_expression, by_rate, None if normal is None else of("`normal`", normal), static,
+        kinetic, of("`restitution`", restitution), direction, caller_location(model.file)))
 
 
-def _line(model, what, expression, of_rates):
-    """An expression as a coordinate, or a rate, and what parameters add."""
+def declare_constraint(model, name, expressions):
+    """Adds a constraint to a model; see `Model.constraint`."""
+    arguments.name(model, "constraint", name)
+    if any(known.name == name or known.name.startswith(f"{name}.") for known in [*model.constraints, *model.contacts]):
+        raise model.error(f"constraint `{name}`: there is a contact, a friction or a constraint of this name above")
+    listed = list(expressions) if isinstance(expressions, (list, tuple)) else [expressions]
+    for k, expression in enumerate(listed):
+        own = name if len(listed) == 1 else f"{name}.{k + 1}"
+        what = f"constraint `{own}`"
+        expression = _of_motion(model, what, arguments.expression(model, what, expression), rates=False)
+        model.constraints.append(multipliers.Constraint(own, expression, caller_location(model.file)))
+
+
+def _of_motion(model, what, expression, rates):
+    """An expression in coordinates, motions of the ground and parameters, and in `rates` where these are allowed."""
+    places = [c.symbol for c in model.coordinates + model.motions]
+    allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters)]}
+    allowed |= {s.rate.element_hash() for s in places} if rates else set()
+    for symbol in ca.symvar(expression):
+        if symbol.element_hash() not in allowed:
+            raise model.error(f"{what}, `{units.short(expression)}`, depends on `{symbol.name()}`; it depends on coordinates"
+                              f"{', rates' if rates else ''}, motions of the ground and parameters alone")
+    operation = graph.non_smooth_operation(expression, [p.symbol for p in model.parameters])
+    if operation:
+        raise model.error(f"{what}, `{units.short(expression)}`: `{operation}` is not smooth; declare one contact or constraint for each"
+                          " smooth piece")
+    try:
+        units.dimension_of(expression, model.dimensions)
+    except units.UnitError as error:
+        raise model.error(f"{what}: {error}") from None
+    moving = ca.vertcat(*[e for c in model.coordinates for e in (c.symbol, c.symbol.rate)])
+    if not moving.numel() or not ca.depends_on(expression, moving):
+        raise model.error(f"{what}, `{units.short(expression)}`, does not depend on any coordinate")
+    return expression
+
+
+def _line(model, expression, of_rates):
+    """An expression as a coordinate, or a rate, and what parameters add; None where it is not."""
     symbols = [c.symbol for c in model.coordinates]
-    column = ca.vertcat(*[s.rate if of_rates else s for s in symbols]) if symbols else ca.SX(0, 1)
+    column = ca.vertcat(*[s.rate if of_rates else s for s in symbols])
     slopes = ca.densify(ca.jacobian(expression, column))
     moving = [i for i in range(len(symbols)) if not slopes[i].is_zero()]
     if len(moving) == 1 and slopes[moving[0]].is_constant() and abs(float(slopes[moving[0]])) == 1:
         offset = ca.substitute(expression, column[moving[0]], 0)
         if limits.is_of_parameters(model, offset):
             line = Line(symbols[moving[0]], int(float(slopes[moving[0]])), offset)
-            model._constant(f"{what}, where it is zero", line.value(), line.name + (".rate" if of_rates else ""))
+            model._constant("where it is zero", line.value(), line.name + (".rate" if of_rates else ""))
             return line
-    one = "the rate of one coordinate" if of_rates else "one coordinate"
-    raise model.error(f"{what}, `{units.short(expression)}`, is not ± {one} and what parameters add: choose coordinates so that it"
-                      " is. Gaps and slips that depend on several coordinates are written as modes by hand")
+    return None
 
 
-def _slip(model, what, expression):
-    """The slip rate, from itself or from the place along which a contact slips."""
-    rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates])
-    if rates.numel() and ca.depends_on(expression, rates):
-        return _line(model, f"{what}: its slip rate", expression, True)
-    place = _line(model, f"{what}: its slip", expression, False)
-    return Line(place.coordinate, place.sign, ca.SX(0))
+def _slip_line(model, expression, by_rate):
+    """The slip rate as a line, from itself or from the place along which a contact slips."""
+    line = _line(model, expression, by_rate)
+    return line if by_rate or line is None else Line(line.coordinate, line.sign, ca.SX(0))
 
 
 def _bound(model, contact):
@@ -141,13 +198,19 @@ def _bound(model, contact):
 
 
 def expand(model):
-    """Adds the modes, transitions and rests of a model with contacts; those of any other stay as they are."""
-    if not model.contacts:
+    """Adds the modes, transitions and rests of a model with contacts or constraints; those of any other stay as they are."""
+    if not model.contacts and not model.constraints:
         return
     if model.modes:
-        raise ModelError("the model has contacts and modes by hand; contacts make all modes: leave `model.mode(…)` out, or"
-                         " write all of it by hand", model.modes[0].location)
-    Expansion(model).build()
+        raise ModelError("the model has contacts and modes by hand; contacts make all modes: leave `model.mode(…)` out, or write"
+                         " all of it by hand", model.modes[0].location)
+    if not model.constraints and all(contact.is_reducible() for contact in model.contacts):
+        try:
+            Expansion(model).build()
+            return
+        except NotReducible:
+            model.modes, model.transitions, model.rests, model.placeholders = [], [], [], {}
+    multipliers.build(model)
 
 
 class Expansion:
@@ -162,14 +225,15 @@ class Expansion:
         """Adds everything to the model."""
         sets = [states for states in itertools.product(*[c.states() for c in self.contacts]) if self._can_be(states)]
         if len(sets) > MOST_MODES:
-            raise ModelError(f"the contacts of this model can be in {len(sets)} sets of states, and each is a mode of its own; at"
-                             f" most {MOST_MODES} are generated: leave out contacts that the model does not need",
-                             self.contacts[MOST_MODES.bit_length() - 2].location)
+            raise NotReducible(f"{len(sets)} sets of contact states")
         for states in sets:
             self.modes[states] = self._mode(states)
         for states in sets:
             for i, contact in enumerate(self.contacts):
                 self._transitions(states, i, contact)
+        for contact in self.contacts:
+            if contact.gap is not None:
+                _bound(self.model, contact)
 
     def _can_be(self, states):
         """A coordinate is where one gap is zero, not two; friction along it holds nothing there."""
@@ -274,9 +338,7 @@ class Expansion:
         contact = self.contacts[i]
         pressed, loose = self._reached(states, contact)
         if len(pressed) > 1 or pressed and (contact.slip or pressed[0].slip):
-            raise ModelError(
-                f"contact `{contact.name}`: its impact acts on {' and '.join(f'`{c.name}`' for c in pressed)} as well, and what"
-                " friction or several other contacts do then is not generated: write these modes by hand", contact.location)
+            raise NotReducible(f"the impact of `{contact.name}` acts on several contacts with friction")
         slides = [+1, -1] if contact.slip else []
         ways = [(opens, slip) for opens in ([True, False] if pressed else [False]) for slip in slides + [0]]
         for opens, slip in ways:

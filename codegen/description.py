@@ -78,7 +78,9 @@ def _reaction_unit(unit):
 
 
 def _coordinate(c):
-    return {"name": c.name, "unit": c.unit, "meaning": c.meaning, "reaction_unit": _reaction_unit(c.unit),
+    reaction_unit = c.extra.get("multiplier") or _reaction_unit(c.unit)
+    return {"name": c.name, "unit": c.unit, "meaning": c.meaning, "reaction_unit": reaction_unit,
+            "multiplier": "multiplier" in c.extra,
             "scale": _number(c.scale), "rate_scale": _number(c.rate_scale),
             "minimum": _fixed_bound(c.minimum), "maximum": _fixed_bound(c.maximum)}
 
@@ -150,6 +152,8 @@ def _mode(variant, i, equations, tables):
         "inertia_is_fixed": analysis.is_fixed(model, equations, inertia),
         "is_linear": analysis.is_constant(model, equations, functions[("jacobian",)].output),
         "goes_in_lanes": analysis.goes_in_lanes(variant, i),
+        "places": None if mode.form is None else {
+            "function": tables.value(functions[("places",)].symbol), "count": equations.places().numel()},
     }
     return {
         "name": mode.name, "meaning": mode.meaning, "free": list(equations.free),
@@ -164,6 +168,8 @@ def _mode(variant, i, equations, tables):
             for margin in equations.margins],
         "without_series": functions[("series",)].without or None,
         "system": variant.tapes[i, "system"], "guard_values": variant.tapes[i, "guards"],
+        "contacts": None if mode.form is None else {
+            **equations.describe(model), "decisions": variant.tapes[i, "decisions"]},
         "kernel": kernel,
         "operations": [[what[0] if len(what) == 1 else " ".join(map(str, what)), f.operations]
                        for what, f in functions.items()],
@@ -173,9 +179,11 @@ def _mode(variant, i, equations, tables):
 def _guard(variant, i, g, functions, tables):
     model, equations = variant.model, variant.modes[i]
     expression, transitions = equations.guards[g]
+    is_contact = equations.mode.form is not None
     return {
-        "name": " / ".join(dict.fromkeys(t.name for t in transitions)), "text": units.short(expression, 200),
-        "unit": _unit(model, expression), "shape": analysis.shape(model, equations, expression),
+        "name": " / ".join(dict.fromkeys(t.name for t in transitions)) if not is_contact
+        else equations.form.contacts[g // 3].name,
+        "text": units.short(expression, 200), "unit": "1" if is_contact else _unit(model, expression), "shape": analysis.shape(model, equations, expression),
         "value": tables.value(functions["guard", g].symbol), "rate": tables.value(functions["guard_rate", g].symbol),
         "magnitude": tables.value(functions["guard_magnitude", g].symbol),
         "transitions": [_transition(variant, i, g, t, functions, tables) for t in range(len(transitions))],

@@ -246,7 +246,8 @@ def _variant(model, absent, kind=""):
     """Derives and checks the equations of every mode, and lists the functions to emit."""
     residual = derive.residual_from_bodies(model)
     held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates])
-    modes = [derive.ModeEquations(model, mode, residual, held, absent) for mode in model.modes]
+    modes = [(mode.form.equations if mode.form else derive.ModeEquations)(model, mode, residual, held, absent)
+             for mode in model.modes]
     check.check_equations(model, modes)
     variant = Variant(model, modes)
     parameters = [p.symbol for p in model.parameters]
@@ -259,8 +260,9 @@ def _variant(model, absent, kind=""):
         equations.guards = guards
         values = []
         for g, (expression, transitions) in enumerate(guards):
-            placed = equations.place(expression, transitions[0].location)
-            _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
+            placed = equations.place(expression, transitions[0].location if transitions else None)
+            if transitions:
+                _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
             _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
             # A linear guard is as good a polynomial as the motion itself.
             linear = analysis.linear_shape(model, equations, placed)
@@ -307,6 +309,8 @@ def _tapes(variant, i, index):
             target = variant.modes[index[transition.target.name]]
             conditions = ca.SX(0, 1) if transition.condition is None else target.place(transition.condition)
             variant.tapes[i, "conditions", g, t] = tape.of(conditions, places(target))
+    if equations.mode.form is not None:
+        variant.tapes[i, "decisions"] = tape.of(equations.decisions(), places(equations))
 
 
 def _mode_functions(variant, equations, slot, prefix):
@@ -316,8 +320,11 @@ def _mode_functions(variant, equations, slot, prefix):
         name = equations.mode.name
         _check_smooth(equations.r, f"equations of mode `{name}`", equations.mode.location, [p.symbol for p in model.parameters])
     mass, load = equations.system()
+    # Those of contacts choose rows: one that few sets have would seem to be idle.
+    chosen = equations.mode.form.discretes() if equations.mode.form else []
     without_idle = lambda column: graph.without_idle(
-        column, ca.vertcat(equations.q, equations.v), [(d.symbol, d.values) for d in model.discretes])
+        column, ca.vertcat(equations.q, equations.v),
+        [(d.symbol, d.values) for d in model.discretes if not any(d.symbol is own for own in chosen)])
     system = without_idle(ca.vertcat(ca.vec(mass), load))
     jacobians = equations.jacobians()
     reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
@@ -344,6 +351,7 @@ def _mode_functions(variant, equations, slot, prefix):
         ("requirement_bounds", _bounds(model, equations, requirements)),
         ("held_rates", equations.freeze(equations.rates_of_held)),
         ("held_values", equations.values_of_held()),
+        *([("places", equations.places())] if equations.mode.form else []),
     ):
         _add(variant, prefix + what, output, equations, slot + (what,))
 
@@ -380,7 +388,10 @@ def _check_smooth(expression, what, location, parameters):
 
 
 def _guards(model, equations):
-    """Transitions of a mode grouped by guard: a list of (expression, transitions)."""
+    """Transitions of a mode grouped by guard: a list of (expression, transitions). Those of contacts have no transitions: what
+    follows is decided where they fall."""
+    if equations.mode.form is not None:
+        return [(guard, []) for guard in equations.contact_guards()]
     groups = {}
     for transition in model.transitions:
         if transition.source is equations.mode:

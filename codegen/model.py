@@ -40,6 +40,7 @@ class Mode:
         self.held, self.drift = freeze, drift
         self.location = caller_location(model.file)
         self.forces, self.requirements = [], []
+        self.form = None
 
     @property
     def identifier(self):
@@ -95,7 +96,7 @@ class Model:
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
-        self.contacts = []
+        self.contacts, self.constraints = [], []
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -261,6 +262,11 @@ class Model:
     def friction(self, name, *, slip, normal, kinetic, static=None):
         """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N."""
         contacts.declare(self, name, None, slip, normal, static, kinetic, 0)
+
+    def constraint(self, name, expressions):
+        """A constraint that always holds: each of the expressions is zero. Its multipliers are the reactions: forces along
+        what the expressions measure, positive where they push it to grow."""
+        contacts.declare_constraint(self, name, expressions)
 
     # ---- hybrid structure ---------------------------------------------------------------------
 

@@ -237,6 +237,7 @@ impl<'p> Simulation<'p> {
         self.here.now.persist(memory)?;
         self.here.j.persist(memory)?;
         self.here.mode.persist(memory)?;
+        self.here.shown.persist(memory)?;
         let modes = self.modes.len();
         (self.here.mode < modes).then_some(())?;
         for numbers in [&mut self.here.q, &mut self.here.v, &mut self.here.a] {

@@ -227,6 +227,24 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             from[first] = crossing.outside;
             continue;
         }
+        // A contact that has left its gap, or its stop, within this step: how far is below the rounding of its own value, and
+        // known from its series.
+        let from_zero = watches[first] == Watch::Dormant && start == 0.0;
+        if M::EXPLICIT && from_zero && mode.contacts.is_some() && crossing.kind == Kind::Fall {
+            let found = &mut found[first];
+            let (start_of, dense) = (from[first], method.dense().expect("a step was made"));
+            let window = (start_of, to);
+            let what = (Watch::Dormant, Isolation::Bracket, &mut *found);
+            search(equations, conditions, dense, guard, window, what);
+            if let Some(crossing) = found.crossing {
+                method.step_exactly(equations, crossing.outside - start)?;
+                landed.clone_from(method.state());
+                return Ok(Cut::Event {
+                    guard: index,
+                    beyond: 0.0,
+                });
+            }
+        }
         let landing = match land(method, equations, conditions, guard, crossing, landed)? {
             Landing::Short => {
                 let of = (crossing, to);

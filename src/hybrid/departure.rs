@@ -37,6 +37,8 @@ struct Question<'a> {
     sizes: [&'a [f64]; 2],
     /// For how long the series holds, s.
     within: f64,
+    /// How many of the first derivatives, the value among them, are zero whatever rounding makes of them.
+    vanishing: usize,
 }
 
 impl Question<'_> {
@@ -52,13 +54,14 @@ impl Question<'_> {
         if !value.error.is_finite() {
             return Departure::Unknown;
         }
+        let first = self.vanishing.max(1);
         let decisive = match value.sign() {
-            Some(_) => Some(0),
-            None => {
+            Some(_) if self.vanishing == 0 => Some(0),
+            _ => {
                 // It is zero, and leaves zero as the motion from the state that is given does.
                 expansion.begin(mode, self.at, None);
-                expansion.expand(mode, tape, 0);
-                (1..ORDERS).find(|&k| {
+                (0..first).for_each(|k| expansion.expand(mode, tape, k));
+                (first..ORDERS).find(|&k| {
                     expansion.expand(mode, tape, k);
                     expansion.result(tape, index)[k].sign().is_some()
                 })
@@ -101,9 +104,10 @@ impl Question<'_> {
 }
 
 impl<'p> Simulation<'p> {
-    /// How a guard of the present mode goes on from here; the context is set for it.
+    /// How a guard of the present mode goes on from here, of which so many derivatives are known to vanish, the value among
+    /// them; the context is set for it.
     #[cold]
-    pub fn departure(&mut self, guard: usize) -> Departure {
+    pub fn departure(&mut self, guard: usize, vanishing: usize) -> Departure {
         self.expand_signals();
         let mode = self.mode();
         let now = self.here.now.seconds();
@@ -120,6 +124,7 @@ impl<'p> Simulation<'p> {
             },
             sizes: [&self.sizes, &self.rate_sizes],
             within: knot.min(self.problem.end.time) - now,
+            vanishing,
         };
         question.answer(&mut self.expansion)
     }
@@ -163,6 +168,7 @@ impl<'p> Simulation<'p> {
                 at: Point { q, v, discrete },
                 sizes: [&self.sizes, &self.rate_sizes],
                 within: 0.0,
+                vanishing: 0,
             };
             let departure = question.answer(&mut self.expansion);
             matches!(departure, Departure::Up { .. } | Departure::Stays)
@@ -170,7 +176,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// The inputs as they go on from here.
-    fn expand_signals(&mut self) {
+    pub(in crate::hybrid) fn expand_signals(&mut self) {
         let (context, signals) = (&self.context, &*self.signals);
         let t = self.here.now.seconds();
         self.expansion.set_signals(context, signals, t);

@@ -32,7 +32,8 @@ impl<'p> Simulation<'p> {
         let [q, v, _] = self.here.free(kernel.size(), &mode.free);
         self.check_inertia(kernel, [&q, &v])?;
         let system = kernel.system(&self.context, &q, &v);
-        if determinant_sign(&system.mass) < 0 {
+        // With multipliers its sign means nothing by itself, and what may follow was judged.
+        if mode.contacts.is_none() && determinant_sign(&system.mass) < 0 {
             return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
         }
         let scale = self.scale(kernel.size());
@@ -65,7 +66,12 @@ impl<'p> Simulation<'p> {
             };
             let context = &mut self.context;
             let own = watched_value(kernel, context, &mut conditions, guard, watched, at);
-            let sign = Watch::of(own);
+            let zero = self.at_zero.iter().find(|zero| zero.guard == watched.guard);
+            let vanishing = zero.map_or(0, |zero| zero.vanishing);
+            let sign = match vanishing {
+                0 => Watch::of(own),
+                _ => Watch::Dormant,
+            };
             // The guard's own entry decides about its conditions, too.
             if sign == Watch::Armed || watched.condition.is_some() {
                 self.signs.remember(sign, 0.0);
@@ -75,11 +81,12 @@ impl<'p> Simulation<'p> {
                 .then(|| start.departure(&self.context, guard, (&a, is_explicit)));
             let departure = match plain.flatten() {
                 Some(departure) => departure,
-                None => self.departure(watched.guard),
+                None => self.departure(watched.guard, vanishing),
             };
             let (watch, away) = match departure {
                 // Its dense output shows it.
                 Departure::Up { until: 0.0, .. } => (sign, 0.0),
+                Departure::Up { order: 1, .. } if is_explicit && vanishing == 1 => (sign, 0.0),
                 Departure::Up { until, .. } => (Watch::Armed, until),
                 Departure::Down { .. } => (Watch::Violated, 0.0),
                 Departure::Stays | Departure::Unknown => (sign, 0.0),
@@ -116,6 +123,7 @@ impl<'p> Simulation<'p> {
             }
         }
         self.signs.start();
+        self.at_zero.clear();
         if violation.is_none() {
             let at = Free {
                 q: &q,

@@ -167,6 +167,42 @@ pub enum Reason {
         /// The coordinate or rate (`theta.rate`) that the guard is about; empty if it is about more.
         of: String,
     },
+    /// No set of contact states goes on.
+    #[error(
+        "no motion: of the contacts that touch ({contacts}) no set of states may go on, whatever opens, sticks or slips (Painlevé's paradox: inconsistent); an impact without a collision is not made up"
+    )]
+    NoMotion {
+        /// Names of the contacts.
+        contacts: String,
+    },
+    /// Several sets of contact states may go on, with motions that differ.
+    #[error(
+        "several motions: of the contacts that touch ({contacts}) several sets of states may go on, and their motions differ: {motions} (Painlevé's paradox: indeterminate)"
+    )]
+    SeveralMotions {
+        /// Names of the contacts.
+        contacts: String,
+        /// Two of the sets.
+        motions: String,
+    },
+    /// The law of impact has no solution.
+    #[error(
+        "the impact of {contacts} has no outcome: Newton's law and Coulomb's contradict each other there (a self-locking wedge)"
+    )]
+    NoImpact {
+        /// Names of the contacts.
+        contacts: String,
+    },
+    /// The law of impact has several solutions.
+    #[error(
+        "the impact of {contacts} has {count} outcomes that differ: Newton's law and Coulomb's do not determine it"
+    )]
+    SeveralImpacts {
+        /// Names of the contacts.
+        contacts: String,
+        /// Number of outcomes.
+        count: usize,
+    },
     /// Something of the problem is not admissible.
     #[error(transparent)]
     Invalid(#[from] Invalid),

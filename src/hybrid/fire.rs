@@ -16,6 +16,9 @@ impl<'p> Simulation<'p> {
     /// Takes the first transition of a guard whose condition holds.
     pub fn fire(&mut self, guard: usize) -> Stoppable<()> {
         let mode = self.mode();
+        if mode.contacts.is_some() {
+            return self.contact_event(guard);
+        }
         with_kernel!(&mode.kernels, k => self.fire_by(k, guard))
     }
 
@@ -105,7 +108,7 @@ impl<'p> Simulation<'p> {
     /// Makes `next` the present state, in mode `target`, and records the event.
     pub fn commit(&mut self, name: &'static str, impact: bool, target: usize) -> Stoppable<()> {
         let n = self.here.q.len();
-        let from = self.here.mode;
+        let from = self.here.shown;
         let states = self.problem.record.event_states;
         let before = states.then(|| self.snapshot());
         let energies_before = (self.observers.ledger.is_some() || states)
@@ -116,6 +119,7 @@ impl<'p> Simulation<'p> {
         copy_few(&self.next[n..2 * n], &mut self.here.v);
         copy_few(&self.next[2 * n..], self.context.discrete_mut());
         self.here.mode = target;
+        self.here.shown = self.shown();
         self.here.j += 1;
         if states || self.observers.ledger.is_some() {
             self.set_context();
@@ -134,7 +138,7 @@ impl<'p> Simulation<'p> {
             j: self.here.j,
             transition: name,
             from,
-            to: target,
+            to: self.here.shown,
             energy: energy.filter(|_| impact),
         };
         if let Some(before) = before {
@@ -149,9 +153,15 @@ impl<'p> Simulation<'p> {
             self.observers.recording.event(&jump, None);
         }
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
-        let modes = self.modes;
-        match self.visited.arrive((name, from, target), state, modes) {
-            Some(cycle) => Err(Box::new(Reason::Cycle { cycle })),
+        let step = (name, from, self.here.shown);
+        match self.visited.arrive(step, state) {
+            Some(cycle) => {
+                let steps = cycle.into_iter().map(|(name, from, to)| {
+                    format!("{name} ({} → {})", self.name_of(from), self.name_of(to))
+                });
+                let cycle = steps.collect::<Vec<_>>().join(", ");
+                Err(Box::new(Reason::Cycle { cycle }))
+            }
             None => Ok(()),
         }
     }

@@ -9,6 +9,7 @@ mod accumulation;
 mod advance;
 mod checkpoint;
 mod choice;
+mod contact;
 mod crossing;
 mod departure;
 mod doubt;

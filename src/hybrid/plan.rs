@@ -48,11 +48,17 @@ impl Plan {
             let frozen = names.collect::<Vec<_>>().join(", ");
             return Err(Reason::NoModeLeft { frozen });
         }
+        let of_contact = |guard| Watched {
+            guard,
+            condition: None,
+            conditional: false,
+        };
         let watched = (modes.iter())
-            .map(|m| {
-                (0..m.guards.len())
+            .map(|m| match m.contacts {
+                Some(_) => (0..m.guards.len()).map(of_contact).collect(),
+                None => (0..m.guards.len())
                     .flat_map(|g| watched(g, &m.guards[g], &allowed))
-                    .collect()
+                    .collect(),
             })
             .collect();
         let rests = (problem.variant().rests.iter().copied())

@@ -48,7 +48,11 @@ impl Simulation<'_> {
 
     /// Goes to the limit of an accumulation, if the last events have one.
     pub fn look_for_accumulation(&mut self) -> Stoppable<()> {
-        if let Some((target, limit)) = self.rest() {
+        if self.mode().contacts.is_some() {
+            if self.rest_contacts()? {
+                return Ok(());
+            }
+        } else if let Some((target, limit)) = self.rest() {
             return self.come_to_rest(target, &limit);
         }
         let relative = self.problem.accuracy.relative;

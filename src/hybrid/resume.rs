@@ -258,7 +258,11 @@ impl Simulation<'_> {
         self.margins.go_on(&reached);
         self.here.now = Instant::new(end.t);
         self.here.j = end.j;
-        self.here.mode = end.mode;
+        self.here.shown = end.mode;
+        self.here.mode = match self.modes[0].contacts {
+            Some(_) => 0,
+            None => end.mode,
+        };
         self.here.q.copy_from_slice(&end.state.q);
         self.here.v.copy_from_slice(&end.state.v);
         self.context

@@ -186,7 +186,11 @@ fn search_series<F: Size>(
     let (kernel, context) = (equations.kernel, &*equations.context);
     let mut constant = kernel.guard_coefficient(context, watched.guard, 0);
     let is_known = watch == Watch::Armed && window.0 == tau && constant > 0.0;
-    if !is_known {
+    // It was zero where the segment began, and rises from there.
+    let begins_at_zero = watch == Watch::Dormant && window.0 == tau && tau == 0.0;
+    if begins_at_zero {
+        constant = 0.0;
+    } else if !is_known {
         // The guard's own value decides on which side of zero it starts: it may be rounded otherwise.
         equations.at(tau);
         let rows = [&series.q, &series.v, &series.a];

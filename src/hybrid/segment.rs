@@ -1,6 +1,7 @@
 //! From one event to the next: steps and crossings on their dense output, which observers look at.
 
 use super::advance::MadeBy;
+use super::contact::hold;
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, Piece, free_of};
@@ -52,6 +53,8 @@ impl<'p> Simulation<'p> {
         Solvers: SlotsOf<F>,
     {
         let (problem, mode) = (self.problem, self.mode());
+        // What follows an event of contacts is another set of their states.
+        let stays = stays && mode.contacts.is_none();
         match stages(problem.accuracy.relative) {
             _ if self.is_explicit(kernel) => {
                 self.made_by = MadeBy::Taylor;
@@ -158,6 +161,7 @@ impl<'p> Simulation<'p> {
             chooses: problem.method == Method::Auto && kernel.is_analytic(),
             looks_at_ends: is_explicit
                 || drifts
+                || mode.contacts.is_some()
                 || !mode.requirements.is_empty()
                 || !kernel.mass_is_constant()
                 || problem.record.every.is_none()
@@ -404,6 +408,13 @@ impl<'p> Simulation<'p> {
 
             if looks_at_ends {
                 equations.at(state.t);
+            }
+            if let (Some(contacts), None) = (&mode.contacts, event) {
+                let State { q, v, a, .. } = &mut state;
+                hold(kernel, equations.context, contacts, [q, v]);
+                let held = equations.acceleration_here(q, v);
+                *a = held.map_err(|s| Box::new(Reason::singular(mode, &problem.model, s)))?;
+                method.correct(q, v, a);
             }
             let at = free_of(&state);
 

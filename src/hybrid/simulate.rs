@@ -92,7 +92,7 @@ impl Simulation<'_> {
         Place {
             t: self.here.now.seconds(),
             j: self.here.j,
-            mode: self.here.mode,
+            mode: self.here.shown,
             state: self.snapshot(),
         }
     }

@@ -33,6 +33,8 @@ pub(super) struct Here {
     pub now: Instant,
     pub j: u64,
     pub mode: usize,
+    /// What is recorded as the mode: its index, or that of the set of contact states in a mode of all sets.
+    pub shown: usize,
     /// All coordinates.
     pub q: Box<[f64]>,
     /// All velocities.
@@ -48,6 +50,15 @@ pub(super) struct Violation {
     pub guard: usize,
     /// Whether it leaves zero at once and from rest: as an impact, a hop of no height.
     pub rests: bool,
+}
+
+/// A guard that is zero, whatever rounding makes of its value.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AtZero {
+    /// Index of the guard in its mode.
+    pub guard: usize,
+    /// How many of its first derivatives vanish, the value among them: at least one.
+    pub vanishing: usize,
 }
 
 /// Why a segment ended.
@@ -123,6 +134,10 @@ pub(super) struct Simulation<'p> {
     pub methods: Vec<(&'static str, usize)>,
     /// How often the transition that ends the run has happened.
     pub counted: u64,
+    /// Guards of contacts that are zero here, whatever rounding makes of their values.
+    pub at_zero: Vec<AtZero>,
+    /// Coordinates, velocities and discrete states that a run with contacts begins with, once they were found.
+    pub begun: Option<Box<[f64]>>,
 }
 
 impl<'p> Simulation<'p> {
@@ -164,6 +179,7 @@ impl<'p> Simulation<'p> {
                 now: Instant::default(),
                 j: 0,
                 mode: 0,
+                shown: 0,
                 q: problem.initial.q.clone().into(),
                 v: problem.initial.v.clone().into(),
                 a: zeros(n),
@@ -193,15 +209,15 @@ impl<'p> Simulation<'p> {
             expansion: Expansion::new(n, context_signals, &problem.parameters),
             methods: Vec::new(),
             counted: 0,
+            at_zero: Vec::new(),
+            begun: None,
         })
     }
 
     /// Finds the mode of the initial state, and opens the ledger.
     pub fn begin(&mut self) -> Result<(), Reason> {
         let problem = self.problem;
-        self.choose_initial_mode()?;
-        self.set_context();
-        self.check_start(&problem.parameters)?;
+        self.find_start(&problem.parameters)?;
         self.observe_start();
         Ok(())
     }
@@ -226,10 +242,20 @@ impl<'p> Simulation<'p> {
         self.doubts.forget_errors();
         self.margins.outputs.set_parameters(member.parameters);
         self.observers.outputs.set_parameters(member.parameters);
+        self.begun = None;
         self.rewind(0);
+        self.find_start(member.parameters)
+    }
+
+    /// Finds the mode of the initial state.
+    fn find_start(&mut self, parameters: &[f64]) -> Result<(), Reason> {
+        if self.modes[0].contacts.is_some() {
+            return self.start_contacts(parameters);
+        }
         self.choose_initial_mode()?;
+        self.here.shown = self.here.mode;
         self.set_context();
-        self.check_start(member.parameters)
+        self.check_start(parameters)
     }
 
     /// Goes back to the start, in the mode that was found for it.
@@ -248,9 +274,17 @@ impl<'p> Simulation<'p> {
         self.context
             .discrete_mut()
             .copy_from_slice(&initial.discrete);
-        if initial.mode.is_some() {
+        if let Some(begun) = &self.begun {
+            let (q, rest) = begun.split_at(self.here.q.len());
+            let (v, discrete) = rest.split_at(q.len());
+            self.here.q.copy_from_slice(q);
+            self.here.v.copy_from_slice(v);
+            self.context.discrete_mut().copy_from_slice(discrete);
+        } else if initial.mode.is_some() {
             self.apply_drift();
         }
+        self.here.shown = self.shown();
+        self.at_zero.clear();
         self.stiffness.fill(Stiffness::default());
         self.has_inertia.fill(false);
         self.accumulation.clear();
@@ -266,6 +300,22 @@ impl<'p> Simulation<'p> {
 
     pub fn mode(&self) -> &'p Mode {
         &self.modes[self.here.mode]
+    }
+
+    /// What is recorded as the mode.
+    pub fn shown(&self) -> usize {
+        match &self.mode().contacts {
+            Some(contacts) => contacts.set(self.context.discrete()),
+            None => self.here.mode,
+        }
+    }
+
+    /// The name of what is recorded as a mode.
+    pub fn name_of(&self, shown: usize) -> String {
+        match &self.mode().contacts {
+            Some(contacts) => contacts.name(shown),
+            None => self.modes[shown].name.into(),
+        }
     }
 
     /// Simulates from here to the end.

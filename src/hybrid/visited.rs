@@ -1,11 +1,10 @@
 //! Where a run has been since the time last advanced.
 
-use crate::model::Mode;
 use crate::model::name::intern;
 use crate::numerics::{Memory, Persist};
 
 /// A transition taken: its name, the mode left, the mode entered.
-type Step = (&'static str, usize, usize);
+pub(super) type Step = (&'static str, usize, usize);
 
 /// Modes and states seen at the present instant, with the transitions that led there. Coming back to
 /// one of them is a cycle that never ends.
@@ -48,13 +47,8 @@ impl Visited {
         }
     }
 
-    /// Adds the step that led from there to a state: the cycle in words, if that was seen before.
-    pub fn arrive(
-        &mut self,
-        (name, from, to): Step,
-        state: [&[f64]; 3],
-        modes: &[Mode],
-    ) -> Option<String> {
+    /// Adds the step that led from there to a state: the steps of the cycle, if that was seen before.
+    pub fn arrive(&mut self, (name, from, to): Step, state: [&[f64]; 3]) -> Option<Vec<Step>> {
         let width = state.iter().map(|part| part.len()).sum();
         let bits = |x: &f64| x.to_bits();
         let seen = |(i, (_, _, mode)): &(usize, &Step)| {
@@ -65,11 +59,8 @@ impl Visited {
         let first = self.steps.iter().enumerate().find(seen);
         let cycle = first.map(|(first, _)| {
             let last = (name, from, to);
-            let steps = self.steps[first + 1..].iter().chain([&last]);
-            let text = steps.map(|(name, from, to)| {
-                format!("{name} ({} → {})", modes[*from].name, modes[*to].name)
-            });
-            text.collect::<Vec<_>>().join(", ")
+            let steps = self.steps[first + 1..].iter().copied();
+            steps.chain([last]).collect()
         });
         self.steps.push((name, from, to));
         cycle

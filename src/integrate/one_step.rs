@@ -24,6 +24,10 @@ pub trait OneStep<F: Size, Y> {
     /// If accelerations are needed and not given.
     fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>);
 
+    /// Goes on from a state close to the one that the last step led to, at the same time: what the motion is held at was
+    /// off by its error.
+    fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector);
+
     /// Makes one step, not beyond `t_end`.
     ///
     /// # Errors
@@ -145,6 +149,10 @@ where
         self.restart(t, q, v, a);
     }
 
+    fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
+        self.correct(q, v, a);
+    }
+
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
         let now = self.end();
         let t_end = t_end.min(system.smooth_until(now));
@@ -206,6 +214,10 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {
         self.restart(t, q, v, a);
+    }
+
+    fn correct(&mut self, q: &F::Vector, v: &F::Vector, _: &F::Vector) {
+        self.correct(q, v);
     }
 
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {

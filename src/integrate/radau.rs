@@ -119,6 +119,16 @@ where
         self.unresolved = size.list(false);
     }
 
+    /// Goes on from a state close to the one that the last step led to, at its time.
+    pub fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
+        let State { t, .. } = self.end;
+        let [q, v, a] = [q, v, a].map(Clone::clone);
+        let lost = self.lost.t;
+        self.end = State { t, q, v, a };
+        self.lost = Lost::nothing(self.end.size());
+        self.lost.t = lost;
+    }
+
     /// Sets the length with which the next step is tried, s; positive.
     pub fn suggest(&mut self, h: f64) {
         self.proposal = Some(h);

@@ -135,6 +135,11 @@ impl Expansion {
         &self.others[tape.results[index]]
     }
 
+    /// Coefficients of the acceleration of a coordinate.
+    pub fn acceleration(&self, coordinate: usize) -> &Row {
+        &self.given.a[coordinate]
+    }
+
     /// The accelerations of order `k`, and rates and coordinates that follow from them.
     fn move_on(&mut self, mode: &Mode, k: usize) {
         let free = &mode.free;

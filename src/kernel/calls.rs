@@ -329,6 +329,20 @@ impl<F: Size> ModeKernel<F> {
         unsafe { self.call(self.momenta, x, at, out.as_mut_ptr()) }
     }
 
+    /// Gaps, their rates, slip rates, coefficients of friction and restitution of contacts, then values and rates of
+    /// constraints, with what times the unit roundoff bounds their rounding ([`crate::model::Contacts`]).
+    ///
+    /// # Panics
+    /// If the mode has none by multipliers.
+    pub fn places(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> Vec<f64> {
+        let (function, count) = self.places.expect("contacts by multipliers");
+        let mut out = vec![0.0; count];
+        let at = Free { q, v, a: v };
+        // SAFETY: as many outputs as the tables state; accelerations are not read.
+        unsafe { self.call(function, x, at, out.as_mut_ptr()) }
+        out
+    }
+
     /// What must be positive in this mode.
     ///
     /// # Panics

@@ -87,6 +87,8 @@ pub struct ModeKernel<F: Size> {
     pub(crate) mass_is_constant: bool,
     pub(crate) inertia_is_fixed: bool,
     pub(crate) is_linear: bool,
+    /// Of contacts and constraints, with the number of results.
+    pub(crate) places: Option<(Raw, usize)>,
     pub(crate) held_rates: Raw,
     pub(crate) held_values: Raw,
     /// By level of the processor; none where the mode does not go in lanes.

@@ -3,6 +3,7 @@
 //! or loaded ([`crate::kernel`]), and owns all that it holds; names are interned ([`name::intern`]).
 
 mod bounds;
+mod contacts;
 mod context;
 mod description;
 mod load;
@@ -15,6 +16,7 @@ mod tests;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
+pub use contacts::{Constraint, Contact, Contacts};
 pub use registry::{FolderRefused, FromFolder, Models, SameName, models};
 pub use tape::{Instruction, JET_ORDERS, Name, Pick, Tape};
 pub(crate) use tape::{Operands, Row};
@@ -69,6 +71,8 @@ pub struct Coordinate {
     pub meaning: &'static str,
     /// Unit of the reaction (generalized force) of this coordinate.
     pub reaction_unit: &'static str,
+    /// Whether its acceleration is the force of a contact or a constraint, and its rate the impulse delivered so far.
+    pub multiplier: bool,
     /// Typical magnitude, in `unit`; the default absolute tolerance is relative tolerance × scale.
     pub scale: f64,
     /// Typical magnitude of the velocity, in `unit/s`.
@@ -291,6 +295,8 @@ pub struct Mode {
     pub drifts: Box<[bool]>,
     /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
     pub without_series: Option<&'static str>,
+    /// Contacts and constraints that hold by multipliers in this mode, if it is one of all sets of contact states.
+    pub contacts: Option<Contacts>,
     /// Mass matrix, column by column, and load.
     pub system: Tape,
     /// The guards.

@@ -91,7 +91,10 @@ impl Layout {
             discretes: (model.discretes.iter())
                 .map(|d| Quantity::new(d.name, "1", d.meaning))
                 .collect(),
-            modes: variant.modes.iter().map(|m| m.name.to_owned()).collect(),
+            modes: match &variant.modes[0].contacts {
+                Some(contacts) => (0..contacts.sets()).map(|set| contacts.name(set)).collect(),
+                None => variant.modes.iter().map(|m| m.name.to_owned()).collect(),
+            },
             ..Layout::default()
         };
         if recorded.reactions {

@@ -226,7 +226,9 @@ impl<'o> Observers<'o> {
         reactions.clear();
         // Of a free coordinate there is none.
         let all = 0..extremes.reactions.len();
-        reactions.extend(all.filter(|i| !mode.free.contains(i)));
+        let contacts = mode.contacts.as_ref();
+        let reacts = |i: usize| contacts.is_some_and(|contacts| contacts.is_multiplier(i));
+        reactions.extend(all.filter(|&i| !mode.free.contains(&i) || reacts(i)));
         columns.extend(reactions.iter().map(|i| extremes.reactions.start + i));
         columns.extend(extremes.outputs.clone());
         *stored = !extremes.energies.is_empty();
@@ -235,7 +237,7 @@ impl<'o> Observers<'o> {
         let t = here.now.seconds();
         extremes.note_state(t, [&here.q, &here.v]);
         if !extremes.reactions.is_empty() {
-            for &i in &mode.free {
+            for &i in mode.free.iter().filter(|&&i| !reacts(i)) {
                 extremes.note(extremes.reactions.start + i, t, 0.0);
             }
         }
@@ -358,7 +360,7 @@ impl<'o> Observers<'o> {
         self.recording.step(&mut MadeStep {
             from: seconds(from),
             to: seconds(to),
-            mode: here.mode,
+            mode: here.shown,
             state: &mut state,
         });
     }

@@ -3,6 +3,7 @@
 use super::interpolants::Polynomial;
 use super::ledger::RunningLedger;
 use super::{Observers, Part, Sampled, Step, copy_drifting};
+use crate::hybrid::contact::hold;
 use crate::hybrid::equations::Equations;
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::guards;
@@ -12,7 +13,7 @@ use crate::hybrid::simulation::{Here, Simulation};
 use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::model::Mode;
+use crate::model::{Contacts, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::{Group, Layout};
@@ -124,6 +125,21 @@ impl Samples {
     }
 }
 
+/// A state of a step's dense output, with what contacts and constraints hold brought back to where they hold it.
+#[cold]
+fn held<F: Size>(
+    equations: &mut Equations<F>,
+    contacts: &Contacts,
+    tau: f64,
+    [mut q, mut v, a]: [F::Vector; 3],
+) -> [F::Vector; 3] {
+    equations.at(tau);
+    let (kernel, context) = (equations.kernel, &mut *equations.context);
+    hold(kernel, context, contacts, [&mut q, &mut v]);
+    let a = equations.acceleration_here(&q, &v).unwrap_or(a);
+    [q, v, a]
+}
+
 impl Observers<'_> {
     /// Local time of the next sample, if it is due up to local time `to`.
     pub(super) fn due<F: Size>(&self, equations: &Equations<F>, to: f64) -> Option<f64> {
@@ -146,6 +162,10 @@ impl Observers<'_> {
             let equations = &mut *step.equations;
             let [q, v, a] = guards::motion(equations, step.motion, tau, self.needs_accelerations());
             let (mode, here) = (step.mode, &mut *step.here);
+            let [q, v, a] = match &mode.contacts {
+                Some(contacts) => held(equations, contacts, tau, [q, v, a]),
+                None => [q, v, a],
+            };
             here.set_free(&mode.free, [&q, &v, &a]);
             if !equations.clock.drift.is_empty() {
                 copy_drifting(&mut here.q, &mode.drifts, equations.context.held());
@@ -167,7 +187,7 @@ impl Observers<'_> {
             let (kernel, context) = (equations.kernel, &*equations.context);
             let t = self.samples.next();
             let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
-            let flow = self.recording.row(t, here.mode, fill);
+            let flow = self.recording.row(t, here.shown, fill);
             self.samples.pass();
             if flow.is_break() {
                 let from = part.from;
@@ -193,7 +213,7 @@ impl Observers<'_> {
         };
         let (kernel, context) = (equations.kernel, &*equations.context);
         let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
-        self.recording.row(here.now.seconds(), here.mode, fill)
+        self.recording.row(here.now.seconds(), here.shown, fill)
     }
 }
 
@@ -243,7 +263,7 @@ impl Simulation<'_> {
         };
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = here.free(k.size(), &mode.free);
-            observers.recording.row(t, here.mode, |values| {
+            observers.recording.row(t, here.shown, |values| {
                 row.fill(k, context, Free { q: &q, v: &v, a: &a }, values)
             })
         })

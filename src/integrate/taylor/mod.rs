@@ -167,6 +167,16 @@ impl<F: Size> Taylor<F> {
         self.last = Last::Restart;
     }
 
+    /// Goes on from a state close to the one that the last step led to, at its time.
+    pub fn correct(&mut self, q: &F::Vector, v: &F::Vector) {
+        self.state();
+        self.end.q.clone_from(q);
+        self.end.v.clone_from(v);
+        let t = self.lost.t;
+        self.lost = Lost::nothing(q.size());
+        self.lost.t = t;
+    }
+
     /// Order of the method: that of the last coefficient of the velocities.
     pub fn order(&self) -> usize {
         self.order

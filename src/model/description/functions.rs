@@ -78,6 +78,12 @@ impl Reader<'_> {
             momenta: value("momenta")?,
             requirements: (value("requirements")?, counts.required),
             requirement_bounds: value("requirement_bounds")?,
+            places: at.get("places", |at| {
+                at.option(|at| {
+                    let function = at.get("function", |at| self.value(at))?;
+                    Ok((function, at.get("count", count)?))
+                })
+            })?,
             held_rates: value("held_rates")?,
             held_values: value("held_values")?,
             series: series("series")?,

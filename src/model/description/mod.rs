@@ -1,6 +1,7 @@
 //! From the description and the functions of a compiled model to a [`Model`]: codegen/description.py wrote it, and every
 //! field and index of it is checked here.
 
+mod contacts;
 mod functions;
 mod tapes;
 
@@ -221,6 +222,9 @@ impl Reader<'_> {
             meaning: at.get("meaning", text)?,
             held_at: at.get("held_at", |at| at.list_of(n, |at| at.option(held_at)))?,
             drifts: at.get("drifts", |at| at.list_of(n, truth))?,
+            contacts: at.get("contacts", |at| {
+                at.option(|at| self.contacts(at, guards.len()))
+            })?,
             without_series: at.get("without_series", |at| at.option(text))?,
             system: at.get("system", |at| {
                 self.tape(at, free.len() * free.len() + free.len())
@@ -314,6 +318,7 @@ fn coordinate(at: &At) -> Read<Coordinate> {
         unit: at.get("unit", text)?,
         meaning: at.get("meaning", text)?,
         reaction_unit: at.get("reaction_unit", text)?,
+        multiplier: at.get("multiplier", truth)?,
         scale: at.get("scale", number)?,
         rate_scale: at.get("rate_scale", number)?,
         minimum: at.get("minimum", |at| at.option(number))?,

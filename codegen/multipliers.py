@@ -1,0 +1,294 @@
+"""Contacts, friction and constraints by multipliers: one mode serves all sets of contact states.
+
+    M q̈ + h = W_N λ_N + W_T λ_T + Gᵀ λ_C
+
+A multiplier is the acceleration of a coordinate on which nothing depends (C. W. Gear 1988: an algebraic variable that is
+replaced by a derivative lowers the index), so its rate is the impulse delivered so far, and the mode's equations are
+
+    r = M q̈ + h − W λ,    c g̈ + (1 − c) λ_N,    s γ̇ + (1 − s) (λ_T + μ_k d λ_N),    φ̈
+
+where the discrete states of each contact choose its rows: c, whether it is closed; d, the direction in which it slides, 0 where it
+sticks; s = c (1 − d²), but 0 where the tangent is dropped because others hold it already. The matrix of r is neither symmetric
+nor definite; it is the same at all orders of a series. Which set follows an event is decided in src/hybrid/contact/.
+
+Signs: λ_N pushes the gap g open; λ_T acts along the slip, whose rate is γ; λ_C acts where φ grows.
+"""
+
+import random
+from dataclasses import dataclass, field
+
+import casadi as ca
+import numpy as np
+
+from . import derive, graph, limits, units
+from .declarations import Declaration
+from .errors import ModelError
+
+MOST_CONTACTS = 8
+"""Most contacts of a model: all sets of states of those that touch are judged at an event."""
+
+
+@dataclass
+class Constraint:
+    """φ(q, t) = 0, one equation of it."""
+
+    name: str
+    expression: ca.SX
+    location: str
+    multiplier: object = None
+
+
+@dataclass
+class Form:
+    """The multipliers and discrete states of a model's contacts and constraints."""
+
+    contacts: list
+    constraints: list
+    normals: list = field(default_factory=list)
+    tangents: list = field(default_factory=list)
+    closed: list = field(default_factory=list)
+    directions: list = field(default_factory=list)
+    dropped: list = field(default_factory=list)
+    joined: dict = field(default_factory=dict)
+
+    def discretes(self):
+        """The discrete states that choose rows."""
+        all_of_them = [*self.closed, *self.directions, *self.dropped, *self.joined.values()]
+        return [symbol for symbol in all_of_them if symbol is not None]
+
+    def equations(self, *arguments):
+        """The equations of the mode."""
+        return MultiplierEquations(self, *arguments)
+
+
+def build(model):
+    """Adds the mode of a model whose contacts and constraints are held by multipliers."""
+    if model.modes:
+        raise ModelError("the model has contacts or constraints and modes by hand; these make all modes: leave `model.mode(…)` out,"
+                         " or write all of it by hand", model.modes[0].location)
+    contacts, constraints = model.contacts, model.constraints
+    if len(contacts) > MOST_CONTACTS:
+        raise ModelError(f"the model has {len(contacts)} contacts; at most {MOST_CONTACTS} are judged together: leave out contacts"
+                         " that the model does not need", contacts[MOST_CONTACTS].location)
+    _check_independent(model, constraints)
+    form = Form(contacts, constraints)
+    for contact in contacts:
+        form.normals.append(None if contact.gap is None else _multiplier(
+            model, f"{contact.name}.normal", contact.gap_expression, False, f"impulse with which `{contact.name}` pushes", contact))
+        form.tangents.append(None if contact.slip is None else _multiplier(
+            model, f"{contact.name}.friction", contact.slip_expression, contact.slips_by_rate,
+            f"impulse of the friction of `{contact.name}`, along its slip", contact))
+    for constraint in constraints:
+        constraint.multiplier = _multiplier(
+            model, f"{constraint.name}.force", constraint.expression, False, f"impulse of the constraint `{constraint.name}`", constraint)
+    for contact in contacts:
+        if contact.direction is not None:
+            declared = next(d for d in model.discretes if d.symbol is contact.direction)
+            declared.extra["values"] = [0.0, 1.0, -1.0]
+            declared.meaning = f"sign of the slip rate of `{contact.name}` when it slides, else 0"
+        form.directions.append(contact.direction)
+    one = lambda name, meaning: model.discrete(name, (0, 1), meaning)
+    for contact in contacts:
+        name = contact.name
+        form.closed.append(None if contact.gap is None else one(f"{name}.closed", f"1 where `{name}` is closed"))
+        form.dropped.append(None if contact.slip is None else one(
+            f"{name}.dropped", f"1 where the friction of `{name}` is part of that of another contact, which alone is determined"))
+    for i, first in enumerate(contacts):
+        for j, second in enumerate(contacts):
+            if i != j and first.slip is not None and second.slip is not None:
+                form.joined[i, j] = one(f"{first.name}.holds.{second.name}",
+                                        f"1 where the friction of `{second.name}` is part of that of `{first.name}`")
+    mode = model._mode("moves", "all sets of contact states, by multipliers", [], [])
+    mode.location = (contacts + constraints)[0].location
+    mode.form = form
+    for contact in contacts:
+        if contact.gap is None and not limits.is_of_parameters(model, contact.normal):
+            mode.requirements.append((contact.normal, f"the normal force of `{contact.name}` would pull", contact.location))
+
+
+def _check_independent(model, constraints):
+    """Refuses constraints whose gradients depend on each other wherever coordinates and parameters are: their forces would not be
+    determined. They are looked at at several places, drawn at random, all numbers of the order of one."""
+    symbols = ca.vertcat(*[c.symbol for c in model.coordinates])
+    gradients = ca.densify(ca.jacobian(ca.vertcat(ca.SX(0, 1), *[c.expression for c in constraints]), symbols))
+    others = ca.symvar(gradients)
+    value, draw = ca.Function("gradients", others, [gradients]), random.Random(0)
+    places = [np.array(ca.densify(value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in others])[0])) for _ in range(4)]
+    for k, constraint in enumerate(constraints):
+        rank = max(np.linalg.matrix_rank(place[: k + 1]) for place in places)
+        if rank < k + 1:
+            before = ", ".join(f"`{c.name}`" for c in constraints[:k])
+            raise ModelError(f"constraint `{constraint.name}`: it depends on those before it ({before}): of {k + 1} equations {rank}"
+                             " are independent, so that it is redundant or contradicts them; leave it out", constraint.location)
+
+
+def _multiplier(model, name, expression, is_rate, meaning, declared):
+    """A coordinate whose acceleration is the force along an expression, or along what it is the rate of."""
+    try:
+        dimension = units.dimension_of(expression, model.dimensions)
+    except units.UnitError as error:
+        raise ModelError(f"`{declared.name}`: {error}", declared.location) from None
+    if is_rate:
+        dimension = units.combine(dimension, units.parse("s"))
+    force = units.combine(units.parse("kg m^2/s^2"), dimension, -1)
+    unit = units.text(units.combine(force, units.parse("s^2")))
+    symbol = model._declare_motion("coordinate", name, unit)
+    symbol.jerk = ca.SX.sym(name + ".jerk")
+    known = next((text for text in ("N", "N m") if units.parse(text) == force), units.text(force))
+    model.coordinates.append(Declaration(name, unit, meaning + ", integrated over time", symbol, dict(
+        minimum=None, maximum=None, scale=1.0, rate_scale=1.0, multiplier=known)))
+    return symbol
+
+
+@dataclass
+class Terms:
+    """What a contact's laws are about, in the symbols of a mode."""
+
+    gap: ca.SX
+    gap_rate: ca.SX
+    gap_acceleration: ca.SX
+    slip_rate: ca.SX
+    slip_acceleration: ca.SX
+    normal: ca.SX
+    tangent: ca.SX
+    static: ca.SX
+    kinetic: ca.SX
+    restitution: ca.SX
+    closed: ca.SX
+    direction: ca.SX
+    sticks: ca.SX
+
+
+class MultiplierEquations(derive.ModeEquations):
+    """The equations of the one mode."""
+
+    def __init__(self, form, model, mode, residual, held, absent=()):
+        super().__init__(model, mode, residual, held, absent)
+        self.form = form
+        x = derive.configuration(model)
+        self.terms = [self._terms(k, x) for k in range(len(form.contacts))]
+        self.held_terms = [self._rates(c.expression, x) for c in form.constraints]
+        count = len(model.coordinates)
+        self.own = [i for i, c in enumerate(model.coordinates) if "multiplier" not in c.extra]
+        loaded, rates, powers = ca.SX(self.r), ca.vertcat(x.v), ca.SX(0)
+        rows = {}
+        name = lambda symbol: next(i for i, c in enumerate(model.coordinates) if c.symbol is symbol)
+        for k, of in enumerate(self.terms):
+            if form.normals[k] is not None:
+                along = self._along(form.contacts[k].gap_expression, x.q)
+                rows[name(form.normals[k])] = of.closed * of.gap_acceleration + (1 - of.closed) * of.normal
+                loaded, powers = self._push(loaded, along, of.normal), powers + of.normal * ca.dot(along, rates)
+            if form.tangents[k] is not None:
+                along = self._along(form.contacts[k].slip_rate_of(x), x.v)
+                free = of.tangent + of.kinetic * of.direction * of.normal
+                rows[name(form.tangents[k])] = of.sticks * of.slip_acceleration + (1 - of.sticks) * free
+                loaded = self._push(loaded, along, of.tangent)
+                powers += of.tangent * (ca.dot(along, rates) - of.slip_rate)
+        for constraint, (_, _, acceleration) in zip(form.constraints, self.held_terms):
+            along = self._along(constraint.expression, x.q)
+            force = constraint.multiplier.acceleration
+            rows[name(constraint.multiplier)] = acceleration
+            loaded, powers = self._push(loaded, along, force), powers + force * ca.dot(along, rates)
+        for i, row in rows.items():
+            loaded[i] = row
+        self.r = ca.densify(loaded)
+        self.moving_partners = self.freeze(powers)
+        self.reactions += [(i, model.coordinates[i].symbol.acceleration) for i in range(count) if i not in self.own]
+        self._check_linear_in_accelerations()
+
+    def _along(self, expression, symbols):
+        """How an expression changes with coordinates, or rates, of the model and of the ground."""
+        return ca.densify(ca.jacobian(expression, symbols)).T
+
+    def _push(self, column, along, force):
+        """The residual with a force along something; the ground's reaction is without it."""
+        along = self.freeze(along)
+        count = len(self.model.coordinates)
+        self.reactions = [(i, r - force * along[i] if i >= count else r) for i, r in self.reactions]
+        return column - force * along[:count]
+
+    def _rates(self, expression, x):
+        """An expression, its rate and its acceleration."""
+        rate = ca.jtimes(expression, x.q, x.v)
+        return [self.freeze(e) for e in (expression, rate, derive.total_time_derivative(rate, x))]
+
+    def _terms(self, k, x):
+        form, contact = self.form, self.form.contacts[k]
+        zero, one = ca.SX(0), ca.SX(1)
+        gap = [zero, zero, zero] if contact.gap is None else self._rates(contact.gap_expression, x)
+        slip = [zero, zero]
+        if contact.slip is not None:
+            rate = contact.slip_rate_of(x)
+            slip = [self.freeze(rate), self.freeze(derive.total_time_derivative(rate, x))]
+        given = lambda value: zero if value is None else self.freeze(value)
+        normal = given(contact.normal) if contact.gap is None else form.normals[k].acceleration
+        closed = one if contact.gap is None else form.closed[k]
+        direction = zero if contact.slip is None else form.directions[k]
+        dropped = zero if contact.slip is None else form.dropped[k]
+        return Terms(
+            *gap, *slip, normal, zero if contact.slip is None else form.tangents[k].acceleration, given(contact.static),
+            given(contact.kinetic), given(contact.restitution), closed, direction, closed * (1 - direction ** 2) * (1 - dropped))
+
+    def _limit(self, k):
+        """What friction can hold at most at a contact, and at those whose friction is part of its own."""
+        own = self.terms[k]
+        others = [(self.form.joined.get((k, j)), of) for j, of in enumerate(self.terms)]
+        return own.static * own.normal + sum((joined * of.static * of.normal for joined, of in others if joined is not None), ca.SX(0))
+
+    def contact_guards(self):
+        """Three a contact, each positive while the contact stays in its state, and smooth in each of its states: what pushes, or
+        the gap; what is left before it slips forwards, or the slip rate along its direction; what is left before it slips
+        backwards."""
+        guards = []
+        for k, of in enumerate(self.terms):
+            limit, slides = self._limit(k), of.closed * of.direction ** 2
+            guards += [
+                of.closed * of.normal + (1 - of.closed) * of.gap if self.form.normals[k] is not None else ca.SX(1),
+                of.sticks * (limit - of.tangent) + of.closed * of.direction * of.slip_rate + (1 - of.sticks - slides),
+                of.sticks * (limit + of.tangent) + (1 - of.sticks)]
+        return guards
+
+    def decisions(self):
+        """What decides, on the accelerations, whether a set of contact states may go on, five a contact: λ_N, g̈, what is left
+        before it slips forwards and backwards, γ̇."""
+        columns = [ca.vertcat(of.normal, of.gap_acceleration, self._limit(k) - of.tangent, self._limit(k) + of.tangent,
+                              of.slip_acceleration) for k, of in enumerate(self.terms)]
+        return ca.vertcat(*columns) if columns else ca.SX(0, 1)
+
+    def places(self):
+        """Nine a contact: g, ġ, γ, μ_s, μ_k, e, and what times the unit roundoff bounds the rounding of the first three; four
+        a constraint: φ, φ̇ and the same of these."""
+        columns = [ca.SX(0, 1)]
+        for of in self.terms:
+            three = [of.gap, of.gap_rate, of.slip_rate]
+            columns += [*three, of.static, of.kinetic, of.restitution, *[graph.rounding(ca.SX(e)) for e in three]]
+        for value, rate, _ in self.held_terms:
+            columns += [value, rate, graph.rounding(ca.SX(value)), graph.rounding(ca.SX(rate))]
+        return ca.vertcat(*columns)
+
+    def inertia(self):
+        """∂²T/∂v², and for a multiplier one: positive definite as that is."""
+        inertia = super().inertia()
+        for i in range(inertia.shape[0]):
+            if i not in self.own:
+                inertia[i, i] = 1
+        return inertia
+
+    def powers(self):
+        """As for any mode; friction dissipates its force times the slip rate, the rest is work of a moving partner."""
+        friction = sum((-of.tangent * of.slip_rate for of in self.terms), ca.SX(0))
+        return super().powers() + ca.vertcat(friction, self.moving_partners)
+
+    def describe(self, model):
+        """What the program needs to know of contacts and constraints, but for the tape."""
+        coordinate = lambda symbol: None if symbol is None else next(i for i, c in enumerate(model.coordinates) if c.symbol is symbol)
+        discrete = lambda symbol: None if symbol is None else next(i for i, d in enumerate(model.discretes) if d.symbol is symbol)
+        form, count = self.form, len(self.form.contacts)
+        return {
+            "contacts": [{
+                "name": contact.name, "normal": coordinate(form.normals[k]), "tangent": coordinate(form.tangents[k]),
+                "closed": discrete(form.closed[k]), "direction": discrete(form.directions[k]), "dropped": discrete(form.dropped[k]),
+                "joined": [discrete(form.joined.get((k, j))) for j in range(count)],
+            } for k, contact in enumerate(form.contacts)],
+            "constraints": [{"name": c.name, "multiplier": coordinate(c.multiplier)} for c in form.constraints],
+        }

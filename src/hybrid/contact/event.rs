@@ -1,0 +1,312 @@
+//! From the fall of a contact's guard to the set of contact states that follows.
+
+use super::geometry::{Geometry, Line, multiplier};
+use super::hold::{Places, held_lines, hold_lines};
+use super::impact::Impact;
+use super::{State, Tangent};
+use crate::hybrid::accumulation::Signature;
+use crate::hybrid::advance::MadeBy;
+use crate::hybrid::failure::Stoppable;
+use crate::hybrid::simulation::{AtZero, Simulation};
+use crate::kernel::{ModeKernel, with_kernel};
+use crate::model::Contacts;
+use crate::model::name::intern;
+use crate::numerics::{Size, Vector};
+
+/// Guards of a contact.
+pub(super) const GUARDS: usize = 3;
+
+/// What is known of the contacts at an instant.
+pub(super) struct Standing<F: Size> {
+    pub q: F::Vector,
+    pub v: F::Vector,
+    pub geometry: Geometry,
+    /// Of each contact that touches without a rate, what its tangent does.
+    pub touching: Vec<Option<Tangent>>,
+    /// Of each contact, whether it leaves its gap with a rate.
+    pub leaves: Vec<bool>,
+}
+
+impl<'p> Simulation<'p> {
+    /// Takes what follows the fall of a guard of the mode of all sets.
+    pub(in crate::hybrid) fn contact_event(&mut self, guard: usize) -> Stoppable<()> {
+        let mode = self.mode();
+        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
+        with_kernel!(&mode.kernels, k => self.contact_event_by(k, contacts, guard))
+    }
+
+    fn contact_event_by<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &'p Contacts,
+        guard: usize,
+    ) -> Stoppable<()> {
+        self.set_context();
+        let (k, part) = (guard / GUARDS, guard % GUARDS);
+        let before = State::all(contacts, self.context.discrete());
+        let closes = part == 0 && before[k] == State::Open;
+        let mut standing = match closes {
+            true => self.closing(kernel, contacts, (k, &before)),
+            false => {
+                let stops = (part == 1 && matches!(before[k], State::Slides(_))).then_some(k);
+                self.standing(kernel, contacts, (stops, &before))
+            }
+        };
+        if closes
+            && self.is_unresolved(kernel, contacts, k, &standing)
+            && self.rest_unresolved(kernel, contacts)?
+        {
+            return Ok(());
+        }
+        let strikes = closes && self.strike(kernel, contacts, (k, &before), &mut standing)?;
+        let after = self.settle_contacts(kernel, contacts, &mut standing)?;
+        let name = verb(contacts, (k, strikes), &before, &after);
+        self.doubts.happened(&self.mode().guards[guard]);
+        if self.problem.end.after.is_some_and(|(of, _)| of == name) {
+            self.counted += 1;
+        }
+        self.accumulation.compare([&self.here.q, &self.here.v]);
+        self.commit(name, strikes, self.here.mode)?;
+        let signature = Signature {
+            guard,
+            transition: 0,
+            mode: self.here.shown,
+        };
+        self.accumulation
+            .push(signature.key(), self.here.now, &self.next);
+        self.look_for_accumulation()
+    }
+
+    /// Whether the hop that ends at a contact was lower than the rounding of its gap, so that its end is not known by its gap.
+    /// A hop of the duration T that ends with the rate u is about |u| T / 4 high. The series of the explicit method shows all.
+    fn is_unresolved<F: Size>(
+        &self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        k: usize,
+        standing: &Standing<F>,
+    ) -> bool {
+        let Some((last, ..)) = self.accumulation.last() else {
+            return false;
+        };
+        let at = [&standing.q, &standing.v];
+        let places = Places::new(kernel, &self.context, contacts, at);
+        let (_, rounding) = places.place(Line::Normal(k));
+        let (rate, _) = places.rate(Line::Normal(k));
+        let height = 0.25 * rate.abs() * self.here.now.since(last);
+        self.made_by != MadeBy::Taylor && height <= rounding
+    }
+
+    /// The contacts as they stand where none closes; `stops`: one whose slip rate has come to zero, and with it that of all
+    /// whose slip depends on it.
+    fn standing<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        (stops, before): (Option<usize>, &[State]),
+    ) -> Standing<F> {
+        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+        let [places, mut still] = held_lines(contacts, before);
+        still.extend(stops.map(Line::Tangent));
+        let context = &mut self.context;
+        hold_lines(
+            kernel,
+            context,
+            contacts,
+            [&places, &still],
+            [&mut q, &mut v],
+        );
+        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        let touching = (before.iter().enumerate())
+            .map(|(k, &state)| tangent_of(state, || geometry.depends(Line::Tangent(k), &still)))
+            .collect();
+        Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves: vec![false; before.len()],
+        }
+    }
+
+    /// The contacts as they stand where one closes, and with it all whose gap is zero within its rounding: these are on
+    /// their gaps, with the rates that they come with.
+    fn closing<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        (k, before): (usize, &[State]),
+    ) -> Standing<F> {
+        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+        let context = &mut self.context;
+        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        let closes = |j: usize| {
+            let (gap, rounding) = at.place(Line::Normal(j));
+            before[j] == State::Open && (j == k || gap <= rounding)
+        };
+        let [mut places, rates] = held_lines(contacts, before);
+        places.extend((0..before.len()).filter(|&j| closes(j)).map(Line::Normal));
+        hold_lines(
+            kernel,
+            context,
+            contacts,
+            [&places, &rates],
+            [&mut q, &mut v],
+        );
+        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        let touching = (before.iter().enumerate())
+            .map(|(j, &state)| match closes(j) {
+                true => Some(Tangent::None),
+                false => tangent_of(state, || false),
+            })
+            .collect();
+        Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves: vec![false; before.len()],
+        }
+    }
+
+    /// What contacts that have just closed do: an impact, if one of them comes with a rate; whether there was one.
+    fn strike<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        (k, before): (usize, &[State]),
+        standing: &mut Standing<F>,
+    ) -> Stoppable<bool> {
+        let at = [&standing.q, &standing.v];
+        let places = Places::new(kernel, &self.context, contacts, at);
+        let mut touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
+        let mut closes = vec![false; touches.len()];
+        for j in 0..touches.len() {
+            if !touches[j] || before[j] != State::Open {
+                continue;
+            }
+            let (rate, rounding) = places.rate(Line::Normal(j));
+            closes[j] = rate < -rounding;
+            // One that opens, and is not the one whose gap has fallen.
+            touches[j] = j == k || rate <= rounding;
+            let (slip, rounding) = places.rate(Line::Tangent(j));
+            standing.touching[j] = touches[j].then_some(match contacts.contacts[j].tangent {
+                None => Tangent::None,
+                Some(_) if slip.abs() <= rounding => Tangent::Still,
+                Some(_) => Tangent::Slips(slip.signum()),
+            });
+        }
+        if !closes.contains(&true) {
+            return Ok(false);
+        }
+        let impact = Impact {
+            contacts,
+            geometry: &standing.geometry,
+            places: &places,
+            touches: &touches,
+            closes: &closes,
+        };
+        let outcome = impact.outcome().map_err(Box::new)?;
+        for (&i, change) in standing.geometry.own.iter().zip(&outcome.change) {
+            standing.v[i] += change;
+        }
+        for &(line, impulse) in &outcome.impulses {
+            standing.v[multiplier(contacts, line)] += impulse;
+        }
+        standing.leaves = (0..touches.len())
+            .map(|j| touches[j] && outcome.touching[j].is_none())
+            .collect();
+        standing.touching = outcome.touching;
+        Ok(true)
+    }
+
+    /// Decides which set follows from how the contacts stand, and makes it and the state `next`.
+    pub(super) fn settle_contacts<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &'p Contacts,
+        standing: &mut Standing<F>,
+    ) -> Stoppable<Vec<State>> {
+        let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
+        let touching =
+            || (standing.touching.iter().enumerate()).filter_map(|(k, t)| Some((k, (*t)?)));
+        let normals = touching()
+            .filter(|(k, _)| contacts.contacts[*k].normal.is_some())
+            .map(|(k, _)| Line::Normal(k));
+        let places: Vec<Line> = constraints.chain(normals).collect();
+        let still = touching().filter(|(_, t)| *t == Tangent::Still);
+        let rates: Vec<Line> = (places.iter().copied())
+            .chain(still.map(|(k, _)| Line::Tangent(k)))
+            .collect();
+        let Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves,
+        } = standing;
+        hold_lines(
+            kernel,
+            &mut self.context,
+            contacts,
+            [&places, &rates],
+            [q, v],
+        );
+        let n = self.here.q.len();
+        self.next[..n].copy_from_slice(q.as_slice());
+        self.next[n..2 * n].copy_from_slice(v.as_slice());
+        let decision = self
+            .decide((contacts, geometry), touching)
+            .map_err(Box::new)?;
+        self.next[2 * n..].copy_from_slice(&decision.discrete);
+        self.at_zero = (touching.iter().zip(&decision.states).enumerate())
+            .filter_map(|(k, (tangent, state))| match (tangent, state) {
+                (Some(_), State::Open) => Some((GUARDS * k, 2)),
+                (Some(Tangent::Still), State::Slides(_)) => Some((GUARDS * k + 1, 1)),
+                // It leaves with a rate.
+                (None, _) if leaves[k] => Some((GUARDS * k, 1)),
+                _ => None,
+            })
+            .map(|(guard, vanishing)| AtZero { guard, vanishing })
+            .collect();
+        Ok(decision.states)
+    }
+}
+
+/// What the tangent of a contact in a state does; `stops`: whether the slip rate of one that slides has come to zero.
+fn tangent_of(state: State, stops: impl FnOnce() -> bool) -> Option<Tangent> {
+    match state {
+        State::Open => None,
+        State::Closed => Some(Tangent::None),
+        State::Sticks => Some(Tangent::Still),
+        State::Slides(_) if stops() => Some(Tangent::Still),
+        State::Slides(direction) => Some(Tangent::Slips(direction)),
+    }
+}
+
+/// Name of what has happened: of the contact whose guard fell, or of the first that does something else.
+fn verb(
+    contacts: &Contacts,
+    (k, strikes): (usize, bool),
+    before: &[State],
+    after: &[State],
+) -> &'static str {
+    let named = |k: usize, verb: &str| intern(&format!("{} {verb}", contacts.contacts[k].name));
+    if strikes {
+        return named(k, "strikes");
+    }
+    let others = (0..before.len()).filter(|&j| j != k);
+    let changed = std::iter::once(k).chain(others);
+    let found = changed.filter(|&j| before[j] != after[j]).find_map(|j| {
+        let verb = match (before[j], after[j]) {
+            (State::Open, _) => "closes",
+            (_, State::Open) => "opens",
+            (_, State::Sticks) => "sticks",
+            (State::Slides(_), State::Slides(_)) => "reverses",
+            (_, State::Slides(_)) => "slips",
+            _ => return None,
+        };
+        Some(named(j, verb))
+    });
+    found.unwrap_or_else(|| named(k, "stays"))
+}

@@ -1,0 +1,234 @@
+//! Masses, and the lines along which contacts and constraints push.
+
+use super::State;
+use crate::kernel::{Context, ModeKernel};
+use crate::model::Contacts;
+use crate::numerics::{Dynamic, Lu, Size};
+
+/// What is left of a line beside others, as a part of it, where it is taken to depend on them: √ε. What is less cannot be told
+/// from the rounding of a matrix of such lines, which squares it.
+const DEPENDENT: f64 = 1.5e-8;
+
+/// Something that a force acts along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Line {
+    /// The gap of a contact.
+    Normal(usize),
+    /// The slip of a contact.
+    Tangent(usize),
+    /// A constraint.
+    Constraint(usize),
+}
+
+/// Masses and lines at a state.
+#[derive(Debug)]
+pub(super) struct Geometry {
+    /// Free coordinates that are no multipliers.
+    pub own: Vec<usize>,
+    /// Their inertia, row by row.
+    pub mass: Vec<f64>,
+    /// How what the lines are about changes with these coordinates.
+    lines: Vec<(Line, Vec<f64>)>,
+    /// The same, times the inverse of the Cholesky factor of the inertia.
+    scaled: Vec<Vec<f64>>,
+}
+
+/// The multiplier of a line.
+pub(super) fn multiplier(contacts: &Contacts, line: Line) -> usize {
+    match line {
+        Line::Normal(k) => contacts.contacts[k].normal.expect("it has a gap"),
+        Line::Tangent(k) => contacts.contacts[k].tangent.expect("it has friction"),
+        Line::Constraint(c) => contacts.constraints[c].multiplier,
+    }
+}
+
+impl Geometry {
+    /// At a state of a mode with all coordinates free, whose signals the context is set for.
+    pub fn new<F: Size>(
+        kernel: &ModeKernel<F>,
+        context: &mut Context,
+        contacts: &Contacts,
+        [q, v]: [&F::Vector; 2],
+    ) -> Self {
+        let present = context.discrete().to_vec();
+        let closed = vec![State::Sticks; contacts.contacts.len()];
+        write_states(contacts, &closed, context.discrete_mut());
+        let system = kernel.system(context, q, v);
+        context.discrete_mut().copy_from_slice(&present);
+        let own: Vec<usize> = (0..kernel.size().get())
+            .filter(|&i| !contacts.is_multiplier(i))
+            .collect();
+        let row = |i: usize| own.iter().map(move |&j| (i, j));
+        let mass: Vec<f64> = (own.iter().flat_map(|&i| row(i)))
+            .map(|at| system.mass[at])
+            .collect();
+        let of_contacts = (contacts.contacts.iter().enumerate()).flat_map(|(k, contact)| {
+            let normal = contact.normal.map(|_| Line::Normal(k));
+            normal
+                .into_iter()
+                .chain(contact.tangent.map(|_| Line::Tangent(k)))
+        });
+        let lines = of_contacts.chain((0..contacts.constraints.len()).map(Line::Constraint));
+        let lines: Vec<(Line, Vec<f64>)> = lines
+            .map(|line| {
+                let i = multiplier(contacts, line);
+                (line, row(i).map(|at| system.mass[at]).collect())
+            })
+            .collect();
+        let factor = cholesky(&mass, own.len());
+        let scaled = (lines.iter())
+            .map(|(_, along)| forward(&factor, along))
+            .collect();
+        Geometry {
+            own,
+            mass,
+            lines,
+            scaled,
+        }
+    }
+
+    fn place(&self, line: Line) -> usize {
+        let found = self.lines.iter().position(|(known, _)| *known == line);
+        found.expect("every multiplier has its line")
+    }
+
+    /// How what a line is about changes with the coordinates.
+    pub fn along(&self, line: Line) -> &[f64] {
+        &self.lines[self.place(line)].1
+    }
+
+    /// Those of some lines that do not depend on those before them.
+    pub fn independent(&self, lines: &[Line]) -> Vec<Line> {
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let mut kept = Vec::new();
+        for &line in lines {
+            if let Some(new) = beside(&self.scaled[self.place(line)], &basis) {
+                basis.push(new);
+                kept.push(line);
+            }
+        }
+        kept
+    }
+
+    /// Whether a line depends on others.
+    pub fn depends(&self, line: Line, others: &[Line]) -> bool {
+        let mut all = self.independent(others);
+        all.push(line);
+        self.independent(&all).len() < all.len()
+    }
+
+    /// Whether two lines are the same but for their sign.
+    pub fn are_parallel(&self, one: Line, other: Line) -> bool {
+        let [a, b] = [one, other].map(|line| &self.scaled[self.place(line)]);
+        let (length, product) = (dot(a, a), dot(a, b));
+        let differs = |sign: f64| {
+            let rest: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - sign * b).collect();
+            dot(&rest, &rest) > (DEPENDENT * DEPENDENT) * length
+        };
+        !differs(product.signum())
+    }
+
+    /// The least change of coordinates, weighed by the masses, that changes what some independent lines are about by given
+    /// amounts; `None` where they do depend on each other.
+    pub fn least_change(&self, lines: &[Line], amounts: &[f64]) -> Option<Vec<f64>> {
+        let (n, k) = (self.own.len(), lines.len());
+        let entry = |i: usize, j: usize| match (i < n, j < n) {
+            (true, true) => self.mass[i * n + j],
+            (true, false) => -self.along(lines[j - n])[i],
+            (false, true) => self.along(lines[i - n])[j],
+            (false, false) => 0.0,
+        };
+        let lu = Lu::<f64, Dynamic>::factorize(entry, &Dynamic(n + k).repeat(1.0)).ok()?;
+        let change = lu.solve(|i| if i < n { 0.0 } else { amounts[i - n] });
+        Some((0..n).map(|i| change[i]).collect())
+    }
+}
+
+/// The discrete states of contacts that do so, none of whose friction is part of that of another.
+pub(super) fn write_states(contacts: &Contacts, states: &[State], discrete: &mut [f64]) {
+    for (contact, &state) in contacts.contacts.iter().zip(states) {
+        let mut set = |index: Option<usize>, value: f64| {
+            if let Some(i) = index {
+                discrete[i] = value;
+            }
+        };
+        set(contact.closed, f64::from(u8::from(state.is_closed())));
+        set(
+            contact.direction,
+            match state {
+                State::Slides(direction) => direction,
+                _ => 0.0,
+            },
+        );
+        set(contact.dropped, 0.0);
+        (contact.joined.iter()).for_each(|&joined| set(joined, 0.0));
+    }
+}
+
+/// What is left of a vector beside an orthonormal basis, of the length 1; `None` if nothing is.
+fn beside(vector: &[f64], basis: &[Vec<f64>]) -> Option<Vec<f64>> {
+    let length = dot(vector, vector).sqrt();
+    let mut rest = vector.to_vec();
+    // Twice is enough (Giraud, Langou and Rozložník 2005).
+    for _ in 0..2 {
+        for unit in basis {
+            let part = dot(&rest, unit);
+            rest.iter_mut().zip(unit).for_each(|(x, u)| *x -= part * u);
+        }
+    }
+    let left = dot(&rest, &rest).sqrt();
+    (left > DEPENDENT * length).then(|| rest.iter().map(|x| x / left).collect())
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The lower factor of a positive definite matrix, row by row.
+fn cholesky(matrix: &[f64], n: usize) -> Vec<f64> {
+    let mut factor = vec![0.0; n * n];
+    for i in 0..n {
+        for j in 0..=i {
+            let products = (0..j).map(|k| factor[i * n + k] * factor[j * n + k]);
+            let rest = matrix[i * n + j] - products.sum::<f64>();
+            factor[i * n + j] = match i == j {
+                true => rest.sqrt(),
+                false => rest / factor[j * n + j],
+            };
+        }
+    }
+    factor
+}
+
+/// L⁻¹ b of a lower factor.
+fn forward(factor: &[f64], b: &[f64]) -> Vec<f64> {
+    let n = b.len();
+    let mut x = b.to_vec();
+    for i in 0..n {
+        for j in 0..i {
+            x[i] -= factor[i * n + j] * x[j];
+        }
+        x[i] /= factor[i * n + i];
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_of_a_vector_is_told_from_nothing() {
+        let basis = vec![vec![1.0, 0.0, 0.0]];
+        assert_eq!(beside(&[3.0, 4.0, 0.0], &basis), Some(vec![0.0, 1.0, 0.0]));
+        assert_eq!(beside(&[3.0, 1e-9, 0.0], &basis), None);
+        assert!(beside(&[3.0, 1e-6, 0.0], &basis).is_some());
+    }
+
+    #[test]
+    fn factors_multiply_to_the_matrix() {
+        let factor = cholesky(&[4.0, 2.0, 2.0, 5.0], 2);
+        assert_eq!(factor, [2.0, 0.0, 1.0, 2.0]);
+        assert_eq!(forward(&factor, &[2.0, 5.0]), [1.0, 2.0]);
+    }
+}

@@ -1,0 +1,154 @@
+//! Positions and rates where contacts and constraints hold them, to rounding.
+
+use super::State;
+use super::geometry::{Geometry, Line};
+use crate::kernel::{Context, ModeKernel};
+use crate::model::Contacts;
+use crate::numerics::Size;
+
+/// Unit roundoff of a double.
+pub(super) const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// Gaps, rates and coefficients at a state, each with its rounding.
+#[derive(Debug)]
+pub(super) struct Places {
+    values: Vec<f64>,
+    contacts: usize,
+}
+
+impl Places {
+    /// At a state.
+    pub fn new<F: Size>(
+        kernel: &ModeKernel<F>,
+        context: &Context,
+        contacts: &Contacts,
+        [q, v]: [&F::Vector; 2],
+    ) -> Self {
+        Places {
+            values: kernel.places(context, q, v),
+            contacts: contacts.contacts.len(),
+        }
+    }
+
+    fn of(&self, k: usize, index: usize) -> f64 {
+        self.values[k * Contacts::PLACES + index]
+    }
+
+    fn held(&self, c: usize, index: usize) -> f64 {
+        self.values[self.contacts * Contacts::PLACES + c * Contacts::HELD + index]
+    }
+
+    /// What a line is about: a gap or a constraint, and its rounding.
+    pub fn place(&self, line: Line) -> (f64, f64) {
+        match line {
+            Line::Normal(k) => (self.of(k, 0), self.of(k, 6) * ROUNDOFF),
+            Line::Constraint(c) => (self.held(c, 0), self.held(c, 2) * ROUNDOFF),
+            Line::Tangent(_) => (0.0, 0.0),
+        }
+    }
+
+    /// Its rate, and the rounding.
+    pub fn rate(&self, line: Line) -> (f64, f64) {
+        match line {
+            Line::Normal(k) => (self.of(k, 1), self.of(k, 7) * ROUNDOFF),
+            Line::Tangent(k) => (self.of(k, 2), self.of(k, 8) * ROUNDOFF),
+            Line::Constraint(c) => (self.held(c, 1), self.held(c, 3) * ROUNDOFF),
+        }
+    }
+
+    /// Kinetic friction of a contact.
+    pub fn kinetic(&self, k: usize) -> f64 {
+        self.of(k, 4)
+    }
+
+    /// Restitution of a contact.
+    pub fn restitution(&self, k: usize) -> f64 {
+        self.of(k, 5)
+    }
+}
+
+/// The lines whose place is held, and those whose rate is, while contacts do this.
+pub(super) fn held_lines(contacts: &Contacts, states: &[State]) -> [Vec<Line>; 2] {
+    let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
+    let closed = (0..states.len())
+        .filter(|&k| states[k].is_closed() && contacts.contacts[k].normal.is_some())
+        .map(Line::Normal);
+    let places: Vec<Line> = constraints.chain(closed).collect();
+    let sticks = (0..states.len()).filter(|&k| states[k] == State::Sticks);
+    let rates = (places.iter().copied()).chain(sticks.map(Line::Tangent));
+    [places.clone(), rates.collect()]
+}
+
+/// Brings coordinates and rates back to where the contacts and constraints of a mode hold them, in the states that the
+/// context says, for whose time it is set.
+pub(in crate::hybrid) fn hold<F: Size>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    contacts: &Contacts,
+    [q, v]: [&mut F::Vector; 2],
+) {
+    let states = State::all(contacts, context.discrete());
+    let [places, rates] = held_lines(contacts, &states);
+    hold_lines(kernel, context, contacts, [&places, &rates], [q, v]);
+}
+
+/// The same of given lines: those whose place, and those whose rate is held. Newton's method, each time by the least
+/// change in the metric of the masses, as long as it comes closer.
+pub(super) fn hold_lines<F: Size>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    contacts: &Contacts,
+    [places, rates]: [&[Line]; 2],
+    [q, v]: [&mut F::Vector; 2],
+) {
+    if places.is_empty() && rates.is_empty() {
+        return;
+    }
+    let mut geometry = Geometry::new(kernel, context, contacts, [q, v]);
+    let mut before = f64::INFINITY;
+    loop {
+        let now = Places::new(kernel, context, contacts, [q, v]);
+        let lines = geometry.independent(places);
+        let (amounts, off) = missing(&lines, |line| now.place(line));
+        // Not a number where nothing is known: then nothing is moved.
+        if !(off > 1.0 && off < before) {
+            break;
+        }
+        let Some(change) = geometry.least_change(&lines, &amounts) else {
+            break;
+        };
+        (geometry.own.iter().zip(change)).for_each(|(&i, change)| q[i] += change);
+        geometry = Geometry::new(kernel, context, contacts, [q, v]);
+        before = off;
+    }
+    let lines = geometry.independent(rates);
+    let mut before = f64::INFINITY;
+    loop {
+        let now = Places::new(kernel, context, contacts, [q, v]);
+        let (amounts, off) = missing(&lines, |line| now.rate(line));
+        if !(off > 0.0 && off < before) {
+            break;
+        }
+        let Some(change) = geometry.least_change(&lines, &amounts) else {
+            break;
+        };
+        (geometry.own.iter().zip(change)).for_each(|(&i, change)| v[i] += change);
+        before = off;
+    }
+}
+
+/// What is missing to zero along some lines, and the most of it in units of its rounding.
+fn missing(lines: &[Line], value: impl Fn(Line) -> (f64, f64)) -> (Vec<f64>, f64) {
+    let mut most = 0.0_f64;
+    let amounts = (lines.iter())
+        .map(|&line| {
+            let (value, rounding) = value(line);
+            most = match value == 0.0 {
+                true => most,
+                false => most.max(value.abs() / rounding),
+            };
+            -value
+        })
+        .collect();
+    (amounts, most)
+}

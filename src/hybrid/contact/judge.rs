@@ -1,0 +1,259 @@
+//! Which sets of contact states may follow: all of those that touch are tried, each on the motion that it leads to.
+//!
+//! A set may go on where what pushes does not pull, what opens does not close, what sticks does not slip and what begins to
+//! slip does so in its direction: on the first derivative that rounding does not hide (`departure.rs`). Motions that are equal
+//! count once, whatever the names of their sets.
+
+use super::geometry::{Geometry, Line, write_states};
+use super::{State, Tangent};
+use crate::hybrid::failure::Reason;
+use crate::hybrid::simulation::Simulation;
+use crate::jets::{ORDERS, Point};
+use crate::model::{Contacts, Mode, Row};
+
+/// Which of the results of the tape of decisions.
+const PUSH: usize = 0;
+const GAP: usize = 1;
+const FORWARDS: usize = 2;
+const BACKWARDS: usize = 3;
+const SLIP: usize = 4;
+
+/// A set of contact states that may follow.
+#[derive(Debug)]
+struct Candidate {
+    states: Vec<State>,
+    discrete: Vec<f64>,
+}
+
+/// A candidate that may go on, with the motion that it leads to.
+struct Admitted {
+    candidate: Candidate,
+    /// Coefficients of the accelerations of the coordinates that are no multipliers.
+    motion: Vec<Row>,
+}
+
+/// What was found.
+pub(super) struct Decision {
+    pub states: Vec<State>,
+    pub discrete: Vec<f64>,
+}
+
+impl<'p> Simulation<'p> {
+    /// The set that follows where the contacts that are given touch without a rate, with what their tangents do; all others are
+    /// open. The state is that of `next`.
+    pub(super) fn decide(
+        &mut self,
+        (contacts, geometry): (&'p Contacts, &Geometry),
+        touching: &[Option<Tangent>],
+    ) -> Result<Decision, Reason> {
+        self.expand_signals();
+        let mut admitted: Vec<Admitted> = Vec::new();
+        for states in combinations(touching) {
+            let Some(candidate) = self.candidate((contacts, geometry), states) else {
+                continue;
+            };
+            let Some(motion) = self.admit(contacts, geometry, &candidate, touching) else {
+                continue;
+            };
+            admitted.push(Admitted { candidate, motion });
+        }
+        // Of equal motions that which holds the most.
+        admitted.sort_by_key(|a| std::cmp::Reverse(a.candidate.holds()));
+        let names = |states: &[State]| {
+            let mut discrete = self.context.discrete().to_vec();
+            write_states(contacts, states, &mut discrete);
+            contacts.name(contacts.set(&discrete))
+        };
+        let touch = || {
+            let all = (touching.iter().zip(&contacts.contacts)).filter(|(t, _)| t.is_some());
+            all.map(|(_, c)| c.name).collect::<Vec<_>>().join(", ")
+        };
+        let Some(first) = admitted.first() else {
+            return Err(Reason::NoMotion { contacts: touch() });
+        };
+        let differs = |other: &&Admitted| !are_equal(&first.motion, &other.motion);
+        if let Some(other) = admitted.iter().find(differs) {
+            let motions = [first, other].map(|a| names(&a.candidate.states));
+            return Err(Reason::SeveralMotions {
+                contacts: touch(),
+                motions: format!("`{}` and `{}`", motions[0], motions[1]),
+            });
+        }
+        let Candidate { states, discrete } = admitted.swap_remove(0).candidate;
+        Ok(Decision { states, discrete })
+    }
+
+    /// The discrete states of a set; `None` if its lines depend on each other in a way that leaves its forces undetermined.
+    fn candidate(
+        &self,
+        (contacts, geometry): (&Contacts, &Geometry),
+        states: Vec<State>,
+    ) -> Option<Candidate> {
+        let mut discrete = self.context.discrete().to_vec();
+        write_states(contacts, &states, &mut discrete);
+        let [places, _] = super::hold::held_lines(contacts, &states);
+        if geometry.independent(&places).len() < places.len() {
+            return None;
+        }
+        let mut held = places;
+        for k in (0..states.len()).filter(|&k| states[k] == State::Sticks) {
+            let line = Line::Tangent(k);
+            if !geometry.depends(line, &held) {
+                held.push(line);
+                continue;
+            }
+            let holds = |&other: &usize| {
+                held.contains(&Line::Tangent(other))
+                    && geometry.are_parallel(line, Line::Tangent(other))
+            };
+            let holder = (0..k).find(holds)?;
+            discrete[contacts.contacts[k].dropped?] = 1.0;
+            discrete[contacts.contacts[holder].joined[k]?] = 1.0;
+        }
+        Some(Candidate { states, discrete })
+    }
+
+    /// The motion of a candidate, if it may go on.
+    fn admit(
+        &mut self,
+        contacts: &'p Contacts,
+        geometry: &Geometry,
+        candidate: &Candidate,
+        touching: &[Option<Tangent>],
+    ) -> Option<Vec<Row>> {
+        let mode: &Mode = self.mode();
+        let asked = asked(contacts, candidate, touching);
+        let n = self.here.q.len();
+        let (q, rest) = self.next.split_at(n);
+        let at = Point {
+            q,
+            v: &rest[..n],
+            discrete: &candidate.discrete,
+        };
+        let tape = &contacts.decisions;
+        let expansion = &mut self.expansion;
+        expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
+        expansion.expand(mode, tape, 0);
+        let mut open = Vec::new();
+        for (index, sign) in asked {
+            let value = expansion.result(tape, index)[0];
+            // A force that is not known is none.
+            if !value.error.is_finite() {
+                return None;
+            }
+            match value.sign() {
+                Some(positive) if positive == (sign > 0.0) => {}
+                Some(_) => return None,
+                None => open.push((index, sign)),
+            }
+        }
+        // What is zero leaves zero as the motion from the state that is given does.
+        expansion.begin(mode, at, None);
+        for k in 0..ORDERS {
+            expansion.expand(mode, tape, k);
+            if k == 0 {
+                continue;
+            }
+            let mut falls = false;
+            open.retain(
+                |&(index, sign)| match expansion.result(tape, index)[k].sign() {
+                    Some(positive) => {
+                        falls |= positive != (sign > 0.0);
+                        false
+                    }
+                    None => true,
+                },
+            );
+            if falls {
+                return None;
+            }
+        }
+        let own = geometry.own.iter();
+        Some(own.map(|&i| *expansion.acceleration(i)).collect())
+    }
+}
+
+impl Candidate {
+    /// How much it holds: contacts that are closed, then those that stick.
+    fn holds(&self) -> (usize, usize) {
+        let closed = self.states.iter().filter(|s| s.is_closed()).count();
+        let sticks = self.states.iter().filter(|s| **s == State::Sticks).count();
+        (closed, sticks)
+    }
+}
+
+/// What must be positive for a candidate to go on: results of the tape of decisions, each with its sign.
+fn asked(
+    contacts: &Contacts,
+    candidate: &Candidate,
+    touching: &[Option<Tangent>],
+) -> Vec<(usize, f64)> {
+    let mut asked = Vec::new();
+    for (k, contact) in contacts.contacts.iter().enumerate() {
+        let Some(tangent) = touching[k] else {
+            continue;
+        };
+        let of = |what: usize| k * Contacts::DECISIONS + what;
+        let state = candidate.states[k];
+        if state == State::Open {
+            asked.push((of(GAP), 1.0));
+            continue;
+        }
+        if contact.normal.is_some() {
+            asked.push((of(PUSH), 1.0));
+        }
+        let is_dropped = contact
+            .dropped
+            .is_some_and(|i| candidate.discrete[i] != 0.0);
+        match state {
+            State::Sticks if !is_dropped => {
+                asked.extend([(of(FORWARDS), 1.0), (of(BACKWARDS), 1.0)]);
+            }
+            State::Slides(direction) if tangent == Tangent::Still => {
+                asked.push((of(SLIP), direction));
+            }
+            _ => {}
+        }
+    }
+    asked
+}
+
+/// All sets of states of contacts that touch, with what their tangents do.
+fn combinations(touching: &[Option<Tangent>]) -> Vec<Vec<State>> {
+    let mut all = vec![Vec::new()];
+    for tangent in touching {
+        let choices: &[State] = match tangent {
+            None => &[State::Open],
+            Some(Tangent::None) => &[State::Closed, State::Open],
+            Some(Tangent::Still) => &[
+                State::Sticks,
+                State::Slides(1.0),
+                State::Slides(-1.0),
+                State::Open,
+            ],
+            Some(Tangent::Slips(1.0)) => &[State::Slides(1.0), State::Open],
+            Some(Tangent::Slips(_)) => &[State::Slides(-1.0), State::Open],
+        };
+        all = (all.iter())
+            .flat_map(|states: &Vec<State>| {
+                choices.iter().map(|&choice| {
+                    let mut states = states.clone();
+                    states.push(choice);
+                    states
+                })
+            })
+            .collect();
+    }
+    all
+}
+
+/// Whether two motions are equal, as far as rounding tells.
+fn are_equal(one: &[Row], other: &[Row]) -> bool {
+    one.iter().zip(other).all(|(a, b)| {
+        let is_same = |k: usize| {
+            let error = a[k].error + b[k].error;
+            !((a[k].value - b[k].value).abs() > error)
+        };
+        (0..ORDERS).all(is_same)
+    })
+}

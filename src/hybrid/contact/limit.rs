@@ -1,0 +1,116 @@
+//! The set of contact states at the limit of an accumulation: a contact rests where the limit has neither gap nor rate.
+
+use super::event::Standing;
+use super::geometry::{Geometry, Line};
+use super::hold::Places;
+use super::{State, Tangent};
+use crate::hybrid::accumulation::Limit;
+use crate::hybrid::failure::Stoppable;
+use crate::hybrid::simulation::Simulation;
+use crate::input::Side;
+use crate::kernel::{ModeKernel, with_kernel};
+use crate::model::Contacts;
+use crate::numerics::Size;
+
+impl<'p> Simulation<'p> {
+    /// Goes to the limit of an accumulation, if the last events have one at which a contact comes to rest; whether it did.
+    pub(in crate::hybrid) fn rest_contacts(&mut self) -> Stoppable<bool> {
+        let mode = self.mode();
+        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
+        match self.accumulation.limit(self.problem.accuracy.relative) {
+            Some(limit) => {
+                with_kernel!(&mode.kernels, k => self.rest_contacts_by(k, contacts, limit))
+            }
+            None => Ok(false),
+        }
+    }
+
+    /// The same where hops have become lower than the rounding of the gap, so that the motion does not show them any more: the
+    /// limit is where their series ends, however far that is.
+    pub(super) fn rest_unresolved<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &'p Contacts,
+    ) -> Stoppable<bool> {
+        let relative = self.problem.accuracy.relative;
+        match self.accumulation.extrapolated(relative) {
+            Some(limit) => self.rest_contacts_by(kernel, contacts, limit),
+            None => Ok(false),
+        }
+    }
+
+    fn rest_contacts_by<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &'p Contacts,
+        limit: Limit,
+    ) -> Stoppable<bool> {
+        let accuracy = &self.problem.accuracy;
+        if limit.at.seconds() >= self.problem.end.time {
+            return Ok(false);
+        }
+        let n = self.here.q.len();
+        let size = kernel.size();
+        let q = size.vector(|i| limit.state[i]);
+        let v = size.vector(|i| limit.state[n + i]);
+        self.context
+            .set_signals(&self.signals, limit.at.seconds(), Side::Right);
+        let geometry = Geometry::new(kernel, &mut self.context, contacts, [&q, &v]);
+        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
+        // What tolerances, or what the limit is uncertain by, make of what a line is about.
+        let within = |line: Line, of: &dyn Fn(usize) -> f64| -> f64 {
+            let pairs = geometry.along(line).iter().zip(&geometry.own);
+            pairs.map(|(along, &i)| along.abs() * of(i)).sum()
+        };
+        let of = |absolute: f64, i: usize| {
+            absolute + accuracy.relative * limit.state[i].abs() + limit.uncertainty[i]
+        };
+        let of_place = |i: usize| of(accuracy.q_absolute[i], i);
+        let of_rate = |i: usize| of(accuracy.v_absolute[i], n + i);
+        let unknown = |i: usize| limit.uncertainty[n + i];
+        let before = State::all(contacts, self.context.discrete());
+        let mut rests = false;
+        let touching = (before.iter().enumerate())
+            .map(|(k, &state)| {
+                if state == State::Open {
+                    let normal = Line::Normal(k);
+                    let is_there = at.place(normal).0.abs() <= within(normal, &of_place)
+                        && at.rate(normal).0.abs() <= within(normal, &of_rate);
+                    if !is_there {
+                        return None;
+                    }
+                    rests = true;
+                }
+                let tangent = Line::Tangent(k);
+                Some(match (contacts.contacts[k].tangent, state) {
+                    (None, _) => Tangent::None,
+                    (_, State::Sticks) => Tangent::Still,
+                    _ => {
+                        let (slip, rounding) = at.rate(tangent);
+                        match slip.abs() <= rounding + within(tangent, &unknown) {
+                            true => Tangent::Still,
+                            false => Tangent::Slips(slip.signum()),
+                        }
+                    }
+                })
+            })
+            .collect();
+        if !rests {
+            self.set_context();
+            return Ok(false);
+        }
+        let mut standing = Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves: vec![false; before.len()],
+        };
+        self.here.now = limit.at;
+        self.settle_contacts(kernel, contacts, &mut standing)?;
+        self.here.q.copy_from_slice(&limit.state[..n]);
+        self.here.v.copy_from_slice(&limit.state[n..]);
+        self.commit("rest", false, self.here.mode)?;
+        Ok(true)
+    }
+}

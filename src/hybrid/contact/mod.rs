@@ -1,0 +1,73 @@
+//! Contacts, friction and constraints that hold by multipliers: which set of contact states follows an event.
+//!
+//! A mode of all sets is integrated as any other; the discrete states choose its rows (`codegen/multipliers.py`). What touches,
+//! and what of it has no rate, is known by bookkeeping: a closed contact stays on its gap, a sticking one has no slip rate, an
+//! impact says which rates it leaves. The values of these numbers are roundings, and nothing is decided by them.
+//!
+//! - `geometry`: masses, and the lines along which contacts and constraints push.
+//! - `hold`: positions and rates brought back to where they are held, to rounding.
+//! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
+//! - `impact`: all outcomes of an impact, each tried on its impulses and rates.
+//! - `event`: from the fall of a guard to the next set.
+//! - `start`: the set that a run starts in.
+//! - `limit`: the set at the limit of an accumulation.
+
+mod event;
+mod geometry;
+mod hold;
+mod impact;
+mod judge;
+mod limit;
+mod start;
+
+pub(super) use hold::hold;
+
+use crate::model::Contacts;
+
+/// What a contact that touches does along its tangent, as far as its slip rate says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Tangent {
+    /// It has no friction.
+    None,
+    /// It has no slip rate.
+    Still,
+    /// It slips in this direction, +1 or −1.
+    Slips(f64),
+}
+
+/// What a contact does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum State {
+    Open,
+    /// Closed, without friction.
+    Closed,
+    Sticks,
+    /// With its direction.
+    Slides(f64),
+}
+
+impl State {
+    fn is_closed(self) -> bool {
+        self != State::Open
+    }
+
+    /// Of the present discrete states.
+    fn of(contacts: &Contacts, k: usize, discrete: &[f64]) -> Self {
+        let contact = &contacts.contacts[k];
+        if contact.closed.is_some_and(|i| discrete[i] == 0.0) {
+            return State::Open;
+        }
+        match contact.direction.map(|i| discrete[i]) {
+            None => State::Closed,
+            Some(0.0) => State::Sticks,
+            Some(direction) => State::Slides(direction),
+        }
+    }
+
+    /// All of them.
+    fn all(contacts: &Contacts, discrete: &[f64]) -> Vec<Self> {
+        (0..contacts.contacts.len())
+            .map(|k| State::of(contacts, k, discrete))
+            .collect()
+    }
+}

@@ -1,0 +1,112 @@
+//! The set of contact states that a run starts in.
+
+use super::event::Standing;
+use super::geometry::{Geometry, Line, write_states};
+use super::hold::{Places, hold_lines};
+use super::{State, Tangent};
+use crate::hybrid::failure::{Reason, Stoppable};
+use crate::hybrid::limits::check_bounds;
+use crate::hybrid::simulation::Simulation;
+use crate::kernel::{ModeKernel, with_kernel};
+use crate::model::Contacts;
+use crate::numerics::Size;
+
+impl<'p> Simulation<'p> {
+    /// Finds the set of contact states of the initial state: a contact touches where its gap is zero within its rounding, and
+    /// rests there where its rate is. One that closes with a rate strikes at once.
+    pub(in crate::hybrid) fn start_contacts(&mut self, parameters: &[f64]) -> Result<(), Reason> {
+        let mode = self.mode();
+        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
+        if !self.plan.allowed[self.here.mode] {
+            return Err(Reason::Initial {
+                mode: mode.name,
+                why: "the scene freezes a coordinate that contacts may move".into(),
+            });
+        }
+        let (model, variant) = (&*self.problem.model, self.problem.variant());
+        check_bounds(model, variant, parameters, &self.initial.q)?;
+        self.set_context();
+        with_kernel!(&mode.kernels, k => self.start_contacts_by(k, contacts))
+            .map_err(|why| *why)?;
+        self.begun = Some(
+            [&*self.here.q, &self.here.v, self.context.discrete()]
+                .concat()
+                .into(),
+        );
+        Ok(())
+    }
+
+    fn start_contacts_by<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &'p Contacts,
+    ) -> Stoppable<()> {
+        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+        let open = vec![State::Open; contacts.contacts.len()];
+        write_states(contacts, &open, self.context.discrete_mut());
+        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
+        let refused = |why: String| {
+            let mode = self.mode().name;
+            Box::new(Reason::Initial { mode, why })
+        };
+        let mut places = Vec::new();
+        for (c, constraint) in contacts.constraints.iter().enumerate() {
+            let line = Line::Constraint(c);
+            for ((value, rounding), of) in [(at.place(line), ""), (at.rate(line), "the rate of ")] {
+                if !(value.abs() <= rounding) {
+                    let name = constraint.name;
+                    return Err(refused(format!(
+                        "{of}constraint `{name}` is {value:e} there, not zero"
+                    )));
+                }
+            }
+            places.push(line);
+        }
+        let mut touching = vec![None; contacts.contacts.len()];
+        let mut leaves = vec![false; touching.len()];
+        for (k, contact) in contacts.contacts.iter().enumerate() {
+            if contact.normal.is_some() {
+                let (gap, rounding) = at.place(Line::Normal(k));
+                if !(gap >= -rounding) {
+                    let name = contact.name;
+                    return Err(refused(format!(
+                        "the gap of contact `{name}` is {gap:e} there; it must not be negative"
+                    )));
+                }
+                if gap > rounding {
+                    continue;
+                }
+                places.push(Line::Normal(k));
+                let (rate, rounding) = at.rate(Line::Normal(k));
+                if rate.abs() > rounding {
+                    leaves[k] = true;
+                    continue;
+                }
+            }
+            let (slip, rounding) = at.rate(Line::Tangent(k));
+            touching[k] = Some(match contact.tangent {
+                None => Tangent::None,
+                Some(_) if slip.abs() <= rounding => Tangent::Still,
+                Some(_) => Tangent::Slips(slip.signum()),
+            });
+        }
+        let context = &mut self.context;
+        hold_lines(kernel, context, contacts, [&places, &[]], [&mut q, &mut v]);
+        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        let mut standing = Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves,
+        };
+        self.settle_contacts(kernel, contacts, &mut standing)?;
+        let n = self.here.q.len();
+        self.here.q.copy_from_slice(&self.next[..n]);
+        self.here.v.copy_from_slice(&self.next[n..2 * n]);
+        (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
+        self.here.shown = self.shown();
+        self.set_context();
+        Ok(())
+    }
+}

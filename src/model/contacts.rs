@@ -1,0 +1,115 @@
+//! Contacts and constraints that hold by multipliers: one mode for all sets of contact states.
+//!
+//! A multiplier is the acceleration of a coordinate on which nothing depends; its rate is the impulse delivered so far.
+//! Which rows the equations of the mode consist of is said by discrete states.
+
+use super::Tape;
+
+/// The contacts and constraints of a mode.
+#[derive(Debug)]
+pub struct Contacts {
+    /// The contacts, and friction without a gap, in the order of the file. Each has three guards, one behind the other: what
+    /// pushes, or the gap where it is open; what is left before it slips forwards, or its slip rate along its direction where it
+    /// slides; what is left before it slips backwards.
+    pub contacts: Box<[Contact]>,
+    /// The constraints, one an equation.
+    pub constraints: Box<[Constraint]>,
+    /// What decides whether a set of states may go on, [`Contacts::DECISIONS`] a contact: λ_N, g̈, what is left before it slips
+    /// forwards and backwards, γ̇.
+    pub decisions: Tape,
+}
+
+/// A contact with its coordinates and discrete states, by their indices.
+#[derive(Debug)]
+pub struct Contact {
+    /// Name.
+    pub name: &'static str,
+    /// The multiplier of its gap; none of friction that has none.
+    pub normal: Option<usize>,
+    /// The multiplier of its friction, if it has any.
+    pub tangent: Option<usize>,
+    /// The discrete state that is 1 where it is closed, else 0; none of friction without a gap.
+    pub closed: Option<usize>,
+    /// The one that is the sign of its slip rate where it slides, else 0.
+    pub direction: Option<usize>,
+    /// The one that is 1 where its friction is part of that of another contact.
+    pub dropped: Option<usize>,
+    /// Of each contact, the one that is 1 where the friction of that contact is part of its own.
+    pub joined: Box<[Option<usize>]>,
+}
+
+/// One equation of a constraint.
+#[derive(Debug)]
+pub struct Constraint {
+    /// Name.
+    pub name: &'static str,
+    /// Its multiplier.
+    pub multiplier: usize,
+}
+
+impl Contacts {
+    /// Results of the tape of decisions for each contact.
+    pub const DECISIONS: usize = 5;
+
+    /// Numbers that the function of places gives for each contact.
+    pub const PLACES: usize = 9;
+
+    /// The same for each constraint.
+    pub const HELD: usize = 4;
+
+    /// Whether a coordinate, by its index, is a multiplier.
+    pub fn is_multiplier(&self, coordinate: usize) -> bool {
+        let of_contact = |c: &Contact| [c.normal, c.tangent].contains(&Some(coordinate));
+        self.contacts.iter().any(of_contact)
+            || self.constraints.iter().any(|c| c.multiplier == coordinate)
+    }
+
+    /// Number of sets of contact states.
+    pub fn sets(&self) -> usize {
+        self.contacts.iter().map(|c| c.words().len()).product()
+    }
+
+    /// The set of contact states that discrete states say, by its index.
+    pub fn set(&self, discrete: &[f64]) -> usize {
+        self.contacts.iter().fold(0, |set, contact| {
+            let words = contact.words().len();
+            set * words + contact.state(discrete)
+        })
+    }
+
+    /// Name of a set of contact states, by its index: `left sticks, right open`.
+    pub fn name(&self, mut set: usize) -> String {
+        let mut names = Vec::new();
+        for contact in self.contacts.iter().rev() {
+            let words = contact.words();
+            names.push(format!("{} {}", contact.name, words[set % words.len()]));
+            set /= words.len();
+        }
+        names.reverse();
+        match names.is_empty() {
+            true => "moves".into(),
+            false => names.join(", "),
+        }
+    }
+}
+
+impl Contact {
+    /// What it can do.
+    fn words(&self) -> &'static [&'static str] {
+        match (self.closed, self.tangent) {
+            (Some(_), Some(_)) => &["open", "sticks", "slides"],
+            (Some(_), None) => &["open", "closed"],
+            (None, _) => &["sticks", "slides"],
+        }
+    }
+
+    /// What it does, by the index of the word.
+    fn state(&self, discrete: &[f64]) -> usize {
+        let open = self.closed.is_some_and(|i| discrete[i] == 0.0);
+        let slides = self.direction.is_some_and(|i| discrete[i] != 0.0);
+        match open {
+            true => 0,
+            false => usize::from(self.closed.is_some()) + usize::from(slides),
+        }
+    }
+}

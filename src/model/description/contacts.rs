@@ -1,0 +1,39 @@
+//! Contacts and constraints of a mode.
+
+use super::{Read, Reader};
+use crate::model::reader::{At, text};
+use crate::model::{Constraint, Contact, Contacts};
+
+impl Reader<'_> {
+    /// The contacts of a mode with so many guards, three of each.
+    pub(super) fn contacts(&self, at: &At, guards: usize) -> Read<Contacts> {
+        let (coordinates, discretes) = (self.dimensions.coordinates, self.dimensions.discretes);
+        let count = guards / 3;
+        let contact = |at: &At| {
+            let coordinate = |key| at.get(key, |at| at.option(|at| at.index(coordinates)));
+            let discrete = |key| at.get(key, |at| at.option(|at| at.index(discretes)));
+            Ok(Contact {
+                name: at.get("name", text)?,
+                normal: coordinate("normal")?,
+                tangent: coordinate("tangent")?,
+                closed: discrete("closed")?,
+                direction: discrete("direction")?,
+                dropped: discrete("dropped")?,
+                joined: at.get("joined", |at| {
+                    at.list_of(count, |at| at.option(|at| at.index(discretes)))
+                })?,
+            })
+        };
+        let constraint = |at: &At| {
+            Ok(Constraint {
+                name: at.get("name", text)?,
+                multiplier: at.get("multiplier", |at| at.index(coordinates))?,
+            })
+        };
+        Ok(Contacts {
+            contacts: at.get("contacts", |at| at.list_of(count, contact))?,
+            constraints: at.get("constraints", |at| at.list(constraint))?,
+            decisions: at.get("decisions", |at| self.tape(at, Contacts::DECISIONS * count))?,
+        })
+    }
+}

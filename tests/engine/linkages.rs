@@ -1,0 +1,158 @@
+//! Linkages, friction between bodies and contacts of linkages, by multipliers, against references.
+
+use super::multipliers::{check, scenes, sine};
+use crate::common::*;
+use dalembert::hybrid::Method;
+
+#[test]
+fn a_pendulum_in_cartesian_coordinates_keeps_its_length() {
+    let reference = reference("14a_pendulum_cartesian");
+    for method in [Method::Taylor, Method::Radau] {
+        let mut pendulum = problem("constrained_pendulum", &[]);
+        pendulum.set_initial("x", -1.0).unwrap();
+        pendulum.set_tolerance(TIGHTEST);
+        pendulum.end.time = 10.0;
+        pendulum.method = method;
+        pendulum.record.every = Some(0.01);
+        pendulum.record.columns.reactions = true;
+        let run = run(&pendulum);
+        for exact in reference["reference"].as_array().unwrap() {
+            let t = number(&exact["t"]);
+            let row = run.trajectory.row((t / 0.01).round() as usize);
+            let force = row[6 + 2];
+            for (value, key) in [(row[0], "x"), (row[1], "y"), (row[3], "vx"), (row[4], "vy")] {
+                let exact = number(&exact[key]);
+                println!("{method:?} {t} {key} {:.2e}", value - exact);
+                assert!(
+                    (value - exact).abs() <= 1e-12 * t.max(1.0),
+                    "{key} at {t}: {value} {exact}"
+                );
+            }
+            let tension = number(&exact["tension"]);
+            assert!(
+                (force + tension).abs() <= 1e-11 * tension,
+                "{force} {tension}"
+            );
+        }
+        for k in 0..run.trajectory.t.len() {
+            let row = run.trajectory.row(k);
+            let length = (row[0] * row[0] + row[1] * row[1]).sqrt();
+            let rate = (row[0] * row[3] + row[1] * row[4]) / length;
+            assert!(
+                (length - 1.0).abs() <= 1e-14 && rate.abs() <= 1e-14,
+                "{length} {rate}"
+            );
+        }
+    }
+}
+
+#[test]
+fn blocks_on_each_other_slip_and_stick_as_their_friction_says() {
+    for (name, scene) in scenes("15a_two_block_stack") {
+        for method in [Method::Taylor, Method::Radau] {
+            println!("{name} {method:?}");
+            let of = |name: &str| number(&scene["parameters"][name]);
+            let masses = numbers(&scene["parameters"]["masses"]);
+            let given = [
+                ("m_1", masses[0]),
+                ("m_2", masses[1]),
+                ("mu_table", of("mu_table")),
+                ("mu_top", of("mu_top")),
+            ];
+            let mut stack = problem("friction_stack", &given);
+            stack.method = method;
+            let text = scene["parameters"]["table_acceleration"][0]
+                .as_str()
+                .unwrap();
+            stack.set_input("a_g", sine(text)).unwrap();
+            stack.set_tolerance(TIGHTEST);
+            stack.end.time = number(&scene["t_end"]);
+            stack.record.every = Some(0.1);
+            check(&scene, &run(&stack), 4, method);
+        }
+    }
+}
+
+#[test]
+fn a_double_pendulum_strikes_a_wall_slides_along_it_and_leaves() {
+    for (name, scene) in scenes("17_double_pendulum_wall") {
+        for method in [Method::Taylor, Method::Radau] {
+            println!("{name} {method:?}");
+            let of = |name: &str| number(&scene["parameters"][name]);
+            let given = [("wall", of("xw")), ("mu", of("mu")), ("e", of("e"))];
+            let mut pendulum = problem("double_pendulum_wall", &given);
+            pendulum.method = method;
+            let q = numbers(&scene["initial"]["q"]);
+            pendulum.set_initial("phi_1", q[0]).unwrap();
+            pendulum.set_initial("phi_2", q[1]).unwrap();
+            pendulum.set_tolerance(TIGHTEST);
+            pendulum.end.time = number(&scene["t_end"]);
+            pendulum.record.every = Some(0.1);
+            check(&scene, &run(&pendulum), 4, method);
+        }
+    }
+}
+
+#[test]
+fn a_slider_crank_of_nine_coordinates_turns_as_that_of_one() {
+    let reference = reference("14e_slider_crank");
+    let (r, l, angle, rate) = (0.3_f64, 0.8_f64, 0.5_f64, 12.0_f64);
+    let rod = (-r * angle.sin() / l).asin();
+    let rod_rate = -r * angle.cos() * rate / (l * rod.cos());
+    let crank = [0.5 * r * angle.cos(), 0.5 * r * angle.sin()];
+    let crank_rate = [-crank[1] * rate, crank[0] * rate];
+    let half = [0.5 * l * rod.cos(), 0.5 * l * rod.sin()];
+    let half_rate = [-half[1] * rod_rate, half[0] * rod_rate];
+    let of_rod = |i: usize| [2.0 * crank[i] + half[i], 2.0 * crank_rate[i] + half_rate[i]];
+    let slider = [
+        2.0 * (crank[0] + half[0]),
+        2.0 * (crank_rate[0] + half_rate[0]),
+    ];
+    let mut problem = problem("slider_crank", &[]);
+    for (name, [value, speed]) in [
+        ("crank_x", [crank[0], crank_rate[0]]),
+        ("crank_y", [crank[1], crank_rate[1]]),
+        ("crank_angle", [angle, rate]),
+        ("rod_x", of_rod(0)),
+        ("rod_y", of_rod(1)),
+        ("rod_angle", [rod, rod_rate]),
+        ("slider_x", slider),
+    ] {
+        problem.set_initial(name, value).unwrap();
+        problem.set_initial(&format!("{name}.rate"), speed).unwrap();
+    }
+    problem.set_tolerance(TIGHTEST);
+    problem.end.time = 5.0;
+    problem.record.every = Some(0.1);
+    problem.record.columns.reactions = true;
+    problem.record.ledger = true;
+    for method in [Method::Taylor, Method::Radau] {
+        problem.method = method;
+        let run = run(&problem);
+        for exact in reference["reference"].as_array().unwrap() {
+            let t = number(&exact["t"]);
+            let row = run.trajectory.row((t / 0.1).round() as usize);
+            // The demand of the reference; samples of Radau IIA are those of its dense output.
+            let demand = match method {
+                Method::Radau => 1e-8,
+                _ if t <= 1.0 => 1e-12,
+                _ => 1e-11,
+            };
+            let error = row[2] - number(&exact["theta"]);
+            println!("{method:?} {t} {error:.2e}");
+            assert!(error.abs() <= demand, "theta at {t}: {error:e}");
+            if method == Method::Taylor {
+                let forces = &row[34 + 9..];
+                let names = ["O_x", "O_y", "A_x", "A_y", "B_x", "B_y", "guide_N"];
+                for (force, name) in forces.iter().zip(names) {
+                    let exact = number(&exact["multipliers"][name]);
+                    let off = (force - exact).abs() / exact.abs();
+                    assert!(off <= 1e-10, "{name} at {t}: {force} {exact}");
+                }
+            }
+        }
+        let energy = run.energy.expect("a ledger");
+        let imbalance = energy.final_ - energy.initial - energy.input_work + energy.dissipated;
+        assert!(imbalance.abs() <= 1e-12 * 6.6, "{imbalance:e}");
+    }
+}

@@ -1,0 +1,255 @@
+//! Contacts and constraints by multipliers, against references: every event, its state, and the motion between them.
+
+use crate::common::*;
+use dalembert::hybrid::{Method, Problem, simulate};
+use dalembert::input::{Function, Sine};
+use dalembert::record::{Run, Silent};
+use serde_json::Value;
+
+/// A problem of the rigid block in a scene of a reference.
+fn block(scene: &Value) -> Problem {
+    let given = &scene["parameters"];
+    let of = |name: &str| number(&given[name]);
+    let mut block = problem(
+        "rigid_block",
+        &[
+            ("b", of("b")),
+            ("h", of("h")),
+            ("mu_s", of("mu")),
+            ("mu_k", of("mu")),
+            ("e", of("e_N")),
+        ],
+    );
+    for (input, key) in [("a_h", "a_h"), ("a_v", "a_v")] {
+        if let Some(text) = given[key][0].as_str() {
+            block.set_input(input, sine(text)).unwrap();
+        }
+    }
+    let [q, u] = ["q", "u"].map(|key| numbers(&scene["initial"][key]));
+    for (i, name) in ["x", "y", "theta"].iter().enumerate() {
+        block.set_initial(name, q[i]).unwrap();
+        block.set_initial(&format!("{name}.rate"), u[i]).unwrap();
+    }
+    block.set_tolerance(TIGHTEST);
+    block.end.time = number(&scene["t_end"]);
+    block.record.every = Some(0.1);
+    block
+}
+
+/// `7 sin(12.5 t+0.7)` as a function of time.
+pub fn sine(text: &str) -> Function {
+    let (amplitude, rest) = text.split_once(" sin(").unwrap();
+    let (frequency, phase) = rest.trim_end_matches(')').split_once(" t+").unwrap();
+    let [amplitude, frequency, phase] = [amplitude, frequency, phase].map(|x| x.parse().unwrap());
+    Sine::new(amplitude, frequency, phase).into()
+}
+
+/// The words of a reference for what contacts do, of names of modes and their directions.
+pub fn words(run: &Run, mode: usize, discrete: &[f64]) -> String {
+    let name = &run.layout.modes[mode];
+    let parts =
+        name.split(", ")
+            .enumerate()
+            .map(|(k, part)| match part.rsplit_once(' ').unwrap().1 {
+                "open" => "open".to_owned(),
+                "sticks" => "stick".to_owned(),
+                _ if discrete[k] > 0.0 => "slip+".to_owned(),
+                _ => "slip-".to_owned(),
+            });
+    parts.collect::<Vec<_>>().join("/")
+}
+
+/// Compares events and samples with those of a reference. The dense output of Radau IIA, which samples between steps are taken
+/// from, is of a lower order than its steps.
+pub fn check(scene: &Value, run: &Run, count: usize, method: Method) {
+    let exact: Vec<&Value> = (scene["events"].as_array().unwrap().iter())
+        .filter(|event| event["event"] != "start")
+        .collect();
+    let least = if method == Method::Radau { 1e-10 } else { 0.0 };
+    for event in &run.events {
+        println!(
+            "{:.16} {} -> {}",
+            event.t,
+            event.transition,
+            words(run, event.to, &event.after.discrete)
+        );
+    }
+    let mut found = run.events.iter();
+    for (k, exact) in exact.iter().enumerate() {
+        let is_limit = exact["event"].as_str().unwrap().starts_with("zeno_limit");
+        // What a reference leaves out of an accumulation are impacts.
+        let goes_on = |transition: &str| is_limit && transition.ends_with(" strikes");
+        let next = found.by_ref().find(|event| !goes_on(event.transition));
+        let event = next.expect("an event");
+        let t = number(&exact["t"]);
+        let demand = number(&exact["demand_dt"]).max(if is_limit { least } else { 0.0 });
+        assert!(
+            (event.t - t).abs() <= demand,
+            "event {k}: {} instead of {t}: {:.2} times the demand",
+            event.t,
+            (event.t - t).abs() / demand
+        );
+        assert_eq!(
+            words(run, event.to, &event.after.discrete),
+            exact["mode_after"],
+            "event {k}"
+        );
+    }
+    assert!(found.next().is_none(), "more events");
+    let samples = scene["samples"].as_array().unwrap();
+    for sample in samples {
+        let t = number(&sample["t"]);
+        let demand = number(&sample["demand_state"]).max(least);
+        let row = run
+            .trajectory
+            .t
+            .iter()
+            .position(|&x| (x - t).abs() < 1e-9)
+            .expect("a row");
+        let row = run.trajectory.row(row);
+        for (i, exact) in numbers(&sample["q"]).iter().enumerate() {
+            assert!(
+                (row[i] - exact).abs() <= demand,
+                "q {i} at {t}: {} {exact}",
+                row[i]
+            );
+        }
+        for (i, exact) in numbers(&sample["u"]).iter().enumerate() {
+            let value = row[count + i];
+            assert!(
+                (value - exact).abs() <= 10.0 * demand,
+                "u {i} at {t}: {value} {exact}"
+            );
+        }
+    }
+}
+
+pub fn scenes(file: &str) -> Vec<(String, Value)> {
+    let reference = reference(file);
+    let scenes = reference["scenes"].as_object().unwrap();
+    scenes
+        .iter()
+        .map(|(name, scene)| (name.clone(), scene.clone()))
+        .collect()
+}
+
+fn check_blocks(file: &str) {
+    for (name, scene) in scenes(file) {
+        for method in [Method::Taylor, Method::Radau] {
+            println!("{name} {method:?}");
+            let mut block = block(&scene);
+            block.method = method;
+            check(&scene, &run(&block), 7, method);
+        }
+    }
+}
+
+#[test]
+fn a_block_that_rocks_loses_what_housner_says() {
+    check_blocks("13b_housner_limit");
+}
+
+#[test]
+fn a_block_dropped_on_a_corner_slips_sticks_strikes_and_rests() {
+    check_blocks("13a_block_drop");
+}
+
+#[test]
+fn a_block_on_ground_that_shakes_both_ways_slides_rocks_and_slide_rocks() {
+    check_blocks("13c_block_forced");
+}
+
+#[test]
+fn a_standing_block_slips_or_lifts_as_sums_of_forces_say() {
+    let reference = reference("13d_standing_block");
+    for case in reference["reference"].as_array().unwrap() {
+        let of = |name: &str| number(&case["parameters"][name]);
+        for method in [Method::Taylor, Method::Radau] {
+            let (b, h, mu) = (of("b"), of("h"), of("mu"));
+            let given = [("b", b), ("h", h), ("mu_s", mu), ("mu_k", mu)];
+            let mut block = problem("rigid_block", &given);
+            block.method = method;
+            for input in ["a_h", "a_v"] {
+                let text = case["parameters"][input].as_str().unwrap();
+                let text = text.replace(" t)", " t+0)");
+                if !text.starts_with("0 ") {
+                    block.set_input(input, sine(&text)).unwrap();
+                }
+            }
+            block.set_initial("y", h).unwrap();
+            block.set_tolerance(TIGHTEST);
+            block.end.time = 0.08;
+            block.record.every = Some(0.01);
+            block.record.columns.reactions = true;
+            let run = run(&block);
+            let exact = &case["engine_A_first_event"];
+            let event = &run.events[0];
+            let off = event.t - number(&exact["t"]);
+            println!("{method:?} {off:.2e}");
+            assert!(off.abs() <= 1e-14);
+            assert_eq!(words(&run, event.to, &event.after.discrete), exact["mode"]);
+            for (k, exact) in case["standing_forces"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .enumerate()
+            {
+                let row = run.trajectory.row(k + 1);
+                let forces = &row[14 + 3..];
+                let total = forces[1] + forces[3];
+                for (force, key) in [(forces[0], "N_1"), (forces[2], "N_2"), (total, "T_total")] {
+                    let off = force / number(&exact[key]) - 1.0;
+                    println!("{key} {off:.2e}");
+                    assert!(off.abs() <= 1e-14, "{key}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_block_that_slides_on_a_corner_is_unique_inconsistent_or_indeterminate() {
+    let reference = reference("13e_block_painleve");
+    for case in reference["reference"].as_array().unwrap() {
+        let of = |name: &str| number(&case[name]);
+        let (b, h) = (0.2, 0.4);
+        let (theta, mu, omega) = (of("theta"), of("mu"), of("omega"));
+        let given = [("b", b), ("h", h), ("mu_s", mu), ("mu_k", mu)];
+        let mut block = problem("rigid_block", &given);
+        let (sin, cos) = theta.sin_cos();
+        // The left corner at the origin, without a normal velocity.
+        let (to_x, to_y) = (b * cos - h * sin, b * sin + h * cos);
+        for (name, value) in [
+            ("x", to_x),
+            ("y", to_y),
+            ("theta", theta),
+            ("x.rate", of("slip_velocity") + omega * to_y),
+            ("y.rate", omega * to_x),
+            ("theta.rate", omega),
+        ] {
+            block.set_initial(name, value).unwrap();
+        }
+        block.end.time = 1e-6;
+        let outcome = simulate(&block, &mut Silent);
+        let slip = of("slip_velocity");
+        println!("{theta} {mu} {slip} {omega} {}", case["classification"]);
+        let refused = |part: &str| match &outcome {
+            Ok(run) => run
+                .failure
+                .as_ref()
+                .is_some_and(|f| f.reason.to_string().contains(part)),
+            Err(reason) => reason.to_string().contains(part),
+        };
+        match case["classification"].as_str().unwrap() {
+            "unique" => {
+                let run = outcome.as_ref().expect("it moves");
+                assert_eq!(run.failure, None);
+                let mode = usize::from(run.trajectory.mode[0]);
+                let discrete = &run.trajectory.row(0)[14..];
+                assert_eq!(words(run, mode, discrete), case["smooth_modes"][0]);
+            }
+            "inconsistent" => assert!(refused("no motion"), "{outcome:?}"),
+            _ => assert!(refused("several motions"), "{outcome:?}"),
+        }
+    }
+}
