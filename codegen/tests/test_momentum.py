@@ -130,7 +130,7 @@ class Tank(ScratchTest):
     def setUp(self):
         super().setUp()
         tank = os.path.join(ROOT, "models", "walking_tank")
-        for name in ("paper.py", "corrections.py"):
+        for name in ("paper.py", "paper_energies.py", "corrections.py"):
             shutil.copy(os.path.join(tank, name), self.folder)
         with open(os.path.join(tank, "model.py"), encoding="utf-8") as stream:
             self.text = stream.read()

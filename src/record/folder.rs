@@ -12,7 +12,6 @@
 //! Files are on the disk before they are put in place. What a killed program has left beside the target is removed
 //! by the next run into it: its lock is gone.
 
-use super::plot::Look;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs::{self, File};

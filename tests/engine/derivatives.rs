@@ -242,7 +242,7 @@ fn check_energies<const F: usize>(
             SVector::from([energy(kernel, &moved)[0]])
         };
         let exact = derivative(kinetic, 1.0);
-        let size = kinetic(1.0).amax();
+        let size = kinetic(1.0).amax().max(kinetic(-1.0).amax());
         close(
             &format!("{what}: momentum"),
             &SVector::from([momenta[free]]),

@@ -252,7 +252,8 @@ fn are_equal(one: &[Row], other: &[Row]) -> bool {
     one.iter().zip(other).all(|(a, b)| {
         let is_same = |k: usize| {
             let error = a[k].error + b[k].error;
-            !((a[k].value - b[k].value).abs() > error)
+            let differ = (a[k].value - b[k].value).abs() > error;
+            !differ
         };
         (0..ORDERS).all(is_same)
     })

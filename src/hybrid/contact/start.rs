@@ -53,7 +53,9 @@ impl<'p> Simulation<'p> {
         for (c, constraint) in contacts.constraints.iter().enumerate() {
             let line = Line::Constraint(c);
             for ((value, rounding), of) in [(at.place(line), ""), (at.rate(line), "the rate of ")] {
-                if !(value.abs() <= rounding) {
+                // What is not a number is not zero.
+                let is_zero = value.abs() <= rounding;
+                if !is_zero {
                     let name = constraint.name;
                     return Err(refused(format!(
                         "{of}constraint `{name}` is {value:e} there, not zero"
@@ -67,7 +69,9 @@ impl<'p> Simulation<'p> {
         for (k, contact) in contacts.contacts.iter().enumerate() {
             if contact.normal.is_some() {
                 let (gap, rounding) = at.place(Line::Normal(k));
-                if !(gap >= -rounding) {
+                // What is not a number is no gap.
+                let is_gap = gap >= -rounding;
+                if !is_gap {
                     let name = contact.name;
                     return Err(refused(format!(
                         "the gap of contact `{name}` is {gap:e} there; it must not be negative"
