@@ -1,7 +1,9 @@
 //! Impacts: Newton's law of restitution and Coulomb's of friction for all contacts that touch, at one instant
 //! (J. J. Moreau 1988; C. Glocker and F. Pfeiffer 1995):
 //!
-//!     0 ≤ P_N ⟂ u_N⁺ + e u_N⁻ ≥ 0,  P_T ∈ −μ P_N Sign(u_T⁺),  M (u⁺ − u⁻) = W_N P_N + W_T P_T + Gᵀ P_C.
+//! ```text
+//! 0 ≤ P_N ⟂ u_N⁺ + e u_N⁻ ≥ 0,  P_T ∈ −μ P_N Sign(u_T⁺),  M (u⁺ − u⁻) = W_N P_N + W_T P_T + Gᵀ P_C.
+//! ```
 //!
 //! All outcomes are tried: each contact may have no impulse, stick, or slip either way. Outcomes with the same rates count once.
 

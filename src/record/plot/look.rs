@@ -52,7 +52,7 @@ impl Look {
     /// Whether the panels are those of this layout.
     ///
     /// # Errors
-    /// As [`Look::asked`].
+    /// Says which column there is not, or which columns do not fit together.
     pub fn check(&self, layout: &Layout) -> Result<(), String> {
         self.asked(layout).map(|_| ())
     }
