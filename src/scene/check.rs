@@ -25,6 +25,10 @@ pub(crate) enum Datum {
     List(Vec<Checked>),
     Object(Vec<(String, Checked)>),
     /// Of a place where any value may be.
+    #[cfg_attr(
+        not(feature = "cli"),
+        allow(dead_code, reason = "only study files have such values")
+    )]
     Any(Node),
 }
 
@@ -82,6 +86,10 @@ impl Checked {
         matches!(self.datum, Datum::Object(_))
     }
 
+    #[cfg_attr(
+        not(feature = "cli"),
+        allow(dead_code, reason = "only study files have such values")
+    )]
     /// The value as it was written, where any may be.
     pub fn any(&self) -> &Node {
         match &self.datum {
@@ -90,6 +98,10 @@ impl Checked {
         }
     }
 
+    #[cfg_attr(
+        not(feature = "cli"),
+        allow(dead_code, reason = "only study files have such values")
+    )]
     /// The number, if it is one.
     pub fn as_number(&self) -> Option<f64> {
         match self.datum {

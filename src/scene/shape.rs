@@ -37,6 +37,10 @@ pub(crate) enum Shape {
     /// Values of different JSON types.
     Either(Vec<Shape>),
     /// Any value: it is judged where it is used.
+    #[cfg_attr(
+        not(feature = "cli"),
+        allow(dead_code, reason = "only study files have such values")
+    )]
     Any,
 }
 
