@@ -1,9 +1,9 @@
 //! Contacts and constraints by multipliers, against references: every event, its state, and the motion between them.
 
 use crate::common::*;
-use dalembert::hybrid::{Method, Problem, simulate};
+use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
-use dalembert::record::{Run, Silent};
+use dalembert::record::Run;
 use serde_json::Value;
 
 /// A problem of the rigid block in a scene of a reference.
