@@ -29,7 +29,7 @@ FACTORS = ("symbol", "upright", "accent", "number", "function", "dots", "frac", 
 @dataclass
 class Node:
     """A node of the tree: `kind` is equation, sum, product, symbol, number, call, group, modulus,
-    power, fraction, relation or text; `time` is + or - after (t^+) or (t^-), `text` of a fraction / where it
+    power, fraction, rate (d/dt of a bracket), relation or text; `time` is + or - after (t^+) or (t^-), `text` of a fraction / where it
     is printed so, `lead` the sign, relation or dot that is printed before it, `accent` what stands over a symbol, `at` the offset in the LaTeX. `ordinal` numbers the
     terms from 0 and `side` is the sign that their side of the equation gives them (transcription.py)."""
 
@@ -304,7 +304,7 @@ class Parser:
 
         dots = differential() if opened("{") else None
         if dots and self.sees("brace", "}"):
-            raise self.error("carry the derivative out: of symbols alone, d x/d t is a rate", token)
+            return self.derivative(dots, token)
         node = self.base() if dots and self.peek().kind in ("symbol", "upright", "accent") else None
         if node and opened("}") and opened("{") and self.peek().text == "d" and self.next() and self.sees("symbol", "t"):
             self.next()
@@ -319,6 +319,15 @@ class Parser:
             return node
         self.at = start
         return None
+
+    def derivative(self, order, token):
+        """d/d t of the bracket that follows."""
+        self.shut()
+        if [self.next().text for _ in range(4)] != ["{", "d", "t", "}"] or order != 1:
+            raise self.error("of brackets, d/d t alone is known: carry other derivatives out", token)
+        if not self.sees("open"):
+            raise self.error("write brackets around what d/d t is of", token)
+        return Node("rate", children=[self.base()], at=token.at)
 
     def under(self, accent, dots, token):
         """The symbol under dots or an accent, in braces or not."""

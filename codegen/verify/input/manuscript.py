@@ -10,7 +10,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from sympy import sympify
+from sympy import Rational, sympify
 
 from ..errors import PaperError
 from ..judgements.comparison import compare
@@ -25,7 +25,7 @@ TEX, SYMBOLS = "paper.tex", "symbols.csv"
 
 COLUMNS = ("symbol", "kind", "unit", "meaning")
 FURTHER = ("mirror", "minimum", "value", "low", "high")
-KINDS = ("coordinate", "input", "parameter", "damping", "force", "friction", "sign", "multiplier", "defined")
+KINDS = ("coordinate", "input", "parameter", "damping", "force", "friction", "sign", "multiplier", "defined", "undefined")
 
 DISPLAY = re.compile(r"\\begin\{(?P<name>equation|align|multline|gather|eqnarray|displaymath)(?P<star>\*?)\}(?P<body>.*?)\\end\{(?P=name)(?P=star)\}"
                      r"|\\\[(?P<bracket>.*?)\\\]|\$\$(?P<dollars>.*?)\$\$", re.DOTALL)
@@ -34,7 +34,8 @@ MANY = ("align", "gather", "eqnarray")
 BREAK = re.compile(r"\\\\\*?(?:\[[^\]]*\])?")
 RELATION = re.compile(r"[=<>≤≥]|\\(?:lt|gt|leq?|geq?|leqslant|geqslant)(?![A-Za-z])")
 ROLES = {"motion of": "motion", "value of": "value", "reaction": "reaction", "condition on": "condition", "rule for": "rule",
-         "impact of": "reset", "constraint with": "constraint", "definition of": "definition", "force on": "force",
+         "impact of": "reset", "constraint with": "constraint", "definition of": "definition", "reading of": "reading",
+         "force on": "force",
          "kinetic energy": "T", "potential energy": "V", "dissipation": "D", "lagrangian": "L", "skip": "skip"}
 NOTE = re.compile(rf"%[ \t]*(?P<role>{'|'.join(ROLES)})\b[ \t]*(?P<of>[^\n%]*?)[ \t.]*$", re.MULTILINE | re.IGNORECASE)
 ENERGIES = {"T": "T", "V": "V", "U": "V", "D": "D", "L": "L"}
@@ -57,11 +58,24 @@ class Displayed:
         return [child.kind if child.kind != "relation" else child.text for child in self.tree.children]
 
     def left(self):
-        """The symbol that the left side consists of, or None."""
-        side = self.tree.children[0]
-        alone = len(side.children) == 1 and len(side.children[0].children) == 1 and side.children[0].sign == 1
-        node = side.children[0].children[0] if alone else None
+        """The symbol that the left side consists of, alone or as a power, or None."""
+        node = self._alone()
+        node = node.children[0] if node and node.kind == "power" else node
         return node if node and node.kind == "symbol" else None
+
+    def power(self):
+        """The power of the symbol on the left side."""
+        node = self._alone()
+        return int(node.text) if node and node.kind == "power" else 1
+
+    def _alone(self):
+        side = self.tree.children[0]
+        return side.children[0].children[0] if len(side.children) == 1 and len(side.children[0].children) == 1 and side.children[0].sign == 1 else None
+
+    def defined(self, paper):
+        """What the symbol on the left side is, as a function of the namespaces: where its square is defined, a root."""
+        right = self.right(paper)
+        return right if self.power() == 1 else lambda s, m: sympify(right(s, m)) ** Rational(1, self.power())
 
     def right(self, paper):
         """The right side as a function of the namespaces."""
@@ -96,9 +110,10 @@ def read(folder):
     printed = {}
     for equation in found:
         _sort(equation, paper, rows, printed)
-    defined = [r for r in rows.values() if r["kind"] == "defined" and r["name"] not in paper.definitions]
+    defined = [r for r in rows.values() if r["kind"] in ("defined", "undefined") and r["name"] not in paper.definitions]
     if defined:
-        raise PaperError(f"{folder / SYMBOLS}, line {defined[0]['line']}: no equation of {TEX} defines {defined[0]['symbol']}")
+        comment = "" if defined[0]["kind"] == "defined" else f"; say how you read it, below a line % reading of {defined[0]['symbol']}"
+        raise PaperError(f"{folder / SYMBOLS}, line {defined[0]['line']}: no equation of {TEX} defines {defined[0]['symbol']}{comment}")
     _check_definitions(paper, printed)
     paper.check()
     return paper, _energies(paper, printed, folder)
@@ -153,7 +168,7 @@ def _declare(paper, row):
     mirror = {"": 1, "1": 1, "+1": 1, "-1": -1}.get(row.get("mirror", ""))
     if mirror is None:
         raise PaperError(f"mirror is 1 or -1, not {row['mirror']}")
-    if mirror == -1 and kind in ("parameter", "damping", "multiplier", "defined"):
+    if mirror == -1 and kind in ("parameter", "damping", "multiplier", "defined", "undefined"):
         raise PaperError(f"a {kind} keeps its sign in the mirror image")
     if kind == "coordinate":
         paper.coordinate(name, row["unit"], row["meaning"], latex, mirror, float(row["minimum"]) if row.get("minimum") else None)
@@ -250,12 +265,17 @@ def _sort(equation, paper, rows, printed):
         raise equation.error(f"{named} is not in {SYMBOLS}" if named else "it is not clear what this equation is of: say it in a comment line "
                              f"above it, such as % {next(k for k, v in ROLES.items() if v == role)} \\theta")
     name = row["name"]
-    if role in ("definition", "force"):
+    if role in ("definition", "reading", "force"):
         if equation.shape() != ["sum", "=", "sum"]:
             raise equation.error(f"a {role} is written as a symbol = terms")
-        if role == "definition":
-            paper.definitions[name] = equation.right(paper)
-            paper.auxiliary += (name,)
+        if role != "force":
+            if row["kind"] != ("defined" if role == "definition" else "undefined"):
+                raise equation.error(f"a {role} is of a symbol of kind {'defined' if role == 'definition' else 'undefined'}, and {named} is "
+                                     f"a {row['kind']}")
+            if name in paper.definitions:
+                raise equation.error(f"{named} is defined twice")
+            paper.definitions[name] = equation.defined(paper)
+            paper.auxiliary += (name,) * (role == "definition")
             printed.setdefault("definitions", []).append((name, equation))
         else:
             printed.setdefault("forces", {})[name] = equation.right(paper)
@@ -295,7 +315,7 @@ def _role(equation, rows):
     if shape != ["sum", "=", "sum"]:
         return "condition"
     key = transcription._key(left) if left else None
-    if left and not left.dots and key in rows:
+    if left and not left.dots and key in rows and (equation.power() == 1 or rows[key]["kind"] == "defined"):
         kind = rows[key]["kind"]
         return "definition" if kind == "defined" else "value" if kind in ("force", "friction", "parameter") else "motion"
     if left and not left.dots and key in ENERGIES:
@@ -308,7 +328,7 @@ def _role(equation, rows):
 def _named(equation, role, rows):
     """The symbol that an equation is of, from its form: LaTeX, or nothing."""
     left = equation.left()
-    if role in ("value", "definition", "reset", "rule", "reaction") and left:
+    if role in ("value", "definition", "reading", "reset", "rule", "reaction") and left:
         return transcription._key(left)
     if role == "force" and left:
         return transcription._key(left).partition("_")[2]
@@ -333,7 +353,7 @@ def _check_definitions(paper, printed):
     s, m = sympy_namespace(paper), Mathematics()
     for name, equation in printed.get("definitions", ()):
         try:
-            found = units.measure(sympify(equation.right(paper)(s, m)), known)
+            found = units.measure(sympify(equation.defined(paper)(s, m)), known)
         except units.UnitError as error:
             raise equation.error(f"the definition of {name} is or contains {error}") from error
         if found != units.parse(paper.symbols[name].unit):

@@ -3,6 +3,8 @@ statement (left side, relation, what follows from it), and the same terms, one b
 
 from fractions import Fraction
 
+from sympy import sympify
+
 from ..errors import LatexError, NotInClass, PaperError
 from ..readings.lagrange import sympy_namespace
 from .latex import Parser
@@ -73,8 +75,14 @@ def statement(equation, paper):
 
 
 def _sums(product):
-    """The factors of a product that are sums of terms: brackets, and fractions of more than one term."""
-    return [f for f in product.children if f.kind == "group" or f.kind == "fraction" and len(f.children[0].children) > 1]
+    """The factors of a product that are sums of terms: brackets, and fractions and rates of more than one term."""
+    return [f for f in product.children if f.kind == "group" or f.kind == "fraction" and len(f.children[0].children) > 1
+            or f.kind == "rate" and (len(_inside(f).children) > 1 or any(map(_sums, _inside(f).children)))]
+
+
+def _inside(factor):
+    """The sum that a bracket, a fraction or a rate has terms of."""
+    return factor.children[0].children[0] if factor.kind == "rate" else factor.children[0]
 
 
 def _collect(node, sign, counter):
@@ -83,7 +91,7 @@ def _collect(node, sign, counter):
         groups = _sums(product)
         product.side = sign
         if groups:
-            _collect(groups[-1].children[0], sign, counter)
+            _collect(_inside(groups[-1]), sign, counter)
         else:
             product.ordinal = counter[0]
             counter[0] += 1
@@ -163,6 +171,8 @@ def terms(tree, paper, s, m, latex=""):
             return m.sin(angle) / m.cos(angle) if node.text == "tan" else m.cos(angle) / m.sin(angle)
         if node.kind == "call":
             return getattr(m, node.text)(value(node.children[0]))
+        if node.kind == "rate":
+            return rate(node, value(node.children[0]))
         if node.kind == "modulus":
             return m.Abs(value(node.children[0]))
         if node.kind == "power":
@@ -174,24 +184,31 @@ def terms(tree, paper, s, m, latex=""):
             return value(node.children[0]) / below
         return value(node.children[0])
 
+    def rate(node, inner):
+        if not hasattr(m, "rate"):
+            raise error_at(latex, node.at, "a time derivative of a bracket can be judged, and not computed with: carry it out")
+        return m.rate(sympify(inner))
+
     found = {}
 
     def collect(node, outer):
+        # `outer` makes a term of what stands in the brackets around it
         for product in node.children:
-            sign = outer * product.sign
             if product.ordinal is not None:
-                found[product.ordinal] = product.side * sign * value(product)
+                found[product.ordinal] = product.side * outer(product.sign * value(product))
                 continue
             groups = _sums(product)
             if groups and product.side:
+                before = product.sign
                 for factor in product.children:
                     if factor is not groups[-1]:
-                        sign = sign * value(factor)
+                        before = before * value(factor)
                 if groups[-1].kind == "fraction":
-                    sign = sign / value(groups[-1].children[1])
-                collect(groups[-1].children[0], sign)
+                    before = before / value(groups[-1].children[1])
+                derived = (lambda x, node=groups[-1]: rate(node, x)) if groups[-1].kind == "rate" else lambda x: x
+                collect(_inside(groups[-1]), lambda x, before=before, derived=derived: outer(before * derived(x)))
 
     for side in tree.children:
         if side.kind == "sum":
-            collect(side, 1)
+            collect(side, lambda x: x)
     return [found[k] for k in sorted(found)]

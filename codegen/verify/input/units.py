@@ -61,6 +61,8 @@ def measure(expression, known):
     """The dimension of a SymPy expression; UnitError where a sum or a function does not fit."""
     import sympy
 
+    from ..normal.rates import Rate
+
     if expression.is_Symbol:
         return known[expression.name]
     if expression.is_number:
@@ -82,6 +84,8 @@ def measure(expression, known):
         return NONE
     if expression.func == sympy.Abs:
         return inner
+    if expression.func == Rate:
+        return inner.times(parse("s"), -1)
     if inner != NONE:
         raise UnitError(f"{expression.func.__name__} of an argument in {inner}")
     return NONE

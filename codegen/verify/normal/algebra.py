@@ -20,16 +20,20 @@ from fractions import Fraction
 
 from ..errors import NotInClass
 from .form import ONE, Form, Opaque, expression
+from .rates import Rate
 
 __all__ = ["ONE", "Form", "Opaque", "Ring", "expression"]
 
 
 class Ring:
     """The symbols of a problem: `involutions` are the names whose square is 1, `first` the names
-    that lead an angle and so take the positive sign in it (the alpha of alpha - theta)."""
+    that lead an angle and so take the positive sign in it (the alpha of alpha - theta), `moving` the names that have a rate
+    (with a d before it) and an acceleration."""
 
-    def __init__(self, involutions=(), first=()):
+    def __init__(self, involutions=(), first=(), moving=()):
         self.involutions = frozenset(involutions)
+        self.chain = {d + name: "d" + d + name for name in moving for d in ("", "d")}
+        self.accelerations = {"dd" + name for name in moving}
         self.first = {name: i for i, name in enumerate(first)}
 
     def involutive(self, name):
@@ -151,6 +155,11 @@ class Ring:
             sine, cosine = self.trigonometric("sin", angle), self.trigonometric("cos", angle)
             above = {sympy.tan: sine, sympy.cot: cosine}.get(expression.func, self.number(1))
             return above * (cosine if expression.func in (sympy.tan, sympy.sec) else sine).inverse()
+        if expression.func == Rate:
+            inner = self.read(expression.args[0])
+            if found := sorted(inner.names() & self.accelerations):
+                raise NotInClass(f"{expression}: the time derivative of an acceleration, {found[0]}, is no part of an equation of motion")
+            return inner.rate(self.chain)
         if expression.func in (sympy.sign, sympy.Abs):
             return self.opaque(expression.func.__name__, self.read(expression.args[0]))
         raise NotInClass(f"{expression} is not a quotient of trigonometric polynomials: write it with +, -, *, /, integer "

@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field
 from typing import Callable, Dict, List, Optional
 
-from ..errors import PaperError
+from ..errors import NotInClass, PaperError
 from ..input.printed import Symbol, latex_name
 from ..normal.algebra import Ring
 from ..normal.intervals import intervals, signs
+from ..normal.rates import Rate
 from .solved import solved
 
 
@@ -62,12 +63,14 @@ class Mathematics:
         import sympy
 
         self.sin, self.cos, self.tan, self.sign, self.Abs = sympy.sin, sympy.cos, sympy.tan, sympy.sign, sympy.Abs
+        self.rate = Rate
 
 
 def ring_of(paper):
     """The ring of a paper's symbols."""
     symbols = paper.symbols.values()
-    return Ring([x.name for x in symbols if x.role == "discrete"], [x.name for x in symbols if x.role == "parameter"])
+    return Ring([x.name for x in symbols if x.role == "discrete"], [x.name for x in symbols if x.role == "parameter"],
+                [x.name for x in symbols if x.role in ("coordinate", "input")])
 
 
 def sympy_namespace(paper, extra=(), defined=True):
@@ -100,7 +103,7 @@ class Motion:
         self.potential = self._read(energies.potential)
         self.dissipation = self._read(energies.dissipation) if energies.dissipation else self.ring.number(0)
         self.held = {p + n: 0 for n in energies.extra for p in ("", "d", "dd")}
-        self._residuals, self._solved = {}, {}
+        self._residuals, self._solved, self._units = {}, {}, None
         self._check(moving)
 
     def _check(self, moving):
@@ -121,6 +124,24 @@ class Motion:
     def _read(self, function):
         """The form of a function of the namespaces."""
         return self.ring.read(function(self.s, self.m))
+
+    def units(self):
+        """What is printed as one: sums that have a symbol, and sines, cosines and their products in the kinetic energy."""
+        if self._units is None:
+            import sympy
+
+            products = sympy.preorder_traversal(sympy.sympify(self.energies.kinetic(self.s, self.m)))
+            found = [sympy.Mul(*[f for f in sympy.Mul.make_args(x) if f.as_base_exp()[0].func in (sympy.sin, sympy.cos)])
+                     for x in products if x.is_Mul or x.is_Pow]
+            found += [reading(self.s, self.m) for reading in self.paper.definitions.values()]
+            forms = []
+            for written in found:
+                try:
+                    forms.append(self.ring.read(written))
+                except NotInClass:
+                    continue  # a root that occurs by its square alone
+            self._units = [form for form in dict.fromkeys(forms) if len(form.terms) > 1 and not form.over]
+        return self._units
 
     def residual(self, name):
         """d/dt dT/dv - dT/dq + dV/dq + dD/dv - Q of a coordinate, which is its reaction where it

@@ -4,6 +4,7 @@ import sympy
 
 from ..input.printed import rates
 from ..input.units import parse
+from ..normal.rates import Rate
 
 # kinds of slips in the order in which they are preferred where several explain the same
 SLIPS = {
@@ -80,6 +81,10 @@ class Editor:
     def _of_factor(self, term, factor):
         """Edits of one factor of the product."""
         base, exponent = factor.as_base_exp()
+        if base.func == Rate:
+            for slip, inner in self._edits(base.args[0]):
+                yield slip, term / factor * Rate(inner)**exponent
+            return
         if base.is_number or not exponent.is_Integer:
             return
         yield "power" if exponent > 0 else "factor lost", term * base
@@ -88,6 +93,8 @@ class Editor:
             for other in self._dotted(base.name):
                 yield "dot", term / factor * other**exponent
                 yield "dot", term / base * other
+                if exponent > 2:
+                    yield "dot", term / base**2 * other**2
         if base.is_Symbol and base.name not in self.levels and exponent > 1:
             for other in self.alike.get(base.name, ()):
                 yield "symbol", term / base * _symbol(other)

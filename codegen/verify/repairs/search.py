@@ -5,11 +5,13 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import List, Tuple
 
-from sympy import Mul, sympify
+from sympy import Add, Derivative, Mul, Symbol, expand, sympify
 
 from ..errors import NotInClass
 from ..judgements.comparison import compare
 from ..normal.algebra import ONE, expression
+from ..normal.points import vanishes
+from ..normal.rates import Rate
 
 # Two edits in one term are looked for where one does not explain it; three are not a misprint but
 # another term.
@@ -44,7 +46,7 @@ def repairs(subject, motion, number) -> List[Repair]:
     for difference in comparison.differences:
         # a factor with which far more differs cannot need fewer edits
         if len(difference.terms) <= 2 * least:
-            found = _search(subject, number, difference * comparison.weight, comparison.clear)
+            found = _search(subject, motion, number, difference * comparison.weight, comparison.clear)
             if best is None or len(found) < len(best):
                 best = found
     return best
@@ -65,9 +67,16 @@ def apply(equation, terms, found):
     return replace(equation, function=lambda s, m: result, latex="", margin=True)
 
 
-def _search(subject, number, difference, clear):
+def _search(subject, motion, number, difference, clear):
     """The repairs for a difference of printed and derived, which is multiplied by `clear`, as all is that is compared here."""
     forms, terms, found = subject.forms[number], subject.expressions[number], []
+    for momentum in momenta(motion, subject.paper.equations[number]):
+        rate = Rate(momentum)
+        parts = subject.read(rate).terms.keys()
+        # a printed term with the same parts has a wrong factor
+        for written in (rate, -rate) if len(parts) > 1 and not any(form.terms.keys() == parts for form in forms) else ():
+            if not difference + subject.read(written) * clear:
+                return [Repair((), "lost term", [], [subject.read(written)], [written])]
     if divided := _divisor(subject, forms, terms, difference, clear):
         return [divided]
     cleared = [form * clear for form in forms]
@@ -82,6 +91,8 @@ def _search(subject, number, difference, clear):
             difference += form * clear - cleared[k]
             open_terms.discard(k)
     for k in sorted(open_terms):
+        if len(_lost(subject, motion, -difference * clear.inverse())) == 1 and not cleared[k].terms.keys() <= difference.terms.keys():
+            break  # one lost term, of which other terms have parts
         # what is left of a term that differs, coefficient by coefficient
         wrong = subject.ring.form({key: difference.terms[key] for key in cleared[k].terms if key in difference.terms})
         if wrong:
@@ -91,7 +102,7 @@ def _search(subject, number, difference, clear):
             difference -= wrong
     missing = -difference * clear.inverse()
     # what is no polynomial without the divisor falls apart with it
-    parts = [part * clear.inverse() for part in _lost(subject, -difference)] if missing.over else _lost(subject, missing)
+    parts = [part * clear.inverse() for part in _lost(subject, motion, -difference)] if missing.over else _lost(subject, motion, missing)
     for form in parts:
         found.append(Repair((), "lost term", [], [form], [expression(form)]))
     return sorted(found, key=lambda r: r.ordinals or (len(forms),))
@@ -99,15 +110,19 @@ def _search(subject, number, difference, clear):
 
 def _divisor(subject, forms, terms, difference, clear):
     """One slip in a sum that terms are divided by, or None: it is printed once, and changes all of them."""
-    for divisor in dict.fromkeys(f.base for term in terms for f in Mul.make_args(term) if _divides(f)):
+    divisors = dict.fromkeys(f.base for term in terms for f in Mul.make_args(term) if _divides(f))
+    wanted = divisors and expression(difference * clear.inverse())
+    for divisor in divisors:
         chosen = [k for k, term in enumerate(terms) if divisor in [f.base for f in Mul.make_args(term) if _divides(f)]]
         for part in divisor.args:
             for slip, written in [*subject.editor.edits(part), ("number", 2 * part), ("number", part / 2), ("surplus term", sympify(0))]:
                 other = divisor - part + written
-                edited = [_read(subject, terms[k].xreplace({divisor: other})) for k in chosen]
-                if other != 0 and None not in edited \
-                        and not difference + sum((new - forms[k] for k, new in zip(chosen, edited)), forms[0] * 0) * clear:
-                    return Repair(tuple(chosen), slip, [forms[k] for k in chosen], edited, [terms[k].xreplace({divisor: other}) for k in chosen])
+                changed = [terms[k].xreplace({divisor: other}) for k in chosen]
+                if other == 0 or not vanishes([wanted, *changed, *(-terms[k] for k in chosen)], subject.ring.involutions):
+                    continue
+                edited = [_read(subject, term) for term in changed]
+                if None not in edited and not difference + sum((new - forms[k] for k, new in zip(chosen, edited)), forms[0] * 0) * clear:
+                    return Repair(tuple(chosen), slip, [forms[k] for k in chosen], edited, changed)
     return None
 
 
@@ -167,11 +182,20 @@ def _read(subject, written):
         return None
 
 
-def _lost(subject, missing):
-    """The terms that a form consists of: products that the paper prints elsewhere as one unit stay
-    one (the sine of a difference), the rest falls into its parts."""
+def momenta(motion, equation):
+    """The parts of the momentum of an equation's coordinate as SymPy expressions, as the kinetic energy prints them, and all of it."""
+    if equation.kind != "motion":
+        return []
+    rate, energy = Symbol("d" + equation.of, real=True), motion.energies.kinetic(motion.s, motion.m)
+    parts = dict.fromkeys(part.diff(rate) for part in Add.make_args(expand(energy, trig=False)))
+    return [part for part in [*parts, sum(parts)] if part != 0 and not part.has(Derivative)]
+
+
+def _lost(subject, motion, missing):
+    """The terms that a form consists of: products that the paper or the energies print elsewhere as one unit stay
+    one (the sine of a difference, a sum that has a symbol), the rest falls into its parts."""
     result = []
-    for unit in subject.units():
+    for unit in [*subject.units(), *motion.units()]:
         for key in list(missing.terms):
             if key in missing.terms and (form := _multiple(missing, key, unit)):
                 result.append(form)
@@ -186,10 +210,18 @@ def _products(subject, missing):
         key, value = next(iter(rest.items()))
         (monomial, (kind, _)), parts = key, {key: rest.pop(key)}
         same = [k for k in rest if k[0] == monomial and k[1][0] == kind and abs(rest[k]) == abs(value)]
-        if len(same) == 1 and key[1] != ONE != same[0][1]:
+        if len(same) == 1 and _product(key[1], same[0][1]):
             parts[same[0]] = rest.pop(same[0])
         result.append(subject.ring.form(parts))
     return result
+
+
+def _product(first, second):
+    """Whether two harmonics are the sum and the difference of the angles of one product, or of one square: then half the angle is one
+    that is printed by whole multiples."""
+    if ONE in (first, second):
+        return all(Fraction(slope).numerator % 2 == 0 for _, slope in (second if first == ONE else first)[1])
+    return True
 
 
 def _multiple(missing, key, unit):

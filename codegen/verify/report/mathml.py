@@ -66,6 +66,9 @@ def mathml(tree, marks=None):
             to.append(f"<mrow>{inline(node.children[0])}<mo>/</mo>{inline(node.children[1])}</mrow>")
         elif node.kind == "fraction":
             to.append(f"<mfrac>{inline(node.children[0])}{inline(node.children[1])}</mfrac>")
+        elif node.kind == "rate":
+            to.append("<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>")
+            emit(node.children[0], to)
         elif node.kind == "modulus":
             to.append(f"<mrow><mo>|</mo>{inline(node.children[0])}<mo>|</mo></mrow>")
         elif node.kind == "group" and not node.text:

@@ -7,6 +7,8 @@ from ..input.printed import latex_name
 from ..input.units import Dimension
 from ..normal.algebra import Opaque
 
+# combining marks above
+OVER = {"bar": "\u0304", "hat": "\u0302", "tilde": "\u0303"}
 # combining dots above, by their number
 ACCENTS = {1: "\u0307", 2: "\u0308", 3: "\u20db"}
 
@@ -99,6 +101,7 @@ def _divisor_latex(divisor, power, count, paper):
 def plain(latex):
     """LaTeX as plain text with Greek letters and dots over the symbols."""
     text = re.sub(r"\\(d+)ot\{\\?(\w+)\}", lambda x: ENTITIES.get(x[2], x[2]) + ACCENTS[len(x[1])], latex)
+    text = re.sub(r"\\(bar|hat|tilde)\s*\{?\\?(\w+)\}?", lambda x: ENTITIES.get(x[2], x[2]) + OVER[x[1]], text)
     text = re.sub(r"_\{(\w+)\}", r"_\1", text)
     text = re.sub(r"\\frac\{(\w+)\}\{([^{}]+)\}", r"\1/\2", text)
     text = re.sub(r"\\operatorname\{(\w+)\}", r"\1", text)

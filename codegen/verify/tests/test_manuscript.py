@@ -92,6 +92,22 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} \nonumber
         self.assertEqual((result.findings, result.motions), ([], []))
         self.assertIn("difference", result.unjudged)
 
+    def test_time_derivatives_of_brackets(self):
+        self.change((r"m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x}", r"\frac{d}{dt}\left( m l^2 \dot\theta + m l \cos\theta \, \dot x \right) + m l \sin\theta \, \dot x \dot\theta"))
+        self.assertEqual(self.judged().findings, [])
+        self.change((r"m l \cos\theta \, \dot x \right)", r"m l \sin\theta \, \dot x \right)"))
+        self.assertEqual([(f.slip, f.proved) for f in self.judged().findings], [("function", True)])
+
+    def test_a_square_is_defined_and_an_undefined_symbol_is_a_finding(self):
+        self.change((r"m g l \sin\theta = 0", r"m l^2 \omega^2 \sin\theta = 0"), ("= F,\n\\end", "= G,\n\\end"))
+        path = self.folder / "paper.tex"
+        path.write_text(path.read_text(encoding="utf-8") + "\\[ \\omega^2 = g/l \\]\n% reading of G\n\\[ G = F \\]\n", encoding="utf-8")
+        table = self.folder / "symbols.csv"
+        table.write_text(table.read_text(encoding="utf-8") + "\\omega, defined, 1/s, frequency, ,\nG, undefined, N, not defined, ,\n", encoding="utf-8")
+        self.assertEqual([(f.key, f.equation) for f in self.judged().findings], [("undefined-G", "5")])
+        self.change(("undefined, N", "defined, N"), file="symbols.csv")
+        self.refused(LatexError, "a reading is of a symbol of kind undefined, and G is a defined")
+
     def test_a_definition_is_put_in(self):
         self.change((r"\left( \dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} + l^2 \dot{\theta}^2 \right)", r"\left( v_x^2 + v_y^2 \right)"),
                     ("and the force", "\\[ v_x = \\dot{x} + l \\cos\\theta \\dot\\theta \\]\n\\[ v_y = l \\sin\\theta \\dot\\theta \\] and the force"))
