@@ -51,7 +51,7 @@ def main(argv=None):
         if arguments.seeded:
             from . import seeded
 
-            results = seeded.run_all()
+            results = {**seeded.run_all(), **seeded.run_published()}
             _show((json.dumps(seeded.as_dictionary(results), indent=2) if arguments.json else seeded.as_text(results)) + "\n")
             return 0
         if not arguments.model:

@@ -8,6 +8,8 @@ from typing import Callable, List
 
 from .input.load import load
 from .input.units import parse
+from .normal.algebra import expression
+from .normal.rates import Rate
 from .judgements import JUDGEMENTS
 from .normal.subject import Subject
 from .readings.lagrange import Motion
@@ -73,6 +75,10 @@ def variants(term, equation, paper):
             lower = name[1:]
             yield "lost dot", [term.subs(names[name], sympy.Symbol(lower, real=True))]
     for factor in sympy.Mul.make_args(term):
+        if factor.func == Rate:
+            for kind, instead in variants(factor.args[0], equation, paper):
+                if kind in ("lost dot", "lost power", "sine for cosine", "swapped symbol"):
+                    yield kind, [term / factor * Rate(instead[0])]
         if factor.is_Pow and factor.exp == 2:
             yield "lost power", [term / factor.base]
         if factor.func in (sympy.sin, sympy.cos):
@@ -83,7 +89,7 @@ def variants(term, equation, paper):
             if symbol.role == "discrete":
                 yield "missing discrete state", [term / factor]
             if symbol.role == "parameter":
-                alike = [n for n, x in symbols.items() if x.role == "parameter" and n != symbol.name
+                alike = [n for n, x in symbols.items() if x.role == "parameter" and n != symbol.name and n not in paper.definitions
                          and parse(x.unit) == parse(symbol.unit)]
                 if alike:
                     later = [n for n in alike if list(symbols).index(n) > list(symbols).index(symbol.name)]
@@ -106,6 +112,8 @@ def seeds(name, paper, subject):
         for index, term in enumerate(terms):
             for kind, instead in variants(term, equation, paper):
                 yield Seed(name, number, index, kind, _replaced(terms, index, instead))
+            if term.has(Rate):
+                yield Seed(name, number, index, "rewritten (no error)", _replaced(terms, index, [expression(subject.forms[number][index])]))
         if equation.kind == "motion":
             for constant in [-1] + [getattr(subject.s, n) for n in sorted(subject.ring.involutions)]:
                 scaled = [constant * term for term in terms]
@@ -117,24 +125,31 @@ def _replaced(terms, index, instead):
     return lambda s, m: [*terms[:index], *instead, *terms[index + 1:]]
 
 
-def run(name, folder=None):
-    """All outcomes of a system; the unmutated equations must raise no objection."""
+def run(name, folder=None, every=1):
+    """All outcomes of a system, or those of every so manieth seed. Published equations are seeded with their own misprints undone;
+    then they must raise no objection."""
     case = load(folder or EXAMPLES / name, name)
     subject, motion = Subject(case.paper), Motion(case.paper, case.energies[0])
+    if folder:
+        _, subject = repaired(subject, motion)
     objections = detected(subject, motion)
     if objections:
         raise ArithmeticError(f"the correct equations of {name} are objected to by: {', '.join(objections)}")
-    return outcomes(name, subject, motion)
+    return outcomes(name, subject, motion, every)
 
 
-def outcomes(name, subject, motion):
-    """The outcomes of all seeds of a system whose equations are right."""
+def outcomes(name, subject, motion, every=1):
+    """The outcomes of the seeds of a system whose equations are right."""
     outcomes = []
-    for seed in seeds(name, subject.paper, subject):
+    for seed in list(seeds(name, subject.paper, subject))[::every]:
         equation = subject.paper.equations[seed.equation]
         mutated = Subject(subject.paper.with_equations([replace(equation, function=seed.terms, latex="")]), subject)
         before, after = subject.total(seed.equation), mutated.total(seed.equation)
         factors = subject.factors() if equation.kind == "motion" else [subject.ring.number(1)]
+        if equation.kind == "motion" and len(subject.forms[seed.equation]) == 1 and after:
+            # one term alone is zero, whatever constant it is multiplied by
+            ratio = after * before.inverse()
+            factors = [ratio] if not ratio.names() - subject.ring.first.keys() else factors
         found, whole = repaired(mutated, motion)
         slips = [(number, repair.slip) for number, list_ in found.items() for repair in list_]
         # the terms may come back in another order: a lost one at the end
@@ -147,6 +162,12 @@ def outcomes(name, subject, motion):
 def run_all():
     """Outcomes of all example systems, by name."""
     return {folder.name: run(folder.name) for folder in sorted(EXAMPLES.iterdir()) if (folder / "paper.py").is_file()}
+
+
+def run_published(every=1):
+    """Outcomes of the published systems that print energies, by name; without energies slips are located and not undone."""
+    folders = [folder for folder in sorted(PUBLISHED.iterdir()) if (folder / "paper.tex").is_file()]
+    return {f"published {folder.name}": run(folder.name, folder, every) for folder in folders if load(folder).energies}
 
 
 def table(outcomes):
@@ -163,12 +184,21 @@ def table(outcomes):
     return rows
 
 
+def summary(results):
+    """A line a system: errors, found, repaired, rewritings and those that anything is found in."""
+    lines = [f"{'system':44}{'errors':>7}{'found':>6}{'repaired':>9}{'equal':>6}{'blamed':>7}"]
+    for name, outcomes in [*results.items(), ("all systems", _all(results))]:
+        data = as_dictionary({name: outcomes})
+        lines.append(f"{name:44}{data['seeded']:7}{data['detected']:6}{data['repaired']:9}{data['rewritings']:6}{data['false_alarms']:7}")
+    return "\n".join(lines)
+
+
 def as_text(results):
     """The detection table of each system and of all."""
     head = f"{'slip':24}{'errors':>7}{'equal':>6}{'found':>6}{'blind':>6}{'repaired':>9} " + "".join(f"{n:>12}" for n in JUDGEMENTS)
     lines = ["Seeded errors: each slip put into correct equations, one at a time. 'equal': provably no change;",
              "'blind': found without the energies, by the other five judgements; 'repaired': undone and named, as the",
-             "only finding."]
+             "only finding.", "", summary(results)]
     for name, outcomes in [*results.items(), ("all systems", _all(results))]:
         lines += ["", name, head]
         rows = table(outcomes)

@@ -70,16 +70,19 @@ def _motion(subject, motion, equation, forms, reference):
     number, factors, total = equation.number, subject.factors(), subject.total(equation.number)
     scale = subject.scales.get(number, factors[0])
     moving = ["dd" + name for name in subject.paper.coordinates()]
-    if scale == factors[0]:
-        best = _beside(number, forms, reference, factors, scale)
-        if best.agree or not best.difference:
-            return best
+    plain = _beside(number, forms, reference, factors, factors[0])
+    if scale == factors[0] and (plain.agree or not plain.difference):
+        return plain
     # divided by something: by what, the energies say better than dimensions
     candidates = []
     slopes = [(total.diff(name), reference.diff(name), name) for name in moving]
+    # and what is multiplied by the same rate shows it as well
+    rates = [(total.diff(name), reference.diff(name)) for name in ("d" + name for name in subject.paper.coordinates())]
     candidates += [ratio for printed, derived, _ in slopes for ratio in scales.ratios(printed, derived)]
     candidates += [derived * printed.inverse() for printed, derived, _ in slopes if printed and derived
                    and not printed.names() & subject.ring.involutions]
+    ratios = [derived * printed.inverse() for printed, derived in rates if printed and derived and not printed.names() & subject.ring.involutions]
+    candidates += [ratio for ratio in ratios if not ratio.is_number() and not ratio.names() - subject.ring.first.keys()]
     found = [_beside(number, forms, reference, factors, ratio) for ratio in dict.fromkeys([scale, *candidates])]
     own = total.diff("dd" + equation.of)
     alone = [name for printed, _, name in slopes if printed] in (["dd" + equation.of], [])
@@ -91,7 +94,9 @@ def _motion(subject, motion, equation, forms, reference):
             ratios += [ratio.inverse() for ratio in scales.ratios(solved.numerator(), total.numerator())]
         found = [] if subject.solved else found
         found += [replace(_beside(number, forms, solved, factors, ratio), solved=True) for ratio in dict.fromkeys(ratios)]
-    return min(found, key=_left)
+    best = min(found, key=_left)
+    # where no term agrees with it nothing was divided, and what differs is a slip
+    return best if best.agree or best.solved or not best.difference or scale != factors[0] else plain
 
 
 def _left(comparison):

@@ -160,7 +160,10 @@ def definite(subject, motion=None) -> List[Violation]:
     if not subject.paper.sets or not subject.paper.motions() or subject.solved:
         return []
     zeros, _ = rest(subject.paper)
-    matrix = [[form.substitute(zeros) for form in row] for row in printed_mass(subject, symmetric=True)]
+    try:
+        matrix = [[form.substitute(zeros) for form in row] for row in printed_mass(subject, symmetric=True)]
+    except ZeroDivisionError:  # an equation was divided by what is zero at rest, or it is the pole of a coordinate
+        return []
     key = ("definite", None, str(matrix))
     if key not in subject.memo:
         # all equations together may have been multiplied by a constant

@@ -153,14 +153,46 @@ class Subject:
         return None
 
     def _uncoupled(self, found, motions, rows):
-        """The multipliers, where the mass matrix couples an equation to no other, and so says nothing of its
-        constant: that with which least is left of the Helmholtz conditions, and then a positive inertia."""
-        alone = [i for i in range(len(motions)) if not any(rows[i][j] or rows[j][i] for j in range(len(motions)) if j != i)]
-        for i in alone[len(alone) == len(motions):]:
-            number, costs = motions[i].number, []
+        """The multipliers, where the mass matrix couples some equations to no others, and so says nothing of their common
+        constant: that with which least is left of the Helmholtz conditions, and then positive inertias. What the terms in rates and
+        coordinates of another equation show that one of them was divided by counts where nothing is left with it."""
+        # an equation that has the unit of the energies keeps its constant, where another can be multiplied
+        blocks = sorted(_blocks(rows), key=lambda block: all(self.scales[motions[i].number].is_number() for i in block))
+        for block in blocks if len(blocks) > 1 else ():
+            costs = []
             for factor in self.factors():
-                self.multipliers = {**found, number: factor * self.scales[number]}
+                self.multipliers = {**found, **{motions[i].number: factor * found[motions[i].number] for i in block}}
                 left = sum(len(part.terms) for v in lagrangian(self) for part in v.message if not isinstance(part, str))
-                costs.append((left, all(value < 0 for value in (self.multipliers[number] * rows[i][i]).terms.values()), self.multipliers))
-            found = min(costs, key=lambda cost: cost[:2])[2]
+                own = [self.multipliers[motions[i].number] * rows[i][i] for i in block]
+                costs.append((left, sum(all(value < 0 for value in form.terms.values()) for form in own), self.multipliers))
+            best = min(costs, key=lambda cost: cost[:2])
+            found = best[2]
+            for ratio in self._shown(found, motions, block[0]) if best[0] and len(block) == 1 else ():
+                self.multipliers = {**found, motions[block[0]].number: ratio}
+                if not lagrangian(self):
+                    found = self.multipliers
+                    break
         return found
+
+    def _shown(self, found, motions, i):
+        """The multipliers of an equation with which a term in a rate or a coordinate is what another equation needs: monomials or
+        functions of parameters."""
+        mine, result = self.conservative(motions[i].number), []
+        for other in motions[:i] + motions[i + 1:]:
+            theirs = found[other.number] * self.conservative(other.number)
+            for d, sign in (("d", -1), ("", 1)):
+                below, above = mine.diff(d + other.of), theirs.diff(d + motions[i].of)
+                if below and above and not below.names() & self.ring.involutions:
+                    result.append(above * below.inverse() * sign)
+        # a number is a slip in a coupling, but where there is one term alone
+        alone = len(self.forms[motions[i].number]) == 1
+        return [ratio for ratio in result if not ratio.names() - self.ring.first.keys() and (alone or not ratio.is_number())]
+
+
+def _blocks(rows):
+    """The sets of equations that a mass matrix couples, as lists of their places."""
+    blocks = []
+    for i, row in enumerate(rows):
+        joined = [block for block in blocks if any(row[j] or rows[j][i] for j in block)]
+        blocks = [block for block in blocks if block not in joined] + [sorted(sum(joined, []) + [i])]
+    return blocks

@@ -4,13 +4,23 @@ import unittest
 
 from codegen.verify import seeded
 from codegen.verify.input.load import load
+from codegen.verify.normal.subject import Subject
+from codegen.verify.readings.lagrange import Motion
 from codegen.verify.report import gather as report
 from codegen.verify.report.closed import closed
+from codegen.verify.report.findings import detected, repaired
 from codegen.verify.seeded import PUBLISHED
 
 # printed terms that agree with the printed energies, of all; None: no energies are printed
-AGREE = {"acrobot": (17, 17), "cart_pole": (8, 8), "compass_gait": None, "double_pendulum": (18, 18),
-         "spring_loaded_inverted_pendulum": (8, 8)}
+AGREE = {"acrobot": (17, 17), "bead_on_rotating_wire": (5, 5), "cart_pole": (8, 8), "compass_gait": None, "double_pendulum": (18, 18),
+         # two terms of each equation cancel one another
+         "double_pendulum_momenta": (6, 8), "equal_double_pendulum": (7, 7), "furuta_pendulum": (10, 10), "particle_on_cone": (4, 4),
+         "spherical_pendulum": (3, 4), "spring_loaded_inverted_pendulum": (8, 8), "three_masses": (7, 7)}
+# what is found in them: kind, slip, whether the repaired equation is proved consistent
+FOUND = {"equal_double_pendulum": [("repair", "lost term", True)], "spherical_pendulum": [("repair", "power", True)],
+         "three_masses": [("undefined", "", False)]}
+# of the seeds, every so manieth is judged here; all of them by `verify --seeded`
+EVERY = 5
 
 
 class Published(unittest.TestCase):
@@ -19,7 +29,7 @@ class Published(unittest.TestCase):
         for name, agree in AGREE.items():
             with self.subTest(name):
                 result = report.verify(load(PUBLISHED / name), thorough=False)
-                self.assertEqual(result.findings, [])
+                self.assertEqual([(f.kind, f.slip, f.proved) for f in result.findings], FOUND.get(name, []))
                 if agree is None:
                     self.assertIn("difference", result.unjudged)
                 else:
@@ -29,16 +39,26 @@ class Published(unittest.TestCase):
     def test_each_says_where_it_was_read(self):
         for name in AGREE:
             text = (PUBLISHED / name / "paper.tex").read_text(encoding="utf-8")
-            self.assertRegex(text, r"% source: .+\n% Read in .+ commit [0-9a-f]{8}")
+            self.assertRegex(text, r"% source: .+\n% Read in (.+ commit [0-9a-f]{8}|the page of that address)")
+
+    def test_the_misprint_of_the_double_pendulum_is_shown_by_its_own_other_form(self):
+        # the source prints both equations with d/dt too: these are right, and what they give is what is proposed
+        with_momenta, without = (load(PUBLISHED / name) for name in ("double_pendulum_momenta", "equal_double_pendulum"))
+        printed = Subject(without.paper)
+        found, whole = repaired(printed, Motion(without.paper, without.energies[0]))
+        self.assertEqual([(repair.ordinals, repair.slip) for list_ in found.values() for repair in list_], [((), "lost term")])
+        right = Subject(with_momenta.paper)
+        self.assertFalse(judged := detected(right, None), judged)
+        for subject, same in ((whole, True), (printed, False)):
+            carried = [subject.ring.read(subject.s.m * subject.s.ell**2) * subject.total(n) for n in subject.paper.equations]
+            self.assertEqual([str(form) for form in carried] == [str(right.total(n)) for n in right.paper.equations], same)
 
 
 class Seeded(unittest.TestCase):
     def test_every_slip_is_found_and_undone_and_no_rewriting_is_blamed(self):
         seeds = 0
-        for name, agree in AGREE.items():
-            if agree is None:
-                continue  # without energies slips are located, not undone: test_locate.py
-            for outcome in seeded.run(name, PUBLISHED / name):
+        for name, outcomes in seeded.run_published(EVERY).items():
+            for outcome in outcomes:
                 seed = outcome.seed
                 with self.subTest(f"{name} ({seed.equation}) term {seed.term + 1}: {seed.kind}"):
                     if outcome.equivalent:
@@ -47,7 +67,7 @@ class Seeded(unittest.TestCase):
                         seeds += 1
                         self.assertTrue(outcome.found)
                         self.assertTrue(outcome.repaired, outcome.repairs)
-        self.assertGreater(seeds, 200)
+        self.assertGreater(seeds, 90)
 
 
 class Rest(unittest.TestCase):
