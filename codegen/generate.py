@@ -101,7 +101,8 @@ def generate(folder, for_tests=False, named=None, owner=""):
     constants = _extract_constants(variants)
     source = Source()
     prefix = f"dalembert_{owner + '_' if owner else ''}{name}"
-    parameters = ca.vertcat(*[p.symbol for p in models[0].parameters])
+    # The symbols of the first variant that is derived, in which constants are written.
+    parameters = ca.vertcat(*[p.symbol for p in derived[0].parameters])
     constants_symbol = source.add(f"{prefix}_constants", [("q", parameters)], constants.values)
     for variant in variants:
         for slot, function in variant.functions.items():
