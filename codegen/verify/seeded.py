@@ -70,7 +70,7 @@ def variants(term, equation, paper):
     quadratic = sum(sympy.degree(term, names[n]) for n in rates if not n.startswith("dd") and term.is_polynomial(names[n]))
     yield ("dropped velocity term" if quadratic >= 2 else "dropped term"), []
     for name in sorted(rates):
-        if term.is_polynomial(names[name]):
+        if term.is_polynomial(names[name]) and not (name[1:] in symbols and symbols[name[1:]].velocity):
             # ddx is the acceleration of x also where x itself begins with d
             lower = name[1:]
             yield "lost dot", [term.subs(names[name], sympy.Symbol(lower, real=True))]

@@ -57,6 +57,8 @@ def motion_rows(subject, conservative=True):
     is declared dissipative."""
     motions = subject.paper.motions()
     rows = [subject.multipliers[e.number] * (subject.conservative(e.number) if conservative else subject.total(e.number)) for e in motions]
+    if subject.quasi:
+        return [e.number for e in motions], subject.quasi.positions, subject.quasi.unprojected(subject.in_order(rows))
     return [e.number for e in motions], [e.of for e in motions], rows
 
 

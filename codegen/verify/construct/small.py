@@ -39,7 +39,7 @@ def special_cases(paper) -> Dict[str, Dict[str, object]]:
         if _pairs(values) not in known:
             cases.setdefault(name, values)
 
-    for name in paper.coordinates():
+    for name in paper.positions():
         if {name: 0} not in paper.special.values():
             add(f"{name} = 0 throughout", {name: 0, "d" + name: 0, "dd" + name: 0})
     parameters = [x for n, x in paper.symbols.items() if x.role == "parameter" and n not in paper.definitions]

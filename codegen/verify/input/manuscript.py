@@ -18,14 +18,15 @@ from ..normal.subject import Subject
 from ..readings.lagrange import Energies, Mathematics, Motion, sympy_namespace
 from . import transcription, units
 from .latex import Parser
-from .printed import Paper, plain_latex
+from .printed import QUASI, Paper, plain_latex
 from .tokens import Placed, error_at
 
 TEX, SYMBOLS = "paper.tex", "symbols.csv"
 
 COLUMNS = ("symbol", "kind", "unit", "meaning")
 FURTHER = ("mirror", "minimum", "value", "low", "high")
-KINDS = ("coordinate", "input", "parameter", "damping", "force", "friction", "sign", "multiplier", "defined", "undefined")
+KINDS = ("coordinate", "input", "parameter", "damping", "force", "friction", "sign", "multiplier", "defined", "undefined",
+         "quasi-velocity")
 
 DISPLAY = re.compile(r"\\begin\{(?P<name>equation|align|multline|gather|eqnarray|displaymath)(?P<star>\*?)\}(?P<body>.*?)\\end\{(?P=name)(?P=star)\}"
                      r"|\\\[(?P<bracket>.*?)\\\]|\$\$(?P<dollars>.*?)\$\$", re.DOTALL)
@@ -172,6 +173,12 @@ def _declare(paper, row):
         raise PaperError(f"a {kind} keeps its sign in the mirror image")
     if kind == "coordinate":
         paper.coordinate(name, row["unit"], row["meaning"], latex, mirror, float(row["minimum"]) if row.get("minimum") else None)
+    elif kind == "quasi-velocity":
+        def undefined(s, m):
+            raise PaperError(f"no equation of {TEX} defines the quasi-velocity {latex}, as a linear function of rates")
+
+        paper.quasi_velocity(name, row["unit"], row["meaning"], latex, mirror)(undefined)
+        return QUASI + name
     elif kind == "input":
         paper.input(name, row["unit"], row["meaning"], latex, mirror)
     elif kind == "sign":
@@ -269,6 +276,9 @@ def _sort(equation, paper, rows, printed):
         if equation.shape() != ["sum", "=", "sum"]:
             raise equation.error(f"a {role} is written as a symbol = terms")
         if role != "force":
+            if row["kind"] == "quasi-velocity" and role == "definition":
+                paper.quasi[name] = equation.right(paper)
+                return
             if row["kind"] != ("defined" if role == "definition" else "undefined"):
                 raise equation.error(f"a {role} is of a symbol of kind {'defined' if role == 'definition' else 'undefined'}, and {named} is "
                                      f"a {row['kind']}")
@@ -317,7 +327,7 @@ def _role(equation, rows):
     key = transcription._key(left) if left else None
     if left and not left.dots and key in rows and (equation.power() == 1 or rows[key]["kind"] == "defined"):
         kind = rows[key]["kind"]
-        return "definition" if kind == "defined" else "value" if kind in ("force", "friction", "parameter") else "motion"
+        return "definition" if kind in ("defined", "quasi-velocity") else "value" if kind in ("force", "friction", "parameter") else "motion"
     if left and not left.dots and key in ENERGIES:
         return ENERGIES[key]
     if left and not left.dots and key.startswith("Q_"):
@@ -333,9 +343,11 @@ def _named(equation, role, rows):
     if role == "force" and left:
         return transcription._key(left).partition("_")[2]
     if role == "motion":
-        accelerated = {transcription._key(node) for node in _nodes(equation.tree) if node.kind == "symbol" and node.dots == 2}
-        of = [key for key in accelerated if rows.get(key, {}).get("kind") == "coordinate"]
-        coordinates = [key for key, row in rows.items() if row["kind"] == "coordinate"]
+        quasi = any(row["kind"] == "quasi-velocity" for row in rows.values())
+        kind = "quasi-velocity" if quasi else "coordinate"
+        accelerated = {transcription._key(node) for node in _nodes(equation.tree) if node.kind == "symbol" and node.dots == 2 - quasi}
+        of = [key for key in accelerated if rows.get(key, {}).get("kind") == kind]
+        coordinates = [key for key, row in rows.items() if row["kind"] == kind]
         return of[0] if len(of) == 1 else coordinates[0] if len(coordinates) == 1 else ""
     return ""
 

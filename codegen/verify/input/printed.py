@@ -16,6 +16,10 @@ from typing import Callable, Dict, Optional, Tuple
 from ..errors import PaperError
 
 
+# the coordinate that belongs to the quasi-velocity u is named so with u behind it
+QUASI = "integral_of_"
+
+
 class Namespace:
     """Symbols by attribute; an unknown name is an error that names it."""
 
@@ -32,7 +36,8 @@ class Symbol:
     """A symbol that the paper uses.
 
     `role` is coordinate, input, parameter, discrete or force. `mirror` is the sign that the
-    symbol takes in the mirror image of the system. `dissipative` marks what must vanish for the
+    symbol takes in the mirror image of the system. `velocity` marks the coordinate of a quasi-velocity, which has a rate and no
+    values: its LaTeX is that of the rate. `dissipative` marks what must vanish for the
     equations to have a Lagrangian (damping constants, friction forces). `minimum` is a bound
     that every admissible state respects.
     """
@@ -46,6 +51,7 @@ class Symbol:
     dissipative: bool = False
     minimum: Optional[float] = None
     values: Tuple[int, ...] = ()
+    velocity: bool = False
 
 
 @dataclass(frozen=True)
@@ -128,7 +134,8 @@ class Paper:
     symbols that the paper uses without defining them, by what they must mean; those of them that it does
     define are `auxiliary`. `sets` are the
     parameter values of its examples; `box` bounds the coordinates and parameters for which the
-    mass matrix must be positive definite (what it does not name is taken from the sets);
+    mass matrix must be positive definite (what it does not name is taken from the sets); `quasi` are the definitions of the
+    quasi-velocities, by the coordinates that belong to them (readings/quasi.py);
     `negligible` are the parameters that the paper allows to be left out; `special` names special
     cases by what they put (a number or another symbol's name) for which symbols.
     """
@@ -145,6 +152,7 @@ class Paper:
     negligible: Tuple[str, ...] = ()
     special: Dict[str, Dict[str, object]] = field(default_factory=dict)
     releases: Dict[str, Release] = field(default_factory=dict)
+    quasi: Dict[str, Callable] = field(default_factory=dict)
 
     def _declare(self, symbol):
         """Adds a symbol. No two may have a name, a rate's name or a LaTeX in common: one would be
@@ -166,6 +174,17 @@ class Paper:
     def coordinate(self, name, unit, meaning, latex=None, mirror=1, minimum=None):
         """Declare a generalized coordinate; `minimum` where it is one-sided (an uplift)."""
         self._declare(Symbol(name, unit, meaning, "coordinate", latex or latex_name(name), mirror, minimum=minimum))
+
+    def quasi_velocity(self, name, unit, meaning, latex=None, mirror=1):
+        """Declare a quasi-velocity, which the decorated function gives as a linear function of the rates of the coordinates;
+        equations are then of quasi-velocities, and use `name` and its rate `dname`."""
+
+        def register(function):
+            self._declare(Symbol(QUASI + name, f"{unit}*s", meaning, "coordinate", latex or latex_name(name), mirror, velocity=True))
+            self.quasi[QUASI + name] = function
+            return function
+
+        return register
 
     def input(self, name, unit, meaning, latex=None, mirror=1):
         """Declare a prescribed displacement; equations use its rates `dname`, `ddname`."""
@@ -197,6 +216,7 @@ class Paper:
         return register
 
     def _equation(self, number, kind, of, latex, title, relation="", result=0, momentum=False, flips=()):
+        of = QUASI + of if QUASI + of in self.symbols else of
         if number in self.equations:
             raise PaperError(f"equation ({number}) is given twice")
         if latex:
@@ -280,8 +300,16 @@ class Paper:
                 raise PaperError(f"the box has {name} from {low} to {high}: the bounds are finite, the lower one first")
 
     def coordinates(self):
-        """Names of the coordinates, in declared order."""
-        return [name for name, symbol in self.symbols.items() if symbol.role == "coordinate"]
+        """Names of the coordinates that equations of motion are of, in declared order: where there are quasi-velocities, theirs."""
+        return [name for name, symbol in self.symbols.items() if symbol.role == "coordinate" and symbol.velocity == bool(self.quasi)]
+
+    def positions(self):
+        """Names of the coordinates that have values, in declared order."""
+        return [name for name, symbol in self.symbols.items() if symbol.role == "coordinate" and not symbol.velocity]
+
+    def shown(self, name):
+        """A coordinate's name for people: that of its quasi-velocity, where it belongs to one."""
+        return name.removeprefix(QUASI) if name in self.quasi else name
 
     def motions(self):
         """Equations of motion, in printed order."""
@@ -297,6 +325,9 @@ class Paper:
     def namespace(self, values, m):
         """The namespace `s` from values by name; undefined symbols follow from their reading."""
         known = dict(values)
+        for name in self.quasi:
+            if "d" + name in known:
+                known[self.shown(name)], known["d" + self.shown(name)] = known["d" + name], known["dd" + name]
         for name, reading in self.definitions.items():
             if name not in known:
                 known[name] = reading(Namespace(known, self.title), m)

@@ -150,6 +150,10 @@ def terms(tree, paper, s, m, latex=""):
         found = by_latex[_key(node)]
         if node.dots and found.role not in ("coordinate", "input"):
             raise error_at(latex, node.at, f"the symbol {found.name} has dots and is neither a coordinate nor an input")
+        if found.velocity:
+            if node.dots > 1:
+                raise error_at(latex, node.at, f"the quasi-velocity {paper.shown(found.name)} has {node.dots} dots; equations of motion have one at most")
+            return getattr(s, "d" * (node.dots + 1) + found.name)
         if node.dots > 2:
             raise error_at(latex, node.at, f"the symbol {found.name} has {node.dots} dots; equations of motion have two at most")
         return getattr(s, "d" * node.dots + found.name)

@@ -70,8 +70,8 @@ def rest(paper):
     """Where the system rests, as (zeros, places): all coordinates and rates at zero, but for coordinates whose
     box has no zero in it, which stay; their places are the middles of their boxes. There zero is singular, or
     no position of the system."""
-    places = {n: (low + high) / 2 for n, (low, high) in paper.box.items() if n in paper.coordinates() and not low <= 0 <= high}
-    return {p + n: 0 for n in paper.coordinates() for p in ("", "d", "dd") if p or n not in places}, places
+    places = {n: (low + high) / 2 for n, (low, high) in paper.box.items() if n in paper.positions() and not low <= 0 <= high}
+    return {p + n: 0 for n in dict.fromkeys(paper.coordinates() + paper.positions()) for p in ("", "d", "dd") if p or n not in places}, places
 
 
 @dataclass

@@ -14,6 +14,14 @@ def lagrangian(subject, motion=None) -> List[Violation]:
     motions = [] if subject.solved else subject.paper.motions()
     rows = [subject.multipliers[e.number] * subject.conservative(e.number) for e in motions]
     q = [e.of for e in motions]
+    numbers = [(e.number,) for e in motions]
+    if subject.quasi:
+        # of the coordinates' equations each is a sum of all that are printed
+        if len(motions) != len(subject.paper.coordinates()):
+            return []
+        q, numbers = subject.quasi.positions, [tuple(e.number for e in motions)] * len(motions)
+        outside = [v for e, row in zip(motions, rows) for v in _outside(subject, e, row)]
+        rows = subject.quasi.unprojected(subject.in_order(rows))
     inputs = [x.name for x in subject.paper.symbols.values() if x.role == "input"]
     chain = {}
     for name in q + inputs:
@@ -25,16 +33,15 @@ def lagrangian(subject, motion=None) -> List[Violation]:
 
     def report(i, j, what, form, *missing):
         # each equation's own terms are what is printed, before it was multiplied by its constant
-        lost = [(motions[k].number, subject.multipliers[motions[k].number].inverse() * f) for k, f in missing]
-        violations.append(Violation("lagrangian", (motions[i].number, motions[j].number), (), [what, form], lost))
+        lost = [] if subject.quasi else [(motions[k].number, subject.multipliers[motions[k].number].inverse() * f) for k, f in missing]
+        violations.append(Violation("lagrangian", numbers[i] + numbers[j] if not subject.quasi else numbers[i], (), [what, form], lost))
 
     def acceleration(k):
         return subject.ring.symbol("dd" + q[k])
 
-    for e, row in zip(motions, rows):
-        violations += _outside(subject, e, row)
+    violations += outside if subject.quasi else [v for e, row in zip(motions, rows) for v in _outside(subject, e, row)]
     for i, j in product(range(len(q)), repeat=2):
-        number_i, number_j = motions[i].number, motions[j].number
+        number_i, number_j = ("that of " + q[k] if subject.quasi else motions[k].number for k in (i, j))
         for name in q:
             if a[i][j].diff("dd" + name):
                 report(i, j, f"({number_i}) is not linear in the accelerations: ", a[i][j])

@@ -9,6 +9,7 @@ from ..errors import NotInClass, PaperError
 from ..input import units
 from ..judgements.helmholtz import lagrangian
 from ..readings.lagrange import Mathematics, ring_of, sympy_namespace
+from ..readings.quasi import Quasi
 from ..repairs.edits import Editor
 from .scales import scales
 
@@ -27,6 +28,7 @@ class Subject:
         self.dimension = base.dimension if base else units.table(paper.symbols.values())
         self.editor = base.editor if base else Editor(paper)
         self.known = base.known if base else {}
+        self.quasi = base.quasi if base else Quasi(paper, self.ring, self.s, self.m) if paper.quasi else None
         self.expressions, self.forms, self.memo = {}, {}, {}
         kept = set()
         for number, equation in paper.equations.items():
@@ -112,6 +114,11 @@ class Subject:
         one = self.ring.number(1)
         return [one, -one] + [sign * self.ring.symbol(n) for n in sorted(self.ring.involutions) for sign in (one, -one)]
 
+    def in_order(self, rows):
+        """What belongs to the equations of motion, in the order of the coordinates; nothing is zero."""
+        of = {e.of: row for e, row in zip(self.paper.motions(), rows)}
+        return [of.get(name, self.ring.number(0)) for name in self.paper.coordinates()]
+
     def _solved(self):
         """Whether the equations of motion are solved for the accelerations: none has that of another, and there is a divisor, a
         sum that depends on the coordinates. A mass matrix is then not what they show."""
@@ -172,7 +179,17 @@ class Subject:
                 if not lagrangian(self):
                     found = self.multipliers
                     break
-        return found
+        return self._positive(found, motions, rows, blocks) if len(blocks) > 1 else found
+
+    def _positive(self, found, motions, rows, blocks):
+        """The multipliers with another sign for what has a negative inertia, where as little is left of the Helmholtz conditions."""
+        negative = [motions[i].number for block in blocks for i in block if
+                    all(value < 0 for j in block for value in (found[motions[j].number] * rows[j][j]).terms.values())]
+        turned = {**found, **{number: -found[number] for number in negative}}
+        self.multipliers = found
+        left = len(lagrangian(self))
+        self.multipliers = turned
+        return turned if negative and len(lagrangian(self)) <= left else found
 
     def _shown(self, found, motions, i):
         """The multipliers of an equation with which a term in a rate or a coordinate is what another equation needs: monomials or

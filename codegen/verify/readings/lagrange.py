@@ -8,6 +8,7 @@ from ..input.printed import Symbol, latex_name
 from ..normal.algebra import Ring
 from ..normal.intervals import intervals, signs
 from ..normal.rates import Rate
+from .quasi import Quasi
 from .solved import solved
 
 
@@ -96,12 +97,18 @@ class Motion:
         self.s = sympy_namespace(paper, energies.extra)
         self.m = Mathematics()
         self.coordinates = paper.coordinates() + list(energies.extra)
-        moving = self.coordinates + [x.name for x in paper.symbols.values() if x.role == "input"]
+        moving = list(dict.fromkeys(self.coordinates + paper.positions() + [x.name for x in paper.symbols.values() if x.role == "input"]))
         self.chain = {n: "d" + n for n in moving}
         self.chain.update({"d" + n: "dd" + n for n in moving})
         self.kinetic = self._read(energies.kinetic)
         self.potential = self._read(energies.potential)
         self.dissipation = self._read(energies.dissipation) if energies.dissipation else self.ring.number(0)
+        self.quasi = Quasi(paper, self.ring, self.s, self.m) if paper.quasi else None
+        if self.quasi and energies.extra:
+            raise PaperError(f"the energies '{energies.name}' have a coordinate that the paper has not, and the paper has quasi-velocities")
+        if self.quasi:
+            self._moved = self.quasi.in_positions(self.kinetic)
+            self.kinetic, self.dissipation = self.quasi.in_quasi(self.kinetic), self.quasi.in_quasi(self.dissipation)
         self.held = {p + n: 0 for n in energies.extra for p in ("", "d", "dd")}
         self._residuals, self._solved, self._units = {}, {}, None
         self._check(moving)
@@ -115,7 +122,7 @@ class Motion:
             if found := sorted(form.names() & names):
                 raise PaperError(f"the {what} of '{self.energies.name}' contains {', '.join(found)}")
         for name in self.energies.forces:
-            if name not in self.coordinates:
+            if name not in [*self.coordinates, *self.paper.positions()]:
                 raise PaperError(f"'{self.energies.name}' has a force on '{name}', which is no coordinate")
         for number in [*self.energies.references, *self.energies.scales]:
             if number not in self.paper.equations:
@@ -147,8 +154,14 @@ class Motion:
         """d/dt dT/dv - dT/dq + dV/dq + dD/dv - Q of a coordinate, which is its reaction where it
         is held; the further coordinates of the energies at zero."""
         if name not in self._residuals:
-            form = self.kinetic.diff("d" + name).rate(self.chain) - self.kinetic.diff(name)
-            form += self.potential.diff(name) + self.dissipation.diff("d" + name)
+            if self.quasi:
+                rows = [self._moved.diff("d" + x).rate(self.chain) - self._moved.diff(x) + self.potential.diff(x) for x in self.quasi.positions]
+                for k, x in enumerate(self.quasi.positions):
+                    rows[k] -= self._read(self.energies.forces[x]) if x in self.energies.forces else 0
+                form = self.quasi.projected(name, rows)
+            else:
+                form = self.kinetic.diff("d" + name).rate(self.chain) - self.kinetic.diff(name) + self.potential.diff(name)
+            form += self.dissipation.diff("d" + name)
             if name in self.energies.forces:
                 form -= self._read(self.energies.forces[name])
             self._residuals[name] = form.substitute(self.held)

@@ -39,6 +39,7 @@ class Editor:
             if symbol.role in ("coordinate", "input"):
                 for k, name in enumerate(rates(symbol)):
                     self.levels[name] = (symbol.name, k)
+        self.still = {n for n, x in paper.symbols.items() if x.velocity}
         # symbols of one unit can be taken for one another, a coordinate for a coordinate or an input
         self.alike, kinds = {}, {}
         for name, symbol in paper.symbols.items():
@@ -137,7 +138,7 @@ class Editor:
     def _dotted(self, name):
         """The symbol with one dot less and one more, as far as there are such."""
         base, level = self.levels[name]
-        return [_symbol("d" * k + base) for k in (level + 1, level - 1) if 0 <= k <= 2]
+        return [_symbol("d" * k + base) for k in (level + 1, level - 1) if (base in self.still) <= k <= 2]
 
 
 def _symbol(name):

@@ -21,7 +21,7 @@ class _Writer:
     def __init__(self, report):
         self.report, self.paper, self.printed = report, report.case.paper, report.printed
         self.motion = report.motions[0] if report.motions else None
-        self.moving = [n for n, x in self.paper.symbols.items() if x.role in ("coordinate", "input")]
+        self.moving = [n for n, x in self.paper.symbols.items() if x.role in ("coordinate", "input") and not x.velocity]
         self.extra = list(self.motion.energies.extra) if self.motion else []
         self.let, self.claims, self.without = {}, [], {}
 
@@ -53,10 +53,13 @@ class _Writer:
 
     def _energies(self):
         """T, V and D of the reading, as they are declared, and its further forces."""
+        if self.printed.quasi:
+            for name, form in self.printed.quasi.defined.items():
+                self.let.update({"d" + name: str(expression(form)), "dd" + name: f"rate({expression(form)})"})
         if self.motion:
             energies, s, m = self.motion.energies, self.motion.s, self.motion.m
-            self.let = {"T__": str(energies.kinetic(s, m)), "V__": str(energies.potential(s, m)),
-                        "D__": str(energies.dissipation(s, m)) if energies.dissipation else "0"}
+            self.let.update({"T__": str(energies.kinetic(s, m)), "V__": str(energies.potential(s, m)),
+                        "D__": str(energies.dissipation(s, m)) if energies.dissipation else "0"})
             self.let.update({f"Q__{n}": str(f(s, m)) for n, f in energies.forces.items()})
 
     def _rows(self):
@@ -66,8 +69,12 @@ class _Writer:
             self.let[f"row__{k}"] = str(expression(row))
 
     def derivation(self, name):
-        """Lagrange's equation of a coordinate as text."""
+        """Lagrange's equation of a coordinate as text; of a quasi-velocity, those of the coordinates times their slopes by it."""
         force = f" - Q__{name}" if f"Q__{name}" in self.let else ""
+        if name in self.paper.quasi:
+            quasi = self.printed.quasi
+            slopes = [row[quasi.names.index(name)] for row in quasi.b]
+            return " + ".join(f"({expression(b)})*({self.derivation(x)})" for b, x in zip(slopes, quasi.positions)) + force
         return f"rate(diff(T__, d{name})) - diff(T__, {name}) + diff(V__, {name}) + diff(D__, d{name}){force}"
 
     def _reference(self, number):
@@ -97,7 +104,7 @@ class _Writer:
         comparison, weight, derived = found
         left = str(expression(comparison.difference))
         self._claim({"equation": number}, "equal", f"({weight})*({_sum(self.printed.expressions[number])})", f"{derived} + {left}")
-        for k in comparison.agree:
+        for k in comparison.agree if not self.paper.quasi else ():
             term = f"({weight})*({self.printed.expressions[number][k]})"
             self._claim({"equation": number, "term": k + 1}, "alike", term, derived)
             self._claim({"equation": number, "term": k + 1}, "apart", term, left)
@@ -124,7 +131,7 @@ class _Writer:
             self._impact(about, f)
         elif f.key.startswith("unit-"):
             self._claim(about, "different", *[self._printed_unit(x) for x in (f.printed[0], f.consistent[0])])
-        elif f.key == "neglect":
+        elif f.key == "neglect" and not self.paper.quasi:
             self._neglect(about)
         elif f.kind == "principle":
             self._split(about, f)
@@ -165,7 +172,7 @@ class _Writer:
             signs = [self.printed.forms[number][k] for k in v.terms]
             for term in terms[:len(signs)]:
                 self._claim(about, "different", f"mirror({term})", f"({self._parity(number, equation)})*({term})")
-        elif v.judgement == "lagrangian" and len(rows) == 2 and len(v.message) == 2:
+        elif v.judgement == "lagrangian" and len(rows) == 2 and len(v.message) == 2 and not self.paper.quasi:
             (i, a), (j, b) = rows
             text = None
             if "mass matrix is not symmetric" in words:

@@ -30,6 +30,8 @@ def _latex(name, paper):
         return f"|{inner}|" if name.function == "Abs" else rf"\operatorname{{sign}}({inner})"
     dots, base = _split(name, paper)
     latex = paper.symbols[base].latex if base in paper.symbols else latex_name(base)
+    if base in paper.symbols and paper.symbols[base].velocity:
+        dots = max(dots - 1, 0)
     if dots:
         head, _, index = latex.partition("_")
         latex = rf"\{'d' * dots}ot{{{head}}}" + (f"_{index}" if index else "")

@@ -73,6 +73,20 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} \nonumber
         self.change((r"m g l \sin\theta = 0 \tag", r"m g \sin\theta = 0 \tag"))
         self.assertEqual([(f.equation, f.slip, f.proved) for f in self.judged().findings], [("A.1", "factor lost", True)])
 
+    def test_a_sign_inside_a_sine_as_rocking_blocks_are_printed(self):
+        block = r"""\[ T = \frac12 I_0 \dot\theta^2 \] \[ V = m g R \cos(\alpha \operatorname{sgn}\theta - \theta) \]
+\[ Q_\theta = - m R \ddot u_g \cos(\alpha \operatorname{sgn}\theta - \theta) \]
+\[ I_0 \ddot\theta + m g R \sin(\alpha \operatorname{sgn}(\theta) - \theta) = - m R \ddot u_g \cos[\alpha \operatorname{sgn}\theta - \theta] \]
+"""
+        (self.folder / "paper.tex").write_text(block, encoding="utf-8")
+        (self.folder / "symbols.csv").write_text("symbol, kind, unit, meaning, mirror\n\\theta, coordinate, rad, angle, -1\nu_g, input, m, ground, -1\n"
+                                                 "I_0, parameter, kg*m^2, inertia,\nm, parameter, kg, mass,\ng, parameter, m/s^2, gravity,\n"
+                                                 "R, parameter, m, half diagonal,\n\\alpha, parameter, rad, slenderness,\n", encoding="utf-8")
+        result = self.judged()
+        self.assertEqual((result.findings, [n for n in result.unjudged if n != "galilei"]), ([], ["definite"]))
+        self.change((r"\sin(\alpha \operatorname{sgn}(\theta) - \theta)", r"\sin(\alpha \operatorname{sgn}(\theta) + \theta)"))
+        self.assertEqual([(f.slip, f.proved) for f in self.judged().findings], [("sign", True)])
+
     def test_a_slip_in_it_is_found_and_named(self):
         for old, new, slip in ((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot", "sign"), (r"m l \cos\theta \, \ddot{x}", r"m l \sin\theta \, \ddot{x}",
                                "function"), ("+ c \\dot{x} = F", "+ 2 c \\dot{x} = F", "number"), ("+ c \\dot{x} = F", "+ c \\ddot{x} = F", "dot"),
