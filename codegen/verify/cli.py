@@ -1,6 +1,6 @@
 """`python -m codegen verify`: judge the hand-written equations of a model.
 
-    verify MODEL [--models DIR] [--json] [--html FILE] [--program FILE] [--quick]
+    verify MODEL [--models DIR] [--json] [--html FILE] [--latex FILE] [--certificate FILE] [--program FILE] [--quick]
                  [--fail-on misprint|finding [--waivers FILE]]
     verify --seeded [--json]
 
@@ -31,6 +31,7 @@ def parser():
     result.add_argument("--models", default="models", help="folder that holds the model folders")
     result.add_argument("--json", action="store_true", help="print the report as JSON")
     result.add_argument("--html", metavar="FILE", help="also write a self-contained HTML page")
+    result.add_argument("--latex", metavar="FILE", help="also write a file for pdflatex")
     result.add_argument("--quick", action="store_true", help="skip the proof over the whole box of coordinates, and simulations")
     result.add_argument("--program", metavar="FILE", help="the program dalembert: simulate what each slip does to the scenes")
     result.add_argument("--fail-on", choices=sorted(FAILS), help="exit with status 1 where there is a misprint (a slip that is repaired or "
@@ -74,7 +75,7 @@ def _show(text):
 
 def _judge(arguments):
     """Judge one model and write the report."""
-    from .report import certificate, effects, gather as report, html, machine, text
+    from .report import certificate, effects, gather as report, html, machine, tex, text
     from .input.load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
@@ -88,9 +89,9 @@ def _judge(arguments):
     if arguments.program and case.effects and not arguments.quick:
         simulated = effects.simulate(case.effects, result.case.corrections, arguments.program)
         effects.attach(result.findings, result.case.corrections, simulated)
-        result.variants = simulated.variants
+        result.simulated = simulated
     _show(machine.as_json(result) if arguments.json else text.as_text(result))
-    for name, write in ((arguments.html, html.as_html), (arguments.certificate, certificate.as_certificate)):
+    for name, write in ((arguments.html, html.as_html), (arguments.latex, tex.as_latex), (arguments.certificate, certificate.as_certificate)):
         if not name:
             continue
         path = Path(name)

@@ -22,6 +22,9 @@ pub struct VerifyArguments {
     /// Also write a page with the equations typeset and the differing terms marked
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Also write a LaTeX file of it, for pdflatex
+    #[arg(long, value_name = "FILE")]
+    latex: Option<PathBuf>,
     /// Also write claims that the script check_certificate.py checks again, with SymPy alone
     #[arg(long, value_name = "FILE")]
     certificate: Option<PathBuf>,
@@ -35,7 +38,7 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "FILE", requires = "fail_on")]
     waivers: Option<PathBuf>,
     /// Instead, put errors into correct equations and show which judgement finds which
-    #[arg(long, conflicts_with_all = ["model", "html", "certificate", "quick", "fail_on"])]
+    #[arg(long, conflicts_with_all = ["model", "html", "latex", "certificate", "quick", "fail_on"])]
     seeded: bool,
 }
 
@@ -75,6 +78,7 @@ pub fn verify(arguments: &VerifyArguments) -> Result {
     }
     for (option, file) in [
         ("--html", &arguments.html),
+        ("--latex", &arguments.latex),
         ("--certificate", &arguments.certificate),
     ] {
         if let Some(file) = file {

@@ -8,7 +8,14 @@ const EXAMPLE: &str = "codegen/verify/examples/double_pendulum";
 fn equations_are_judged_and_a_page_is_written_where_the_command_was_given() {
     let home = tempfile::tempdir().unwrap();
     let example = project().join(EXAMPLE).display().to_string();
-    let pages = ["--html", "report.html", "--certificate", "claims.json"];
+    let pages = [
+        "--html",
+        "report.html",
+        "--latex",
+        "report.tex",
+        "--certificate",
+        "claims.json",
+    ];
     let arguments = [&["verify", &example, "--quick"][..], &pages].concat();
     // A foreign environment must not reach the interpreter of the build.
     let assert = dalembert(home.path())
@@ -18,7 +25,10 @@ fn equations_are_judged_and_a_page_is_written_where_the_command_was_given() {
         .assert()
         .code(0);
     assert!(!assert.get_output().stdout.is_empty());
-    assert_eq!(names(home.path()), ["claims.json", "report.html"]);
+    assert_eq!(
+        names(home.path()),
+        ["claims.json", "report.html", "report.tex"]
+    );
 }
 
 #[test]

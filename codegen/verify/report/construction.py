@@ -1,7 +1,5 @@
 """What is constructed from equations, in words and formulas that all forms of the report share."""
 
-from .show import form_text
-
 
 def construction_parts(constructed, paper):
     """[(words, form or None)]: T and V, balances, conserved quantities, small motions."""
@@ -38,8 +36,3 @@ def _cyclic(conserved, constructed):
     """Whether a conserved quantity is the momentum of a cyclic coordinate: its multipliers are constants of one equation."""
     used = [f for f in conserved.factors if f]
     return conserved.degree == 1 and len(used) == 1 and used[0].is_number() and bool(constructed.momenta)
-
-
-def construction_lines(constructed, paper):
-    """The same as text."""
-    return [words + (form_text(form, paper) if form is not None else "") for words, form in construction_parts(constructed, paper)]

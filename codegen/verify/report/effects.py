@@ -19,55 +19,72 @@ from ..errors import PaperError
 class Effects:
     """How the effect of a slip is simulated.
 
-    `scenes` are scene files relative to the project; `corrected` the overrides that select the
+    `scenes` are scenes by name: a file relative to the project, and overrides of what it says. In each, the corrected equations
+    must run to the end, and all that a slip can change should happen. `corrected` are the overrides that select the
     corrected equations, and `slip` the parameter that leaves out one correction, by its number in
-    the list of corrections (0: none). `variants` are overrides by name, for the comparison of the
+    the list of corrections (0: none). `tighter` are overrides with which the corrected equations run once more: what differs
+    between the two runs is too little to be an effect. `variants` are overrides by name, for the comparison of the
     equations as a whole. `quantities` are places in the summary of a run by name.
     """
 
-    scenes: Tuple[str, ...]
+    scenes: Dict[str, Tuple[str, ...]]
     corrected: Tuple[str, ...]
     slip: str
+    tighter: Tuple[str, ...]
     variants: Dict[str, Tuple[str, ...]]
     quantities: Dict[str, Tuple[str, ...]]
 
 
 @dataclass
 class Simulated:
-    """Results of the runs: by scene and variant, and by scene and number of the slip."""
+    """Results of the runs: by scene and variant; by scene and number of the slip (0: none); and by scene, `again`, those of the
+    corrected equations at the tighter settings."""
 
     variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
     slips: Dict[str, List[dict]] = field(default_factory=dict)
+    again: Dict[str, dict] = field(default_factory=dict)
 
 
-def simulate(effects, corrections, program):
-    """Runs all scenes in all variants and with each slip."""
+def simulate(effects, corrections, program, progress=lambda done, total: None):
+    """Runs all scenes in all variants and with each slip; `progress` is told how many runs are done."""
     jobs = []
-    for scene in effects.scenes:
-        jobs += [(scene, name, overrides) for name, overrides in effects.variants.items()]
-        jobs += [(scene, number, effects.corrected + (f"parameters.{effects.slip}={number}",))
-                 for number in range(len(corrections) + 1)]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = list(pool.map(lambda job: run(program, job[0], job[2], effects.quantities), jobs))
+    for scene, (file, *overrides) in effects.scenes.items():
+        for name, chosen in effects.variants.items():
+            jobs.append((scene, name, file, (*overrides, *chosen)))
+        jobs.append((scene, None, file, (*overrides, *effects.corrected, *effects.tighter)))
+        for number in range(len(corrections) + 1):
+            jobs.append((scene, number, file, (*overrides, *effects.corrected, f"parameters.{effects.slip}={number}")))
     simulated = Simulated()
-    for (scene, which, _), result in zip(jobs, results):
-        name = os.path.splitext(os.path.basename(scene))[0]
-        if isinstance(which, str):
-            simulated.variants.setdefault(name, {})[which] = result
-        else:
-            simulated.slips.setdefault(name, []).append(result)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = pool.map(lambda job: run(program, job[2], job[3], effects.quantities), jobs)
+        for done, ((scene, which, _, _), result) in enumerate(zip(jobs, results), 1):
+            progress(done, len(jobs))
+            if which is None:
+                simulated.again[scene] = result
+            elif isinstance(which, str):
+                simulated.variants.setdefault(scene, {})[which] = result
+            else:
+                simulated.slips.setdefault(scene, []).append(result)
     return simulated
 
 
 def attach(findings, corrections, simulated):
-    """Fills in the effects of the findings that a correction describes."""
+    """Fills in the effects of the findings that a correction describes, in the scenes whose corrected equations run."""
     numbers = {correction.key: k for k, correction in enumerate(corrections, 1)}
     for finding in findings:
         if finding.key in numbers:
             finding.effects = {
-                scene: {"without": results[0], "with": results[numbers[finding.key]]}
-                for scene, results in simulated.slips.items()
+                scene: {"without": results[0], "with": (found := results[numbers[finding.key]]),
+                        "changes": changes(results[0], simulated.again[scene], found)}
+                for scene, results in simulated.slips.items() if "stopped" not in results[0]
             }
+
+
+def changes(right, again, slipped):
+    """The quantities that a slip changes by more than a tighter run does; of a run that stops early, that it does."""
+    if "stopped" in slipped:
+        return ["stopped"]
+    return [name for name, value in slipped.items() if abs(value - right[name]) > abs(again[name] - right[name])]
 
 
 def quantity(summary, path):

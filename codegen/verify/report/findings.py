@@ -12,7 +12,6 @@ from ..judgements.comparison import compare
 from ..normal.subject import Subject
 from ..repairs import search as repairs
 from ..repairs.locate import locate
-from .show import message_text
 
 
 # what findings are, beside the kinds of corrections
@@ -28,7 +27,7 @@ IMPACT = "Impact laws: bound, energy and momenta"
 
 @dataclass
 class Finding:
-    """One slip, or one objection that no slip explains. `kind` is that of a correction or one of `FURTHER`. `printed` and `consistent` are forms (terms) or words, `ordinals`
+    """One slip, or one objection that no slip explains. `kind` is that of a correction or one of `FURTHER`. `printed` and `consistent` are forms (terms) or words, `reason` a sentence (words.py), `ordinals`
     those of the printed terms (from 0); `proved` says whether the equation raises no objection
     with all that is called consistent; `slip` is a kind of slip (edits.SLIPS) or empty;
     `judgements` the names of those that find it when everything else is right; `order` the lowest
@@ -42,7 +41,7 @@ class Finding:
     key: str
     equation: str
     kind: str
-    reason: str
+    reason: list
     ordinals: Tuple[int, ...]
     printed: list
     consistent: list
@@ -111,7 +110,7 @@ def from_corrections(case, motion, printed, whole, violations):
         ordinals = tuple(range(len(printed.forms[number]))) if correction.whole else tuple(k - 1 for k in correction.terms or {})
         change = slipped.total(number) - right.total(number)
         findings.append(Finding(
-            correction.key, number, correction.kind, correction.reason, ordinals,
+            correction.key, number, correction.kind, [correction.reason], ordinals,
             [printed.forms[number][k] for k in ordinals], consistent_terms(correction, whole), judged_right(whole, motion, violations, number),
             detected(slipped, motion, violations), change.order(case.paper.coordinates()),
             vanishes=special_cases(case.paper, change), slipped=slipped.expressions[number]))
@@ -140,7 +139,7 @@ def from_repairs(subject, motion, found, whole, violations):
             slipped = _with(subject, {**found, number: [r for r in list_ if r is not repair]})
             change = slipped.total(number) - whole.total(number)
             findings.append(Finding(
-                f"{number}-{k}", number, "repair", "", repair.ordinals, repair.printed, repair.consistent, proved,
+                f"{number}-{k}", number, "repair", [], repair.ordinals, repair.printed, repair.consistent, proved,
                 detected(slipped, motion, violations), change.order(subject.paper.coordinates()), repair.slip,
                 special_cases(subject.paper, change), slipped=slipped.expressions[number]))
     return findings
@@ -171,7 +170,9 @@ def from_locations(subject):
 
 def _objection(key, subject, violations, equations, terms, possible=()):
     """A finding that is one objection, or several with one place."""
-    reason = "; ".join(f"{TITLES[v.judgement]}: {message_text(v.message, subject.paper)}" for v in violations)
+    reason = []
+    for v in violations:
+        reason += ["; "] * bool(reason) + [f"{TITLES[v.judgement]}: ", *v.message]
     judgements = list(dict.fromkeys(v.judgement for v in violations))
     printed = [subject.forms[equations[0]][k] for k in terms]
     return Finding(key, ", ".join(dict.fromkeys(equations)), "objection", reason, terms, printed, [], False, judgements, None,

@@ -1,6 +1,7 @@
 """The report of a verification: gathered once, then written as text (text.py), JSON (machine.py), HTML (html.py) or
 LaTeX (tex.py), which say the same."""
 
+import hashlib
 from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional
 
@@ -18,6 +19,7 @@ from ..normal.subject import Subject
 from ..readings.ranking import Reading, ranked
 from . import principles
 from .findings import Finding, consistent_terms, from_corrections, from_locations, from_objections, from_repairs, judge, repaired
+from .origin import origin
 
 
 @dataclass
@@ -54,7 +56,8 @@ class Report:
     those of the first; `corrected` has all corrections of the model folder (`by_hand`) for it, or
     the repairs found here; `unjudged` says why a judgement had nothing to judge by, `unreferenced`
     which equations the energies say nothing about; `constructed` what follows from the equations as printed and as
-    corrected; `impacts` the impact laws by equation and reading, `splits` what is left over where masses are split, by finding."""
+    corrected; `impacts` the impact laws by equation and reading, `splits` what is left over where masses are split, by finding;
+    `simulated` the runs with each slip (effects.py); `version`, `date` and `files`, {name: SHA-256}, say what judged what, and when."""
 
     case: object
     printed: object
@@ -70,10 +73,17 @@ class Report:
     definiteness: List[Definiteness] = field(default_factory=list)
     numbers: List = field(default_factory=list)
     transcribed: List[str] = field(default_factory=list)
-    variants: Dict[str, Dict[str, dict]] = field(default_factory=dict)
+    simulated: object = None
     constructed: List[Constructed] = field(default_factory=list)
     impacts: Dict = field(default_factory=dict)
     splits: Dict = field(default_factory=dict)
+    version: str = ""
+    date: str = ""
+    files: Dict[str, str] = field(default_factory=dict)
+
+    def digest(self):
+        """SHA-256 of the lines that `sha256sum` writes of the input files, in the order of their names."""
+        return hashlib.sha256("".join(f"{digest}  {name}\n" for name, digest in self.files.items()).encode()).hexdigest()
 
     @property
     def motions(self):
@@ -110,6 +120,7 @@ def verify(case, thorough=True):
     findings += from_locations(whole) if blind else from_objections(whole, after)
     report = Report(case, printed, whole, bool(case.corrections), readings, comparisons, violations, after, findings,
                     unjudged(printed, first), unreferenced(printed, first))
+    report.version, report.date, report.files = origin(case)
     report.transcribed = transcription.proved(printed)
     report.numbers = check(case.numbers)
     if paper.motions() and not printed.solved:

@@ -6,7 +6,7 @@ from ..judgements import TITLES
 from .closed import closed
 from .construction import construction_parts
 from .show import form_latex, form_text, message_text
-from .text import undefined_symbols
+from .words import hidden, undefined_symbols
 
 
 # raised when a key changes its meaning or goes
@@ -30,7 +30,9 @@ def as_dictionary(report):
         return {"text": part} if isinstance(part, str) else {"text": form_text(part, paper), "latex": form_latex(part, paper)}
 
     return {
-        "schema": SCHEMA, "model": report.case.name, "title": paper.title, "source": paper.source,
+        "schema": SCHEMA, "version": report.version, "date": report.date,
+        "input": {"sha256": report.digest() if report.files else None, "files": report.files},
+        "model": report.case.name, "title": paper.title, "source": paper.source,
         "transcription_proved": report.transcribed,
         "agreeing_terms": sum(len(c.agree) for c in first.values()),
         "terms": sum(c.terms() for c in first.values()),
@@ -60,7 +62,7 @@ def as_dictionary(report):
             "objections_after_correction": len(report.corrected_violations[name]),
         } for name, title in TITLES.items()},
         "findings": [{
-            "id": f.key, "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": f.reason,
+            "id": f.key, "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": message_text(f.reason, paper),
             "term": [k + 1 for k in f.ordinals], "printed": [show(x) for x in f.printed],
             "consistent": None if not f.consistent and f.kind in ("objection", "principle") else [show(x) for x in f.consistent], "proved": f.proved,
             "possible": [{"equation": n, "term": [k + 1 for k in r.ordinals], "slip": r.slip,
@@ -78,7 +80,9 @@ def as_dictionary(report):
             "can_rise": {"case": i.rises[0], "rates": i.rises[1]} if i.rises else False if i.rises is None else None,
             "impulses": {n: show(form) for n, form in i.impulses.items()}, "goes_through_its_bound": i.penetrates,
         } for (number, name), i in report.impacts.items()],
-        "variants": report.variants or None,
+        "variants": report.simulated.variants if report.simulated else None,
+        "effects": report.simulated and {"corrected": {scene: found[0] for scene, found in report.simulated.slips.items()},
+                                         "corrected_tighter": report.simulated.again, "show_nowhere": hidden(report)},
         "definiteness": [{
             "name": d.name, "determinant_at_rest": str(closed(d.at_rest)),
             "neglected": None if d.neglected is None else str(closed(d.neglected)) if d.neglected else "0",

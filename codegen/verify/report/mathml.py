@@ -5,6 +5,8 @@ from html import escape
 from ..input.latex import ENTITIES, Parser
 
 BREAK = object()
+# where a formula inside a sentence may go on in the next line
+SPLIT = object()
 
 # what stands over a symbol
 OVER = {"bar": "¯", "overline": "¯", "hat": "^", "widehat": "^", "tilde": "~", "widetilde": "~"}
@@ -21,9 +23,8 @@ def dotted(body, count):
     return f'<mover aria-label="{label}">{body}<mrow>{dots}</mrow></mover>'
 
 
-def mathml(tree, marks=None):
-    """MathML of a tree; `marks` gives a CSS class by ordinal."""
-    marks = marks or {}
+def _parts(tree, marks):
+    """The MathML of a tree in parts, with BREAK and SPLIT between."""
     out = []
 
     def symbol(node):
@@ -43,7 +44,7 @@ def mathml(tree, marks=None):
         """MathML of a node without line breaks."""
         inner = []
         emit(node, inner)
-        return "<mrow>" + "".join(part for part in inner if part is not BREAK) + "</mrow>"
+        return "<mrow>" + "".join(part for part in inner if part not in (BREAK, SPLIT)) + "</mrow>"
 
     def call(node, name):
         """A function and its argument."""
@@ -79,7 +80,9 @@ def mathml(tree, marks=None):
             emit(node.children[0], to)
             to.append(f'<mo stretchy="false">{dict(zip("([{", ")]}"))[left]}</mo>')
         elif node.kind == "sum":
-            for product in node.children:
+            for k, product in enumerate(node.children):
+                if k:
+                    to.append(SPLIT)
                 if product.broken:
                     to.append(BREAK)
                 mark = marks.get(product.ordinal) if product.ordinal is not None else None
@@ -90,7 +93,7 @@ def mathml(tree, marks=None):
                     if factor.lead:
                         inside.append(f"<mo>{factor.lead}</mo>")
                     emit(factor, inside)
-                to += [f'<mrow class="{mark}">' + "".join(x for x in inside if x is not BREAK) + "</mrow>"] if mark else inside
+                to += [f'<mrow class="{mark}">' + "".join(x for x in inside if x not in (BREAK, SPLIT)) + "</mrow>"] if mark else inside
         else:
             text = node.text[6:-1] if node.kind == "text" else node.lead
             space = '<mspace width="0.5em"/>'
@@ -100,20 +103,27 @@ def mathml(tree, marks=None):
         if child.kind != "sum" and child.broken:
             out.append(BREAK)
         emit(child, out)
-    rows, row = [], []
-    for part in out:
-        if part is BREAK:
-            if row:
-                rows.append(row)
-            row = []
-        else:
-            row.append(part)
-    rows.append(row)
+    return out
+
+
+def mathml(tree, marks=None):
+    """MathML of a tree in the lines in which it is printed; `marks` gives a CSS class by ordinal."""
+    rows = [[]]
+    for part in _parts(tree, marks or {}):
+        if part is BREAK and rows[-1]:
+            rows.append([])
+        elif part not in (BREAK, SPLIT):
+            rows[-1].append(part)
     cells = "".join(f'<mtr><mtd style="text-align:left">{"".join(r)}</mtd></mtr>' for r in rows)
     return f'<math display="block"><mtable displaystyle="true" columnalign="left">{cells}</mtable></math>'
 
 
 def mathml_inline(latex):
-    """MathML of a formula inside a sentence."""
-    tree = Parser(latex).equation()
-    return mathml(tree).replace('<math display="block">', "<math>")
+    """MathML of a formula inside a sentence: a piece for each term, since browsers break no formula."""
+    pieces = [[]]
+    for part in _parts(Parser(latex).equation(), {}):
+        if part is SPLIT:
+            pieces.append([])
+        elif part is not BREAK:
+            pieces[-1].append(part)
+    return " ".join(f"<math>{''.join(piece)}</math>" for piece in pieces)

@@ -10,7 +10,7 @@ from ..normal.subject import Subject
 from ..readings.lagrange import sympy_namespace
 from .closed import closed
 from .findings import Finding
-from .show import form_text
+from .show import Quantity
 
 
 def split_masses(printed, certain, struck):
@@ -29,9 +29,9 @@ def split_masses(printed, certain, struck):
             key = f"split-{number}-{first}-{second}" if any(f.equation == number for f in findings) else f"split-{number}"
             findings.append(Finding(
                 key, number, "principle",
-                f"The masses of one momentum are split: the accelerations of {first} and {second} belong to no first moment, and "
-                f"{form_text(left, paper)} is left over between their factors. Each of the terms can be right, but not all of them: "
-                "with them a steady motion of the frame exerts a force. Every reading takes one mass.",
+                [f"The masses of one momentum are split: the accelerations of {first} and {second} belong to no first moment, and ",
+                 left, " is left over between their factors. Each of the terms can be right, but not all of them: "
+                 "with them a steady motion of the frame exerts a force. Every reading takes one mass."],
                 tuple(taken), [printed.forms[number][k] for k in taken], ["one mass in all of these terms"], False, ["galilei"],
                 left.order(paper.coordinates())))
             total = subject.scales.get(number, subject.ring.number(1)) * subject.conservative(number)
@@ -54,12 +54,12 @@ def impacts(printed, corrected, readings):
             result = found[number, gains[0]]
             case, rates = result.rises
             witness = ", ".join(f"{name} = {value:g}" for name, value in rates.items())
-            jumps = "; ".join(f"the momentum of {name} jumps by {form_text(form, paper)}" for name, form in result.impulses.items())
+            jumps = [part for name, form in result.impulses.items() for part in (f"; the momentum of {name} jumps by ", form)]
             findings.append(Finding(
                 f"impact-{number}", number, "principle",
-                f"The energy can rise in an impact: if the rates that ({number}) does not name keep their values, it changes by "
-                f"{form_text(result.change, paper)}, which is positive, for instance, for {witness} ({case})."
-                + (f" Impulses act that nothing exerts: {jumps}." if jumps else ""),
+                [f"The energy can rise in an impact: if the rates that ({number}) does not name keep their values, it changes by ",
+                 result.change, f", which is positive, for instance, for {witness} ({case})."]
+                + ([" Impulses act that nothing exerts: " + jumps[0][2:], *jumps[1:], "."] if jumps else []),
                 (), ["what the other rates do at the impact"], ["momenta that no impulse changes are kept"], True, ["impact"], None,
                 readings=gains))
     return findings, found
@@ -81,7 +81,7 @@ def undefined(printed):
         used = [n for n, e in paper.equations.items() if name in {x.name for term in e.terms(symbols, printed.m) for x in _free(term)}]
         form = printed.ring.read(paper.definitions[name](printed.s, printed.m))
         findings.append(Finding(
-            f"undefined-{name}", ", ".join(used) or "text", "undefined", f"{paper.symbols[name].meaning}.", (),
+            f"undefined-{name}", ", ".join(used) or "text", "undefined", [f"{paper.symbols[name].meaning}."], (),
             [printed.ring.symbol(name)], [form], False, [], None))
     return findings
 
@@ -99,24 +99,27 @@ def neglected(paper, readings, definiteness):
         found = [signs([d.neglected], intervals({**values, **rest(paper)[1], **state}))[0] for values in paper.sets.values()
                  for state in states(paper)]
         if not d.neglected:
-            verdicts[reading.name] = "singular at rest: the determinant is exactly 0, and accelerations along its null vector are not determined"
+            verdicts[reading.name] = ("singular at rest: the determinant is exactly 0, and accelerations along its null vector are not "
+                                      "determined",)
         elif -1 in found:
             verdicts[reading.name] = (f"indefinite for {found.count(-1)} of {len(found)} parameter sets and states: the determinant at rest "
-                                      f"is {closed(d.neglected)}")
+                                      "is ", closed(d.neglected))
         elif 0 in found:
-            verdicts[reading.name] = f"not shown to be positive definite for {found.count(0)} of {len(found)} parameter sets and states"
+            verdicts[reading.name] = (f"not shown to be positive definite for {found.count(0)} of {len(found)} parameter sets and states",)
     if not verdicts:
         return []
     names, zero = " and ".join(paper.negligible), " = ".join([*paper.negligible, "0"])
     by_verdict = {}
     for name, verdict in verdicts.items():
         by_verdict.setdefault(verdict, []).append(name)
-    text = "; ".join(f"{verdict} (reading " + ", ".join(f"'{n}'" for n in found) + ")" for verdict, found in by_verdict.items())
+    reason = [f"With {zero} the mass matrix is "]
+    for verdict, found in by_verdict.items():
+        reason += ["; "] * (len(reason) > 1) + [*verdict, " (reading " + ", ".join(f"'{n}'" for n in found) + ")"]
     first = next(d for reading, d in zip(readings, definiteness) if reading.name in verdicts)
     limits = _regular(paper, first)
     limits = "; the determinant is positive between " + ", and between ".join(limits) if limits else ""
     return [Finding(
-        "neglect", "text", "approximation", f"With {zero} the mass matrix is {text}.", (), [f"{names} can be negligible"],
+        "neglect", "text", "approximation", [*reason, "."], (), [f"{names} can be negligible"],
         [f"the kinetic energy needs {paper.negligible[0]}{limits}"], True, ["definite"], None, readings=list(verdicts))]
 
 
@@ -140,10 +143,10 @@ def wrong_numbers(numbers):
     for x in numbers:
         n = x.number
         if x.agrees is False:
-            findings.append(Finding(f"number-{n.name}", "text", "misprint", f"{n.meaning}: it does not follow from the other "
-                                    "printed numbers within their rounding", (), [f"{n.name} = {n.printed} {n.unit}"],
-                                    [f"{x.low:.6g} to {x.high:.6g} {n.unit}"], True, ["difference"], None))
+            findings.append(Finding(f"number-{n.name}", "text", "misprint", [f"{n.meaning}: it does not follow from the other "
+                                    "printed numbers within their rounding"], (), [Quantity(f"{n.name} = {n.printed} {n.unit}")],
+                                    [Quantity(f"{x.low:.6g} to {x.high:.6g} {n.unit}")], True, ["difference"], None))
         if not x.unit_agrees:
-            findings.append(Finding(f"unit-{n.name}", "text", "misprint", f"{n.meaning}: {n.note}", (),
-                                    [f"{n.printed} {n.unit_printed}"], [f"{n.printed} {n.unit}"], True, ["dimensions"], None))
+            findings.append(Finding(f"unit-{n.name}", "text", "misprint", [f"{n.meaning}: {n.note}"], (),
+                                    [Quantity(f"{n.printed} {n.unit_printed}")], [Quantity(f"{n.printed} {n.unit}")], True, ["dimensions"], None))
     return findings

@@ -4,8 +4,15 @@ import re
 
 from ..input.latex import ENTITIES
 from ..input.printed import latex_name
-from ..input.units import Dimension
-from ..normal.algebra import Opaque
+from ..normal.form import Form, Opaque
+
+class Unit(str):
+    """A unit such as `kg*m^2`, which pages typeset."""
+
+
+class Quantity(str):
+    """A number and its unit, with a space between."""
+
 
 # combining marks above
 OVER = {"bar": "\u0304", "hat": "\u0302", "tilde": "\u0303"}
@@ -23,7 +30,7 @@ def _split(name, paper):
     return dots, name[dots:]
 
 
-def _latex(name, paper):
+def symbol_latex(name, paper):
     """LaTeX of a symbol, a rate or an opaque factor."""
     if isinstance(name, Opaque):
         inner = form_latex(name.argument, paper)
@@ -61,7 +68,7 @@ def term_latex(key, value, paper):
         for name, slope in angle:
             size = abs(slope)
             text = (f"{size.numerator} " if size != 1 and size.denominator == 1 else
-                    rf"\frac{{{size.numerator}}}{{{size.denominator}}} " if size != 1 else "") + _latex(name, paper)
+                    rf"\frac{{{size.numerator}}}{{{size.denominator}}} " if size != 1 else "") + symbol_latex(name, paper)
             parts.append(("-" if slope < 0 else "+" if parts else "") + text)
         inner = " ".join(parts)
         still.append(rf"\{kind} {inner}" if len(angle) == 1 and angle[0][1] == 1 else rf"\{kind}({inner})")
@@ -73,7 +80,7 @@ def term_latex(key, value, paper):
 
 def _power(name, exponent, paper):
     """LaTeX of a power of a symbol."""
-    text, power = _latex(name, paper), f"^{{{abs(exponent)}}}" if abs(exponent) > 9 else f"^{abs(exponent)}"
+    text, power = symbol_latex(name, paper), f"^{{{abs(exponent)}}}" if abs(exponent) > 9 else f"^{abs(exponent)}"
     raised = text if abs(exponent) == 1 else text + power
     if isinstance(name, Opaque) and name.function == "sign" and abs(exponent) != 1:
         raised = text.replace("{sign}", "{sign}" + power, 1)
@@ -100,6 +107,20 @@ def _divisor_latex(divisor, power, count, paper):
     return latex if power == 1 else f"{latex}^{power}"
 
 
+def expression_latex(expression, paper):
+    """LaTeX of a SymPy expression in the symbols of a paper."""
+    import sympy
+
+    names = {symbol: symbol_latex(symbol.name, paper) for symbol in expression.free_symbols}
+    return sympy.latex(expression, symbol_names=names, fold_func_brackets=True)
+
+
+def unit_latex(unit):
+    """LaTeX of a unit or a dimension: `kg*m^-2` is kg m^{-2}, upright."""
+    text = re.sub(r"\^(-?[\d/]+)", r"^{\1}", str(unit)).replace("*", r"\,")
+    return rf"\mathrm{{{text}}}"
+
+
 def plain(latex):
     """LaTeX as plain text with Greek letters and dots over the symbols."""
     text = re.sub(r"\\(d+)ot\{\\?(\w+)\}", lambda x: ENTITIES.get(x[2], x[2]) + ACCENTS[len(x[1])], latex)
@@ -122,8 +143,8 @@ def form_text(form, paper):
 
 
 def shown(part, paper):
-    """A form, a dimension, or words, as plain text."""
-    return part if isinstance(part, str) else str(part) if isinstance(part, Dimension) else form_text(part, paper)
+    """A form, a dimension, a unit, a SymPy expression, or words, as plain text."""
+    return form_text(part, paper) if isinstance(part, Form) else str(part)
 
 
 def message_text(message, paper):

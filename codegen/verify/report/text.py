@@ -1,208 +1,23 @@
-"""The report as text for a terminal, and the sentences that all forms of the report share."""
+"""The report as text for a terminal."""
 
-from ..input.corrections import KINDS
 from ..judgements import TITLES
-from ..repairs.edits import slip_text
-from .closed import closed
-from .construction import construction_lines
-from .findings import FURTHER, IMPACT
-from .show import message_text, shown
-
-
-def count(number, what):
-    """A number of things."""
-    return f"{number} {what}{'' if number == 1 else 's'}"
-
-
-def transcription_lines(report):
-    """Which equations are proved equal to their LaTeX, and which have none."""
-    lines, paper = [], report.case.paper
-    if report.transcribed:
-        lines.append(f"Transcription: ({'), ('.join(report.transcribed)}) are proved equal to their LaTeX: symbol, relation, and "
-                     "term by term.")
-    read = [n for n, equation in paper.equations.items() if equation.function is None]
-    if read:
-        lines.append(f"Transcription: ({'), ('.join(read)}) are judged from their LaTeX: no terms are written beside it.")
-    without = [n for n, equation in paper.equations.items() if not equation.latex]
-    if without:
-        lines.append(f"Transcription: ({'), ('.join(without)}) have no LaTeX; what is judged is the function alone.")
-    return lines
-
-
-def scale_lines(report, show):
-    """What equations are divided by, if they are."""
-    lines, one = [], report.printed.ring.number(1)
-    for number, scale in report.printed.scales.items():
-        if report.motions and (comparison := report.comparisons[report.motions[0].energies.name].get(number)):
-            scale = comparison.scale
-            if comparison.solved:
-                of = report.printed.ring.symbol("dd" + report.case.paper.equations[number].of)
-                lines.append(f"Equation ({number}) is judged as solved for the acceleration {show(of)}"
-                             + ("." if scale == one else f", and multiplied by {show(scale)}."))
-                continue
-        elif report.printed.multipliers[number].names() - report.printed.ring.involutions:
-            # without energies, what makes the mass matrix symmetric
-            scale = report.printed.multipliers[number]
-        if scale != one:
-            lines.append(f"Equation ({number}) is judged as multiplied by {show(scale)}.")
-    return lines
-
-
-def title(name):
-    """The name of a judgement in words."""
-    return IMPACT if name == "impact" else TITLES[name]
-
-
-def summary_lines(report):
-    """The verdict in a few sentences."""
-    lines = []
-    if report.readings:
-        best = report.readings[0]
-        lines.append(agreement_text(best.motion, report.comparisons[best.name]) + ".")
-    if len(report.readings) > 1:
-        always, sometimes = report.wrong_terms()
-        lines.append(f"{count(len(report.readings), 'reading')}: {count(len(always), 'printed term')} "
-                     f"{'is' if len(always) == 1 else 'are'} wrong in every one, {len(sometimes)} only in some, and what these say is a choice.")
-    kinds = {}
-    for finding in report.findings:
-        kinds[finding.kind] = kinds.get(finding.kind, 0) + 1
-    if kinds:
-        lines.append("Findings by kind: " + ", ".join(f"{number} {kind}" for kind, number in kinds.items()) + ".")
-    return lines
-
-
-VERDICT = {"squares": "T is a sum of squares", "proved": "positive definite (proved)", "undecided": "definiteness undecided", "refuted": "NOT positive definite"}
-
-
-def reading_rows(report):
-    """The readings, the best first: name, definiteness, reactions, invariances, terms."""
-    rows = []
-    for r in report.readings:
-        refuted = [key for key, v in r.boxes.items() if v.status == "refuted"]
-        undecided = [key for key, v in r.boxes.items() if v.status == "undecided"]
-        definite = VERDICT[r.verdict()] + (f" for {len(refuted)} of {len(r.boxes)} cases: {'; '.join(refuted)}" if refuted
-                                           else f" for {len(undecided)} of {len(r.boxes)} cases" if undecided and r.verdict() == "undecided" else "")
-        worst = min(r.reactions, key=lambda x: x.low, default=None)
-        reactions = "not judged" if worst is None else (
-            f"at least {worst.low:.4g} N" if worst.low > 0 else f"{worst.low:.4g} N ({worst.release}; {worst.case}): what only pushes would pull")
-        objected = [f"{len(v)} to {TITLES[name].lower()}" for name, v in r.objections.items() if v]
-        rows.append((r.name, definite, reactions, ", ".join(objected) or "none", f"{r.agree} of {r.terms}", str(r.absent)))
-    return rows
-
-
-READING_HEAD = ("reading", "kinetic energy", "reactions in the scenes", "objections to invariance", "printed terms that agree", "derived, not printed")
-
-
-def reading_text(finding, report):
-    """In which readings a finding holds."""
-    if finding.readings is None or finding.kind == "undefined":
-        return ""
-    if len(finding.readings) == len(report.readings):
-        return "holds in every reading" + ("; what would be consistent depends on it" if finding.alternatives else "")
-    return "a choice: holds in " + ", ".join(f"'{name}'" for name in finding.readings) + "; in the others what is printed is right"
-
-
-def alternative_lines(finding, show):
-    """What would be consistent in other readings than the first."""
-    by_forms = {}
-    for name, forms in finding.alternatives.items():
-        by_forms.setdefault(",  ".join(show(form) for form in forms) or "(no such term)", []).append(name)
-    return [f"consistent in {', '.join(repr(n) for n in names)}: {forms}" for forms, names in by_forms.items()]
-
-
-def agreement_text(motion, comparisons):
-    """How many printed terms agree with energies."""
-    agree = sum(len(c.agree) for c in comparisons.values())
-    total, idle = sum(c.terms() for c in comparisons.values()), sum(len(c.idle) for c in comparisons.values())
-    return (f"Energies '{motion.energies.name}': {agree} of {total} printed terms agree, "
-            + (f"{idle} cancel one another or vanish, " if idle else "")
-            + f"{sum(len(c.absent) for c in comparisons.values())} derived terms are not printed")
-
-
-def judgement_text(report, name):
-    """The number of objections of a judgement, before and after correction; or why it is not judged."""
-    if name in report.unjudged:
-        return f"{TITLES[name]}: not judged: {report.unjudged[name]}"
-    after = "as corrected" if report.by_hand else "with the repairs below"
-    text = f"{TITLES[name]}: {count(len(report.violations[name]), 'objection')}"
-    if report.by_hand or any(finding.kind == "repair" for finding in report.findings):
-        text += f" ({len(report.corrected_violations[name])} {after})"
-    if name == "difference" and report.unreferenced:
-        text += f"; the energies say nothing about ({'), ('.join(report.unreferenced)})"
-    if name == "lagrangian" and (lonely := unmoved(report)):
-        text += f"; nothing is judged about the motion of {', '.join(lonely)}, which has no equation"
-    return text
-
-
-def unmoved(report):
-    """Coordinates without an equation of motion."""
-    moved = {equation.of for equation in report.case.paper.motions()}
-    return [name for name in report.case.paper.coordinates() if name not in moved]
-
-
-def headline(report):
-    """The number of findings, and what was not judged: without it, none is no verdict."""
-    text = count(len(report.findings), "finding")
-    open_ = [TITLES[name].lower() for name in report.unjudged]
-    if "difference" not in report.unjudged and report.unreferenced:
-        open_.append(f"what ({'), ('.join(report.unreferenced)}) must be")
-    return text + (f"; not judged: {', '.join(open_)}" if open_ else "")
-
-
-def printed_text(finding, show):
-    """What is printed; `show` makes text of a form."""
-    if finding.printed:
-        return ",  ".join(show(part) for part in finding.printed)
-    return "(the equation as a whole)" if finding.kind == "objection" else "(not printed)"
-
-
-def consistent_text(finding, show):
-    """What would be consistent, or that it is not known."""
-    if finding.kind == "objection":
-        return "not known"
-    return ",  ".join(show(part) for part in finding.consistent) or "(no such term)"
-
-
-def possible_lines(finding, show):
-    """The edits with each of which an objection vanishes: none is proved to be what was meant."""
-    lines = []
-    for number, repair in finding.possible:
-        where = f"({number})" + (f" term {repair.ordinals[0] + 1}" if repair.ordinals else "")
-        before = ",  ".join(show(x) for x in repair.printed) or "(not printed)"
-        after = ",  ".join(show(x) for x in repair.consistent) or "(no such term)"
-        lines.append(f"would remove it and raise no other: {where}: {before} → {after}: {slip_text(repair.slip)}")
-    return lines
-
-
-def consistent_label(finding):
-    """Whether what is called consistent is proved so."""
-    return "consistent" if finding.proved or finding.kind == "objection" else "proposed, not proved consistent"
-
-
-def reason_lines(finding):
-    """What kind of slip a finding is, and why."""
-    lines = [f"slip: {slip_text(finding.slip)}"] if finding.slip else []
-    known = {**KINDS, **{k: v for k, v in FURTHER.items() if k not in ("repair", "objection")}}
-    lines += [known[finding.kind]] if finding.kind in known else []
-    return lines + ([finding.reason] if finding.reason else [])
-
-
-def judged_text(finding):
-    """Who finds it."""
-    if finding.kind == "undefined":
-        return "the table of symbols"
-    return ", ".join(finding.judgements) or "no judgement: nothing here shows that what is printed is wrong"
+from .construction import construction_parts
+from .show import message_text
+from .words import (READING_HEAD, alternative_lines, consistent_label, consistent_parts, determinant_lines, effect_lines, effect_notes,
+                    extent_lines, headline, judged_text, judgement_text, number_parts, origin_line, outcome_text, possible_lines,
+                    printed_parts, reading_rows, reading_text, reason_lines, root_lines, scale_lines, squares_text, summary_lines,
+                    transcription_lines, undefined_symbols, verdict_text)
 
 
 def as_text(report):
     """The report for a terminal."""
     case, paper = report.case, report.case.paper
 
-    def show(part):
-        return shown(part, paper)
+    def show(sentence):
+        return message_text(sentence, paper)
 
-    lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", "", *transcription_lines(report),
-             *scale_lines(report, show), ""]
+    lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", origin_line(report), "", *transcription_lines(report),
+             *map(show, scale_lines(report)), ""]
     lines += summary_lines(report) + [""]
     if report.readings:
         for number, c in report.comparisons[report.readings[0].name].items():
@@ -217,103 +32,39 @@ def as_text(report):
     for name in TITLES:
         lines.append("  " + judgement_text(report, name))
         if name != "difference":
-            lines += ["    " + message_text(v.message, paper) for v in report.violations[name]]
+            lines += ["    " + show(v.message) for v in report.violations[name]]
     lines += ["", headline(report)]
     for f in report.findings:
         where = f", terms {', '.join(str(k + 1) for k in f.ordinals)}" if f.ordinals else ""
         label = consistent_label(f) + ":"
-        lines += ["", f"  [{f.key}] equation ({f.equation}){where}", f"    printed:    {printed_text(f, show)}",
-                  f"    {label:11} {consistent_text(f, show)}"]
-        lines += [f"    {line}" for line in alternative_lines(f, show) + reason_lines(f) + possible_lines(f, show)]
+        lines += ["", f"  [{f.key}] equation ({f.equation}){where}", f"    printed:    {show(printed_parts(f))}",
+                  f"    {label:11} {show(consistent_parts(f))}"]
+        lines += [f"    {show(line)}" for line in alternative_lines(f) + reason_lines(f) + possible_lines(f)]
         lines += [f"    {line}" for line in [reading_text(f, report)] if line]
         lines.append("    found by: " + judged_text(f))
         lines += [f"    {line}" for line in extent_lines(f) + effect_lines(f)]
-    if report.variants:
+    if notes := effect_notes(report):
+        lines += ["", "Effect of the slips on the motion"] + [f"  {line}" for line in notes]
+    if report.simulated:
         lines += ["", "The scenes with the equations as a whole"]
-    for scene, results in report.variants.items():
-        lines.append(f"  {scene}")
-        lines += [f"    {name}: {outcome_text(result)}" for name, result in results.items()]
+        for scene, results in report.simulated.variants.items():
+            lines.append(f"  {scene}")
+            lines += [f"    {name}: {outcome_text(result)}" for name, result in results.items()]
     for constructed in report.constructed:
-        lines += ["", f"What follows from the equations {constructed.of}"] + [f"  {line}" for line in construction_lines(constructed, paper)]
+        lines += ["", f"What follows from the equations {constructed.of}"]
+        lines += [f"  {show([words] + ([] if form is None else [form]))}" for words, form in construction_parts(constructed, paper)]
     if report.definiteness:
         lines += ["", "Positive definite kinetic energy"]
     for d in report.definiteness:
-        lines += [f"  {d.name}", f"    determinant at rest: {closed(d.at_rest)}"]
-        if d.neglected is not None:
-            value = closed(d.neglected) if d.neglected else "0 (singular)"
-            lines.append(f"    with {' = '.join(paper.negligible)} = 0: {value}")
-        if d.critical:
-            name = d.critical.parameter
-            lines.append(f"    critical {name}: roots of c0 + c1 {name} + c2 {name}^2")
-            lines += [f"      c{k} = {closed(c) if c else 0}" for k, c in enumerate(d.critical.coefficients)]
-            lines += [f"      {key}: {', '.join(f'{root:.6g}' for root in roots) or 'none'}"
-                      for key, roots in d.critical.roots.items()]
+        lines += [f"  {d.name}"] + [f"    {show(line)}" for line in determinant_lines(d, paper)]
+        lines += [f"      {line}" for line in root_lines(d)]
         if d.squares is not None:
             lines.append("    " + squares_text(d))
         lines += [f"    {key}: {verdict_text(v)}" for key, v in d.boxes.items()]
     if report.numbers:
         lines += ["", "Printed numbers (recomputed as an interval over the rounding of what they come from)"]
-    for x in report.numbers:
-        lines.append("  " + number_text(x))
+    lines += ["  " + show(number_parts(x)) for x in report.numbers]
     if undefined := undefined_symbols(paper):
         lines += ["", "Symbols that the paper uses and does not define"]
         lines += [f"  {name}: {paper.symbols[name].meaning}" for name in undefined]
     return "\n".join(lines) + "\n"
-
-
-def undefined_symbols(paper):
-    """Names of the symbols that a paper uses and does not define."""
-    return [name for name in paper.definitions if name not in paper.auxiliary]
-
-
-def extent_lines(finding):
-    """How small a finding is, and where it vanishes."""
-    lines = [] if finding.order is None else [f"order in the coordinates: {finding.order}"]
-    return lines + (["makes no difference for " + ", ".join(finding.vanishes)] if finding.vanishes else [])
-
-
-def effect_lines(finding):
-    """The simulated effect of a finding, a line a scene."""
-    if not finding.effects:
-        return ["effect on the scenes: not simulated"] if finding.kind in KINDS else []
-    lines = []
-    for scene, effect in finding.effects.items():
-        parts = [f"{which} the slip {outcome_text(effect[which])}" for which in ("without", "with")]
-        lines.append(f"effect on {scene}: " + "; ".join(parts))
-    return lines
-
-
-def outcome_text(result):
-    """What a simulation gave: its quantities, and why it stopped early if it did."""
-    return ", ".join(f"{n} = {v:.6g}" if isinstance(v, (int, float)) else f"{n} {v}" for n, v in result.items())
-
-
-def verdict_text(verdict):
-    """A verdict over the box in words."""
-    where = "" if not verdict.point else " at " + ", ".join(
-        f"{n} = {low:g}" if low == high else f"{n} in [{low:g}, {high:g}]" for n, (low, high) in verdict.point.items())
-    return {"proved": f"positive definite on the whole box (proved, {verdict.boxes} boxes)",
-            "refuted": f"NOT positive definite{where}",
-            "undecided": f"undecided{where} after {verdict.boxes} boxes"}[verdict.status]
-
-
-def squares_text(definiteness):
-    """Whether the kinetic energy is the declared sum of squares."""
-    if definiteness.squares:
-        return "the kinetic energy is the declared sum of squares (identity proved)"
-    return "the kinetic energy is NOT the declared sum of squares"
-
-
-def number_text(checked):
-    """One number with its verdict."""
-    n = checked.number
-    text = f"{n.name} = {n.printed} {n.unit_printed or n.unit}" if n.printed else f"{n.name} [{n.unit}] not printed"
-    if checked.low is not None:
-        text += f"; recomputed {checked.low:.6g}" + (f" to {checked.high:.6g}" if f"{checked.low:.6g}" != f"{checked.high:.6g}" else "")
-    if checked.agrees is not None:
-        text += ": agrees" if checked.agrees else ": DISAGREES"
-    elif checked.low is not None and n.printed:
-        text += ": cannot be decided"
-    if not checked.unit_agrees:
-        text += f"; the unit must be {n.unit}"
-    return f"{text}   ({n.meaning}{'; ' + n.note if n.note else ''})"

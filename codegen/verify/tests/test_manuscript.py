@@ -14,7 +14,7 @@ from pathlib import Path
 from codegen.verify import cli
 from codegen.verify.errors import LatexError, PaperError
 from codegen.verify.input.load import load
-from codegen.verify.report import gather as report, text
+from codegen.verify.report import gather as report, text, words
 
 TEMPLATE = Path(__file__).resolve().parents[3] / "templates" / "paper"
 
@@ -127,7 +127,7 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} \nonumber
                     ("and the force", "\\[ v_x = \\dot{x} + l \\cos\\theta \\dot\\theta \\]\n\\[ v_y = l \\sin\\theta \\dot\\theta \\] and the force"))
         self.change(("\ng,  ", "\nv_x, defined, m/s, velocity, ,\nv_y, defined, m/s, velocity, ,\ng,  "), file="symbols.csv")
         result = self.judged()
-        self.assertEqual((result.findings, text.undefined_symbols(result.case.paper)), ([], []))
+        self.assertEqual((result.findings, words.undefined_symbols(result.case.paper)), ([], []))
         self.change(("l \\sin\\theta \\dot\\theta \\]", "l \\sin\\theta \\]"))
         self.refused(LatexError, r"paper.tex, line \d+, column \d+: v_y is declared in m\*s\^-1 and defined in m")
 

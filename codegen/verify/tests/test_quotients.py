@@ -13,7 +13,7 @@ from codegen.verify.normal.algebra import Ring, expression
 from codegen.verify.normal.division import quotient
 from codegen.verify.normal.subject import Subject
 from codegen.verify.readings.lagrange import Motion
-from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.findings import detected, repaired
 
 A, M, X, Y, LAM = sympy.symbols("a m x y lam", real=True)
@@ -148,7 +148,7 @@ class Divided(unittest.TestCase):
                 with self.subTest(f"{k}, energies {energies}"):
                     result = self.judged(divisor, energies=energies)
                     self.assertEqual(result.findings, [])
-                    self.assertEqual(len(text.scale_lines(result, str)), 1)
+                    self.assertEqual(len(words.scale_lines(result)), 1)
 
     def test_a_slip_is_found_and_undone(self):
         for k, divisor in enumerate(self.DIVISORS):

@@ -13,7 +13,7 @@ from codegen.verify.input.load import Case, load
 from codegen.verify.normal.subject import Subject
 from codegen.verify.readings.lagrange import Energies
 from codegen.verify.readings.lagrange import Motion
-from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.findings import judge
 
 DIVISORS = (
@@ -47,14 +47,14 @@ class Divided(unittest.TestCase):
 
     def test_the_multiplier_is_said(self):
         result = self.judged(DIVISORS[0])
-        self.assertEqual(text.scale_lines(result, str), ["Equation (1) is judged as multiplied by 1*l_1**2*m_2.",
+        self.assertEqual(["".join(map(str, line)) for line in words.scale_lines(result)], ["Equation (1) is judged as multiplied by 1*l_1**2*m_2.",
                                                          "Equation (2) is judged as multiplied by 1*l_2**2*m_2."])
         data = json.loads(machine.as_json(result))
         self.assertEqual(sorted(data["multipliers"]), ["1", "2"])
         self.assertIn("Equation (1) is judged as multiplied by", text.as_text(result))
         self.assertIn("Equation (1) is judged as multiplied by", html.as_html(result))
         plain = report.verify(self.case, thorough=False)
-        self.assertEqual((text.scale_lines(plain, str), json.loads(machine.as_json(plain))["multipliers"]), ([], {}))
+        self.assertEqual((words.scale_lines(plain), json.loads(machine.as_json(plain))["multipliers"]), ([], {}))
 
     def test_a_slip_in_a_divided_equation_is_found_and_undone(self):
         changes = [("sign", lambda terms, s: [*terms[:2], -terms[2], *terms[3:]]), ("number", lambda terms, s: [2 * terms[0], *terms[1:]]),
@@ -93,7 +93,7 @@ class Spherical(unittest.TestCase):
         for given in ([energies], []):
             result = report.verify(Case("spherical", Path("."), paper, given))
             self.assertEqual((result.findings, result.transcribed), ([], ["1", "2"]))
-            self.assertEqual(len(text.scale_lines(result, str)), 2)
+            self.assertEqual(len(words.scale_lines(result)), 2)
 
 
 class SignInAnAngle(unittest.TestCase):

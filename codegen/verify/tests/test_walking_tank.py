@@ -16,11 +16,12 @@ from codegen.verify.input.corrections import apply, closure, without
 from codegen.verify.input.load import load
 from codegen.verify.judgements import JUDGEMENTS
 from codegen.verify.normal.subject import Subject
-from codegen.verify.report import gather as report, html, machine, text
+from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.closed import closed
-from codegen.verify.report.effects import Simulated, attach
+from codegen.verify.report.effects import Simulated, attach, changes
+from codegen.verify.tests.cases import TANK, report_of
 
-MODELS = Path(__file__).resolve().parents[3] / "models"
+MODELS = TANK.parent
 
 # which judgements find each slip when everything else is right, beside the term by term comparison
 FOUND = {
@@ -43,7 +44,7 @@ class Verdict(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.case = load(MODELS / "walking_tank")
-        cls.report = report.verify(cls.case, thorough=False)
+        cls.report = report_of(TANK)
 
     def test_corrected_equations_are_exactly_the_derived_ones(self):
         self.assertEqual({name: v for name, v in self.report.corrected_violations.items() if v}, {})
@@ -149,12 +150,18 @@ class Verdict(unittest.TestCase):
         place = 1 + [c.key for c in corrections].index("10-sign")
         runs[place]["stopped"] = "the uplift becomes negative"
         findings = [f for f in self.report.findings if f.key in ("1-dot", "10-sign")]
-        self.assertEqual(text.effect_lines(findings[0]), ["effect on the scenes: not simulated"])
-        attach(findings, corrections, Simulated(slips={"free release": runs}))
+        self.assertEqual(words.effect_notes(self.report), ["The effect of the slips on the motion was not simulated."])
+        # 0.005 is what the run at tighter settings differs by: less is no effect
+        attach(findings, corrections, Simulated(slips={"free release": runs, "stops": [{"stopped": "early"}] * len(runs)},
+                                                again={"free release": {"peak uplift": 0.005}, "stops": {}}))
+        self.assertEqual([list(f.effects) for f in findings], [["free release"]] * 2)
         dot, sign = (f.effects["free release"] for f in findings)
         self.assertEqual(dot["without"], runs[0])
         self.assertEqual(dot["with"], runs[1 + [c.key for c in corrections].index("1-dot")])
         self.assertIn("negative", sign["with"]["stopped"])
+        self.assertEqual((dot["changes"], sign["changes"]), (["peak uplift"], ["stopped"]))
+        self.assertEqual(changes({"x": 1.0}, {"x": 1.25}, {"x": 1.25}), [])
+        self.assertEqual(changes({"x": 1.0}, {"x": 1.25}, {"x": 0.5}), ["x"])
         for finding in findings:
             finding.effects.clear()
 
@@ -176,7 +183,7 @@ class Verdict(unittest.TestCase):
         self.assertEqual(set(data["judgements"]), set(JUDGEMENTS))
         for finding in self.report.findings:
             self.assertIn(f"[{finding.key}]", terminal)
-            self.assertIn(f"<h3>{finding.key}:", page)
+            self.assertIn(f'id="finding-{finding.key}"', page)
             self.assertIn(finding.key, [f["id"] for f in data["findings"]])
         xml.fromstring(page.replace("<!DOCTYPE html>", "").replace('<meta charset="utf-8">', ""))
         for outside in ("http", "<script", "<link", "@import", "url("):
