@@ -21,7 +21,7 @@ class VerifyError(Exception):
 
     def __init__(self, message, place=None, excerpt=""):
         super().__init__(f"{place}: {message}" + (f"\n{excerpt}" if excerpt else "") if place else message)
-        self.place = place
+        self.what, self.place = message, place
 
 
 class PaperError(VerifyError):

@@ -1,7 +1,7 @@
 """The LaTeX of printed equations, parsed into a tree.
 
 Known: symbols with indices and accents, \\dot and \\ddot, \\frac{d x}{d t}, numbers, +, -, \\cdot, a/b, powers,
-\\frac, \\sin, \\cos, \\tan, \\cot, \\operatorname{sgn}, brackets of any size, moduli, relations, words and line
+\\frac, \\sin, \\cos, \\tan, \\cot, \\sec, \\csc, \\operatorname{sgn}, brackets of any size, moduli, relations, words and line
 breaks. Anything else, and whatever is printed in a way that can be read in two, is an error that shows
 the place and says what to write. What the tree means is said by transcription.py, how it looks by mathml.py.
 """
@@ -321,13 +321,15 @@ class Parser:
         return None
 
     def derivative(self, order, token):
-        """d/d t of the bracket that follows."""
+        """d/d t, or d^2/d t^2, of the bracket that follows."""
         self.shut()
-        if [self.next().text for _ in range(4)] != ["{", "d", "t", "}"] or order != 1:
-            raise self.error("of brackets, d/d t alone is known: carry other derivatives out", token)
+        below = [_plain(self.next()) for _ in range(3 if order == 1 else 5)]
+        if below != ["{", "d", "t"] + ["^", str(order)] * (order > 1) or order > 2 or not self.sees("brace", "}"):
+            raise self.error("of brackets, d/d t and d^2/d t^2 are known: carry other derivatives out", token)
+        self.next()
         if not self.sees("open"):
             raise self.error("write brackets around what d/d t is of", token)
-        return Node("rate", children=[self.base()], at=token.at)
+        return Node("rate", children=[self.base()], dots=order, at=token.at)
 
     def under(self, accent, dots, token):
         """The symbol under dots or an accent, in braces or not."""

@@ -18,6 +18,7 @@ from ..normal.subject import Subject
 from ..readings.lagrange import Energies, Mathematics, Motion, sympy_namespace
 from . import transcription, units
 from .latex import Parser
+from .macros import expanded, macros
 from .printed import QUASI, Paper, plain_latex
 from .tokens import Placed, error_at
 
@@ -32,8 +33,10 @@ DISPLAY = re.compile(r"\\begin\{(?P<name>equation|align|multline|gather|eqnarray
                      r"|\\\[(?P<bracket>.*?)\\\]|\$\$(?P<dollars>.*?)\$\$", re.DOTALL)
 # displays that may hold several equations, and what parts them
 MANY = ("align", "gather", "eqnarray")
+# parts of displays that hold several equations too
+ALIGNED = ("aligned", "alignedat", "gathered", "split")
 BREAK = re.compile(r"\\\\\*?(?:\[[^\]]*\])?")
-RELATION = re.compile(r"[=<>≤≥]|\\(?:lt|gt|leq?|geq?|leqslant|geqslant)(?![A-Za-z])")
+RELATION = re.compile(r"[=<>≤≥]|\\(?:equiv|triangleq|coloneqq?|lt|gt|leq?|geq?|leqslant|geqslant)(?![A-Za-z])")
 ROLES = {"motion of": "motion", "value of": "value", "reaction": "reaction", "condition on": "condition", "rule for": "rule",
          "impact of": "reset", "constraint with": "constraint", "definition of": "definition", "reading of": "reading",
          "force on": "force",
@@ -47,7 +50,7 @@ class Displayed:
 
     def __init__(self, latex, number, note):
         self.latex, self.number = latex, number
-        self.role, self.named = (ROLES[note["role"].lower()], note["of"].strip()) if note else (None, "")
+        self.role, self.named = (ROLES[note["role"].lower()], expanded(note["of"].strip(), latex.macros)) if note else (None, "")
         self.tree = None if self.role == "skip" else Parser(latex).equation()
 
     def error(self, what):
@@ -105,8 +108,9 @@ def read(folder):
     title = re.search(r"\\title\{([^{}]*)\}", shown)
     source = re.search(r"^%[ \t]*source:[ \t]*(.+)$", text, re.MULTILINE)
     paper = Paper(title.group(1).strip() if title else folder.name, source.group(1).strip() if source else str(folder / TEX))
-    rows = _symbols(folder / SYMBOLS, paper)
-    found = _displayed(text, shown, str(folder / TEX))
+    known = macros(shown)
+    rows = _symbols(folder / SYMBOLS, paper, known)
+    found = _displayed(text, shown, str(folder / TEX), known)
     _translation(text, paper, rows, folder / TEX)
     printed = {}
     for equation in found:
@@ -120,7 +124,7 @@ def read(folder):
     return paper, _energies(paper, printed, folder)
 
 
-def _symbols(path, paper):
+def _symbols(path, paper, known):
     """Declares the symbols of a table; its rows by what symbols are told apart by."""
     result, values, bounds, lacking = {}, {}, {}, []
     with open(path, newline="", encoding="utf-8-sig") as file:
@@ -138,7 +142,7 @@ def _symbols(path, paper):
             row = {key: value.strip() for key, value in row.items()}
             if not any(row.values()):
                 continue
-            row["line"] = reader.line_num
+            row["line"], row["symbol"] = reader.line_num, expanded(row["symbol"], known)
             try:
                 row["name"] = _declare(paper, row)
                 for name in ("value", "low", "high", "minimum"):
@@ -203,7 +207,7 @@ def _translation(text, paper, rows, path):
         paper.translation = tuple(names)
 
 
-def _displayed(text, shown, file):
+def _displayed(text, shown, file, known):
     """The displayed equations, numbered as LaTeX numbers them."""
     found, counter, before = [], 0, 0
     for match in DISPLAY.finditer(shown):
@@ -212,9 +216,16 @@ def _displayed(text, shown, file):
         # a comment speaks of the equation in which or directly above which it stands
         lines = re.search(r"(?:^[ \t]*%[^\n]*\n)+[ \t]*\Z", text[before:match.start()], re.MULTILINE)
         above = lines.group() if lines else ""
-        for rows in _rows(text, shown, match.span(group), match.group("name") in MANY):
-            latex, number = Placed(text, rows[0][0], rows[-1][1], file), None
-            for start, end in rows:
+        equations = _rows(text, shown, match.span(group), match.group("name") in MANY)
+        equations = _beside(shown, equations) if match.group("name") not in MANY else equations
+        # an aligned part inside an equation has one number
+        one = match.group("name") not in MANY
+        counter += one and numbers and len(equations) > 1
+        for k, rows in enumerate(equations, 1):
+            latex, number = Placed(text, rows[0][0], rows[-1][1], file, known), None
+            if one and numbers and len(equations) > 1:
+                number = f"{counter}.{k}"
+            for start, end in rows if number is None else ():
                 tag = re.search(r"\\tag\*?\{([^{}]*)\}", shown[start:end])
                 counted = numbers and not tag and not re.search(r"\\(?:nonumber|notag)\b", shown[start:end])
                 counter += counted
@@ -235,12 +246,13 @@ def _rows(text, shown, span, many):
     at its start, begins another one, as does a comment that says what it is; of others the rows are one equation."""
     start, end = span
     body = shown[start:end]
-    if not many or "\\begin" in body:
+    inner = re.findall(r"\\begin\{(\w+)\*?\}", body)
+    if not (many or inner) or not set(inner) <= set(ALIGNED):
         return [[span]]
     cuts = [0, *(match.end() for match in BREAK.finditer(body)), len(body)]
     result = []
     for low, high in zip(cuts, cuts[1:]):
-        row = BREAK.sub("", body[low:high])
+        row = re.sub(r"\\(?:begin|end)\{\w+\*?\}(?:\{\d\})?", "", BREAK.sub("", body[low:high]))
         if not row.strip(" &\t\n") and result:
             continue
         begins = RELATION.search(row) and not RELATION.match(row.strip(" &\t\n"))
@@ -250,6 +262,25 @@ def _rows(text, shown, span, many):
             result[-1].append((start + low, start + high))
         else:
             result.append([(start + low, start + high)])
+    return result
+
+
+def _beside(shown, equations):
+    """Equations that stand side by side with a wide space between are one each; `if` and other words belong to what they stand beside."""
+    result = []
+    for spans in equations:
+        start, end = spans[0][0], spans[-1][1]
+        body = shown[start:end]
+        cuts, depth, last = [], 0, 0
+        for match in re.finditer(r"\\q?quad(?![A-Za-z])|\\.|[{}]", body):
+            depth += {"{": 1, "}": -1}.get(match.group(), 0)
+            if "quad" in match.group() and not depth and all(RELATION.search(part) for part in (body[last:match.start()], body[match.end():])):
+                cuts.append(match.start())
+                last = match.end()
+        if not cuts or re.search(r"\\(?:text|mbox|mathrm)\s*\{\s*(?:if|for|when)", body):
+            result.append(spans)
+            continue
+        result += [[(start + low, start + high)] for low, high in zip([0, *cuts], [*cuts, len(body)])]
     return result
 
 
@@ -325,8 +356,8 @@ def _role(equation, rows):
     if shape != ["sum", "=", "sum"]:
         return "condition"
     key = transcription._key(left) if left else None
-    if left and not left.dots and key in rows and (equation.power() == 1 or rows[key]["kind"] == "defined"):
-        kind = rows[key]["kind"]
+    if left and transcription.whole_key(left) in rows and (equation.power() == 1 or rows[transcription.whole_key(left)]["kind"] == "defined"):
+        kind = rows[transcription.whole_key(left)]["kind"]
         return "definition" if kind in ("defined", "quasi-velocity") else "value" if kind in ("force", "friction", "parameter") else "motion"
     if left and not left.dots and key in ENERGIES:
         return ENERGIES[key]
@@ -339,7 +370,7 @@ def _named(equation, role, rows):
     """The symbol that an equation is of, from its form: LaTeX, or nothing."""
     left = equation.left()
     if role in ("value", "definition", "reading", "reset", "rule", "reaction") and left:
-        return transcription._key(left)
+        return transcription.whole_key(left) if transcription.whole_key(left) in rows else transcription._key(left)
     if role == "force" and left:
         return transcription._key(left).partition("_")[2]
     if role == "motion":

@@ -346,7 +346,7 @@ def rates(symbol):
 
 def plain_latex(latex):
     """LaTeX of a symbol without upright letters, braces, backslashes and spaces: what symbols are told apart by."""
-    return re.sub(r"\\(?:mathrm|mathit|mathnormal|textrm|text|operatorname|rm|it)(?![A-Za-z])|[\\{}\s]", "", latex)
+    return re.sub(r"\\(?:mathrm|mathit|mathnormal|mathcal|mathscr|mathsf|textrm|text|operatorname|rm|it)(?![A-Za-z])|[\\{}\s]", "", latex)
 
 
 GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "lambda", "mu", "nu",

@@ -4,14 +4,15 @@ import re
 from dataclasses import dataclass
 
 from ..errors import LatexError, Place
+from .macros import applied, braced, expanded
 
 
 class Placed(str):
-    """A part of a file's text that knows where it stands: `file`, the `whole` text, its `offset`."""
+    """A part of a file's text that knows where it stands: `file`, the `whole` text, its `offset`, and the `macros` of the file."""
 
-    def __new__(cls, whole, start, end, file):
+    def __new__(cls, whole, start, end, file, macros=None):
         result = super().__new__(cls, whole[start:end])
-        result.whole, result.offset, result.file = whole, start, file
+        result.whole, result.offset, result.file, result.macros = whole, start, file, macros or {}
         return result
 
 
@@ -47,22 +48,24 @@ TOKEN = re.compile(
     r"(?:\s|~|%[^\n]*(?:\n|$))+|&|(?P<break>\\\\\*?(?:\[[^\]]*\])?)|(?P<skip>\\[,;:!> ]|\\/)"
     rf"|(?P<frame>\\(?:begin|end)\{{(?:{FRAMES})\*?\}}|\\\[|\\\]|\$\$?)"
     r"|(?P<place>\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\})"
-    r"|(?P<roman>\\(?:text|textrm|textnormal|mathrm|mathit|mathnormal|operatorname\*?|mbox)\s*\{(?P<word>[^{}]*)\})"
+    r"|(?P<roman>\\(?:text|textrm|textnormal|mathrm|mathit|mathnormal|mathcal|mathscr|mathsf|operatorname\*?|mbox)\s*\{(?P<word>[^{}]*)\})"
     r"|(?P<time>\(t\s*\^\s*\{?[+-]\}?\))|(?P<of_time>\(t\))"
     r"|(?P<command>\\(?:[A-Za-z]+|[|{}]))|(?P<symbol>[A-Za-z]|[α-ωΑ-Ωϕϑϵℓ])|(?P<number>\d+(?:\.\d+)?|\.\d+)|(?P<open>[(\[])|(?P<close>[)\]])"
-    r"|(?P<bar>\|)|(?P<relation>[=<>≤≥])|(?P<sign>[+−-])|(?P<power>\^)|(?P<index>_)|(?P<brace>[{}])|(?P<slash>/)|(?P<times>[*·×])"
+    r"|(?P<bar>\|)|(?P<relation>:=|[=<>≤≥])|(?P<sign>[+−-])|(?P<power>\^)|(?P<index>_)|(?P<brace>[{}])|(?P<slash>/)|(?P<times>[*·×])"
     r"|(?P<end>[.,;:])|(?P<prime>['’])")
 
 # what a command is; any other is a symbol, which must be declared
 COMMANDS = {
     "quad": "skip", "qquad": "skip", "displaystyle": "skip", "textstyle": "skip", "nonumber": "skip", "notag": "skip",
     "mathstrut": "skip", "rm": "skip", "it": "skip", "centering": "skip", "thinspace": "skip", "limits": "skip", "left": "size", "right": "size", "middle": "size",
-    "sin": "function", "cos": "function", "tan": "function", "cot": "function", "sign": "function", "sgn": "function",
+    "sin": "function", "cos": "function", "tan": "function", "cot": "function", "sec": "function", "csc": "function",
+    "sign": "function", "sgn": "function",
     "dot": "dots", "ddot": "dots", "dddot": "dots", "frac": "frac", "dfrac": "frac", "tfrac": "frac", "cfrac": "frac",
     "cdot": "times", "times": "times", "ast": "times", "lvert": "bar", "rvert": "bar", "vert": "bar",
     "bar": "accent", "hat": "accent", "tilde": "accent", "overline": "accent", "widetilde": "accent", "widehat": "accent",
     "lt": "relation", "gt": "relation", "le": "relation", "leq": "relation", "ge": "relation", "geq": "relation",
-    "leqslant": "relation", "geqslant": "relation", "{": "open", "lbrace": "open", "lbrack": "open", "lparen": "open",
+    "leqslant": "relation", "geqslant": "relation", "equiv": "relation", "triangleq": "relation", "coloneqq": "relation",
+    "coloneq": "relation", "{": "open", "lbrace": "open", "lbrack": "open", "lparen": "open",
     "}": "close", "rbrace": "close", "rbrack": "close", "rparen": "close",
     **{name: "size" for name in ("big", "Big", "bigg", "Bigg", "bigl", "bigr", "Bigl", "Bigr", "biggl", "biggr", "Biggl", "Biggr")},
 }
@@ -79,13 +82,15 @@ REFUSED = {
     "sinh": "a hyperbolic function is no trigonometric polynomial: declare it as a symbol",
     "cosh": "a hyperbolic function is no trigonometric polynomial: declare it as a symbol",
     "tanh": "a hyperbolic function is no trigonometric polynomial: declare it as a symbol",
-    "sec": "write \\frac{1}{\\cos ...}", "csc": "write \\frac{1}{\\sin ...}",
+    **{name: "what follows from an equation is an equation of its own: give it a display" for name in (
+        "Rightarrow", "Longrightarrow", "implies", "iff", "Leftrightarrow", "rightarrow", "to", "therefore", "longrightarrow")},
+    **{name: "write the sign or symbol alone" for name in ("stackrel", "overset", "underset")},
     "int": "an integral cannot be judged: carry it out", "sum": "write the terms of the sum", "prod": "write the factors of the product",
     "partial": "carry the derivative out: only rates in time are known, \\dot and \\ddot", "nabla": "carry the derivative out",
     "pm": "two equations in one: write one for each sign, or declare a sign symbol",
     "mp": "two equations in one: write one for each sign, or declare a sign symbol",
     "approx": "an approximation is no equation: write = or a relation", "simeq": "an approximation is no equation: write = or a relation",
-    "equiv": "write =", "neq": "that two things differ cannot be judged: write < or >", "ne": "that two things differ cannot be judged: "
+    "neq": "that two things differ cannot be judged: write < or >", "ne": "that two things differ cannot be judged: "
     "write < or >", "propto": "a proportion is no equation: write the factor", "ll": "write <", "gg": "write >",
     "over": "write \\frac{...}{...}", "vec": "a vector cannot be judged: write its components", "mathbf": "a vector cannot be judged: "
     "write its components", "boldsymbol": "a vector cannot be judged: write its components", "bm": "a vector cannot be judged: write "
@@ -97,15 +102,19 @@ REFUSED = {
     "without its beginning",
 }
 
-FUNCTIONS = {"sin": "sin", "cos": "cos", "tan": "tan", "cot": "cot", "sign": "sign", "sgn": "sign", "signum": "sign"}
-RELATIONS = {"lt": "<", "gt": ">", "le": "≤", "leq": "≤", "leqslant": "≤", "ge": "≥", "geq": "≥", "geqslant": "≥"}
+FUNCTIONS = {"sin": "sin", "cos": "cos", "tan": "tan", "cot": "cot", "sec": "sec", "csc": "csc", "sign": "sign", "sgn": "sign", "signum": "sign"}
+RELATIONS = {"lt": "<", "gt": ">", "le": "≤", "leq": "≤", "leqslant": "≤", "ge": "≥", "geq": "≥", "geqslant": "≥",
+             "equiv": "=", "triangleq": "=", "coloneqq": "=", "coloneq": "="}
 BRACKETS = {r"\lbrace": r"\{", r"\rbrace": r"\}", r"\lbrack": "[", r"\rbrack": "]", r"\lparen": "(", r"\rparen": ")"}
 
 
 def tokens(latex):
-    """The tokens of a text; what does not show in print is left out."""
-    found, place = [], 0
+    """The tokens of a text; what does not show in print is left out, and macros are put in."""
+    found, place, unseen, macros = [], 0, set(), getattr(latex, "macros", {})
     while place < len(latex):
+        if place in unseen:
+            place += 1
+            continue
         match = TOKEN.match(latex, place)
         if not match:
             raise error_at(latex, place, f"{latex[place]!r} cannot be read here")
@@ -113,6 +122,13 @@ def tokens(latex):
         place = match.end()
         if kind == "word":  # the last group of a roman word
             kind = "roman"
+        if kind == "command" and text[1:] in macros:
+            made, place = _macro(latex, text, at, place, macros)
+            found += made
+            continue
+        if text == "\\boxed" and latex[place:place + 1] == "{" and (inner := braced(latex, place)) is not None:
+            unseen |= {place, place + 1 + len(inner)}
+            continue
         if kind == "command":
             kind, text = _command(latex, text, at)
         elif kind == "roman":
@@ -121,6 +137,8 @@ def tokens(latex):
             text = "\\" + next(name for name, letter in GREEK.items() if letter == text) if text in GREEK.values() else text
         elif kind == "sign":
             text = "+" if text == "+" else "-"
+        elif text == ":=":
+            text = "="
         if kind == "size":
             rest = latex[place:].lstrip()
             if rest.startswith("."):
@@ -129,6 +147,16 @@ def tokens(latex):
         if kind not in (None, "skip", "frame", "place"):
             found.append(Token(kind, text, at))
     return found
+
+
+def _macro(latex, text, at, place, macros):
+    """The tokens that a macro stands for, all at its place, and where its arguments end."""
+    try:
+        value, end = applied(macros[text[1:]], latex, place)
+        value = expanded(value, macros)
+        return [Token(token.kind, token.text, at) for token in tokens(value)], end
+    except LatexError as error:
+        raise error_at(latex, at, f"the macro {text}: {error.what}") from error
 
 
 def _command(latex, text, at):
@@ -148,6 +176,6 @@ def _command(latex, text, at):
 
 def _roman(text, word):
     """Upright words: a function, a name, or words between equations."""
-    if not text.startswith((r"\text", r"\mbox")) or word in FUNCTIONS:
+    if not text.startswith((r"\text", r"\mbox")) or word in FUNCTIONS or word == "d":
         return ("function", "\\" + FUNCTIONS[word]) if word in FUNCTIONS else ("upright", word)
     return "text", rf"\text{{{word}}}"

@@ -139,15 +139,25 @@ def _key(node):
     return plain_latex(node.accent + node.text + ("_" + node.index if node.index else ""))
 
 
+def whole_key(node):
+    """The same for a symbol whose LaTeX has its dots in it."""
+    return "d" * node.dots + "ot" * bool(node.dots) + _key(node)
+
+
 def terms(tree, paper, s, m, latex=""):
     """The expressions of the numbered terms, with the signs of `Equation.terms`: an equation of
     motion is left minus right, a condition positive where it holds."""
     by_latex = {plain_latex(symbol.latex): symbol for symbol in paper.symbols.values()}
 
     def symbol(node):
+        if node.dots and whole_key(node) in by_latex:
+            return getattr(s, by_latex[whole_key(node)].name)
         if _key(node) not in by_latex:
-            raise error_at(latex, node.at, f"the symbol {_key(node)!r} is not declared by the paper")
+            hint = ": declare what depends on time as an input or a force" if _key(node) == "t" else ""
+            raise error_at(latex, node.at, f"the symbol {_key(node)!r} is not declared by the paper{hint}")
         found = by_latex[_key(node)]
+        if node.dots and found.name in paper.definitions:
+            return rate(node, getattr(s, found.name))
         if node.dots and found.role not in ("coordinate", "input"):
             raise error_at(latex, node.at, f"the symbol {found.name} has dots and is neither a coordinate nor an input")
         if found.velocity:
@@ -170,9 +180,10 @@ def terms(tree, paper, s, m, latex=""):
             return symbol(node)
         if node.kind == "number":
             return Fraction(node.text)
-        if node.kind == "call" and node.text in ("tan", "cot"):
+        if node.kind == "call" and node.text in ("tan", "cot", "sec", "csc"):
             angle = value(node.children[0])
-            return m.sin(angle) / m.cos(angle) if node.text == "tan" else m.cos(angle) / m.sin(angle)
+            above = {"tan": m.sin, "cot": m.cos}.get(node.text, lambda x: 1)
+            return above(angle) / (m.cos if node.text in ("tan", "sec") else m.sin)(angle)
         if node.kind == "call":
             return getattr(m, node.text)(value(node.children[0]))
         if node.kind == "rate":
@@ -191,7 +202,9 @@ def terms(tree, paper, s, m, latex=""):
     def rate(node, inner):
         if not hasattr(m, "rate"):
             raise error_at(latex, node.at, "a time derivative of a bracket can be judged, and not computed with: carry it out")
-        return m.rate(sympify(inner))
+        for _ in range(node.dots):
+            inner = m.rate(sympify(inner))
+        return inner
 
     found = {}
 

@@ -186,7 +186,9 @@ def momenta(motion, equation):
     """The parts of the momentum of an equation's coordinate as SymPy expressions, as the kinetic energy prints them, and all of it."""
     if equation.kind != "motion":
         return []
-    rate, energy = Symbol("d" + equation.of, real=True), motion.energies.kinetic(motion.s, motion.m)
+    rate, energy = Symbol("d" + equation.of, real=True), sympify(motion.energies.kinetic(motion.s, motion.m))
+    if energy.has(Rate):
+        energy = expression(motion.ring.read(energy))
     parts = dict.fromkeys(part.diff(rate) for part in Add.make_args(expand(energy, trig=False)))
     return [part for part in [*parts, sum(parts)] if part != 0 and not part.has(Derivative)]
 

@@ -29,6 +29,23 @@ def construction_parts(constructed, paper):
     for name, force in zip(small.coordinates, small.forces):
         if force:
             parts.append((f"Rest is no equilibrium: there the equation of {name} leaves ", force))
+    return parts + _frequencies(constructed.frequencies)
+
+
+def _frequencies(found):
+    """Small undamped motions about rest: w is the square of a frequency."""
+    if not found:
+        return []
+    parts, about = [], "Small undamped motions about rest: "
+    if len(found.polynomial) == 2:
+        # k - w m = 0
+        parts.append((f"{about}the square of the frequency is w = ", -found.polynomial[0] * found.polynomial[1].inverse()))
+    elif len(found.polynomial) == 3:
+        parts += [(f"{about}the squares w of the frequencies solve a w² + b w + c = 0 with a = ", found.polynomial[2]), ("b = ", found.polynomial[1]),
+                  ("c = ", found.polynomial[0])]
+    for name, roots in found.values.items():
+        shown = [f"{root**0.5:.6g} rad/s" if root > 0 else "0" if root == 0 else f"growth with {(-root)**0.5:.6g} 1/s" for root in roots]
+        parts.append((f"{about}{', '.join(shown)} ({name})", None))
     return parts
 
 

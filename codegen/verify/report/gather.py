@@ -8,6 +8,7 @@ from typing import Dict, List, Optional
 from ..construct.balance import energy_balance, momentum_balances
 from ..construct.conserved import conserved
 from ..construct.lagrangian import construct, motion_rows
+from ..construct.frequencies import frequencies
 from ..construct.small import small_motion
 from ..input import transcription
 from ..input.corrections import apply
@@ -39,7 +40,7 @@ class Definiteness:
 @dataclass
 class Constructed:
     """What is constructed from equations: `lagrangian`, or `why` there is none; balances and conserved quantities;
-    small motions. `of` says of which equations: as printed, or with what is consistent."""
+    small motions and their frequencies. `of` says of which equations: as printed, or with what is consistent."""
 
     of: str
     lagrangian: object
@@ -48,6 +49,7 @@ class Constructed:
     momenta: List = field(default_factory=list)
     conserved: List = field(default_factory=list)
     small: object = None
+    frequencies: object = None
 
 
 @dataclass
@@ -102,6 +104,8 @@ def verify(case, thorough=True):
     objected to where there are no energies."""
     paper = case.paper
     printed = Subject(paper)
+    wrong, sound = principles.wrong_energies(printed, case.energies)
+    case = replace(case, energies=sound)
     readings = ranked(printed, case.energies, thorough)
     first = readings[0].motion if readings else None
     case = replace(case, corrections=_corrections(case, readings))
@@ -129,6 +133,9 @@ def verify(case, thorough=True):
         report.definiteness.append(replace(_definiteness(r.name, paper, r.motion.mass()), boxes=r.boxes if r.whole else {}, squares=r.squares))
     _attribute(report)
     _principles(report)
+    report.findings += wrong
+    if wrong and not sound:
+        report.unjudged["difference"] = "the energies have terms of another dimension"
     report.constructed = [] if printed.solved else [_construct("as printed", printed)]
     if findings and not printed.solved:
         report.constructed.append(_construct("with what is consistent", whole))
@@ -221,7 +228,7 @@ def _construct(of, subject):
         return Constructed(of, None, why)
     _, q, rows = motion_rows(subject, conservative=False)
     return Constructed(of, lagrangian, None, energy_balance(subject, lagrangian), momentum_balances(subject, lagrangian),
-                       conserved(subject, lagrangian), small_motion(subject.paper, rows, q))
+                       conserved(subject, lagrangian), small_motion(subject.paper, rows, q), frequencies(subject))
 
 
 def _definiteness(name, paper, mass):

@@ -68,7 +68,8 @@ def _parts(tree, marks):
         elif node.kind == "fraction":
             to.append(f"<mfrac>{inline(node.children[0])}{inline(node.children[1])}</mfrac>")
         elif node.kind == "rate":
-            to.append("<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>")
+            d, t = ("<msup><mi>d</mi><mn>2</mn></msup>", "<msup><mi>t</mi><mn>2</mn></msup>") if node.dots == 2 else ("<mi>d</mi>", "<mi>t</mi>")
+            to.append(f"<mfrac>{d}<mrow><mi>d</mi>{t}</mrow></mfrac>")
             emit(node.children[0], to)
         elif node.kind == "modulus":
             to.append(f"<mrow><mo>|</mo>{inline(node.children[0])}<mo>|</mo></mrow>")

@@ -3,6 +3,7 @@ not be neglected."""
 
 from ..construct.impacts import impact
 from ..judgements.definite import rest, states
+from ..judgements.energies import wrong_terms
 from ..judgements.galilei import split
 from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
@@ -135,6 +136,21 @@ def _regular(paper, d):
                 if signs([d.at_rest], intervals(put)) == [1]:
                     result.append(f"{roots[0]:.4g} and {roots[1]:.4g} ({key})")
     return result
+
+
+def wrong_energies(printed, energies):
+    """(findings, the energies that can be compared with): a finding for each term of an energy or a force that has another dimension."""
+    findings, sound = [], []
+    for reading in energies:
+        wrong = wrong_terms(printed, reading)
+        for what, term, words in wrong:
+            name = what if what.startswith("force") else f"{what} energy" if what != "dissipation" else what
+            findings.append(Finding(
+                f"energy-{len(findings) + 1}", "text", "objection", f"The {name} of '{reading.name}' has a term of another dimension: {words}. "
+                "Nothing is compared with it.", (), [printed.ring.read(term)], [], False, ["dimensions"], None))
+        if not wrong:
+            sound.append(reading)
+    return findings, sound
 
 
 def wrong_numbers(numbers):

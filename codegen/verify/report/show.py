@@ -124,7 +124,7 @@ def unit_latex(unit):
 def plain(latex):
     """LaTeX as plain text with Greek letters and dots over the symbols."""
     text = re.sub(r"\\(d+)ot\{\\?(\w+)\}", lambda x: ENTITIES.get(x[2], x[2]) + ACCENTS[len(x[1])], latex)
-    text = re.sub(r"\\(bar|hat|tilde)\s*\{?\\?(\w+)\}?", lambda x: ENTITIES.get(x[2], x[2]) + OVER[x[1]], text)
+    text = re.sub(r"\\(bar|hat|tilde)\s*\{?\\?([A-Za-z]+)\}?", lambda x: ENTITIES.get(x[2], x[2]) + OVER[x[1]], text)
     text = re.sub(r"_\{(\w+)\}", r"_\1", text)
     text = re.sub(r"\\frac\{(\w+)\}\{([^{}]+)\}", r"\1/\2", text)
     text = re.sub(r"\\operatorname\{(\w+)\}", r"\1", text)

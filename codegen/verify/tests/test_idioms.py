@@ -19,7 +19,7 @@ def paper():
     for name, latex in (("theta", r"\theta"), ("theta_1", r"\theta_1"), ("x", "x"), ("x_I", "x_I")):
         result.coordinate(name, "rad", name, latex)
     for name, latex in (("m", "m"), ("l", "l"), ("g", "g"), ("k", "k"), ("alpha", r"\alpha"), ("M_rb", r"M_{\mathrm{rb}}"),
-                        ("xbar", r"\bar{x}"), ("omega", r"\omega"), ("phi", r"\varphi"), ("Re", r"\mathrm{Re}")):
+                        ("xbar", r"\bar{x}"), ("omega", r"\omega"), ("ell", r"\ell"), ("phi", r"\varphi"), ("Re", r"\mathrm{Re}")):
         result.parameter(name, "1", name, latex)
     return result
 
@@ -44,6 +44,15 @@ READ = [
     (r"\frac{d}{dt}\left(m x^2 \dot x\right)", 2 * S.m * S.x * S.dx**2 + S.m * S.x**2 * S.ddx),
     (r"m l \frac{\mathrm{d}}{\mathrm{d} t}\{2\dot\theta - \dot x(1 + k^2 x^2)\}",
      S.m * S.l * (2 * S.ddtheta - S.ddx * (1 + S.k**2 * S.x**2) - 2 * S.k**2 * S.x * S.dx**2)),
+    (r"\frac{\text{d}}{\text{d}t}\left(\sin^2\theta\,\dot\theta\right)", 2 * sin(S.theta) * cos(S.theta) * S.dtheta**2 + sin(S.theta)**2 * S.ddtheta),
+    (r"m\frac{d^2}{dt^2}(x + l\sin\theta)", S.m * (S.ddx + S.l * cos(S.theta) * S.ddtheta - S.l * sin(S.theta) * S.dtheta**2)),
+    # as papers and notes print them
+    (r"k\csc^2\alpha\,\dot x^2", S.k * S.dx**2 / sin(S.alpha)**2), (r"\sec\theta", 1 / cos(S.theta)), (r"\boxed{m\,\ddot{x}}", S.m * S.ddx),
+    (r"\mathcal{M}_{rb}", S.M_rb), (r"m \, l \cos{\left(\theta \right)} \,,", S.m * S.l * cos(S.theta)), (r"m l^2\ \dot\theta^2 \;.", S.m * S.l**2 * S.dtheta**2),
+    (r"\begin{split} m \\ &\quad + k \end{split}", S.m + S.k), (r"\begin{aligned} & m + k \end{aligned}", S.m + S.k),
+    (r"\frac{m\ell g}{2}(1-\cos\theta)", S.m * S.ell * S.g * (1 - cos(S.theta)) / 2), (r"\sin{\left(2\,\theta\right)}", sin(2 * S.theta)),
+    (r"\Big(m + k\Big)\ddot{\theta}_{1}", (S.m + S.k) * S.ddtheta_1), (r"\tfrac{1}{2}\,m\left[\dot{x}^{2}+\left(l\dot{\theta}\right)^{2}\right]",
+                                                                  S.m * (S.dx**2 + S.l**2 * S.dtheta**2) / 2),
     # functions
     (r"\sin\theta", sin(S.theta)), (r"\sin{\theta}", sin(S.theta)), (r"\sin(\theta)", sin(S.theta)), (r"\sin\left(\theta\right)", sin(S.theta)),
     (r"\sin^2\theta", sin(S.theta)**2), (r"\sin^{2}\theta", sin(S.theta)**2), (r"\sin^2(\alpha-\theta)", sin(S.alpha - S.theta)**2),
@@ -79,7 +88,11 @@ REFUSED = [
     (r"m \cdot", None, "factor is missing"), (r"m \cdot - l", "-", "factor is missing"), (r"(m + k", None, "expected"), (r"(m + k]", "]", "expected"),
     (r"m + k)", ")", "unexpected"), (r"|x", None, "expected"), (r"\left. m \right|", r"\left", "does not show"), (r"\sqrt{m}", r"\sqrt", "root"),
     (r"m e^{\theta}", r"{\theta}", "not a whole number"), (r"m \pm l", r"\pm", "one for each sign"), (r"m \approx l", r"\approx", "approximation"),
-    (r"\frac{d}{dt} m \dot x", r"\frac", "brackets around what d/d t is of"), (r"\frac{d^2}{dt^2}(m x)", r"\frac", "carry other derivatives out"),
+    (r"\frac{d}{dt} m \dot x", r"\frac", "brackets around what d/d t is of"), (r"\frac{d^3}{dt^3}(m x)", r"\frac", "carry other derivatives out"),
+    (r"\frac{d^2}{dt}(m x)", r"\frac", "carry other derivatives out"),
+    (r"m \Rightarrow l", r"\Rightarrow", "a display"), (r"m \stackrel{!}{=} l", r"\stackrel", "alone"),
+    (r"\begin{array}{l} m \end{array}", r"\begin", "equation of its own"), (r"m \sin(\omega t)", "t)", "as an input or a force"),
+    (r"F_y^f", "f", "not a whole number"),
     (r"\frac{d}{dx}(m x)", r"\frac", "carry other derivatives out"), (r"\frac{\partial m}{\partial x}", r"\partial", "derivative"),
     (r"\frac{d^2 x}{dt}", r"\frac", r"d\^2 over dt\^1"), (r"\dot{m x}", r"\dot", "one symbol"), (r"\dot{\dot{x}}", r"\dot", "another"),
     (r"x'", "'", "prime"), (r"x_1_2", "_2", "second index"), (r"\vec{x}", r"\vec", "components"), (r"\int m", r"\int", "integral"),

@@ -122,6 +122,58 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} \nonumber
         self.change(("undefined, N", "defined, N"), file="symbols.csv")
         self.refused(LatexError, "a reading is of a symbol of kind undefined, and G is a defined")
 
+    def test_the_macros_of_a_manuscript(self):
+        self.change(("\\begin{document}", "\\newcommand{\\th}{\\theta}\n\\newcommand{\\half}{\\tfrac{1}{2}}\n\\newcommand{\\rate}[1]{\\dot{#1}}\n"
+                     "\\def\\sq#1{#1^2}\n\\DeclareMathOperator{\\Cos}{cos}\n\\begin{document}"),
+                    (r"T = \frac{1}{2} M \dot{x}^2", r"T = \half M \sq{\rate x}"), (r"\cos\theta,", r"\Cos\th,"), (r"% motion of \theta", r"% motion of \th"))
+        self.change((r"\theta,", r"\th,"), file="symbols.csv")
+        self.assertEqual(self.judged().findings, [])
+        self.change((r"{\dot{#1}}", r"{\vec{#1}}"))
+        self.refused(LatexError, r"line 15, column 13: the macro .sq: .vec: a vector cannot be judged")
+        self.change((r"{\vec{#1}}", r"{\rate{#1}}"))
+        self.refused(LatexError, "the macro .sq: a macro contains itself")
+
+    def test_equations_side_by_side_and_aligned_inside_a_display(self):
+        path = self.folder / "paper.tex"
+        head = path.read_text(encoding="utf-8").split(r"\begin{equation}")[0]
+        path.write_text(head + r"""$$ T = \tfrac12 M \dot{x}^2 + \tfrac12 m (\dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} + l^2 \dot{\theta}^2 ) \qquad
+V = - m g l \cos\theta, \quad D \equiv \tfrac12 c \dot{x}^2, \quad \boxed{Q_x := F} $$
+\begin{equation}
+\begin{aligned}
+% motion of x
+(M + m) \ddot{x} + m l \cos\theta \, \ddot{\theta} - m l \sin\theta \, \dot{\theta}^2 + c \dot{x} &= F, \\
+% motion of \theta
+m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} &+ m g l \sin\theta \\ &= 0
+\end{aligned}
+\end{equation}
+""", encoding="utf-8")
+        result = self.judged()
+        self.assertEqual(result.findings, [])
+        self.assertEqual([(n, e.of) for n, e in result.case.paper.equations.items()], [("1.1", "x"), ("1.2", "theta")])
+
+    def test_an_energy_of_another_dimension_is_found_and_not_compared_with(self):
+        self.change(("V = - m g l \\cos", "V = - m g \\cos"))
+        result = self.judged()
+        self.assertEqual([(f.key, f.equation, f.judgements) for f in result.findings], [("energy-1", "text", ["dimensions"])])
+        self.assertEqual(result.unjudged["difference"], "the energies have terms of another dimension")
+        # what it must be follows from the equations
+        found = result.constructed[0].lagrangian.potential
+        s = result.printed.s
+        self.assertFalse(found + result.printed.ring.read(s.m * s.g * s.l * result.printed.m.cos(s.theta)))
+        self.change(("V = - m g \\cos", "V = - m g l \\cos"), ("Q_x = F", "Q_x = F l"))
+        self.assertEqual([f.key for f in self.judged().findings], ["energy-1"])
+
+    def test_rates_of_what_is_defined(self):
+        self.change((r"\left( \dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} + l^2 \dot{\theta}^2 \right)", r"\left( \dot x_p^2 + \dot{y}_p^2 \right)"))
+        positions = r"\begin{align*} x_p &= x + l \sin\theta, & \\ y_p &= - l \cos\theta \end{align*}"
+        rates = r"\[ \dot x_p = \dot x + l \cos\theta \dot\theta \] \[ \dot y_p = l \sin\theta \dot\theta \]"
+        tex, table = ((self.folder / name).read_text(encoding="utf-8") for name in ("paper.tex", "symbols.csv"))
+        for defined, rows in ((positions, "x_p, defined, m, mass, ,\ny_p, defined, m, mass, ,\n"),
+                              (rates, "\\dot{x}_p, defined, m/s, mass, ,\n\\dot{y}_p, defined, m/s, mass, ,\n")):
+            (self.folder / "paper.tex").write_text(tex.replace("and the force", defined + " and the force"), encoding="utf-8")
+            (self.folder / "symbols.csv").write_text(table + rows, encoding="utf-8")
+            self.assertEqual(self.judged().findings, [])
+
     def test_a_definition_is_put_in(self):
         self.change((r"\left( \dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} + l^2 \dot{\theta}^2 \right)", r"\left( v_x^2 + v_y^2 \right)"),
                     ("and the force", "\\[ v_x = \\dot{x} + l \\cos\\theta \\dot\\theta \\]\n\\[ v_y = l \\sin\\theta \\dot\\theta \\] and the force"))
