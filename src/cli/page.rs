@@ -4,20 +4,12 @@ use std::io::Write;
 use std::path::Path;
 
 use super::outcome::Failure;
+use crate::study::quoted;
 
 /// The command line of this process, as a shell takes it.
 pub fn command_line() -> String {
     let arguments: Vec<String> = std::env::args().skip(1).map(|a| quoted(&a)).collect();
     format!("dalembert {}", arguments.join(" "))
-}
-
-/// An argument as a shell takes it.
-fn quoted(argument: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-=+,:@%".contains(c);
-    match !argument.is_empty() && argument.chars().all(plain) {
-        true => argument.to_owned(),
-        false => format!("'{}'", argument.replace('\'', "'\\''")),
-    }
 }
 
 /// Writes a page, whole or not at all.

@@ -11,9 +11,12 @@
 //! | `assets/plots.js` | curves, zoom, values read out |
 //! | `assets/mechanism.js` | the drawing of a model (`codegen/drawing.py`) at a time |
 //! | `assets/player.js` | playing, keys |
+//! | `assets/matrix.js` | the points of a study in plots of its columns against each other |
 
 mod escape;
 mod frames;
+#[cfg(feature = "cli")]
+mod matrix;
 mod plots;
 mod run;
 #[cfg(feature = "cli")]
@@ -28,6 +31,8 @@ use crate::record::Units;
 use crate::record::plot::Chart;
 use escape::{script_data, text};
 use frames::Motion;
+#[cfg(feature = "cli")]
+use matrix::Matrix;
 use plots::Plot;
 use serde::Serialize;
 use std::fmt::Write;
@@ -63,6 +68,9 @@ struct Data {
     plots: Vec<Plot>,
     /// Of the page of a run.
     motion: Option<Motion>,
+    /// Of the page of a study.
+    #[cfg(feature = "cli")]
+    matrix: Option<Matrix>,
 }
 
 impl Page {
@@ -168,6 +176,10 @@ impl Page {
         SCRIPTS.iter().for_each(|script| put(script));
         if self.data.motion.is_some() {
             OF_MOTION.iter().for_each(|script| put(script));
+        }
+        #[cfg(feature = "cli")]
+        if self.data.matrix.is_some() {
+            put(matrix::SCRIPT);
         }
         put("})();\n</script>\n</body></html>\n");
         page

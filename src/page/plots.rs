@@ -3,7 +3,7 @@
 use super::escape::{plain, symbols, text};
 use super::thin::thin;
 use crate::record::exact;
-use crate::record::plot::{Chart, Dimension, Scale};
+use crate::record::plot::{Chart, Curve, Dimension, Scale, Style};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -46,6 +46,7 @@ struct Line {
     /// Index of its abscissas.
     x: usize,
     y: Vec<f64>,
+    style: Style,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
     #[serde(skip)]
@@ -131,7 +132,7 @@ impl Plot {
                 .map(|p| if has_place(p) { *p } else { (p.0, f64::NAN) })
                 .collect();
             let notes = notes.get(i).cloned().unwrap_or_default();
-            plot.add(points, name, symbols(&curve.label), notes);
+            plot.add(curve, points, name, notes);
         }
         plot
     }
@@ -144,7 +145,8 @@ impl Plot {
         }
     }
 
-    fn add(&mut self, points: Vec<(f64, f64)>, name: String, html: String, notes: Vec<String>) {
+    /// Adds a curve of a chart with these points of it.
+    fn add(&mut self, of: &Curve, points: Vec<(f64, f64)>, name: String, notes: Vec<String>) {
         let (t, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
         let kept = match t.is_sorted() {
             true => thin(&[&y], y.len(), MOST_POINTS),
@@ -158,8 +160,9 @@ impl Plot {
             name,
             x,
             y: pick(&y),
+            style: of.style,
             notes,
-            html,
+            html: symbols(&of.label),
         });
     }
 
@@ -214,6 +217,7 @@ impl Plot {
                 name: column.name.to_owned(),
                 x: 0,
                 y: pick(&column.y),
+                style: Style::Line,
                 notes: Vec::new(),
                 html: format!(
                     "{} <span class=\"faint\">{}</span>",
@@ -252,7 +256,7 @@ impl Plot {
             let _ = write!(
                 out,
                 "<span class=\"key\" data-curve=\"{i}\"><i class=\"s{}\"></i>{} <output></output></span>",
-                i % COLOURS,
+                curve.colour(i),
                 curve.html
             );
         }
@@ -287,8 +291,18 @@ impl Plot {
     }
 }
 
-/// Colours that the style has for curves.
+/// Colours that the style has for curves; the last is grey.
 const COLOURS: usize = 8;
+
+impl Line {
+    /// The number of its colour, where it is the `i`-th of a plot.
+    fn colour(&self, i: usize) -> usize {
+        match self.style {
+            Style::Background => COLOURS - 1,
+            Style::Line | Style::Points => i % COLOURS,
+        }
+    }
+}
 
 fn from_to(low: f64, high: f64, unit: &str) -> String {
     format!("from {} to {} {unit}", exact(low), exact(high))
@@ -297,7 +311,6 @@ fn from_to(low: f64, high: f64, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::plot::Curve;
 
     fn chart(points: Vec<(f64, f64)>, y: Dimension) -> Chart {
         Chart {
@@ -307,6 +320,7 @@ mod tests {
             curves: vec![Curve {
                 label: "c&d".into(),
                 points,
+                ..Curve::default()
             }],
             marks: true,
         }

@@ -38,6 +38,8 @@ pub(crate) struct Block {
     pub factors: Vec<Factor>,
     /// Number of values of each.
     pub count: usize,
+    /// Whether they are a sample, such as of random variables or of records, and not a grid.
+    pub is_sample: bool,
 }
 
 /// All that varies; the last block varies fastest.
@@ -118,6 +120,11 @@ impl Design {
                 value: factor.values.node(i),
             })
             .collect()
+    }
+
+    /// Whether its cases are a sample, of which statistics can be made.
+    pub fn is_sample(&self) -> bool {
+        self.blocks.iter().any(|block| block.is_sample)
     }
 
     /// All factors in order.

@@ -53,7 +53,7 @@ pub(crate) fn finish(
         write(CAPACITIES, &bytes(table::csv(&columns)))?;
     }
     let summary = outcome.json(&columns);
-    for (name, picture) in charts::pictures(&outcome) {
+    for (name, picture) in charts::files(&outcome, &columns) {
         write(name, picture.as_bytes())?;
     }
     write(PAGE, page(&outcome, &columns, &summary).as_bytes())?;

@@ -3,12 +3,16 @@
 //! A study file says what varies in a scene (`file`); that makes cases (`design`, `distribution`, `sampling`), of each of which
 //! one run or several are made (`procedure`, `member`) on all cores (`work`). What is measured of them (`measure`) are the rows
 //! of one table (`rows`, `table`); a folder keeps them while the study goes on (`folder`). In the end they are counted and
-//! fitted (`summary`, `fragility`) and drawn (`charts`).
+//! fitted (`summary`, `fragility`, `cloud`) and drawn (`charts`).
 
 #[cfg(feature = "cli")]
 mod capacities;
 #[cfg(feature = "cli")]
 mod charts;
+#[cfg(feature = "cli")]
+mod cloud;
+#[cfg(feature = "cli")]
+mod command;
 #[cfg(feature = "cli")]
 mod design;
 #[cfg(feature = "cli")]
@@ -38,7 +42,9 @@ mod table;
 mod work;
 
 #[cfg(feature = "cli")]
-pub(crate) use charts::{largest, pictures, shares};
+pub(crate) use charts::{default_columns, numbers, pictures};
+#[cfg(feature = "cli")]
+pub(crate) use command::{command, quoted};
 #[cfg(feature = "cli")]
 pub(crate) use file::Study;
 #[cfg(feature = "cli")]
@@ -52,6 +58,6 @@ pub(crate) use rows::Row;
 #[cfg(feature = "cli")]
 pub(crate) use summary::Outcome;
 #[cfg(feature = "cli")]
-pub(crate) use table::{Cells, Column};
+pub(crate) use table::Column;
 #[cfg(feature = "cli")]
 pub(crate) use work::{Ended, Shard, Watch, run};

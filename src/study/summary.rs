@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::capacities::{self, CaseCapacity};
+use super::cloud::Cloud;
 use super::design::Level;
 use super::file::Study;
 use super::folder::Finished;
@@ -31,6 +32,8 @@ pub(crate) struct Outcome<'s> {
     pub capacities: Vec<CaseCapacity>,
     /// Of all cases, then of each group; none where the study has no intensity or no failure.
     pub fragilities: Vec<Fragility>,
+    /// Of a cloud analysis.
+    pub cloud: Option<Cloud<'s>>,
 }
 
 impl<'s> Outcome<'s> {
@@ -60,6 +63,7 @@ impl<'s> Outcome<'s> {
             finished,
             capacities,
             fragilities,
+            cloud: Cloud::new(study, finished),
         }
     }
 
@@ -112,6 +116,9 @@ impl<'s> Outcome<'s> {
                 let groups: Vec<Value> = groups.iter().map(Fragility::json).collect();
                 object.insert("fragility_by_group".into(), json!(groups));
             }
+        }
+        if let Some(cloud) = &self.cloud {
+            object.insert("cloud".into(), cloud.json(study));
         }
         if study.procedure.along().is_some() {
             object.insert("capacities".into(), capacities::json(&self.capacities));
@@ -202,6 +209,8 @@ fn units(
     study.failure.as_ref()?;
     let intensity = match &study.procedure {
         Procedure::Once { intensity, .. } => (*intensity)?,
+        // Critical values over a grid, such as a spectrum, are no sample.
+        Procedure::Critical(_) if !study.design.is_sample() => return None,
         _ => {
             let all = capacities.iter().filter(|c| belongs(c.case));
             return Some(Units::Capacities(all.filter_map(|c| c.capacity).collect()));

@@ -143,6 +143,7 @@ impl Comparison<'_> {
             points: run
                 .curve(run.layout.range(group).start + coordinate)
                 .collect(),
+            ..Curve::default()
         };
         let curves: Vec<Curve> = self.runs().map(curve).collect();
         let (_, run) = self

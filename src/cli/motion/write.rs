@@ -103,6 +103,7 @@ impl Report<'_> {
         let curve = |(label, told)| Curve {
             label,
             points: points(told),
+            ..Curve::default()
         };
         self.channels().map(curve).collect()
     }

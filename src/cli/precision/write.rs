@@ -92,6 +92,7 @@ impl Precision {
                 None => curves.push(Curve {
                     label: label.to_owned(),
                     points: vec![point],
+                    ..Curve::default()
                 }),
             }
         }
@@ -102,6 +103,7 @@ impl Precision {
         curves.push(Curve {
             label: "bound of the reference".into(),
             points: vec![(bound, low), (bound, high)],
+            ..Curve::default()
         });
         Chart {
             title: self.title.clone(),

@@ -14,7 +14,8 @@ use super::outcome::{Failure, Outcome, Result};
 use super::{print, room};
 use crate::page::study::study_page;
 use crate::study::{
-    Ended, Finished, Shard, Study, StudyFolder, StudyFolderError, Watch, finish, finished, run,
+    Column, Ended, Finished, Outcome as StudyOutcome, Shard, Study, StudyFolder, StudyFolderError,
+    Watch, finish, finished, quoted, run,
 };
 
 #[derive(Debug, Args)]
@@ -155,7 +156,8 @@ fn computed(arguments: &RunArguments) -> Result {
         ))?;
         return Ok(Outcome::Done);
     }
-    write(&study, &folder, &known, arguments.csv, &arguments.out)
+    let paths = (&*arguments.study, &*arguments.out);
+    write(&study, &folder, &known, arguments.csv, paths)
 }
 
 fn merged(arguments: &MergeArguments) -> Result {
@@ -182,7 +184,8 @@ fn merged(arguments: &MergeArguments) -> Result {
         )));
     }
     let folder = StudyFolder::open(&arguments.out, &study.key, false)?;
-    write(&study, &folder, &all, arguments.csv, &arguments.out)
+    let paths = (&*arguments.study, &*arguments.out);
+    write(&study, &folder, &all, arguments.csv, paths)
 }
 
 /// Whether the rows of a case are the same to the bit.
@@ -197,9 +200,17 @@ fn write(
     folder: &StudyFolder,
     finished: &Finished,
     csv: bool,
-    out: &Path,
+    (file, out): (&Path, &Path),
 ) -> Result {
-    let found = finish(study, folder, finished, csv, &study_page)?;
+    // Results do not depend on the folder that they are in.
+    let made_by = format!(
+        "dalembert study {} --out DIR",
+        quoted(&file.display().to_string())
+    );
+    let page = |outcome: &StudyOutcome, columns: &[Column], summary: &serde_json::Value| {
+        study_page(outcome, columns, summary, &made_by)
+    };
+    let found = finish(study, folder, finished, csv, &page)?;
     print::output(report::Report { found: &found, out })?;
     Ok(Outcome::Done)
 }

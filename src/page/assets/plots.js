@@ -33,14 +33,16 @@ const extent = (values) => values.reduce(([low, high], v) => v == null ? [low, h
 data.plots.forEach((spec, index) => {
   const place = byId(`plot-${index}`);
   if (!place || !spec.curves.length) return;
-  const curves = spec.curves.map((curve, i) => ({ ...curve, x: spec.xs[curve.x], colour: `--s${i % 8}` }));
+  const curves = spec.curves.map((curve, i) => ({ ...curve, x: spec.xs[curve.x], colour: `--s${curve.style === "background" ? 7 : i % 8}` }));
   const sorted = curves.every((curve) => isSorted(curve.x));
   // Plots of one group zoom together, and are read at the same abscissa.
   const group = sorted && !spec.x.log ? `${spec.x.label} ${spec.x.unit}` : null;
   const all_x = extent(curves.flatMap((curve) => extent(curve.x)).filter(Number.isFinite));
   const outputs = curves.map((_, i) => place.querySelector(`[data-curve="${i}"] output`));
   const plot = { spec, place, curves, sorted, group, all_x, view: {} };
-  place.classList.toggle("high", !spec.time && !(sorted && !spec.marks));
+  // Points with notes are read one by one.
+  const byPoint = !sorted || spec.marks || curves.some((curve) => curve.notes);
+  place.classList.toggle("high", !spec.time && (byPoint || curves.some((curve) => curve.style === "points")));
 
   // What is shown, in units of the model.
   const fitted = (window) => {
@@ -118,8 +120,9 @@ data.plots.forEach((spec, index) => {
   // Where a curve shares its pixels with others, which pieces of it are drawn: colours alternate there.
   const drawnPieces = (lines, { left, width }, size) => {
     const count = Math.ceil(width / size);
-    const heights = lines.map((line) => {
+    const heights = lines.map((line, i) => {
       const at = new Float64Array(Math.ceil(width) + 1).fill(NaN);
+      if (curves[i].style === "points") return at;
       for (const piece of line) for (let k = 1; k < piece.length; k++) {
         const [a, b] = [piece[k - 1], piece[k]];
         const end = Math.min(at.length - 1, b[0] - left);
@@ -155,15 +158,16 @@ data.plots.forEach((spec, index) => {
         c.clip();
       }
       c.strokeStyle = c.fillStyle = style(curves[i].colour);
-      c.lineWidth = 1.4 * ratio;
+      const isPoints = curves[i].style === "points", marked = spec.marks || isPoints;
+      c.lineWidth = (curves[i].style === "background" ? 0.7 : 1.4) * ratio;
       c.lineJoin = "round";
       c.beginPath();
-      for (const piece of line) piece.forEach(([x, y], k) => k ? c.lineTo(x, y) : c.moveTo(x, y));
+      if (!isPoints) for (const piece of line) piece.forEach(([x, y], k) => k ? c.lineTo(x, y) : c.moveTo(x, y));
       c.stroke();
       const alone = sorted ? line.filter((piece) => piece.length === 1) : [];
-      for (const piece of spec.marks ? line : alone) for (const [x, y] of piece) {
+      for (const piece of marked ? line : alone) for (const [x, y] of piece) {
         c.beginPath();
-        c.arc(x, y, (spec.marks ? 3 : 2) * ratio, 0, 2 * Math.PI);
+        c.arc(x, y, (marked ? 3 : 2) * ratio, 0, 2 * Math.PI);
         c.fill();
       }
       if (spec.path) way(c, line, ratio);
@@ -199,8 +203,8 @@ data.plots.forEach((spec, index) => {
   };
 
   // ---- reading out ------------------------------------------------------------------------
-  plot.read = (at) => curves.forEach(({ x, y }, i) => {
-    outputs[i].textContent = at == null ? "" : digits(inUnit(valueAt(x, y, at), spec.y.unit));
+  plot.read = (at) => curves.forEach(({ x, y, style }, i) => {
+    outputs[i].textContent = at == null || style === "points" ? "" : digits(inUnit(valueAt(x, y, at), spec.y.unit));
   });
   const note = place.querySelector(".note");
   const nearest = (left, top) => {
@@ -224,7 +228,6 @@ data.plots.forEach((spec, index) => {
     at.style.left = `${(plot.pixel("x", a) - plot.u.bbox.left) / devicePixelRatio}px`;
     at.style.top = `${(plot.pixel("y", b) - plot.u.bbox.top) / devicePixelRatio}px`;
   };
-  const byPoint = !sorted || spec.marks;
   const grouped = () => plots.filter((other) => other === plot || group && other.group === group);
   const hover = (u) => {
     const { left, top } = u.cursor;

@@ -36,7 +36,7 @@ pub struct Chart {
     pub marks: bool,
 }
 
-const TITLE: Font = Font {
+pub(super) const TITLE: Font = Font {
     size: 13.0,
     colour: INK,
     bold: true,

@@ -10,6 +10,8 @@ mod coincide;
 mod decimate;
 mod look;
 pub(crate) mod marked;
+#[cfg(feature = "cli")]
+mod matrix;
 mod overview;
 mod palette;
 mod panel;
@@ -20,9 +22,11 @@ mod symbol;
 pub use axis::Scale;
 pub use chart::{Chart, Dimension, comparison};
 pub use look::{LEAST, Look};
+#[cfg(feature = "cli")]
+pub(crate) use matrix::scatter_matrix;
 pub use overview::overview;
 pub(crate) use overview::{Grouped, grouped, overview_of};
-pub use panel::Curve;
+pub use panel::{Curve, Style};
 pub use phase::phase_portraits;
 pub(crate) use phase::{phase_portraits_of, portraits};
 pub(crate) use symbol::symbol;

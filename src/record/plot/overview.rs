@@ -261,6 +261,7 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, look: &Look) -> Vec<Curve> {
         Curve {
             label,
             points: windowed(sketch.curve(i), look.window),
+            ..Curve::default()
         }
     };
     panel.columns.iter().map(curve).collect()

@@ -42,6 +42,29 @@ pub struct Curve {
     pub label: String,
     /// The points.
     pub points: Vec<(f64, f64)>,
+    /// How they are shown.
+    pub style: Style,
+}
+
+/// How the points of a curve are shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Style {
+    /// Joined by a line.
+    #[default]
+    Line,
+    /// Each by a mark, without a line.
+    Points,
+    /// Joined by a thin grey line: what the other curves are read against.
+    Background,
+}
+
+/// The colour of one of several curves.
+fn colour(curves: &[Curve], i: usize) -> RGBColor {
+    match curves[i].style {
+        Style::Background => ZERO,
+        Style::Line | Style::Points => line(i),
+    }
 }
 
 /// Where a pair of axes is in the picture (px).
@@ -79,7 +102,7 @@ pub(super) struct Entry {
 pub(super) fn entries(curves: &[Curve]) -> Vec<Entry> {
     let entry = |(i, c): (usize, &Curve)| Entry {
         label: c.label.clone(),
-        colour: line(i),
+        colour: colour(curves, i),
         filled: false,
     };
     let labelled = curves
@@ -185,27 +208,46 @@ pub(super) fn curves(
         let at = |&(a, b): &(f64, f64)| area.at(x.position(a), y.position(b));
         curve.points.iter().map(at).collect()
     };
+    let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let in_order = |curve: &Curve| curve.points.is_sorted_by(|a, b| a.0 <= b.0);
     if curves.iter().all(in_order) {
-        let decimated = |curve| decimate(pixels(curve).into_iter());
+        let decimated = |curve: &Curve| match curve.style {
+            Style::Points => Vec::new(),
+            Style::Line | Style::Background => decimate(pixels(curve).into_iter()),
+        };
         let lines: Vec<_> = curves.iter().map(decimated).collect();
         let parts = shared(&lines, area.left, area.width);
         for (i, part) in parts.into_iter().enumerate() {
             for piece in part {
-                canvas.line(piece, CURVE, line(i));
+                canvas.line(piece, CURVE, colour(curves, i));
             }
             if marks {
-                lines[i].iter().for_each(|&p| canvas.disc(p, MARK, line(i)));
+                lines[i]
+                    .iter()
+                    .for_each(|&p| canvas.disc(p, MARK, colour(curves, i)));
             }
         }
-        return;
+    } else {
+        for (i, curve) in curves.iter().enumerate() {
+            let width = match curve.style {
+                Style::Points => continue,
+                Style::Line => CURVE,
+                Style::Background => HAIR,
+            };
+            for piece in pixels(curve).split(|p| !finite(p)) {
+                canvas.line(piece.iter().copied(), width, colour(curves, i));
+                if marks {
+                    piece
+                        .iter()
+                        .for_each(|&p| canvas.disc(p, MARK, colour(curves, i)));
+                }
+            }
+        }
     }
     for (i, curve) in curves.iter().enumerate() {
-        for piece in pixels(curve).split(|p| !p.0.is_finite() || !p.1.is_finite()) {
-            canvas.line(piece.iter().copied(), CURVE, line(i));
-            if marks {
-                piece.iter().for_each(|&p| canvas.disc(p, MARK, line(i)));
-            }
+        if curve.style == Style::Points {
+            let points = pixels(curve).into_iter().filter(finite);
+            points.for_each(|p| canvas.disc(p, MARK, colour(curves, i)));
         }
     }
 }

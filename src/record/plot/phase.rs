@@ -132,8 +132,8 @@ fn portrait(sketch: &Sketch, (q, v): (usize, usize), window: Option<(f64, f64)>)
         x: Dimension::linear(&symbol(&q.name), &q.unit),
         y: Dimension::linear(&symbol(&v.name), &v.unit),
         curves: vec![Curve {
-            label: String::new(),
             points: pieces,
+            ..Curve::default()
         }],
         marks: false,
     })

@@ -87,6 +87,7 @@ impl Table {
                 .map(factor)
                 .collect::<Result<_, _>>()?,
             count: self.rows.len(),
+            is_sample: true,
         })
     }
 }
@@ -177,6 +178,7 @@ pub(super) fn block(rows: &Checked, names: &Names) -> Result<Block, SceneError> 
     Ok(Block {
         factors,
         count: list.len(),
+        is_sample: true,
     })
 }
 
@@ -191,8 +193,11 @@ pub(super) fn levels(path: &str, described: &Checked, names: &Names) -> Result<B
                 &described.place,
             ));
         }
+        let factor = factor_of(path, list, names);
         return Ok(Block {
-            factors: vec![factor_of(path, list, names)],
+            // Records and other things that are no numbers are members of something larger.
+            is_sample: matches!(factor.values, Values::Others(_)),
+            factors: vec![factor],
             count: list.len(),
         });
     }
@@ -200,6 +205,7 @@ pub(super) fn levels(path: &str, described: &Checked, names: &Names) -> Result<B
     let factor = names.factor(path);
     let place = described.place.clone();
     Ok(Block {
+        is_sample: false,
         count: numbers.len(),
         factors: vec![Factor {
             values: Values::Numbers(numbers, vec![place]),

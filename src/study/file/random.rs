@@ -72,6 +72,7 @@ pub(super) fn block(random: &Checked, names: &Names, errors: &mut Errors) -> Opt
     Some(Block {
         factors: factors.collect(),
         count,
+        is_sample: true,
     })
 }
 
