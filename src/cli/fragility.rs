@@ -11,7 +11,9 @@ use super::print;
 use super::table::Table as Columns;
 use crate::motion::Fault;
 use crate::scene::{SceneError, rendered};
-use crate::study::fragility::{self, Data, Fit, Interval, Problem, Table, fractile};
+use crate::study::fragility::{
+    self, Bootstrap, Data, Fit, Interval, Problem, Table, Units, fractile,
+};
 
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
@@ -27,19 +29,28 @@ logarithms (with n - 1). Intervals are of 95 % confidence, by the profile of the
 What the data do not determine is said and not invented; that is a result, with status 0. --json prints an object: \
 `theta`, `beta`, `theta_interval`, `beta_interval` (null where there is none, or no limit), `problem` (null, or why \
 there is no fit), `beta_likely` (of the largest likelihood), `log_likelihood` (without binomial coefficients), \
-`counted` (of known capacities the intensities below which 16, 50 and 84 % of them are), `notes`.")]
+`counted` (of known capacities the intensities below which 16, 50 and 84 % of them are), `notes`; with --bootstrap \
+`theta_bootstrap`, `beta_bootstrap`, `bootstrap_samples` and how many of them are `bootstrap_unfitted`.")]
 pub struct FragilityArguments {
     /// Table of runs or capacities (CSV)
     table: PathBuf,
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Intervals by the bootstrap, too: 1000 fits to rows drawn with replacement
+    #[arg(long)]
+    bootstrap: bool,
 }
+
+/// Seed of the bootstrap: its intervals are the same whenever the same table is read.
+const SEED: u64 = 1;
 
 /// A table and what it says.
 struct Report {
     table: Table,
     fit: std::result::Result<Fit, Problem>,
+    /// Where it was asked for and there is a fit.
+    bootstrap: Option<Bootstrap>,
 }
 
 pub fn fragility(arguments: &FragilityArguments) -> Result {
@@ -50,7 +61,13 @@ pub fn fragility(arguments: &FragilityArguments) -> Result {
     })?;
     let table = Table::read(&text).map_err(|fault| refusal(path, &text, &fault))?;
     let fit = fragility::fit(&table.data);
-    let report = Report { table, fit };
+    let wanted = arguments.bootstrap && fit.is_ok();
+    let bootstrap = wanted.then(|| Units::of(&table.data).bootstrap(SEED));
+    let report = Report {
+        table,
+        fit,
+        bootstrap,
+    };
     match arguments.json {
         true => print::output(format_args!("{:#}", report.json()))?,
         false => print::output(&report)?,
@@ -81,7 +98,7 @@ impl Report {
     fn json(&self) -> Value {
         let fit = self.fit.as_ref().ok();
         let problem = self.fit.as_ref().err();
-        json!({
+        let mut report = json!({
             "theta": fit.map(|f| f.theta).or(problem.and_then(Problem::theta)),
             "beta": fit.map(|f| f.beta),
             "theta_interval": fit.map(|f| f.theta_interval),
@@ -91,7 +108,14 @@ impl Report {
             "log_likelihood": fit.map(|f| f.log_likelihood),
             "counted": self.counted(),
             "notes": self.table.notes.iter().map(|note| &note.message).collect::<Vec<_>>(),
-        })
+        });
+        if let Some(bootstrap) = &self.bootstrap {
+            report["theta_bootstrap"] = json!(bootstrap.theta);
+            report["beta_bootstrap"] = json!(bootstrap.beta);
+            report["bootstrap_samples"] = json!(bootstrap.samples);
+            report["bootstrap_unfitted"] = json!(bootstrap.unfitted);
+        }
+        report
     }
 }
 
@@ -121,6 +145,14 @@ impl Display for Report {
                 writeln!(f, "median theta     {}  (95 %: {theta})", digits(fit.theta))?;
                 let beta = interval(fit.beta_interval);
                 write!(f, "dispersion beta  {}  (95 %: {beta})", digits(fit.beta))?;
+                if let Some(bootstrap) = &self.bootstrap {
+                    let [theta, beta] = [bootstrap.theta, bootstrap.beta].map(interval);
+                    write!(
+                        f,
+                        "\nbootstrap        theta {theta}; beta {beta} ({} of {} samples have no fit)",
+                        bootstrap.unfitted, bootstrap.samples
+                    )?;
+                }
             }
             Err(problem) => {
                 if let Some(theta) = problem.theta() {

@@ -33,6 +33,27 @@ fn counts_and_capacities_are_fitted() {
 }
 
 #[test]
+fn the_bootstrap_is_made_on_request() {
+    let folder = folder_with("im,n,k\n0.5,40,4\n1.0,40,19\n1.5,40,33\n");
+    let asked = ["fragility", "table.csv", "--json", "--bootstrap"];
+    let fit: Value = serde_json::from_slice(&ends_with(0, folder.path(), &asked).stdout).unwrap();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let error = |key: &str| (number(&fit[key][1]) / number(&fit[key][0])).ln();
+    assert!(number(&fit["theta_bootstrap"][0]) < number(&fit["theta"]));
+    assert!(number(&fit["theta"]) < number(&fit["theta_bootstrap"][1]));
+    // Both are of 95 % confidence: for 120 runs as wide as each other to a quarter.
+    let ratio = error("theta_bootstrap") / error("theta_interval");
+    assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
+    assert_eq!(fit["bootstrap_samples"], 1000);
+    let plain = ends_with(0, folder.path(), &["fragility", "table.csv", "--json"]);
+    assert!(!stdout(&plain).contains("bootstrap"));
+    let shown = ends_with(0, folder.path(), &asked[..2]);
+    assert!(!stdout(&shown).contains("bootstrap"));
+    let shown = ends_with(0, folder.path(), &["fragility", "table.csv", "--bootstrap"]);
+    assert!(stdout(&shown).contains("bootstrap        theta "));
+}
+
+#[test]
 fn what_is_not_determined_is_a_sentence_and_no_number() {
     let fit = shown("im,n,k\n0.2,10,0\n0.4,10,0\n0.6,10,10\n");
     let problem = fit["problem"].as_str().unwrap();
