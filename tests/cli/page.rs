@@ -10,7 +10,7 @@ fn page(status: i32, home: &Path, scene: &str, more: &[&str]) -> String {
 }
 
 /// The data of a page.
-fn data(page: &str) -> serde_json::Value {
+pub fn data(page: &str) -> serde_json::Value {
     let start = "<script type=\"application/json\" id=\"data\">";
     let (_, rest) = page.split_once(start).expect("the page has data");
     let (data, _) = rest.split_once("</script>").expect("the data end");
@@ -86,7 +86,7 @@ fn runs_that_cannot_be_drawn_have_a_page_that_says_so() {
 
 /// What a browser does with a page: `script` calls `done` with what it has seen, a list of texts. Gives that and what
 /// was said on the console; nothing where there is no browser, unless `DALEMBERT_BROWSER=required`, as in `.ci/run`.
-fn in_browser(home: &Path, page: &str, script: &str) -> Option<Vec<String>> {
+pub fn in_browser(home: &Path, page: &str, script: &str) -> Option<Vec<String>> {
     let names = ["chromium", "chromium-browser", "google-chrome"];
     let browser = names.iter().find(|name| {
         let found = std::process::Command::new(name).arg("--version").output();

@@ -11,7 +11,14 @@ use super::super::{dalembert, ends_with, stderr, stdout};
 use super::{folder, sweep, write};
 
 /// The files of a result.
-const FILES: [&str; 4] = ["runs.parquet", "runs.csv", "study.json", "summary.json"];
+const FILES: [&str; 6] = [
+    "runs.parquet",
+    "runs.csv",
+    "runs.svg",
+    "study.json",
+    "study.html",
+    "summary.json",
+];
 
 fn same(one: &Path, other: &Path) {
     for file in FILES {
@@ -79,8 +86,8 @@ fn parts_that_are_merged_are_the_whole() {
     assert!(stdout(&shown).contains("the study is complete"));
 }
 
-/// A study of some seconds.
-fn long(folder: &Path) {
+/// A study of so many cases, 1500 of which take some seconds.
+fn long(folder: &Path, cases: usize) {
     let scene = json!({
         "model": "rocking_block",
         "parameters": { "e": 0.999 },
@@ -91,7 +98,7 @@ fn long(folder: &Path) {
     write(folder, "scene.json", &scene);
     let study = json!({
         "scene": "scene.json",
-        "vary": { "parameters.alpha": { "from": 0.21, "to": 0.3, "count": 1500 } },
+        "vary": { "parameters.alpha": { "from": 0.21, "to": 0.3, "count": cases } },
         "measure": ["peak.theta", "count.landing"]
     });
     write(folder, "study.json", &study);
@@ -125,7 +132,7 @@ fn wait_for_parts(out: &Path, count: usize) {
 #[test]
 fn a_study_that_was_killed_goes_on_to_the_same_bytes() {
     let folder = folder();
-    long(folder.path());
+    long(folder.path(), 1500);
     assert!(start(folder.path(), &["whole"]).wait().unwrap().success());
     let out = folder.path().join("killed");
     for parts in [1, 2] {
@@ -143,18 +150,42 @@ fn a_study_that_was_killed_goes_on_to_the_same_bytes() {
             "it was killed too late to tell"
         );
     }
-    ends_with(
-        0,
-        folder.path(),
-        &[
-            "study",
-            "study.json",
-            "--csv",
-            "--out",
-            "killed",
-            "--resume",
-        ],
-    );
+    let resume = [
+        "study",
+        "study.json",
+        "--csv",
+        "--out",
+        "killed",
+        "--resume",
+    ];
+    ends_with(0, folder.path(), &resume);
+    same(&folder.path().join("whole"), &out);
+}
+
+#[test]
+fn a_study_may_be_killed_at_any_instant() {
+    let folder = folder();
+    long(folder.path(), 400);
+    assert!(start(folder.path(), &["whole"]).wait().unwrap().success());
+    let out = folder.path().join("killed");
+    let key = out.join(".study/key");
+    // From the first file on to the last; later instants come after the end.
+    let mut wait = Duration::from_millis(1);
+    let finished = loop {
+        let more: &[&str] = match key.exists() {
+            true => &["killed", "--resume"],
+            false => &["killed"],
+        };
+        let mut child = start(folder.path(), more);
+        std::thread::sleep(wait);
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        wait *= 2;
+    };
+    assert!(finished.success());
     same(&folder.path().join("whole"), &out);
 }
 
@@ -162,7 +193,7 @@ fn a_study_that_was_killed_goes_on_to_the_same_bytes() {
 #[test]
 fn ctrl_c_keeps_what_is_finished_and_two_writers_are_refused() {
     let folder = folder();
-    long(folder.path());
+    long(folder.path(), 1500);
     let child = start(folder.path(), &["out"]);
     let out = folder.path().join("out");
     wait_for_parts(&out, 1);

@@ -1,6 +1,10 @@
 //! `study`: tables against references and against themselves, however they were computed; refusals.
 
 mod going_on;
+mod inputs;
+mod measures;
+mod page;
+mod random;
 mod references;
 mod refusals;
 
@@ -42,6 +46,36 @@ fn sweep() -> Value {
     })
 }
 
+/// Runs `study.json` into `out` and gives the rows of its table.
+fn run(folder: &Path) -> Vec<std::collections::BTreeMap<String, String>> {
+    let arguments = ["study", "study.json", "--out", "out", "--csv"];
+    ends_with(0, folder, &arguments);
+    table(&folder.join("out/runs.csv"))
+}
+
+/// The summary of the single run of the scene `name` that has these values of a row.
+fn single_run(
+    folder: &Path,
+    name: &str,
+    row: &std::collections::BTreeMap<String, String>,
+    paths: &[&str],
+) -> Value {
+    let mut arguments = vec![
+        "run".to_owned(),
+        name.to_owned(),
+        "--out".into(),
+        "single".into(),
+    ];
+    for path in paths {
+        arguments.extend(["--set".to_owned(), format!("{path}={}", row[*path])]);
+    }
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    ends_with(0, folder, &arguments);
+    let summary = read_json(&folder.join("single/summary.json"));
+    fs::remove_dir_all(folder.join("single")).unwrap();
+    summary
+}
+
 /// The rows of a CSV table, each by the names of its columns.
 fn table(path: &Path) -> Vec<std::collections::BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(path).unwrap();
@@ -78,20 +112,8 @@ fn a_sweep_has_a_row_for_each_case_and_the_values_of_single_runs() {
     assert_eq!(rows[0]["parameters.alpha"], "0.21");
     assert_eq!(rows[19]["parameters.alpha"], "0.3");
     for case in [0, 7, 19] {
-        let set = |path: &str| format!("{path}={}", rows[case][path]);
-        let (alpha, e) = (set("parameters.alpha"), set("parameters.e"));
-        let single = [
-            "run",
-            "scene.json",
-            "--out",
-            "single",
-            "--set",
-            &alpha,
-            "--set",
-            &e,
-        ];
-        ends_with(0, folder.path(), &single);
-        let summary = read_json(&folder.path().join("single/summary.json"));
+        let paths = ["parameters.alpha", "parameters.e"];
+        let summary = single_run(folder.path(), "scene.json", &rows[case], &paths);
         let landings = &summary["events"]["by_transition"]["landing"];
         assert_eq!(rows[case]["count.landing"], landings.to_string());
         for (column, value) in [
@@ -143,61 +165,6 @@ fn parquet_has_what_csv_has() {
         .iter()
         .find(|pair| pair.key == "end.theta.rate.unit");
     assert_eq!(unit.and_then(|pair| pair.value.as_deref()), Some("rad/s"));
-}
-
-#[test]
-fn random_variables_have_their_distribution_and_correlation() {
-    let folder = folder();
-    let study = json!({
-        "scene": "scene.json",
-        "random": {
-            "variables": {
-                "parameters.alpha": { "normal": { "mean": 0.3, "sd": 0.02 }, "above": 0.25 },
-                "parameters.R": { "lognormal": { "median": 1.0, "beta": 0.1 } },
-                "parameters.e": { "discrete": { "values": [0.8, 0.9], "weights": [1, 3] } },
-                "initial.theta": { "triangular": { "from": 0.1, "mode": 0.1, "to": 0.2 } }
-            },
-            "correlations": [["parameters.alpha", "parameters.R", 0.6]],
-            "count": 512,
-            "design": "latin_hypercube"
-        },
-        "measure": ["count"]
-    });
-    write(folder.path(), "study.json", &study);
-    let shorter = ["study", "study.json", "--out", "out", "--csv"];
-    fs::write(
-        folder.path().join("scene.json"),
-        r#"{ "model": "rocking_block", "initial": { "side": 1 }, "end": 0.01 }"#,
-    )
-    .unwrap();
-    ends_with(0, folder.path(), &shorter);
-    let rows = table(&folder.path().join("out/runs.csv"));
-    let column =
-        |name: &str| -> Vec<f64> { rows.iter().map(|r| r[name].parse().unwrap()).collect() };
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let (alpha, radius) = (column("parameters.alpha"), column("parameters.R"));
-    // The mean of a normal variable that is cut at -2.5: 0.3 + 0.02 φ(2.5)/Φ(2.5).
-    assert!(
-        (mean(&alpha) - 0.300_352_7).abs() < 2e-5,
-        "{}",
-        mean(&alpha)
-    );
-    assert!(alpha.iter().all(|a| *a > 0.25));
-    let logarithms: Vec<f64> = radius.iter().map(|r| r.ln()).collect();
-    assert!(mean(&logarithms).abs() < 5e-3);
-    let deviations = |values: &[f64]| {
-        let mean = mean(values);
-        values.iter().map(|x| x - mean).collect::<Vec<_>>()
-    };
-    let (a, r) = (deviations(&alpha), deviations(&logarithms));
-    let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
-    let correlation = product(&a, &r) / (product(&a, &a) * product(&r, &r)).sqrt();
-    // The copula is of the normal variables; cutting one at −2.5 changes next to nothing. 512 samples know it to 0.03.
-    assert!((correlation - 0.6).abs() < 0.06, "{correlation}");
-    // A hypercube hits each stratum once: three quarters to one sample.
-    let many = column("parameters.e").iter().filter(|e| **e == 0.9).count();
-    assert_eq!(many, 384);
-    assert!((mean(&column("initial.theta")) - 0.4 / 3.0).abs() < 1e-4);
 }
 
 #[test]

@@ -298,3 +298,62 @@ fn stripes_are_counted_and_fitted_as_the_command_fits_them() {
         }
     }
 }
+
+#[test]
+fn capacities_beyond_the_last_run_are_censored() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = json!({
+        "model": "rocking_block",
+        "parameters": { "alpha": 0.25 },
+        "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
+        "end": 0.01
+    });
+    write(folder.path(), "scene.json", &scene);
+    // The centre is highest in the beginning: the level is reached from α − acos(cos α + level/R) on.
+    let study = |level: f64| {
+        json!({
+            "scene": "scene.json",
+            "random": { "variables": { "parameters.R": { "uniform": { "from": 0.5, "to": 1.5 } } }, "count": 16 },
+            "ida": { "intensity": "initial.theta", "first": 0.02, "step": 0.02, "runs": 6, "resolution": 0.02 },
+            "failure": { "measure": "max.centre_y", "above": level },
+            "measure": ["max.centre_y"]
+        })
+    };
+    write(folder.path(), "study.json", &study(0.0131));
+    ends_with(0, folder.path(), &["study", "study.json", "--out", "out"]);
+    let mut censored = 0;
+    for row in table(&folder.path().join("out/capacities.csv")) {
+        let number = |name: &str| row[name].parse::<f64>().unwrap();
+        let exact = 0.25 - (0.25_f64.cos() + 0.0131 / number("parameters.R")).acos();
+        if exact > 0.12 {
+            // Six steps of 0.02 rad without a failure.
+            assert_eq!(row["censored"], "1");
+            assert!((number("capacity") - 0.12).abs() < 1e-15);
+            censored += 1;
+        } else {
+            assert_eq!(row["censored"], "0");
+            assert!(
+                number("below") <= exact && exact <= number("above"),
+                "{row:?}"
+            );
+        }
+    }
+    let summary = read_json(&folder.path().join("out/summary.json"));
+    assert_eq!(summary["capacities"]["censored"], censored);
+    assert!(censored >= 2);
+    let fitted = ["fragility", "out/capacities.csv", "--json"];
+    let fitted: Value =
+        serde_json::from_slice(&ends_with(0, folder.path(), &fitted).stdout).unwrap();
+    assert!(fitted["theta"].is_number());
+    for key in ["theta", "beta", "theta_interval", "beta_interval"] {
+        assert_eq!(summary["fragility"][key], fitted[key], "{key}");
+    }
+    // Nothing fails: nothing is fitted.
+    write(folder.path(), "study.json", &study(1.0));
+    ends_with(0, folder.path(), &["study", "study.json", "--out", "none"]);
+    let summary = read_json(&folder.path().join("none/summary.json"));
+    assert_eq!(summary["capacities"]["censored"], 16);
+    assert_eq!(summary["fragility"]["theta"], Value::Null);
+    let problem = summary["fragility"]["problem"].as_str().unwrap();
+    assert!(problem.contains("no failure"), "{problem}");
+}

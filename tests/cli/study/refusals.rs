@@ -180,6 +180,31 @@ fn cases() -> Vec<(&'static str, Value, Vec<&'static str>)> {
             json!("missing.csv"),
             vec!["cannot read `missing.csv`"],
         ),
+        (
+            "/vary",
+            json!({ "parameters.alpha": { "from": 0.2, "to": 2, "count": 3 } }),
+            vec!["2 is not admissible here: it must be > 0 rad and <= 1.57"],
+        ),
+        (
+            "/vary",
+            json!({ "inputs.ground_acceleration": [{ "record": "missing.AT2" }] }),
+            vec!["cannot read `missing.AT2`", "study.json:"],
+        ),
+        (
+            "/vary",
+            json!({ "inputs.ground_acceleration.scale": [1, 2] }),
+            vec!["unknown kind of input `scale`", "`record`"],
+        ),
+        (
+            "/critical",
+            json!({ "value": "parameters.g", "from": 1, "to": -1 }),
+            vec!["-1 is not admissible here: it must be >= 0 m/s^2"],
+        ),
+        (
+            "/ida",
+            json!({ "intensity": "parameters.g", "first": 0, "step": 1 }),
+            vec!["0 is not admissible here: it must be > 0"],
+        ),
         ("/colour", json!("red"), vec!["unknown key `colour`"]),
         (
             "/second_runs",
