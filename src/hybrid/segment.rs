@@ -300,6 +300,7 @@ impl<'p> Simulation<'p> {
                 return Err(error.into());
             }
 
+            let made = method.end() - method.start().t;
             let mut found = cut(
                 method,
                 &mut equations,
@@ -476,7 +477,8 @@ impl<'p> Simulation<'p> {
             }
             self.signs.go_on();
             if chooses && !is_explicit {
-                stiffness.implicit_step(h);
+                // A cut where nothing falls after all says nothing against the step that was made.
+                stiffness.implicit_step(made);
             }
             if end >= until {
                 self.here.now = Instant::new(last);
