@@ -1,9 +1,9 @@
 //! Hard cases for an event engine, with exact answers (tests/data/10_event_engine.json).
 
 use crate::common::*;
-use dalembert::hybrid::Problem;
+use dalembert::hybrid::{Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
-use dalembert::record::{Doubt, Question, Run, Uncertain};
+use dalembert::record::{Doubt, Question, Run, Silent, Uncertain};
 use serde_json::Value;
 
 /// An item of the reference by name.
@@ -369,6 +369,53 @@ fn simultaneous_contacts_are_recorded_at_one_instant() {
             if e == 1.0 {
                 assert_eq!(v[..], [-1.0, 0.0, 1.0]);
                 assert_eq!(run.events.len(), 3);
+            }
+        }
+    });
+}
+
+/// Two balls run into a third one from both sides at once. Above e = 7 − 4√3 = 0.0718 the cascade ends after so many impacts
+/// as the impact law says (exact fractions); below there are infinitely many at one instant (inelastic collapse: McNamara
+/// and Young 1992), after which no mode of the model goes on.
+#[test]
+fn a_cascade_at_one_instant_ends_or_is_named() {
+    with_each_method(|| {
+        for (e, impacts) in [
+            (0.1, Some(6)),
+            (0.08, Some(11)),
+            (0.075, Some(17)),
+            (0.07, None),
+            (0.03, None),
+            (0.0, None),
+        ] {
+            let mut problem = problem("three_balls", &[("e", e)]);
+            for (name, value) in [
+                ("left", -1.0),
+                ("right", 1.0),
+                ("left.rate", 1.0),
+                ("right.rate", -1.0),
+            ] {
+                problem.set_initial(name, value).unwrap();
+            }
+            problem.end.time = 2.0;
+            let run = simulate(&problem, &mut Silent).expect("the problem can be started");
+            assert!(
+                run.events.iter().all(|e| relative(e.t, 1.0) < 1e-14),
+                "e = {e}"
+            );
+            match (impacts, &run.failure) {
+                (Some(impacts), None) => assert_eq!(run.events.len(), impacts, "e = {e}"),
+                (None, Some(failure)) => {
+                    assert!(relative(failure.at.t, 1.0) < 1e-14, "e = {e}");
+                    for part in [
+                        "accumulate",
+                        "left_contact, right_contact",
+                        "a mode is missing",
+                    ] {
+                        assert!(failure.reason.contains(part), "{}", failure.reason);
+                    }
+                }
+                (_, failure) => panic!("e = {e}: {failure:?}"),
             }
         }
     });
