@@ -12,7 +12,9 @@ use crate::record::{
 pub struct Outputs {
     pub stream: Option<Stream>,
     pub sketch: Option<Sketch>,
-    jumps: Option<Vec<Jump>>,
+    jumps: Vec<Jump>,
+    /// So many transitions are kept.
+    kept: usize,
 }
 
 /// Why an earlier run cannot be gone on with.
@@ -24,25 +26,26 @@ pub enum NotReplayed {
 }
 
 impl Outputs {
-    /// Outputs to a folder, where there is one; a sketch for that or for a `page`; all transitions, if they are `compared`.
+    /// Outputs to a folder, where there is one; a sketch for that or for a `page`; the first transitions, as many as are
+    /// `compared`.
     pub fn new(
         layout: &Layout,
         folder: Option<&OutputFolder>,
         page: bool,
-        compared: bool,
+        compared: usize,
     ) -> Outputs {
         Outputs {
             stream: folder.map(|folder| Stream::new(folder, layout)),
             sketch: (folder.is_some() || page).then(|| Sketch::new(layout)),
-            jumps: compared.then(Vec::new),
+            jumps: Vec::new(),
+            kept: compared,
         }
     }
 
-    /// The transitions without their states, where they were wanted.
-    pub fn events(&mut self) -> Vec<Event> {
-        let jumps = self.jumps.take().unwrap_or_default();
+    /// The transitions that were kept, without their states.
+    pub fn events(&self) -> Vec<Event> {
         let event = |jump: &Jump| Event::new(jump, Default::default());
-        jumps.iter().map(event).collect()
+        self.jumps.iter().map(event).collect()
     }
 
     /// Takes the rows and transitions of a run that is to go on.
@@ -91,8 +94,8 @@ impl Observer for Outputs {
         if let Some(sketch) = &mut self.sketch {
             sketch.event(jump, sides);
         }
-        if let Some(jumps) = &mut self.jumps {
-            jumps.push(*jump);
+        if self.jumps.len() < self.kept {
+            self.jumps.push(*jump);
         }
     }
 }

@@ -13,9 +13,9 @@ use super::{print, room, warnings, watch};
 use crate::hybrid::{Invalid, Reason, Replay, check_same, resume_with, simulate_with};
 use crate::model::Models;
 use crate::page::{Told, run_page};
-use crate::precision::estimate;
+use crate::precision::{COMPARED, estimate, unsettled};
 use crate::record::plot::Look;
-use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Sketch, Stream};
+use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Silent, Sketch, Stream};
 use crate::scene::{Disk, Files, Scene};
 
 #[derive(Debug, clap::Args)]
@@ -29,6 +29,9 @@ the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, para
 initial state, accuracy, method, frozen coordinates, columns and the grid of the samples must be those of the \
 run, and its files as they were written; what does not fit is named. The integrator starts anew at \
 the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.
+
+A run is followed by a second one at a tenth of its tolerance, of which events alone are kept: where another \
+event follows there, the report says so under `uncertain`.
 
 --error-estimate runs the scene a second time, by another method at a tolerance ten thousand \
 times tighter (1e-14 at most), and reports what the two differ by: coordinates and velocities at the end, \
@@ -112,7 +115,11 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     room::check_disk(&scene, out.map(PathBuf::as_path))?;
 
     warnings::before(problem);
-    let (page, compared) = (arguments.html.is_some(), arguments.error_estimate);
+    let page = arguments.html.is_some();
+    let compared = match arguments.error_estimate {
+        true => usize::MAX,
+        false => COMPARED,
+    };
     let mut outputs = Outputs::new(&layout, folder.as_ref(), page, compared);
     let earlier = match earlier {
         Some((folder, mut earlier)) => {
@@ -142,6 +149,13 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     drop(progress);
     let mut run = run.map_err(|reason| refusal(&scene, &reason))?;
     run.wall = run.wall.saturating_sub(spent(&outputs) - before);
+    // Of a run that goes on with an earlier one the first events are not at hand; what was in doubt there is told again.
+    if arguments.resume.is_none() {
+        let doubt = unsettled(problem, &run, &outputs.events(), &mut Interruptible(Silent));
+        doubt
+            .into_iter()
+            .for_each(|doubt| run.uncertain.add_earlier(doubt));
+    }
     let mut no_estimate = None;
     if arguments.error_estimate {
         let mut progress = Interruptible(ProgressLine::new(problem.end.time));

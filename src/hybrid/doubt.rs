@@ -90,6 +90,7 @@ impl Persist for Question {
             Question::NearMiss,
             Question::Unresolved,
             Question::Choice,
+            Question::Unsettled,
         ];
         memory.one_of(self, &all)
     }

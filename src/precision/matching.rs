@@ -25,6 +25,8 @@ pub struct Match {
     pub time: f64,
     /// Time of the last event before `until`, s; 0 if there is none.
     pub common: f64,
+    /// Difference of its two times, s.
+    pub apart: f64,
     /// Time of the first event that is missed or extra, or whose two times differ by more than the
     /// loosest tolerance of a study, relative, s; infinite if there is none.
     pub until: f64,
@@ -79,7 +81,7 @@ impl Match {
             self.until = self.until.min(first);
         }
         if self.until.is_infinite() {
-            self.common = first;
+            (self.common, self.apart) = (first, apart);
         }
     }
 

@@ -151,6 +151,11 @@ fn uncertain(f: &mut Formatter, summary: &Summary) -> fmt::Result {
         Question::NearMiss => format!("turns back at {value}, with an error of {error}"),
         Question::Unresolved => "could not be resolved".to_owned(),
         Question::Choice => format!("decides by {value}, with an error of {error}"),
+        Question::Unsettled => {
+            format!(
+                "is another event at another tolerance, where the one before differs by {value}"
+            )
+        }
     };
     writeln!(
         f,

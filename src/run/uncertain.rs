@@ -18,12 +18,13 @@ pub struct Doubt {
     pub t: f64,
     /// Name of the mode.
     pub mode: String,
-    /// Name of the guard, or `condition of` the name of a transition.
+    /// Name of the guard, or `condition of` the name of a transition, or of the transition that is unsettled.
     pub guard: String,
     /// What is in doubt.
     pub what: Question,
     /// Least value of the guard nearby, in `unit`; of a guard that was not resolved, its value at the
-    /// end of the step; of a condition, its value at the event.
+    /// end of the step; of a condition, its value at the event; of what is unsettled, by how much the time of the event
+    /// before differs at the other tolerance.
     pub value: f64,
     /// Error of that value that the tolerances allow, in `unit`.
     pub error: f64,
@@ -43,6 +44,8 @@ pub enum Question {
     Unresolved,
     /// A condition that decides which transition is taken is no farther from zero than its error.
     Choice,
+    /// At another tolerance another event follows.
+    Unsettled,
 }
 
 impl Uncertain {
@@ -55,5 +58,12 @@ impl Uncertain {
         if self.first.len() < Self::MOST {
             self.first.push(doubt);
         }
+    }
+
+    /// The same of a place that comes before all that are listed.
+    pub fn add_earlier(&mut self, doubt: Doubt) {
+        self.total += 1;
+        self.first.insert(0, doubt);
+        self.first.truncate(Self::MOST);
     }
 }

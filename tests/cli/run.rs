@@ -330,3 +330,21 @@ fn plots_survive_the_largest_and_the_smallest_numbers() {
         );
     }
 }
+
+/// Landings of a tank on both edges, whose errors grow from one to the next: a change of gravity in its last place changes
+/// the order of the last ones, by either method.
+#[test]
+fn events_that_no_tolerance_settles_are_said_to_be_unsettled() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = r#"{"model": "walking_tank", "landing": "velocities",
+        "parameters": {"set": "doughnut", "mu_s": 0.67, "mu_k": 0.67, "e": 0.674, "damping": 0},
+        "inputs": {"ground_acceleration": {"sine": {"amplitude": 13.4, "angular_frequency": 35.5}}},
+        "accuracy": {"relative": 1e-8}, "end": 1.1}"#;
+    fs::write(home.path().join("scene.json"), scene).unwrap();
+    let output = ends_with(0, home.path(), &["run", "scene.json", "--out", "out"]);
+    let uncertain = &json(&home.path().join("out/summary.json"))["uncertain"];
+    let first = &uncertain["first"][0];
+    assert_eq!(first["what"], "unsettled", "{uncertain}");
+    assert_eq!(first["guard"], "landing", "{uncertain}");
+    assert!(stdout(&output).contains("is another event at another tolerance"));
+}
