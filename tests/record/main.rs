@@ -8,7 +8,7 @@ mod synthetic;
 use std::fs;
 use std::path::Path;
 
-use dalembert::record::plot::{Chart, Curve, Dimension, overview, phase_portraits};
+use dalembert::record::plot::{Chart, Curve, Dimension, Style, overview, phase_portraits};
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
 use dalembert::record::{
     Event, Failure, Group, OutputFolder, Place, Quantity, Recorder, Report, Run, Snapshot, Summary,
@@ -292,6 +292,7 @@ fn a_chart_shows_what_its_scales_can() {
         curves: vec![Curve {
             label: "a".into(),
             points: vec![(0.0, 1.0), (1e-9, 2.0), (1e-3, 0.1)],
+            style: Style::default(),
         }],
         marks: true,
     };
@@ -312,6 +313,7 @@ fn a_chart_shows_what_its_scales_can() {
     let runs = vec![Curve {
         label: "μ = 0.2".into(),
         points: vec![(0.0, 0.0), (1.0, 2e-6)],
+        style: Style::default(),
     }];
     let compared = dalembert::record::plot::comparison(&quantity, runs).svg((400.0, 300.0));
     assert!(compared.contains("μ = 0.2") && compared.contains("(µm)"));
