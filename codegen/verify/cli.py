@@ -18,6 +18,7 @@ import sys
 from pathlib import Path
 
 from .errors import PaperError, VerifyError
+from .progress import Progress
 
 
 # kinds of findings by what --fail-on says; None: all
@@ -75,7 +76,7 @@ def _show(text):
 
 def _judge(arguments):
     """Judge one model and write the report."""
-    from .report import certificate, effects, gather as report, html, machine, tex, text
+    from .report import certificate, html, machine, tex, text
     from .input.load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
@@ -84,12 +85,11 @@ def _judge(arguments):
         print(f"verify: there is no model '{arguments.model}' in {arguments.models}; "
               f"with hand-written equations: {', '.join(offered) or 'none'}", file=sys.stderr)
         return 2
-    case = load(folder)
-    result = report.verify(case, thorough=not arguments.quick)
-    if arguments.program and case.effects and not arguments.quick:
-        simulated = effects.simulate(case.effects, result.case.corrections, arguments.program)
-        effects.attach(result.findings, result.case.corrections, simulated)
-        result.simulated = simulated
+    tell = Progress(sys.stderr)
+    try:
+        result = _result(load(folder), arguments, tell)
+    finally:
+        tell.end()
     _show(machine.as_json(result) if arguments.json else text.as_text(result))
     for name, write in ((arguments.html, html.as_html), (arguments.latex, tex.as_latex), (arguments.certificate, certificate.as_certificate)):
         if not name:
@@ -103,6 +103,18 @@ def _judge(arguments):
             print(f"verify: cannot write {path}: {error.strerror}", file=sys.stderr)
             return 2
     return _gate(arguments, result) if arguments.fail_on else 0
+
+
+def _result(case, arguments, tell):
+    """The report of a case, with the effects of the slips where they can be simulated."""
+    from .report import effects, gather
+
+    result = gather.verify(case, not arguments.quick, tell)
+    if arguments.program and case.effects and not arguments.quick:
+        result.simulated = effects.simulate(case.effects, result.case.corrections, arguments.program,
+                                            lambda done, total: tell("simulation of the slips", done, total))
+        effects.attach(result.findings, result.case.corrections, result.simulated)
+    return result
 
 
 def _gate(arguments, result):

@@ -12,6 +12,7 @@ from typing import Dict, List, Optional, Tuple
 
 from ..normal.algebra import ONE, Opaque
 from ..normal.intervals import intervals, known, signs
+from .angles import without_angles
 from .violation import Violation
 
 # A budget of some ten seconds. What is undecided by then lies at a point where the matrix is nearly
@@ -84,13 +85,18 @@ class Verdict:
     point: Optional[Dict[str, Tuple[float, float]]] = None
 
 
-def prove_matrix(matrix, fixed, box, limit=BISECTIONS) -> Verdict:
-    """Whether a symmetric matrix is positive definite over a box, with the other values fixed."""
+def prove_matrix(matrix, fixed, box, limit=BISECTIONS, tell=None) -> Verdict:
+    """Whether a symmetric matrix is positive definite over a box, with the other values fixed; `tell` as in `prove`."""
+    if (constant := without_angles(matrix)) is not None and matrix != constant:
+        # where this is not positive definite, the matrix may still be, if the box has no equal angles
+        verdict = prove_matrix(constant, fixed, box, limit, tell)
+        if verdict.status == "proved":
+            return verdict
     if len(matrix) <= MULTIPLIED_OUT:
-        return prove(minors(matrix), fixed, box, limit)
+        return prove(minors(matrix), fixed, box, limit, tell=tell)
     known(intervals({**fixed, **box}), [form for row in matrix for form in row])
     still = intervals({n: value for n, value in fixed.items() if n not in box})
-    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, limit, judge=pivots)
+    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, limit, judge=pivots, tell=tell)
 
 
 def _collected(form, still):
@@ -129,14 +135,16 @@ def pivots(matrix, values):
     return found
 
 
-def prove(forms, fixed, box, limit=BISECTIONS, judge=signs) -> Verdict:
+def prove(forms, fixed, box, limit=BISECTIONS, judge=signs, tell=None) -> Verdict:
     """Whether all forms are positive over a box {name: (low, high)} with the other values fixed; `judge(forms, values)`
-    gives their signs over intervals."""
+    gives their signs over intervals, `tell(done)` is told of each box that is judged."""
     fixed = intervals(fixed)
     queue, count = [dict(box)], 0
     while queue:
         part = queue.pop()
         count += 1
+        if tell:
+            tell(count)
         found = judge(forms, {**fixed, **intervals(part)})
         if -1 in found:
             return Verdict("refuted", count, part)

@@ -17,6 +17,7 @@ from ..judgements.mirror import mirror
 from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
 from ..normal.subject import Subject
+from ..progress import silent
 from .lagrange import Motion
 
 # What is neglected is mostly singular at rest, so that no number of boxes proves anything there; where the matrix is
@@ -79,12 +80,12 @@ class Reading:
         return (VERDICTS.index(self.verdict()), refuted, len(self.pulls()), sum(map(len, self.objections.values())), -self.agree, self.absent)
 
 
-def ranked(printed, energies, thorough=True) -> List[Reading]:
-    """The readings, the best first; of equals, that which is declared first."""
-    return sorted((_reading(printed, e, thorough) for e in energies), key=Reading.rank)
+def ranked(printed, energies, thorough=True, tell=silent) -> List[Reading]:
+    """The readings, the best first; of equals, that which is declared first. `tell` is told how far it is (progress.py)."""
+    return sorted((_reading(printed, e, thorough, tell) for e in energies), key=Reading.rank)
 
 
-def _reading(printed, energies, thorough):
+def _reading(printed, energies, thorough, tell):
     motion = Motion(printed.paper, energies)
     squares = _squares(motion) if energies.squares else None
     counted = [n for n, e in printed.paper.equations.items() if e.kind in ("motion", "value")]
@@ -92,7 +93,7 @@ def _reading(printed, energies, thorough):
     judged = [c for n, c in found.items() if n in counted]
     derived = derived_subject(printed, motion)
     objections = {"mirror": mirror(derived), "galilei": galilei(derived)}
-    boxes, whole = _boxes(motion, squares, thorough)
+    boxes, whole = _boxes(motion, squares, thorough, tell)
     return Reading(motion, squares, boxes, _reactions(motion), objections, sum(len(c.agree) for c in judged),
                    sum(c.terms() for c in judged), sum(len(c.absent) for c in judged), {n: c.differ for n, c in found.items()}, whole)
 
@@ -130,23 +131,26 @@ def _negative(form, values):
     return form.evaluate({n: Fraction(str(v)) for n, v in values.items()}, None, None, Fraction(0)) < 0
 
 
-def _boxes(motion, squares, thorough):
+def _boxes(motion, squares, thorough, tell):
     """(verdicts on the mass matrix, whether they are over the box): at rest where that is not asked for or has no bounds."""
     paper, mass, result = motion.paper, motion.mass(), {}
     moving = set(paper.coordinates()) & set().union(*(form.names() for row in mass for form in row)) if mass else set()
     zeros, places = rest(paper)
     whole = thorough and moving <= paper.box.keys()
     at_rest = [[form.substitute(zeros) for form in row] for row in mass]
-    for (name, values), neglect in product(paper.sets.items(), (False, True) if paper.negligible else (False,)):
-        if neglect and squares:
-            continue  # not negative whatever is neglected, and where it is singular the report says so
+    # with a sum of squares the matrix is not negative whatever is neglected, and where it is singular the report says so
+    cases = list(product(paper.sets.items(), (False, True) if paper.negligible and not squares else (False,)))
+    what, total, before = f"kinetic energy of '{motion.energies.name}'", len(cases) * len(states(paper)) * BISECTIONS, 0
+    for (name, values), neglect in cases:
         neglected = {n: 0 for n in paper.negligible} if neglect else {}
         label = name + (", " + " = ".join([*paper.negligible, "0"]) if neglect else "")
         for state in states(paper):
             key = ", ".join([label] + [f"{n} = {v:+d}" for n, v in state.items()])
             box = paper.box if whole else {n: (p, p) for n, p in places.items()}
             limit = NEGLECTED if neglect else BISECTIONS
-            result[key] = prove_matrix(mass if whole else at_rest, {**values, **neglected, **state}, box, limit)
+            result[key] = prove_matrix(mass if whole else at_rest, {**values, **neglected, **state}, box, limit,
+                                       lambda done, before=before: tell(what, before + done, total))
+            before += BISECTIONS
     return result, whole
 
 

@@ -9,6 +9,7 @@ from ..errors import NotInClass
 from ..judgements import JUDGEMENTS
 from ..normal.algebra import expression
 from ..normal.subject import Subject
+from ..progress import silent
 from .search import Repair, apply
 
 # in the order of what they cost
@@ -24,14 +25,14 @@ class Location:
     violations: List
 
 
-def locate(subject):
+def locate(subject, tell=silent):
     """(locations, violations that no single edit explains) of a subject without energies. Each edit
-    is found with those of the locations before it made: of these, the first candidates."""
+    is found with those of the locations before it made: of these, the first candidates. `tell` is told how far it is (progress.py)."""
     first = _objections(subject)
     locations, before = [], first
     while before:
         start = len(locations)
-        for gone, candidates in _groups(subject, before):
+        for gone, candidates in _groups(subject, before, tell):
             number, repair = candidates[0]
             edited = _with(subject, number, repair)
             # another edit of this round may have changed what this one does
@@ -65,12 +66,14 @@ def _with(subject, number, repair):
     return Subject(subject.paper.with_equations([equation]), subject)
 
 
-def _groups(subject, before):
+def _groups(subject, before, tell):
     """(labels that vanish, [(equation number, Repair)]) of the trials that only remove objections,
     the most first."""
     numbers = dict.fromkeys(n for violation in before.values() for n in violation.equations)
     groups = {}
-    for number, repair in _trials(subject, numbers, before):
+    trials = list(_trials(subject, numbers, before))
+    for k, (number, repair) in enumerate(trials):
+        tell(f"location of {len(before)} objections", k, len(trials))
         try:
             left = _objections(_with(subject, number, repair), before.keys())
         except NotInClass:

@@ -2,14 +2,18 @@
 SymPy. Expressions are text; equations of motion are derived there from T, V and D anew."""
 
 import json
-from itertools import permutations
+import re
+from itertools import permutations, product
 
 from ..judgements.comparison import compare
 from ..judgements.definite import rest
 from ..normal.algebra import expression
+from ..readings.lagrange import sympy_namespace
 
 # raised when a claim changes its meaning
 VERSION = 1
+# in certificates the name of a sign that counts as a constant
+STEADY = "sign__"
 
 
 def as_certificate(report):
@@ -33,12 +37,13 @@ class _Writer:
             self._terms(number)
         for finding in self.report.findings:
             self._finding(finding)
+        self._without_objection()
         symbols = self.paper.symbols.values()
         units = {n: self._unit(d) for n, d in self.printed.dimension.items() if n in self.paper.names()}
         return {
             "certificate": VERSION, "title": self.paper.title, "source": self.paper.source,
             "reading": self.motion.energies.name if self.motion else None,
-            "symbols": [n for n in self.paper.names() if n not in self._named(self.moving)], "moving": self.moving + self.extra,
+            "symbols": [n for n in self.paper.names() if n not in self._named(self.moving)] + [STEADY], "moving": self.moving + self.extra,
             "states": [x.name for x in symbols if x.role == "discrete"], "held": [n for n in self._named(self.extra) if n],
             "mirror": [n for x in symbols if x.mirror == -1 for n in (self._named([x.name]) if x.name in self.moving else [x.name])],
             "units": {n: u for n, u in units.items() if u != "1"}, "let": self.let, "claims": self.claims, "without": self.without,
@@ -135,10 +140,12 @@ class _Writer:
             self._neglect(about)
         elif f.kind == "principle":
             self._split(about, f)
+        elif f.kind == "undefined":
+            self._undefined(about, f)
         if len(self.claims) == before:
             self.without[f.key] = "no identity: " + {
-                "undefined": "what the paper does not define is not in its table of symbols",
-            }.get(f.kind, "the objection is one of words or numbers")
+                "objection": "what is objected to is a sign or modulus of what moves, or a force that is given elsewhere",
+            }.get(f.kind, "it is one of words or numbers")
 
     def _after(self, number):
         """The weight and the derived side with which the corrected equation is compared."""
@@ -175,18 +182,71 @@ class _Writer:
         elif v.judgement == "lagrangian" and len(rows) == 2 and len(v.message) == 2 and not self.paper.quasi:
             (i, a), (j, b) = rows
             text = None
-            if "mass matrix is not symmetric" in words:
-                text = f"diff(row__{i}, dd{b}) - diff(row__{j}, dd{a})"
-            elif words.startswith("the velocity terms"):
-                text = f"diff(row__{i}, d{b}) + diff(row__{j}, d{a}) - rate(diff(row__{i}, dd{b}) + diff(row__{j}, dd{a}))"
-            elif words.startswith("the terms of"):
-                text = f"diff(row__{i}, {b}) - diff(row__{j}, {a}) - rate(diff(row__{i}, d{b}) - diff(row__{j}, d{a}))/2"
+            for start, condition in zip(("the mass matrix is not symmetric", "the velocity terms", "the terms of"), _helmholtz(i, a, j, b)):
+                text = condition if words.startswith(start) else text
             if text:
-                self._claim(about, "equal", text, str(expression(v.message[1])))
-                self._claim(about, "different", text, "0")
-        elif v.judgement == "galilei" and words.startswith("a constant velocity"):
-            name = "d" + self.paper.translation[0]
-            self._claim(about, "different", f"diff({expression(self.printed.conservative(number))}, {name})", "0")
+                self._not_zero(about, text, v.message[1])
+            elif "is not linear in the accelerations" in words:
+                for name in self.paper.coordinates():
+                    if slope := v.message[1].diff("dd" + name):
+                        self._not_zero(about, f"diff(diff(row__{i}, dd{b}), dd{name})", slope)
+        elif v.judgement in ("lagrangian", "galilei"):
+            self._alone(about, v, number, words)
+        elif v.judgement == "definite":
+            self._minor(about, v)
+
+    def _not_zero(self, about, text, form):
+        """What must be zero is another form."""
+        self._claim(about, "equal", text, str(expression(form)))
+        self._claim(about, "different", text, "0")
+
+    def _alone(self, about, v, number, words):
+        """An objection to one equation: to a momentum, or by Galilei's principle."""
+        total = self.printed.total(number)
+        if found := re.search(r"is not the rate of a momentum: its terms in (the velocity of )?(\w+) do not", words):
+            # a sign that multiplies all of it counts as a constant
+            name, whole = found[2], _steady(expression(total))
+            text = (f"diff({whole}, d{name}) - 2*rate(diff({whole}, dd{name}))" if found[1]
+                    else f"diff({whole}, {name}) - rate(diff({whole}, d{name}))/2")
+            self._claim(about, "equal", text, str(_steady(expression(v.message[1]))))
+            self._claim(about, "different", text, "0")
+        elif found := re.match(r"the accelerations of (\w+) and (\w+) do not enter as their sum", words):
+            rest_ = _steady(expression(self.printed.conservative(number)))
+            self._claim(about, "different", f"diff({rest_}, dd{found[1]}) - diff({rest_}, dd{found[2]})", "0")
+        elif found := re.match(r"the accelerations of (\w+) and (\w+) in \(.*\) do not belong to one first moment", words):
+            whole = _steady(expression(self.printed.scales.get(number, self.printed.ring.number(1)) * self.printed.conservative(number)))
+            self._claim(about, "different", f"diff(diff({whole}, dd{found[1]}), {found[2]}) - diff(diff({whole}, dd{found[2]}), {found[1]})", "0")
+        elif found := re.match(r"a constant (displacement|velocity)", words):
+            for name in self.paper.translation:
+                name = name if found[1] == "displacement" else "d" + name
+                if self.printed.conservative(number).diff(name):
+                    self._claim(about, "different", f"diff({_steady(expression(self.printed.conservative(number)))}, {name})", "0")
+
+    def _minor(self, about, v):
+        """A leading minor of the printed mass matrix at rest, and its value for a parameter set."""
+        found = re.search(r"at rest \(parameter set (.*)\): the leading minor (\d+) is not positive", v.message[0])
+        if not found or self.paper.quasi:
+            return
+        motions = self.paper.motions()[:int(found[2])]
+        for k, equation in enumerate(motions):
+            self.let[f"full__{k}"] = str(expression(self.printed.multipliers[equation.number] * self.printed.total(equation.number)))
+        entries = [[f"(diff(full__{i}, dd{f.of}) + diff(full__{j}, dd{e.of}))/2" for j, f in enumerate(motions)] for i, e in enumerate(motions)]
+        zeros = "".join(f", {n}, 0" for n in rest(self.paper)[0])
+        self._claim(about, "equal", f"put({_determinant(entries)}{zeros})", str(expression(v.message[1])))
+        name, *states = found[1].rsplit(", ", sum(x.role == "discrete" for x in self.paper.symbols.values()))
+        values = {**self.paper.sets[name], **rest(self.paper)[1], **dict(x.split(" = ") for x in states)}
+        values = {n: str(int(x)) if str(x).startswith("+") else str(x) for n, x in values.items() if n in v.message[1].names()}
+        if v.message[1]:
+            self._claim(about, "greater", "0", str(expression(v.message[1])), at=values)
+
+    def _without_objection(self):
+        """The Helmholtz conditions, where they are judged and hold: without energies they are what is proved."""
+        if self.motion or self.paper.quasi or "lagrangian" in self.report.unjudged or self.report.violations["lagrangian"]:
+            return
+        of = [equation.of for equation in self.paper.motions()]
+        for i, j in product(range(len(of)), repeat=2):
+            for text in _helmholtz(i, of[i], j, of[j]) if j <= i else ():
+                self._claim({"judgement": "lagrangian"}, "equal", text, "0")
 
     def _parity(self, number, equation):
         """The sign that the terms of an equation take in the mirror image: that of most of them."""
@@ -225,17 +285,45 @@ class _Writer:
             self._claim(about, "equal", curl, str(expression(left)))
             self._claim(about, "different", curl, "0")
 
+    def _undefined(self, about, f):
+        """The equations depend on the symbol, whatever it means."""
+        symbols = sympy_namespace(self.paper, defined=False)
+        name = f.key.removeprefix("undefined-")
+        for number in f.equation.split(", "):
+            if number in self.paper.equations:
+                terms = self.paper.equations[number].terms(symbols, self.printed.m)
+                self._claim(about, "different", f"({_sum(terms)}) - put({_sum(terms)}, {name}, 0)", "0")
+
     def _neglect(self, about):
         """The determinant at rest with what is neglected."""
         q = self.paper.coordinates()
         entries = [[f"diff(diff(T__, d{a}), d{b})" for b in q] for a in q]
-        terms = []
-        for order in permutations(range(len(q))):
-            sign = (-1) ** sum(order[i] > order[j] for i in range(len(q)) for j in range(i + 1, len(q)))
-            terms.append(("+" if sign > 0 else "-") + "*".join(entries[i][k] for i, k in enumerate(order)))
         zeros = "".join(f", {n}, 0" for n in [*rest(self.paper)[0], *self.paper.negligible])
         d = self.report.definiteness[1]
-        self._claim(about, "equal", f"put(0{''.join(terms)}{zeros})", str(expression(d.neglected)))
+        self._claim(about, "equal", f"put({_determinant(entries)}{zeros})", str(expression(d.neglected)))
+
+
+def _helmholtz(i, a, j, b):
+    """What is zero where the equations of the coordinates a and b come from a Lagrangian."""
+    return (f"diff(row__{i}, dd{b}) - diff(row__{j}, dd{a})",
+            f"diff(row__{i}, d{b}) + diff(row__{j}, d{a}) - rate(diff(row__{i}, dd{b}) + diff(row__{j}, dd{a}))",
+            f"diff(row__{i}, {b}) - diff(row__{j}, {a}) - rate(diff(row__{i}, d{b}) - diff(row__{j}, d{a}))/2")
+
+
+def _steady(expression_):
+    """An expression with a constant in the place of signs and moduli of what moves."""
+    import sympy
+
+    return expression_.replace(lambda x: x.func in (sympy.sign, sympy.Abs), lambda x: sympy.Symbol(STEADY))
+
+
+def _determinant(entries):
+    """The determinant of a matrix of texts."""
+    terms = []
+    for order in permutations(range(len(entries))):
+        sign = (-1) ** sum(order[i] > order[j] for i in range(len(entries)) for j in range(i + 1, len(entries)))
+        terms.append(("+" if sign > 0 else "-") + "*".join(f"({entries[i][k]})" for i, k in enumerate(order)))
+    return "0" + "".join(terms)
 
 
 def _sum(terms):

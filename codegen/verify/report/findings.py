@@ -154,10 +154,10 @@ def from_objections(subject, violations):
     return findings
 
 
-def from_locations(subject):
+def from_locations(subject, tell):
     """Without energies: one finding for the objections that vanish with one edit of a term, and one
     for each that vanishes with none."""
-    locations, left = locate(subject)
+    locations, left = locate(subject, tell)
     findings = []
     for k, found in enumerate(locations, 1):
         numbers = tuple(dict.fromkeys(number for number, _ in found.candidates))

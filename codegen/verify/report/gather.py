@@ -17,6 +17,7 @@ from ..judgements.comparison import compare
 from ..judgements.definite import critical, determinant, printed_mass, rest
 from ..judgements.numbers import check
 from ..normal.subject import Subject
+from ..progress import silent
 from ..readings.ranking import Reading, ranked
 from . import principles
 from .findings import Finding, consistent_terms, from_corrections, from_locations, from_objections, from_repairs, judge, repaired
@@ -99,16 +100,18 @@ class Report:
         return always, set().union(*sets) - always
 
 
-def verify(case, thorough=True):
+def verify(case, thorough=True, tell=silent):
     """Judge a case. `thorough` also bounds the mass matrices over the whole box, and locates what is
-    objected to where there are no energies."""
+    objected to where there are no energies. `tell` is told how far it is (progress.py)."""
     paper = case.paper
+    tell("the equations as printed")
     printed = Subject(paper)
     wrong, sound = principles.wrong_energies(printed, case.energies)
     case = replace(case, energies=sound)
-    readings = ranked(printed, case.energies, thorough)
+    readings = ranked(printed, case.energies, thorough, tell)
     first = readings[0].motion if readings else None
     case = replace(case, corrections=_corrections(case, readings))
+    tell("findings")
     violations = judge(printed, first)
     comparisons = {r.name: {n: c for n in paper.equations if (c := compare(printed, r.motion, n))} for r in readings}
     found = {}
@@ -121,7 +124,7 @@ def verify(case, thorough=True):
         after = judge(whole, first)
         findings = from_repairs(printed, first, found, whole, after)
     blind = thorough and not readings and not case.corrections
-    findings += from_locations(whole) if blind else from_objections(whole, after)
+    findings += from_locations(whole, tell) if blind else from_objections(whole, after)
     report = Report(case, printed, whole, bool(case.corrections), readings, comparisons, violations, after, findings,
                     unjudged(printed, first), unreferenced(printed, first))
     report.version, report.date, report.files = origin(case)
@@ -136,6 +139,7 @@ def verify(case, thorough=True):
     report.findings += wrong
     if wrong and not sound:
         report.unjudged["difference"] = "the energies have terms of another dimension"
+    tell("what follows from the equations alone")
     report.constructed = [] if printed.solved else [_construct("as printed", printed)]
     if findings and not printed.solved:
         report.constructed.append(_construct("with what is consistent", whole))

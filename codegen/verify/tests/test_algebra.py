@@ -10,7 +10,8 @@ import sympy
 
 from codegen.verify.errors import NotInClass, PaperError
 from codegen.verify.input.load import load
-from codegen.verify.judgements.definite import determinant, prove, prove_matrix
+from codegen.verify.judgements.angles import without_angles
+from codegen.verify.judgements.definite import Verdict, determinant, prove, prove_matrix
 from codegen.verify.normal.algebra import Ring, expression
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.seeded import EXAMPLES
@@ -150,6 +151,33 @@ class Definiteness(unittest.TestCase):
             self.assertEqual(prove_matrix(chain(diagonal), {"m": "3", "b": "2"}, box).status, status)
         with self.assertRaisesRegex(PaperError, "no value for m"):
             prove_matrix(chain(2), {}, box)
+
+    def test_angles_that_enter_as_differences_are_taken_out(self):
+        """Links of any number hang on a cart: definite at all angles, which boxes of eight angles do not show."""
+        angles = sympy.symbols("q_1:9", real=True)
+
+        def links(coupling, others=angles):
+            """A cart and eight links, the third of them measured from the horizontal."""
+            shift = [-sympy.pi / 2 if k == 2 else 0 for k in range(8)]
+            a = [0, *(angle + by for angle, by in zip(others, shift))]
+            return [[self.ring.read(sympy.expand_trig(M * (9 - max(i, j)) * (1 if i == j else coupling * sympy.cos(a[i] - a[j]))))
+                     for j in range(9)] for i in range(9)]
+
+        constant = without_angles(links(1))
+        self.assertEqual(constant, [[self.ring.read(M * (9 - max(i, j))) for j in range(9)] for i in range(9)])
+        box = {x.name: (-3.0, 3.0) for x in angles}
+        self.assertEqual(prove_matrix(links(1), {"m": "3"}, box), Verdict("proved", 1))
+        self.assertEqual(prove_matrix(links(1), {"m": "-3"}, box).status, "refuted")
+        # 1 - c^2 < 0 at equal angles, and not far from them
+        pair = [[self.ring.read(x) for x in row] for row in ((sympy.Integer(1), sympy.Rational(3, 2) * sympy.cos(angles[0] - angles[1])),
+                                                             (sympy.Rational(3, 2) * sympy.cos(angles[0] - angles[1]), sympy.Integer(1)))]
+        self.assertEqual(prove_matrix(pair, {}, {"q_1": (-1.0, 1.0), "q_2": (-1.0, 1.0)}).status, "refuted")
+        self.assertEqual(prove_matrix(pair, {}, {"q_1": (1.4, 1.6), "q_2": (0.0, 0.1)}).status, "proved")
+        # no angles of three coordinates have these differences
+        one, c = sympy.Integer(1), [sympy.cos(angles[0] - angles[1]) / 2, sympy.cos(angles[0] + angles[2]) / 2, sympy.cos(angles[1] - angles[2]) / 2]
+        rows = ((one, c[0], c[1]), (c[0], one, c[2]), (c[1], c[2], one))
+        self.assertIsNone(without_angles([[self.ring.read(x) for x in row] for row in rows]))
+        self.assertIsNone(without_angles([[self.ring.read(sympy.cos(Q)**2)]]))
 
     def test_a_large_determinant_is_made_minor_by_minor(self):
         rows = [[A if i == j else sympy.Integer(1) for j in range(8)] for i in range(8)]

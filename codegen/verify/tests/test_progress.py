@@ -1,0 +1,37 @@
+"""What is said while one waits, and early."""
+
+import io
+import unittest
+
+from codegen.verify.progress import Progress
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+class Waiting(unittest.TestCase):
+    def said(self, stream, seconds):
+        """What is said of a step whose parts take so many seconds."""
+        clock = iter([k * seconds for k in range(100)])
+        tell = Progress(stream, now=lambda: next(clock))
+        for done in range(40):
+            tell("boxes", done, 40)
+        tell.end()
+        return stream.getvalue()
+
+    def test_long_steps_are_announced_once_and_early(self):
+        self.assertEqual(self.said(io.StringIO(), 2.0), "verify: boxes can take 78 s more; --quick leaves it out\n")
+        self.assertEqual(self.said(io.StringIO(), 6.0), "verify: boxes can take 4 minutes more; --quick leaves it out\n")
+        self.assertEqual(self.said(io.StringIO(), 0.4), "")
+
+    def test_a_terminal_has_one_line_that_is_cleared(self):
+        lines = self.said(Terminal(), 0.4).split("\r")
+        self.assertEqual(lines[1], "verify: boxes, 0 of at most 40")
+        self.assertEqual(lines[40], "verify: boxes, 39 of at most 40")
+        self.assertEqual((lines[41].strip(), lines[42]), ("", ""))
+
+
+if __name__ == "__main__":
+    unittest.main()
