@@ -5,6 +5,7 @@ import json
 import re
 from itertools import permutations, product
 
+from ..input import units
 from ..judgements.comparison import compare
 from ..judgements.definite import rest
 from ..normal.algebra import expression
@@ -134,6 +135,10 @@ class _Writer:
             self._violation(about, violation)
         if f.key.startswith("impact-"):
             self._impact(about, f)
+        elif f.key.startswith("energy-"):
+            if found := re.search(r"it is in \S+, and what it is a term of in (\S+)\. ", f.reason[0]):
+                term, unit = expression(f.printed[0]), self._unit(units.parse(found[1]))
+                self._claim(about, "different", f"scaled({term})", f"({unit})*({term})")
         elif f.key.startswith("unit-"):
             self._claim(about, "different", *[self._printed_unit(x) for x in (f.printed[0], f.consistent[0])])
         elif f.key == "neglect" and not self.paper.quasi:
@@ -159,8 +164,6 @@ class _Writer:
         return (weight, derived) if comparison else None
 
     def _printed_unit(self, text):
-        from ..input import units
-
         return self._unit(units.parse(text.split(" ", 1)[1]))
 
     def _violation(self, about, v):

@@ -146,8 +146,8 @@ def wrong_energies(printed, energies):
         for what, term, words in wrong:
             name = what if what.startswith("force") else f"{what} energy" if what != "dissipation" else what
             findings.append(Finding(
-                f"energy-{len(findings) + 1}", "text", "objection", f"The {name} of '{reading.name}' has a term of another dimension: {words}. "
-                "Nothing is compared with it.", (), [printed.ring.read(term)], [], False, ["dimensions"], None))
+                f"energy-{len(findings) + 1}", "text", "objection", [f"The {name} of '{reading.name}' has a term of another dimension: {words}. "
+                "Nothing is compared with it."], (), [printed.ring.read(term)], [], False, ["dimensions"], None))
         if not wrong:
             sound.append(reading)
     return findings, sound
