@@ -10,7 +10,7 @@ Signs: λ_N pushes the gap open; λ_T acts along the slip; a direction is the si
 """
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -66,8 +66,10 @@ class Contact:
     static: ca.SX
     kinetic: ca.SX
     restitution: ca.SX
+    tangential_restitution: ca.SX
     direction: ca.SX
     location: str
+    law: list = field(default_factory=list)
 
     def states(self):
         """What it can do."""
@@ -75,8 +77,8 @@ class Contact:
         return ([OPEN] if self.gap else []) + slipping
 
     def is_reducible(self):
-        """Whether its gap and its slip are coordinates."""
-        return isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
+        """Whether its gap and its slip are coordinates, and its impacts are Newton's without a slip that turns back."""
+        return not self.law and self.tangential_restitution.is_zero() and isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
 
     def slip_rate_of(self, x):
         """The slip rate as an expression in coordinates and rates (`derive.Configuration`)."""
@@ -94,7 +96,7 @@ class Contact:
 # ---- declarations ---------------------------------------------------------------------------------
 
 
-def declare(model, name, gap, slip, normal, static, kinetic, restitution):
+def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangential_restitution):
     """Adds a contact to a model; see `Model.contact` and `Model.friction`."""
     kind = "friction" if gap is None else "contact"
     what = f"{kind} `{name}`"
@@ -105,6 +107,8 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution):
     gap_expression = None if gap is None else _of_motion(model, f"{what}: its gap", of("its gap", gap), rates=False)
     if slip is None and (static is not None or kinetic is not None):
         raise model.error(f"{what}: it has friction but no `slip`: give the place or the rate along which it slips")
+    if slip is None and tangential_restitution != 0:
+        raise model.error(f"{what}: `tangential_restitution` is given, but no `slip` that it would turn back")
     slip_expression = None
     if slip is not None:
         if kinetic is None:
@@ -125,7 +129,40 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution):
         f"{name}_direction", (+1, -1), f"sign of the slip rate of `{name}` when it slides")
     model.contacts.append(Contact(
         name, gap, gap_expression, slip, slip_expression, by_rate, None if normal is None else of("`normal`", normal), static,
-        kinetic, of("`restitution`", restitution), direction, caller_location(model.file)))
+        kinetic, of("`restitution`", restitution), of("`tangential_restitution`", tangential_restitution), direction, caller_location(model.file)))
+
+
+def declare_impact(model, name, rates):
+    """Adds a law of the model's own for the impacts of a contact; see `Model.impact`."""
+    contact = next((c for c in model.contacts if c.name == name and c.gap is not None), None)
+    if contact is None:
+        known = ", ".join(f"`{c.name}`" for c in model.contacts if c.gap is not None) or "none"
+        raise model.error(f"impact: there is no contact `{name}` with a gap above (contacts: {known})")
+    if contact.law:
+        raise model.error(f"impact of `{name}`: its law is stated twice")
+    declared = {c.symbol.rate.element_hash(): c for c in model.coordinates}
+    places = [s for c in model.coordinates + model.motions for s in (c.symbol, c.symbol.rate)]
+    allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters)]}
+    for rate, value in arguments.pairs(model, f"impact of `{name}`: its rates", rates, "(rate, value just after)"):
+        of = declared.get(rate.element_hash()) if isinstance(rate, ca.SX) else None
+        if of is None:
+            raise model.error(f"impact of `{name}`: {arguments.shown(rate)} is not the rate of a coordinate")
+        what = f"impact of `{name}`: `{of.name}.rate`"
+        value = arguments.expression(model, what, value)
+        for symbol in ca.symvar(value):
+            if symbol.element_hash() not in allowed:
+                raise model.error(f"{what} depends on `{symbol.name()}`; it depends on coordinates, rates, motions of the ground and"
+                                  " parameters alone")
+        operation = graph.non_smooth_operation(value, [p.symbol for p in model.parameters])
+        if operation:
+            raise model.error(f"{what}: `{operation}` is not smooth")
+        try:
+            units.dimension_of(value - rate, model.dimensions)
+        except units.UnitError as error:
+            raise model.error(f"{what}: {error}") from None
+        contact.law.append((of.symbol, value))
+    if not contact.law:
+        raise model.error(f"impact of `{name}`: it lists no rates")
 
 
 def declare_constraint(model, name, expressions):
@@ -204,7 +241,7 @@ def expand(model):
     if model.modes:
         raise ModelError("the model has contacts and modes by hand; contacts make all modes: leave `model.mode(…)` out, or write"
                          " all of it by hand", model.modes[0].location)
-    if not model.constraints and all(contact.is_reducible() for contact in model.contacts):
+    if not model.by_multipliers and not model.constraints and all(contact.is_reducible() for contact in model.contacts):
         try:
             Expansion(model).build()
             return

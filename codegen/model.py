@@ -96,7 +96,7 @@ class Model:
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
-        self.contacts, self.constraints = [], []
+        self.contacts, self.constraints, self.by_multipliers = [], [], False
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -250,18 +250,29 @@ class Model:
 
     # ---- contacts -----------------------------------------------------------------------------
 
-    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0):
+    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0, tangential_restitution=0):
         """A contact: `gap` ≥ 0, and a force that pushes where it is zero.
 
         With `slip`, a place along the contact or its slip rate, it has Coulomb friction, `static` (`kinetic` where it is
         not given) and `kinetic`. An impact multiplies the rate of the gap by −`restitution` (Newton's law); friction impulses
-        keep within the kinetic coefficient. Modes, guards, impacts and rests follow; see docs/models.md.
+        keep within the kinetic coefficient; an impact that sticks turns the slip rate back by −`tangential_restitution` times
+        it. Modes, guards, impacts and rests follow; see docs/models.md.
         """
-        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution)
+        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution, tangential_restitution)
 
     def friction(self, name, *, slip, normal, kinetic, static=None):
         """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N."""
-        contacts.declare(self, name, None, slip, normal, static, kinetic, 0)
+        contacts.declare(self, name, None, slip, normal, static, kinetic, 0, 0)
+
+    def impact(self, contact, rates):
+        """A law of the model's own for what happens when a contact, by its name, strikes, in place of the general one: a list of
+        (rate, value just after), in terms of the state just before. What it does not list stays. No gap may close after it."""
+        contacts.declare_impact(self, contact, rates)
+
+    def multipliers(self):
+        """Contacts are held by multipliers, even where coordinates would do: as for a law of impact other than Newton's, which
+        a scene may ask for."""
+        self.by_multipliers = True
 
     def constraint(self, name, expressions):
         """A constraint that always holds: each of the expressions is zero. Its multipliers are the reactions: forces along

@@ -24,8 +24,8 @@ from . import derive, graph, limits, units
 from .declarations import Declaration
 from .errors import ModelError
 
-MOST_CONTACTS = 8
-"""Most contacts of a model: all sets of states of those that touch are judged at an event."""
+MOST_CONTACTS = 16
+"""Most contacts of a model: each two of them with friction have a discrete state, which says whether one holds the other."""
 
 
 @dataclass
@@ -68,7 +68,7 @@ def build(model):
                          " or write all of it by hand", model.modes[0].location)
     contacts, constraints = model.contacts, model.constraints
     if len(contacts) > MOST_CONTACTS:
-        raise ModelError(f"the model has {len(contacts)} contacts; at most {MOST_CONTACTS} are judged together: leave out contacts"
+        raise ModelError(f"the model has {len(contacts)} contacts; at most {MOST_CONTACTS} are: leave out contacts"
                          " that the model does not need", contacts[MOST_CONTACTS].location)
     _check_independent(model, constraints)
     form = Form(contacts, constraints)
@@ -154,6 +154,7 @@ class Terms:
     static: ca.SX
     kinetic: ca.SX
     restitution: ca.SX
+    tangential_restitution: ca.SX
     closed: ca.SX
     direction: ca.SX
     sticks: ca.SX
@@ -227,7 +228,7 @@ class MultiplierEquations(derive.ModeEquations):
         dropped = zero if contact.slip is None else form.dropped[k]
         return Terms(
             *gap, *slip, normal, zero if contact.slip is None else form.tangents[k].acceleration, given(contact.static),
-            given(contact.kinetic), given(contact.restitution), closed, direction, closed * (1 - direction ** 2) * (1 - dropped))
+            given(contact.kinetic), given(contact.restitution), given(contact.tangential_restitution), closed, direction, closed * (1 - direction ** 2) * (1 - dropped))
 
     def _limit(self, k):
         """What friction can hold at most at a contact, and at those whose friction is part of its own."""
@@ -256,14 +257,15 @@ class MultiplierEquations(derive.ModeEquations):
         return ca.vertcat(*columns) if columns else ca.SX(0, 1)
 
     def places(self):
-        """Nine a contact: g, ġ, γ, μ_s, μ_k, e, and what times the unit roundoff bounds the rounding of the first three; four
-        a constraint: φ, φ̇ and the same of these."""
+        """Ten a contact: g, ġ, γ, μ_s, μ_k, e, e_T, and what times the unit roundoff bounds the rounding of the first three; four
+        a constraint: φ, φ̇ and the same of these; the rates after impacts that the model states."""
         columns = [ca.SX(0, 1)]
         for of in self.terms:
             three = [of.gap, of.gap_rate, of.slip_rate]
-            columns += [*three, of.static, of.kinetic, of.restitution, *[graph.rounding(ca.SX(e)) for e in three]]
+            columns += [*three, of.static, of.kinetic, of.restitution, of.tangential_restitution, *[graph.rounding(ca.SX(e)) for e in three]]
         for value, rate, _ in self.held_terms:
             columns += [value, rate, graph.rounding(ca.SX(value)), graph.rounding(ca.SX(rate))]
+        columns += [self.freeze(value) for contact in self.form.contacts for _, value in contact.law]
         return ca.vertcat(*columns)
 
     def inertia(self):
@@ -289,6 +291,7 @@ class MultiplierEquations(derive.ModeEquations):
                 "name": contact.name, "normal": coordinate(form.normals[k]), "tangent": coordinate(form.tangents[k]),
                 "closed": discrete(form.closed[k]), "direction": discrete(form.directions[k]), "dropped": discrete(form.dropped[k]),
                 "joined": [discrete(form.joined.get((k, j))) for j in range(count)],
+                "law": [coordinate(symbol) for symbol, _ in contact.law],
             } for k, contact in enumerate(form.contacts)],
             "constraints": [{"name": c.name, "multiplier": coordinate(c.multiplier)} for c in form.constraints],
         }

@@ -27,6 +27,8 @@ MISTAKES = (
      "friction `b`: `a` slips along `x` too"),
     ("two contacts of one name", 'model.contact("a", gap=y); model.contact("a", gap=x)\n',
      "contact `a`: there is a contact or a friction of this name above"),
+    ("a slip turned back that is none", 'model.contact("floor", gap=y, tangential_restitution=0.5)\n', "but no `slip` that it would turn back"),
+    ("a law of a contact that is none", 'model.impact("floor", [(y.rate, -y.rate)])\n', "impact: there is no contact `floor` with a gap above"),
     ("contacts beside a mode by hand", 'model.contact("a", gap=y)\nmodel.mode("flies")\n', "the model has contacts and modes by hand"),
 )
 
@@ -66,6 +68,27 @@ class Contacts(ScratchTest):
         contact, = described["variants"][0]["modes"][0]["contacts"]["contacts"]
         self.assertEqual((contact["name"], contact["normal"], contact["tangent"]), ("floor", 2, None))
         self.assertEqual(described["coordinates"][2]["reaction_unit"], "N")
+
+    def test_laws_of_the_model_are_checked(self):
+        floor = TWO + 'model.contact("floor", gap=y)\n'
+        for rates, message in (
+            ("[(y, -y.rate)]", "is not the rate of a coordinate"),
+            ("[(y.rate, y)]", "impact of `floor`: `y.rate`: terms of different dimension"),
+            ("[(y.rate, abs(y.rate))]", "`fabs` is not smooth"),
+            ("[(y.rate, y.acceleration)]", "depends on `y.acceleration`"),
+            ("[]", "it lists no rates"),
+        ):
+            with self.subTest(rates):
+                self.assertIn(message, self.refusal(floor + f'model.impact("floor", {rates})\n', 9))
+
+    def test_a_law_of_the_model_takes_multipliers(self):
+        text = TWO + 'model.contact("floor", gap=y)\nmodel.impact("floor", [(y.rate, -y.rate / 2)])\n'
+        contact, = self.described(text)["variants"][0]["modes"][0]["contacts"]["contacts"]
+        self.assertEqual(contact["law"], [1])
+
+    def test_multipliers_can_be_asked_for(self):
+        model, = self.loaded(TWO + 'model.contact("floor", gap=y)\nmodel.multipliers()\n')
+        self.assertEqual(modes(model), ["moves"])
 
     def loaded(self, text):
         with open(os.path.join(self.folder, "model.py"), "w", encoding="utf-8") as stream:

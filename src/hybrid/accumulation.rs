@@ -101,7 +101,16 @@ pub struct Accumulation {
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
+    /// The limit that was told best, and by how much, s, while patterns repeat ([`Self::predict`]): uncertainty, the two parts
+    /// of its time, number of events since, uncertainties of the last two predictions, its state, and what that may be off by.
+    /// Infinite where none is known.
+    best: Box<[f64]>,
+    /// Number of last events that the motion did not resolve.
+    unresolved: usize,
 }
+
+/// Numbers of a prediction before those of its state.
+const PREDICTION: usize = 6;
 
 impl Persist for Accumulation {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
@@ -110,7 +119,9 @@ impl Persist for Accumulation {
         // Where the first begins is a matter of this process.
         memory.slice(&mut self.records[self.first..][..ROOM * self.stride])?;
         self.count.persist(memory)?;
-        self.still.persist(memory)
+        self.still.persist(memory)?;
+        memory.slice(&mut self.best)?;
+        self.unresolved.persist(memory)
     }
 }
 
@@ -131,6 +142,8 @@ impl Accumulation {
             false => numbers.next_multiple_of(LINE),
         };
         let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
+        let mut best = vec![0.0; PREDICTION + 2 * absolute.len()].into_boxed_slice();
+        [best[0], best[4], best[5]] = [f64::INFINITY; 3];
         Accumulation {
             times: [[0.0; 2]; ROOM],
             keys: [0; ROOM],
@@ -141,12 +154,15 @@ impl Accumulation {
             discretes,
             count: 0,
             still: 0,
+            best,
+            unresolved: 0,
         }
     }
 
     /// Forgets all events.
     pub fn clear(&mut self) {
-        (self.count, self.still) = (0, 0);
+        (self.count, self.still, self.unresolved) = (0, 0, 0);
+        [self.best[0], self.best[4], self.best[5]] = [f64::INFINITY; 3];
     }
 
     /// Compares coordinates and velocities just before the next event with those after the last one: whether something
@@ -271,6 +287,55 @@ impl Accumulation {
         Some(self.end_of(&series))
     }
 
+    /// Looks where the last events would have their limit, if they have one, and keeps what is told best: as hops become
+    /// shorter the series is nearer to a geometric one, but their durations are told less well.
+    pub fn predict(&mut self) {
+        self.best[3] += 1.0;
+        if self.best[3] > Self::MEMORY as f64 {
+            self.best[0] = f64::INFINITY;
+        }
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
+        let found = (1..=known).filter_map(|p| self.candidate(p));
+        let Some((series, differs)) = found.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+            [self.best[4], self.best[5]] = [f64::INFINITY; 2];
+            return;
+        };
+        // One prediction may agree with that before by chance.
+        let uncertainty = differs.max(self.best[4]).max(self.best[5]);
+        [self.best[4], self.best[5]] = [differs, self.best[4]];
+        if uncertainty <= self.best[0] {
+            let limit = self.end_of(&series);
+            let n = limit.state.len();
+            self.best[0] = uncertainty;
+            self.best[1..3].copy_from_slice(&limit.at.parts());
+            self.best[3] = 0.0;
+            self.best[PREDICTION..][..n].copy_from_slice(&limit.state);
+            self.best[PREDICTION + n..].copy_from_slice(&limit.uncertainty);
+        }
+    }
+
+    /// The limit that was told best, if it is still ahead.
+    pub fn predicted(&self) -> Option<Limit> {
+        let parts = [self.best[1], self.best[2]];
+        let at = Instant::of_parts(parts);
+        if self.best[0] == f64::INFINITY || self.count == 0 || at.since(self.at(0)) < 0.0 {
+            return None;
+        }
+        let (state, uncertainty) = self.best[PREDICTION..].split_at(self.absolute.len());
+        Some(Limit {
+            at,
+            state: state.to_vec(),
+            uncertainty: uncertainty.to_vec(),
+            modes: vec![self.mode(0)],
+        })
+    }
+
+    /// Counts the last events that the motion does not resolve; whether the memory is full of them.
+    pub fn is_unresolved(&mut self, unresolved: bool) -> bool {
+        self.unresolved = if unresolved { self.unresolved + 1 } else { 0 };
+        self.unresolved >= Self::MEMORY
+    }
+
     /// Whether the time since the last event but one is so short that the rest of a series, at least
     /// last²/middle with the durations of the last two patterns, may not advance the time t, which middle is
     /// less than: shorter than √ε t.
@@ -297,9 +362,19 @@ impl Accumulation {
         last < middle && self.changes_within((last, middle - last), relative)
     }
 
-    /// The geometric series of a pattern of `p` events, if its ratio has converged.
+    /// The geometric series of a pattern of `p` events, if its limit has converged.
     #[inline]
     fn series(&self, p: usize, relative: f64) -> Option<Series> {
+        let (series, uncertainty) = self.candidate(p)?;
+        let limit = series.limit.seconds().abs();
+        let has_converged = uncertainty <= (relative * limit).max(limit * f64::EPSILON);
+        has_converged.then_some(series)
+    }
+
+    /// The series of a pattern of `p` events as the last durations give it, and how much, s, its limit differs from that of the
+    /// durations before.
+    #[inline]
+    fn candidate(&self, p: usize) -> Option<(Series, f64)> {
         if !self.are_alike(0, p) {
             return None;
         }
@@ -321,19 +396,15 @@ impl Accumulation {
         let limit = at[0].plus(remaining);
         let predicted_before = at[1].plus(middle * ratio_before / (1.0 - ratio_before));
         let uncertainty = limit.since(predicted_before).abs();
-        let one_place = limit.seconds().abs() * f64::EPSILON;
-        let has_converged = uncertainty <= (relative * limit.seconds().abs()).max(one_place);
-        if !has_converged {
-            return None;
-        }
         let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
-        repeats.then_some(Series {
+        let series = Series {
             pattern: p,
             ratio,
             ratio_before,
             remaining,
             limit,
-        })
+        };
+        repeats.then_some((series, uncertainty))
     }
 
     /// Whether what is left of a series moves nothing by more than the tolerances.

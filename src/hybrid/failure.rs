@@ -1,5 +1,6 @@
 //! Why a simulation stops before its end.
 
+use super::problem::ImpactLaw;
 use super::validate::Invalid;
 use crate::integrate::{Singular, StepError};
 
@@ -169,7 +170,7 @@ pub enum Reason {
     },
     /// No set of contact states goes on.
     #[error(
-        "no motion: of the contacts that touch ({contacts}) no set of states may go on, whatever opens, sticks or slips (Painlevé's paradox: inconsistent); an impact without a collision is not made up"
+        "no motion: of the contacts that touch ({contacts}) no set of states may go on, whatever opens, sticks or slips (Painlevé's paradox: inconsistent); a scene may ask for an impact without collision"
     )]
     NoMotion {
         /// Names of the contacts.
@@ -187,21 +188,47 @@ pub enum Reason {
     },
     /// The law of impact has no solution.
     #[error(
-        "the impact of {contacts} has no outcome: Newton's law and Coulomb's contradict each other there (a self-locking wedge)"
+        "the impact of {contacts} has no outcome: {}'s law and Coulomb's contradict each other there (a self-locking wedge)",
+        law.name()
     )]
     NoImpact {
+        /// Names of the contacts.
+        contacts: String,
+        /// The law.
+        law: ImpactLaw,
+    },
+    /// The model's own law of an impact leaves a gap that closes.
+    #[error(
+        "the impact of `{contact}` by the model's own law leaves the gap of `{closes}` with the rate {rate:e}, so that it goes on to close"
+    )]
+    OwnImpact {
+        /// The contact that struck.
+        contact: &'static str,
+        /// The contact whose gap closes.
+        closes: &'static str,
+        /// Its rate, in the unit of the gap a second.
+        rate: f64,
+    },
+    /// Impacts in sequence do not come to an end.
+    #[error(
+        "the impacts of {contacts}, one after the other at one instant, do not come to an end; let them happen together, or with less restitution"
+    )]
+    EndlessImpact {
         /// Names of the contacts.
         contacts: String,
     },
     /// The law of impact has several solutions.
     #[error(
-        "the impact of {contacts} has {count} outcomes that differ: Newton's law and Coulomb's do not determine it"
+        "the impact of {contacts} has {count} outcomes that differ: {}'s law and Coulomb's do not determine it",
+        law.name()
     )]
     SeveralImpacts {
         /// Names of the contacts.
         contacts: String,
         /// Number of outcomes.
         count: usize,
+        /// The law.
+        law: ImpactLaw,
     },
     /// Something of the problem is not admissible.
     #[error(transparent)]

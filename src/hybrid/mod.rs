@@ -55,7 +55,10 @@ pub use member::Member;
 pub use moment::{Moment, NotComputed};
 pub use observe::{Collected, MadeStep, Observer};
 pub use outputs::OwnOutput;
-pub use problem::{Accuracy, End, Initial, Limits, Method, Observed, OwnLimit, Problem, Record};
+pub use problem::{
+    Accuracy, Collisions, End, ImpactLaw, ImpactOrder, Initial, Limits, Method, Observed, OwnLimit,
+    Problem, Record,
+};
 pub use resume::{Replay, check_same, resume, resume_with};
 pub use simulate::{simulate, simulate_member, simulate_with};
 pub use simulator::Simulator;

@@ -34,8 +34,52 @@ pub struct Problem {
     pub accuracy: Accuracy,
     /// Method of integration.
     pub method: Method,
+    /// How impacts of contacts by multipliers are decided.
+    pub collisions: Collisions,
     /// What is recorded.
     pub record: Record,
+}
+
+/// How impacts of contacts by multipliers are decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Collisions {
+    /// The law.
+    pub law: ImpactLaw,
+    /// Whether contacts that touch take part together.
+    pub order: ImpactOrder,
+    /// Whether a state without a motion (Painlevé's paradox) goes on by an impact without collision, where there is one and
+    /// no other.
+    pub without_collision: bool,
+}
+
+/// A law of impact, with Coulomb's for its impulses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ImpactLaw {
+    /// The rate of a gap after is −e times that before.
+    #[default]
+    Newton,
+    /// The impulse of expansion is at least e times that of compression.
+    Poisson,
+}
+
+impl ImpactLaw {
+    /// Whose it is.
+    pub fn name(self) -> &'static str {
+        match self {
+            ImpactLaw::Newton => "Newton",
+            ImpactLaw::Poisson => "Poisson",
+        }
+    }
+}
+
+/// In which order contacts that touch take part in an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ImpactOrder {
+    /// All at one instant.
+    #[default]
+    Together,
+    /// Those that close first, then those that these make close, and so on.
+    InSequence,
 }
 
 /// Initial state at t = 0.
@@ -174,6 +218,7 @@ impl Problem {
             outputs: Vec::new(),
             accuracy: Accuracy::default(),
             method: Method::default(),
+            collisions: Collisions::default(),
             record: Record {
                 every: Some(f64::INFINITY),
                 columns: Recorded {

@@ -36,6 +36,8 @@ pub struct Contact {
     pub dropped: Option<usize>,
     /// Of each contact, the one that is 1 where the friction of that contact is part of its own.
     pub joined: Box<[Option<usize>]>,
+    /// The coordinates whose rates after its impacts the model states; empty where the general law holds.
+    pub law: Box<[usize]>,
 }
 
 /// One equation of a constraint.
@@ -52,7 +54,7 @@ impl Contacts {
     pub const DECISIONS: usize = 5;
 
     /// Numbers that the function of places gives for each contact.
-    pub const PLACES: usize = 9;
+    pub const PLACES: usize = 10;
 
     /// The same for each constraint.
     pub const HELD: usize = 4;

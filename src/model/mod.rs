@@ -383,6 +383,12 @@ pub struct Requirement {
 }
 
 impl Model {
+    /// Whether contacts or constraints are held by multipliers, under some choices at least.
+    pub fn has_multipliers(&self) -> bool {
+        let mut modes = self.variants.iter().flat_map(|v| &v.modes);
+        modes.any(|mode| mode.contacts.is_some())
+    }
+
     /// Whether it was loaded from a library, not linked into the program.
     pub fn is_loaded(&self) -> bool {
         self.library.is_some()

@@ -2,6 +2,7 @@
 
 mod bounded;
 mod buffer;
+mod complementarity;
 mod few;
 mod lanes;
 mod linear;
@@ -11,6 +12,7 @@ mod side;
 mod size;
 
 pub use bounded::Bounded;
+pub(crate) use complementarity::{Unsolved, solve_complementarity};
 pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{LaneMask, Lanes};
 pub(crate) use linear::{Lu, determinant_sign, solve_for};

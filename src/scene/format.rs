@@ -6,7 +6,7 @@ use super::limits;
 use super::outputs;
 use super::record;
 use super::shape::{Key, Object, Quantity, Shape};
-use crate::hybrid::Method;
+use crate::hybrid::{ImpactLaw, ImpactOrder, Method};
 use crate::integrate::{Const, Tolerances};
 use crate::model::{Bounds, Coordinate, Input, Limit, Model, Variant};
 
@@ -19,6 +19,18 @@ pub(crate) const METHODS: [(&str, Method); 3] = [
     ("auto", Method::Auto),
     ("radau", Method::Radau),
     ("taylor", Method::Taylor),
+];
+
+/// The laws of impact by name.
+pub(crate) const LAWS: [(&str, ImpactLaw); 2] = [
+    ("newton", ImpactLaw::Newton),
+    ("poisson", ImpactLaw::Poisson),
+];
+
+/// The orders of contacts in an impact by name.
+pub(crate) const ORDERS: [(&str, ImpactOrder); 2] = [
+    ("together", ImpactOrder::Together),
+    ("sequence", ImpactOrder::InSequence),
 ];
 
 /// What a run does at a limit state.
@@ -77,14 +89,52 @@ pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> 
              that are not stiff; `auto` starts with `taylor` and goes over to `radau` where that is faster",
             Shape::Choice("method", METHODS.map(|(name, _)| name).to_vec()),
         ),
-        Key::new("record", "what is written", record()),
     ]);
+    if model.is_none_or(Model::has_multipliers) {
+        keys.push(Key::new(
+            "impacts",
+            "how impacts of contacts are decided, where these are held by multipliers",
+            impacts(),
+        ));
+    }
+    keys.push(Key::new("record", "what is written", record()));
     let object = Object::new("key", keys);
     if model.is_some() {
         object
     } else {
         object.others(Shape::Text)
     }
+}
+
+fn impacts() -> Object {
+    let laws = LAWS.map(|(name, _)| name).to_vec();
+    let orders = ORDERS.map(|(name, _)| name).to_vec();
+    Object::new(
+        "key of impacts",
+        vec![
+            Key::new(
+                "law",
+                "`newton`: the rate of a gap after is −e times that before; `poisson`: the impulse of expansion is at least e \
+                 times that of compression",
+                Shape::Choice("law", laws),
+            )
+            .default("newton"),
+            Key::new(
+                "order",
+                "`together`: all contacts that touch take part at one instant; `sequence`: those that close first, then those \
+                 that these make close, and so on",
+                Shape::Choice("order", orders),
+            )
+            .default("together"),
+            Key::new(
+                "without_collision",
+                "whether a state without a motion (Painlevé's paradox) goes on by an impact without collision, where there is \
+                 one and no other",
+                Shape::Flag,
+            )
+            .default(false),
+        ],
+    )
 }
 
 fn parameters(model: Option<&Model>) -> Object {

@@ -12,7 +12,7 @@ use super::tree::{Node, Value};
 use super::wording::listing;
 use super::{Scene, SceneSource, format, inputs, limits, outputs, state};
 use crate::hybrid::{
-    Accuracy, End, Exceeds, Limits, Method, Problem, Record, check_limits_of_parameters,
+    Accuracy, Collisions, End, Exceeds, Limits, Method, Problem, Record, check_limits_of_parameters,
 };
 use crate::model::{Model, Models, Variant};
 use crate::record::Recorded;
@@ -78,6 +78,7 @@ pub(super) fn scene_of(
         outputs: Vec::new(),
         accuracy: Accuracy::default(),
         method: method(&checked),
+        collisions: collisions(&checked),
         record: record(&checked),
     };
     set_accuracy(&mut problem, &checked);
@@ -317,6 +318,24 @@ fn record(scene: &Checked) -> Record {
         ledger: flag("energies"),
         event_states: true,
         extremes: true,
+    }
+}
+
+fn collisions(scene: &Checked) -> Collisions {
+    let Some(impacts) = scene.get("impacts") else {
+        return Collisions::default();
+    };
+    let law = impacts.get("law").map_or("newton", |law| law.text());
+    let order = impacts.get("order").map_or("together", |o| o.text());
+    let law = format::LAWS.iter().find(|(known, _)| *known == law);
+    let order = format::ORDERS.iter().find(|(known, _)| *known == order);
+    let (Some((_, law)), Some((_, order))) = (law, order) else {
+        unreachable!("checked to be one of the names")
+    };
+    Collisions {
+        law: *law,
+        order: *order,
+        without_collision: (impacts.get("without_collision")).is_some_and(|f| f.flag()),
     }
 }
 

@@ -1,17 +1,17 @@
 //! From the fall of a contact's guard to the set of contact states that follows.
 
-use super::geometry::{Geometry, Line, multiplier};
-use super::hold::{Places, held_lines, hold_lines};
-use super::impact::Impact;
+use super::geometry::{Geometry, Line, multiplier, write_states};
+use super::hold::{Places, held_lines, hold, hold_lines};
+use super::impact::{Impact, Impacted};
 use super::{State, Tangent};
 use crate::hybrid::accumulation::Signature;
 use crate::hybrid::advance::MadeBy;
-use crate::hybrid::failure::Stoppable;
+use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::{AtZero, Simulation};
 use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::Contacts;
 use crate::model::name::intern;
-use crate::numerics::{Size, Vector};
+use crate::numerics::{Bounded, ORDERS, Size, Vector};
 
 /// Guards of a contact.
 pub(super) const GUARDS: usize = 3;
@@ -25,6 +25,22 @@ pub(super) struct Standing<F: Size> {
     pub touching: Vec<Option<Tangent>>,
     /// Of each contact, whether it leaves its gap with a rate.
     pub leaves: Vec<bool>,
+}
+
+impl<F: Size> Standing<F> {
+    /// Takes over what an impact of the contacts that touch does.
+    fn take(&mut self, contacts: &Contacts, touches: &[bool], impact: Impacted) {
+        for (&i, change) in self.geometry.own.iter().zip(&impact.change) {
+            self.v[i] += change;
+        }
+        for &(line, impulse) in &impact.impulses {
+            self.v[multiplier(contacts, line)] += impulse;
+        }
+        self.leaves = (touches.iter().zip(&impact.touching))
+            .map(|(touches, after)| *touches && after.is_none())
+            .collect();
+        self.touching = impact.touching;
+    }
 }
 
 impl<'p> Simulation<'p> {
@@ -52,15 +68,32 @@ impl<'p> Simulation<'p> {
                 self.standing(kernel, contacts, (stops, &before))
             }
         };
-        if closes
-            && self.is_unresolved(kernel, contacts, k, &standing)
-            && self.rest_unresolved(kernel, contacts)?
-        {
+        let unresolved = closes && self.is_unresolved(kernel, contacts, k, &standing);
+        if unresolved && self.rest_unresolved(kernel, contacts)? {
             return Ok(());
         }
-        let strikes = closes && self.strike(kernel, contacts, (k, &before), &mut standing)?;
-        let after = self.settle_contacts(kernel, contacts, &mut standing)?;
+        if closes && self.accumulation.is_unresolved(unresolved) {
+            return Err(Box::new(Reason::Chattering {
+                transitions: contacts.contacts[k].name.to_owned() + " strikes",
+                missing: "its hops are lower than the rounding of its gap, and their durations do not shrink like a geometric \
+                          series, so that no limit is known"
+                    .into(),
+            }));
+        }
+        let mut strikes = match closes {
+            true => self.strike(kernel, contacts, (k, &before), &mut standing)?,
+            false => false,
+        };
+        let after = match self.settle_contacts(kernel, contacts, &mut standing) {
+            Err(reason) if matches!(*reason, Reason::NoMotion { .. }) => {
+                self.jam(kernel, contacts, &mut standing, reason)?;
+                strikes = true;
+                self.settle_contacts(kernel, contacts, &mut standing)?
+            }
+            settled => settled?,
+        };
         let name = verb(contacts, (k, strikes), &before, &after);
+        self.hold_before(kernel, contacts)?;
         self.doubts.happened(&self.mode().guards[guard]);
         if self.problem.end.after.is_some_and(|(of, _)| of == name) {
             self.counted += 1;
@@ -74,11 +107,28 @@ impl<'p> Simulation<'p> {
         };
         self.accumulation
             .push(signature.key(), self.here.now, &self.next);
+        self.accumulation.predict();
         self.look_for_accumulation()
     }
 
+    /// Brings the state before an event back to what the contacts held there: the end of a step that an event cuts is not.
+    fn hold_before<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &Contacts,
+    ) -> Stoppable<()> {
+        let free = &self.mode().free;
+        let [mut q, mut v, a] = self.here.free(kernel.size(), free);
+        hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
+        self.here.set_free(free, [&q, &v, &a]);
+        self.set_context();
+        self.set_accelerations(kernel)
+    }
+
     /// Whether the hop that ends at a contact was lower than the rounding of its gap, so that its end is not known by its gap.
-    /// A hop of the duration T that ends with the rate u is about |u| T / 4 high. The series of the explicit method shows all.
+    /// A hop of the duration T that ends with the rate u is about |u| T / 4 high. The series of the explicit method shows all that
+    /// begins with a bounce of the contact itself; one without restitution begins at an impact of another, where what is held
+    /// moves its gap by a rounding.
     fn is_unresolved<F: Size>(
         &self,
         kernel: &ModeKernel<F>,
@@ -91,10 +141,21 @@ impl<'p> Simulation<'p> {
         };
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
-        let (_, rounding) = places.place(Line::Normal(k));
-        let (rate, _) = places.rate(Line::Normal(k));
+        let line = Line::Normal(k);
+        let (_, rounding) = places.place(line);
+        // What a step's polynomials make of it.
+        let geometry = &standing.geometry;
+        let of_steps: f64 = (geometry.along(line).iter().zip(&geometry.own))
+            .map(|(along, &i)| {
+                along.abs() * Bounded::of_polynomial(standing.q[i], ORDERS, 0.0).error
+            })
+            .sum();
+        let (rate, _) = places.rate(line);
         let height = 0.25 * rate.abs() * self.here.now.since(last);
-        self.made_by != MadeBy::Taylor && height <= rounding
+        match self.made_by {
+            MadeBy::Taylor => places.restitution(k) == 0.0 && height <= rounding,
+            _ => height <= rounding + of_steps,
+        }
     }
 
     /// The contacts as they stand where none closes; `stops`: one whose slip rate has come to zero, and with it that of all
@@ -180,44 +241,111 @@ impl<'p> Simulation<'p> {
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
         let mut touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
-        let mut closes = vec![false; touches.len()];
+        let mut rests = touches.clone();
+        let mut closes = false;
+        // Of the initial state it is not known whether what opens has left its gap.
+        let is_given = self.here.j == 0;
         for j in 0..touches.len() {
             if !touches[j] || before[j] != State::Open {
                 continue;
             }
             let (rate, rounding) = places.rate(Line::Normal(j));
-            closes[j] = rate < -rounding;
+            closes |= rate < -rounding;
+            rests[j] = rate.abs() <= rounding;
             // One that opens, and is not the one whose gap has fallen.
-            touches[j] = j == k || rate <= rounding;
+            standing.leaves[j] = j != k && rate > rounding;
+            touches[j] = is_given || !standing.leaves[j];
             let (slip, rounding) = places.rate(Line::Tangent(j));
-            standing.touching[j] = touches[j].then_some(match contacts.contacts[j].tangent {
-                None => Tangent::None,
-                Some(_) if slip.abs() <= rounding => Tangent::Still,
-                Some(_) => Tangent::Slips(slip.signum()),
-            });
+            standing.touching[j] =
+                (!standing.leaves[j]).then_some(match contacts.contacts[j].tangent {
+                    None => Tangent::None,
+                    Some(_) if slip.abs() <= rounding => Tangent::Still,
+                    Some(_) => Tangent::Slips(slip.signum()),
+                });
         }
-        if !closes.contains(&true) {
+        if !closes {
             return Ok(false);
+        }
+        if !contacts.contacts[k].law.is_empty() {
+            for (i, rate) in places.stated(contacts, k) {
+                standing.v[i] = rate;
+            }
+            self.stand_after_own_law(kernel, contacts, (k, &touches), standing)?;
+            return Ok(true);
         }
         let impact = Impact {
             contacts,
             geometry: &standing.geometry,
             places: &places,
+            collisions: self.problem.collisions,
             touches: &touches,
-            closes: &closes,
+            rests: &rests,
         };
         let outcome = impact.outcome().map_err(Box::new)?;
-        for (&i, change) in standing.geometry.own.iter().zip(&outcome.change) {
-            standing.v[i] += change;
-        }
-        for &(line, impulse) in &outcome.impulses {
-            standing.v[multiplier(contacts, line)] += impulse;
-        }
-        standing.leaves = (0..touches.len())
-            .map(|j| touches[j] && outcome.touching[j].is_none())
-            .collect();
-        standing.touching = outcome.touching;
+        standing.take(contacts, &touches, outcome);
         Ok(true)
+    }
+
+    /// How contacts stand where the model's own law has said the rates after an impact of one of them.
+    fn stand_after_own_law<F: Size>(
+        &self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        (k, touches): (usize, &[bool]),
+        standing: &mut Standing<F>,
+    ) -> Stoppable<()> {
+        let at = [&standing.q, &standing.v];
+        let places = Places::new(kernel, &self.context, contacts, at);
+        for j in (0..touches.len()).filter(|&j| touches[j]) {
+            let (rate, rounding) = match contacts.contacts[j].normal {
+                Some(_) => places.rate(Line::Normal(j)),
+                None => (0.0, 0.0),
+            };
+            if rate < -rounding {
+                let [contact, closes] = [k, j].map(|i| contacts.contacts[i].name);
+                return Err(Box::new(Reason::OwnImpact {
+                    contact,
+                    closes,
+                    rate,
+                }));
+            }
+            standing.leaves[j] = rate > rounding;
+            let (slip, rounding) = places.rate(Line::Tangent(j));
+            let tangent = match contacts.contacts[j].tangent {
+                None => Tangent::None,
+                Some(_) if slip.abs() <= rounding => Tangent::Still,
+                Some(_) => Tangent::Slips(slip.signum()),
+            };
+            standing.touching[j] = (!standing.leaves[j]).then_some(tangent);
+        }
+        Ok(())
+    }
+
+    /// Where no motion goes on: an impact without collision, if the scene asks for it and there is one; else the reason.
+    fn jam<F: Size>(
+        &self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        standing: &mut Standing<F>,
+        reason: Box<Reason>,
+    ) -> Stoppable<()> {
+        let touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
+        let impact = Impact {
+            contacts,
+            geometry: &standing.geometry,
+            places: &Places::new(kernel, &self.context, contacts, [&standing.q, &standing.v]),
+            collisions: self.problem.collisions,
+            touches: &touches,
+            rests: &touches,
+        };
+        let asked = self.problem.collisions.without_collision;
+        match asked.then(|| impact.without_collision()).flatten() {
+            Some(impacted) => {
+                standing.take(contacts, &touches, impacted);
+                Ok(())
+            }
+            None => Err(reason),
+        }
     }
 
     /// Decides which set follows from how the contacts stand, and makes it and the state `next`.
@@ -255,8 +383,9 @@ impl<'p> Simulation<'p> {
         let n = self.here.q.len();
         self.next[..n].copy_from_slice(q.as_slice());
         self.next[n..2 * n].copy_from_slice(v.as_slice());
+        let places = Places::new(kernel, &self.context, contacts, [q, v]);
         let decision = self
-            .decide((contacts, geometry), touching)
+            .decide((contacts, geometry), &places, touching)
             .map_err(Box::new)?;
         self.next[2 * n..].copy_from_slice(&decision.discrete);
         self.at_zero = (touching.iter().zip(&decision.states).enumerate())
@@ -270,6 +399,33 @@ impl<'p> Simulation<'p> {
             .map(|(guard, vanishing)| AtZero { guard, vanishing })
             .collect();
         Ok(decision.states)
+    }
+}
+
+impl Simulation<'_> {
+    /// Makes `next` the state in which contacts stand, all of those with a gap open.
+    pub(super) fn leave_open<F: Size>(&mut self, contacts: &Contacts, standing: &Standing<F>) {
+        let n = self.here.q.len();
+        self.next[..n].copy_from_slice(standing.q.as_slice());
+        self.next[n..2 * n].copy_from_slice(standing.v.as_slice());
+        let states: Vec<State> = (contacts.contacts.iter().zip(&standing.touching))
+            .map(|(contact, touching)| match (contact.normal, touching) {
+                (None, Some(Tangent::Slips(direction))) => State::Slides(*direction),
+                (None, _) => State::Sticks,
+                (Some(_), _) => State::Open,
+            })
+            .collect();
+        let discrete = &mut self.next[2 * n..];
+        discrete.copy_from_slice(self.context.discrete());
+        write_states(contacts, &states, discrete);
+        let touches = (0..states.len())
+            .filter(|&k| states[k] == State::Open && standing.touching[k].is_some());
+        self.at_zero = touches
+            .map(|k| AtZero {
+                guard: GUARDS * k,
+                vanishing: 2,
+            })
+            .collect();
     }
 }
 

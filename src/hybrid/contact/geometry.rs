@@ -87,6 +87,11 @@ impl Geometry {
         }
     }
 
+    /// All lines.
+    pub fn all(&self) -> impl Iterator<Item = Line> + '_ {
+        self.lines.iter().map(|(line, _)| *line)
+    }
+
     fn place(&self, line: Line) -> usize {
         let found = self.lines.iter().position(|(known, _)| *known == line);
         found.expect("every multiplier has its line")
@@ -126,6 +131,25 @@ impl Geometry {
             dot(&rest, &rest) > (DEPENDENT * DEPENDENT) * length
         };
         !differs(product.signum())
+    }
+
+    /// How what lines are about changes per force along each of them, row by row, while others are held.
+    pub fn compliance(&self, lines: &[Line], held: &[Line]) -> Vec<f64> {
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for &line in held {
+            basis.extend(beside(&self.scaled[self.place(line)], &basis));
+        }
+        let left = |line: &Line| {
+            let mut rest = self.scaled[self.place(*line)].clone();
+            for unit in basis.iter().chain(&basis) {
+                let part = dot(&rest, unit);
+                rest.iter_mut().zip(unit).for_each(|(x, u)| *x -= part * u);
+            }
+            rest
+        };
+        let left: Vec<Vec<f64>> = lines.iter().map(left).collect();
+        let row = |a: &Vec<f64>| left.iter().map(|b| dot(a, b)).collect::<Vec<f64>>();
+        left.iter().flat_map(row).collect()
     }
 
     /// The least change of coordinates, weighed by the masses, that changes what some independent lines are about by given

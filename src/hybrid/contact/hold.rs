@@ -41,7 +41,7 @@ impl Places {
     /// What a line is about: a gap or a constraint, and its rounding.
     pub fn place(&self, line: Line) -> (f64, f64) {
         match line {
-            Line::Normal(k) => (self.of(k, 0), self.of(k, 6) * ROUNDOFF),
+            Line::Normal(k) => (self.of(k, 0), self.of(k, 7) * ROUNDOFF),
             Line::Constraint(c) => (self.held(c, 0), self.held(c, 2) * ROUNDOFF),
             Line::Tangent(_) => (0.0, 0.0),
         }
@@ -50,10 +50,29 @@ impl Places {
     /// Its rate, and the rounding.
     pub fn rate(&self, line: Line) -> (f64, f64) {
         match line {
-            Line::Normal(k) => (self.of(k, 1), self.of(k, 7) * ROUNDOFF),
-            Line::Tangent(k) => (self.of(k, 2), self.of(k, 8) * ROUNDOFF),
+            Line::Normal(k) => (self.of(k, 1), self.of(k, 8) * ROUNDOFF),
+            Line::Tangent(k) => (self.of(k, 2), self.of(k, 9) * ROUNDOFF),
             Line::Constraint(c) => (self.held(c, 1), self.held(c, 3) * ROUNDOFF),
         }
+    }
+
+    /// The rates after an impact of a contact that the model states, by their coordinates.
+    pub fn stated<'c>(
+        &'c self,
+        contacts: &'c Contacts,
+        k: usize,
+    ) -> impl Iterator<Item = (usize, f64)> + 'c {
+        let before = contacts.contacts[..k].iter().map(|c| c.law.len());
+        let begin = self.contacts * Contacts::PLACES
+            + contacts.constraints.len() * Contacts::HELD
+            + before.sum::<usize>();
+        let law = contacts.contacts[k].law.iter().copied();
+        law.zip(self.values[begin..].iter().copied())
+    }
+
+    /// Static friction of a contact.
+    pub fn static_friction(&self, k: usize) -> f64 {
+        self.of(k, 3)
     }
 
     /// Kinetic friction of a contact.
@@ -64,6 +83,11 @@ impl Places {
     /// Restitution of a contact.
     pub fn restitution(&self, k: usize) -> f64 {
         self.of(k, 5)
+    }
+
+    /// Restitution of its slip.
+    pub fn tangential_restitution(&self, k: usize) -> f64 {
+        self.of(k, 6)
     }
 }
 

@@ -1,15 +1,19 @@
-//! Which sets of contact states may follow: all of those that touch are tried, each on the motion that it leads to.
+//! Which sets of contact states may follow: all of those that touch are tried (of many those that a pivoting method finds), each
+//! on the motion that it leads to.
 //!
 //! A set may go on where what pushes does not pull, what opens does not close, what sticks does not slip and what begins to
 //! slip does so in its direction: on the first derivative that rounding does not hide (`departure.rs`). Motions that are equal
 //! count once, whatever the names of their sets.
 
 use super::geometry::{Geometry, Line, write_states};
+use super::hold::Places;
+use super::many::{Answer, Asked, Friction, answers, to_try};
 use super::{State, Tangent};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::simulation::Simulation;
 use crate::jets::{ORDERS, Point};
-use crate::model::{Contacts, Mode, Row};
+use crate::model::{Contact, Contacts, Mode, Row};
+use crate::numerics::Unsolved;
 
 /// Which of the results of the tape of decisions.
 const PUSH: usize = 0;
@@ -44,11 +48,15 @@ impl<'p> Simulation<'p> {
     pub(super) fn decide(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
+        places: &Places,
         touching: &[Option<Tangent>],
     ) -> Result<Decision, Reason> {
         self.expand_signals();
         let mut admitted: Vec<Admitted> = Vec::new();
-        for states in combinations(touching) {
+        let sets = to_try(choices(contacts, touching), || {
+            self.answers((contacts, geometry), places, touching)
+        });
+        for states in sets {
             let Some(candidate) = self.candidate((contacts, geometry), states) else {
                 continue;
             };
@@ -57,6 +65,20 @@ impl<'p> Simulation<'p> {
             };
             admitted.push(Admitted { candidate, motion });
         }
+        // Between kinetic and static friction both are admissible: what sticks goes on sticking.
+        let yields = |a: &Admitted, b: &Admitted| {
+            let pairs = || a.candidate.states.iter().zip(&b.candidate.states);
+            let sticks = |(k, (a, b)): (usize, (&State, &State))| {
+                let could = matches!((a, b), (State::Slides(_), State::Sticks));
+                a == b || could && places.static_friction(k) > places.kinetic(k)
+            };
+            pairs().any(|(a, b)| a != b) && pairs().enumerate().all(sticks)
+        };
+        let stays: Vec<bool> = (admitted.iter())
+            .map(|a| !admitted.iter().any(|b| yields(a, b)))
+            .collect();
+        let mut stays = stays.into_iter();
+        admitted.retain(|_| stays.next() == Some(true));
         // Of equal motions that which holds the most.
         admitted.sort_by_key(|a| std::cmp::Reverse(a.candidate.holds()));
         let names = |states: &[State]| {
@@ -83,6 +105,117 @@ impl<'p> Simulation<'p> {
         Ok(Decision { states, discrete })
     }
 
+    /// What a pivoting method says that contacts do, on their accelerations.
+    fn answers(
+        &mut self,
+        (contacts, geometry): (&'p Contacts, &Geometry),
+        places: &Places,
+        touching: &[Option<Tangent>],
+    ) -> Result<Vec<(Option<State>, bool)>, Unsolved> {
+        let without_forces: Vec<State> = (contacts.contacts.iter().zip(touching))
+            .map(|(contact, tangent)| match (contact.normal, tangent) {
+                (Some(_), _) => State::Open,
+                (None, Some(Tangent::Slips(direction))) => State::Slides(*direction),
+                (None, _) => State::Slides(1.0),
+            })
+            .collect();
+        let mut discrete = self.context.discrete().to_vec();
+        write_states(contacts, &without_forces, &mut discrete);
+        let mode = self.mode();
+        let n = self.here.q.len();
+        let (q, rest) = self.next.split_at(n);
+        let (v, discrete) = (&rest[..n], &*discrete);
+        let at = Point { q, v, discrete };
+        let tape = &contacts.decisions;
+        self.expansion.begin(mode, at, None);
+        self.expansion.expand(mode, tape, 0);
+        let value = |k: usize, what: usize| {
+            self.expansion.result(tape, k * Contacts::DECISIONS + what)[0].value
+        };
+        // Friction without a gap acts there already, as what slides forwards; it is taken out again.
+        let bare = |k: usize| contacts.contacts[k].normal.is_none();
+        let frictions: Vec<(Line, f64)> = (0..touching.len())
+            .filter(|&k| bare(k) && touching[k] == Some(Tangent::Still))
+            .map(|k| {
+                let force = 0.5 * (value(k, BACKWARDS) - value(k, FORWARDS));
+                (Line::Tangent(k), force)
+            })
+            .collect();
+        let constraints: Vec<Line> = (0..contacts.constraints.len())
+            .map(Line::Constraint)
+            .collect();
+        let lines: Vec<Line> = geometry.all().collect();
+        let compliance = geometry.compliance(&lines, &constraints);
+        let taken_out = |of: Line| -> f64 {
+            let place = |line: Line| lines.iter().position(|known| *known == line);
+            let at = |of: Line, line: Line| Some(place(of)? * lines.len() + place(line)?);
+            let parts = frictions.iter();
+            parts
+                .filter_map(|&(line, force)| Some(compliance[at(of, line)?] * force))
+                .sum()
+        };
+        // Static friction, until one is seen to slip.
+        let mut slips = vec![false; touching.len()];
+        loop {
+            let mut asked = Vec::new();
+            for (k, contact) in contacts.contacts.iter().enumerate() {
+                let Some(tangent) = touching[k] else { continue };
+                let coefficient = match slips[k] {
+                    true => places.kinetic(k),
+                    false => places.static_friction(k),
+                };
+                let friction = match tangent {
+                    Tangent::None => Friction::None,
+                    Tangent::Slips(direction) => Friction::Slips {
+                        direction,
+                        coefficient: places.kinetic(k),
+                    },
+                    Tangent::Still => {
+                        let limit = 0.5 * (value(k, FORWARDS) + value(k, BACKWARDS));
+                        let part = match coefficient == places.static_friction(k) {
+                            true => 1.0,
+                            false => coefficient / places.static_friction(k),
+                        };
+                        Friction::Still {
+                            slip: value(k, SLIP) - taken_out(Line::Tangent(k)),
+                            coefficient,
+                            bound: if bare(k) { limit * part } else { 0.0 },
+                        }
+                    }
+                };
+                if bare(k) && tangent != Tangent::Still {
+                    continue;
+                }
+                let normal = value(k, GAP) - taken_out(Line::Normal(k));
+                asked.push(Asked {
+                    contact: k,
+                    normal: contact.normal.map(|_| [normal, 0.0]),
+                    friction,
+                });
+            }
+            let answers = answers(contacts, geometry, &asked)?;
+            let mut goes_on = false;
+            let mut found: Vec<(Option<State>, bool)> = vec![(None, false); touching.len()];
+            for (asked, (answer, open)) in asked.iter().zip(answers) {
+                let k = asked.contact;
+                let state = match (answer, touching[k]) {
+                    (Answer::Opens, _) => State::Open,
+                    (_, Some(Tangent::Slips(direction))) => State::Slides(direction),
+                    (_, Some(Tangent::None)) => State::Closed,
+                    (Answer::Slips(direction), _) => State::Slides(direction),
+                    (Answer::Holds, _) => State::Sticks,
+                };
+                let starts = matches!(answer, Answer::Slips(_));
+                goes_on |= starts && !slips[k] && places.kinetic(k) != places.static_friction(k);
+                slips[k] |= starts;
+                found[k] = (Some(state), open);
+            }
+            if !goes_on {
+                return Ok(found);
+            }
+        }
+    }
+
     /// The discrete states of a set; `None` if its lines depend on each other in a way that leaves its forces undetermined.
     fn candidate(
         &self,
@@ -106,9 +239,12 @@ impl<'p> Simulation<'p> {
                 held.contains(&Line::Tangent(other))
                     && geometry.are_parallel(line, Line::Tangent(other))
             };
-            let holder = (0..k).find(holds)?;
             discrete[contacts.contacts[k].dropped?] = 1.0;
-            discrete[contacts.contacts[holder].joined[k]?] = 1.0;
+            // Its friction is part of that of another one along the same line; beside several lines that hold it together its
+            // own force is not determined, and is none (a disc that rests in a wedge).
+            if let Some(holder) = (0..k).find(holds) {
+                discrete[contacts.contacts[holder].joined[k]?] = 1.0;
+            }
         }
         Some(Candidate { states, discrete })
     }
@@ -218,33 +354,23 @@ fn asked(
     asked
 }
 
-/// All sets of states of contacts that touch, with what their tangents do.
-fn combinations(touching: &[Option<Tangent>]) -> Vec<Vec<State>> {
-    let mut all = vec![Vec::new()];
-    for tangent in touching {
-        let choices: &[State] = match tangent {
-            None => &[State::Open],
-            Some(Tangent::None) => &[State::Closed, State::Open],
-            Some(Tangent::Still) => &[
-                State::Sticks,
-                State::Slides(1.0),
-                State::Slides(-1.0),
-                State::Open,
-            ],
-            Some(Tangent::Slips(1.0)) => &[State::Slides(1.0), State::Open],
-            Some(Tangent::Slips(_)) => &[State::Slides(-1.0), State::Open],
+/// What each contact may do, of those that touch, with what their tangents do.
+fn choices(contacts: &Contacts, touching: &[Option<Tangent>]) -> Vec<Vec<State>> {
+    let of = |(contact, tangent): (&Contact, &Option<Tangent>)| {
+        let mut choices = match tangent {
+            None => return vec![State::Open],
+            Some(Tangent::None) => vec![State::Closed],
+            Some(Tangent::Still) => {
+                vec![State::Sticks, State::Slides(1.0), State::Slides(-1.0)]
+            }
+            Some(Tangent::Slips(direction)) => vec![State::Slides(*direction)],
         };
-        all = (all.iter())
-            .flat_map(|states: &Vec<State>| {
-                choices.iter().map(|&choice| {
-                    let mut states = states.clone();
-                    states.push(choice);
-                    states
-                })
-            })
-            .collect();
-    }
-    all
+        if contact.normal.is_some() {
+            choices.push(State::Open);
+        }
+        choices
+    };
+    contacts.contacts.iter().zip(touching).map(of).collect()
 }
 
 /// Whether two motions are equal, as far as rounding tells.

@@ -33,7 +33,8 @@ impl<'p> Simulation<'p> {
         contacts: &'p Contacts,
     ) -> Stoppable<bool> {
         let relative = self.problem.accuracy.relative;
-        match self.accumulation.extrapolated(relative) {
+        let limit = self.accumulation.extrapolated(relative);
+        match limit.or_else(|| self.accumulation.predicted()) {
             Some(limit) => self.rest_contacts_by(kernel, contacts, limit),
             None => Ok(false),
         }

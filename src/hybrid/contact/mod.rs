@@ -7,7 +7,9 @@
 //! - `geometry`: masses, and the lines along which contacts and constraints push.
 //! - `hold`: positions and rates brought back to where they are held, to rounding.
 //! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
-//! - `impact`: all outcomes of an impact, each tried on its impulses and rates.
+//! - `many`: which of them are tried where these are too many.
+//! - `impact`: what an impact does, under the law of the scene.
+//! - `phase`: all outcomes of one phase of it, each tried on its impulses and rates.
 //! - `event`: from the fall of a guard to the next set.
 //! - `start`: the set that a run starts in.
 //! - `limit`: the set at the limit of an accumulation.
@@ -18,6 +20,8 @@ mod hold;
 mod impact;
 mod judge;
 mod limit;
+mod many;
+mod phase;
 mod start;
 
 pub(super) use hold::hold;

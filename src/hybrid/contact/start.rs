@@ -104,7 +104,16 @@ impl<'p> Simulation<'p> {
             touching,
             leaves,
         };
-        self.settle_contacts(kernel, contacts, &mut standing)?;
+        match self.settle_contacts(kernel, contacts, &mut standing) {
+            // The first event is the impact: with all that touches open, a gap falls at once.
+            Err(reason)
+                if self.problem.collisions.without_collision
+                    && matches!(*reason, Reason::NoMotion { .. }) =>
+            {
+                self.leave_open(contacts, &standing);
+            }
+            settled => drop(settled?),
+        }
         let n = self.here.q.len();
         self.here.q.copy_from_slice(&self.next[..n]);
         self.here.v.copy_from_slice(&self.next[n..2 * n]);

@@ -22,6 +22,7 @@ impl Reader<'_> {
                 joined: at.get("joined", |at| {
                     at.list_of(count, |at| at.option(|at| at.index(discretes)))
                 })?,
+                law: at.get("law", |at| at.list(|at| at.index(coordinates)))?,
             })
         };
         let constraint = |at: &At| {
