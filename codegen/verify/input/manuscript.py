@@ -14,8 +14,9 @@ from sympy import Rational, sympify
 
 from ..errors import PaperError
 from ..judgements.comparison import compare
+from ..normal.algebra import expression
 from ..normal.subject import Subject
-from ..readings.lagrange import Energies, Mathematics, Motion, sympy_namespace
+from ..readings.lagrange import Energies, Mathematics, Motion, ring_of, sympy_namespace
 from . import transcription, units
 from .latex import Parser
 from .macros import expanded, macros
@@ -52,6 +53,13 @@ class Displayed:
         self.latex, self.number = latex, number
         self.role, self.named = (ROLES[note["role"].lower()], expanded(note["of"].strip(), latex.macros)) if note else (None, "")
         self.tree = None if self.role == "skip" else Parser(latex).equation()
+
+    def reading(self):
+        """The name of the reading that an energy belongs to: what stands behind `in reading`; empty for all of them."""
+        match = re.fullmatch(r"in reading\s+(.+)", self.named)
+        if self.named and not match:
+            raise self.error(f"'{self.named}' says nothing of an energy: write % potential energy, or % potential energy in reading A")
+        return match[1].strip() if match else ""
 
     def error(self, what):
         """An error about the equation: its first character that shows."""
@@ -291,11 +299,13 @@ def _sort(equation, paper, rows, printed):
         return
     latex, number = equation.latex, equation.number
     if role in ("T", "V", "D", "L"):
-        if role in printed:
-            raise equation.error(f"{role} is given twice")
+        reading = equation.reading()
+        if reading in printed.setdefault(role, {}):
+            raise equation.error(f"{role} is given twice" + (f" in reading {reading}" if reading else ": where the paper may mean one or the other, "
+                                 "say which in a comment, such as % potential energy in reading A"))
         if equation.shape() != ["sum", "=", "sum"]:
             raise equation.error("an energy is written as a symbol = terms")
-        printed[role] = equation.right(paper)
+        printed[role][reading] = equation.right(paper)
         return
     named = equation.named or _named(equation, role, rows)
     row = rows.get(plain_latex(named))
@@ -404,25 +414,40 @@ def _check_definitions(paper, printed):
 
 
 def _energies(paper, printed, folder):
-    """The energies, with the sign of the constraint forces with which more terms agree."""
-    if not any(name in printed for name in ("T", "V", "D", "L")):
+    """The energies of each reading, in the order in which the readings are named."""
+    names = list(dict.fromkeys(reading for role in ("T", "V", "D", "L") for reading in printed.get(role, {}) if reading))
+    return [e for name in names or [""] for e in _reading(paper, printed, folder, name)]
+
+
+def _reading(paper, printed, folder, reading):
+    """The energies of one reading, with the sign of the constraint forces with which more terms agree; a list of one, or none."""
+    given = {role: printed[role].get(reading) or printed[role].get("") for role in ("T", "V", "D", "L") if role in printed}
+    given = {role: function for role, function in given.items() if function}
+    if not given:
         return []
-    if "L" in printed and ("T" in printed or "V" in printed):
-        raise PaperError(f"{folder / TEX}: L is given beside T or V: give one of them")
-    if "L" not in printed and ("T" not in printed or "V" not in printed):
-        lost = "T" if "T" not in printed else "V"
-        raise PaperError(f"{folder / TEX}: {lost} is not given; if there is none, write {lost} = 0")
+    of = f", reading {reading}" if reading else ""
+    if "L" in given and ("T" in given or "V" in given):
+        raise PaperError(f"{folder / TEX}{of}: L is given beside T or V: give one of them")
+    if "L" not in given and ("T" not in given or "V" not in given):
+        lost = "T" if "T" not in given else "V"
+        raise PaperError(f"{folder / TEX}{of}: {lost} is not given; if there is none, write {lost} = 0")
     zero = lambda s, m: 0
-    kinetic, potential = printed.get("T") or printed["L"], printed.get("V", zero)
-    constraints = [(name, _left_minus_right(equation, paper)) for name, equation in printed.get("constraints", ())]
+    kinetic, potential = given.get("T") or given["L"], given.get("V", zero)
+    constraints = [(name, _left_minus_right(equation, paper), _slopes(equation, paper)) for name, equation in printed.get("constraints", ())]
 
     def made(sign):
         def held(s, m):
-            return potential(s, m) - sign * sum(getattr(s, name) * form(s, m) for name, form in constraints)
+            return potential(s, m) - sign * sum(getattr(s, name) * form(s, m) for name, form, slopes in constraints if not slopes)
 
+        def force(coordinate):
+            own = printed.get("forces", {}).get(coordinate, zero)
+            return lambda s, m: own(s, m) + sign * sum(getattr(s, name) * slopes[coordinate] for name, _, slopes in constraints if coordinate in slopes)
+
+        forces = dict(printed.get("forces", {}))
+        forces.update({n: force(n) for _, _, slopes in constraints for n in slopes})
         words = f", constraint forces {'+' if sign > 0 else '-'} multiplier times slope of the constraint" if constraints else ""
-        return Energies("printed energies" + words, f"the energies of {TEX}", kinetic, held if constraints else potential,
-                        printed.get("D"), printed.get("forces", {}))
+        return Energies((reading or "printed energies") + words, f"the energies of {TEX}", kinetic, held if constraints else potential,
+                        given.get("D"), forces)
 
     if not constraints:
         return [made(1)]
@@ -433,6 +458,22 @@ def _energies(paper, printed, folder):
         return sum(len(c.differ) + len(c.absent) for c in found if c)
 
     return [min((made(sign) for sign in (1, -1)), key=disagreeing)]
+
+
+def _slopes(equation, paper):
+    """The factors of the rates in a constraint on rates (rolling), by coordinate; those of the accelerations, where its rate is printed;
+    empty for a constraint on coordinates."""
+    s, m, ring = sympy_namespace(paper), Mathematics(), ring_of(paper)
+    form = ring.read(_left_minus_right(equation, paper)(s, m))
+    names = paper.positions()
+    for d in ("dd", "d"):
+        slopes = {n: form.diff(d + n) for n in names}
+        if not any(slopes.values()):
+            continue
+        if any({d + n for n in names} & slope.names() for slope in slopes.values()):
+            raise equation.error("a constraint is linear in what has the most dots")
+        return {n: expression(slope) for n, slope in slopes.items() if slope}
+    return {}
 
 
 def _left_minus_right(equation, paper):

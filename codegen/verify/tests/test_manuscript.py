@@ -174,6 +174,43 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} &+ m g l \sin\theta \\ &= 0
             (self.folder / "symbols.csv").write_text(table + rows, encoding="utf-8")
             self.assertEqual(self.judged().findings, [])
 
+    HOOP = r"""\[ T = \frac{1}{2}M\dot{x}^2 + \frac{1}{2}Mr^2 \dot{\theta}^2 \] \[ V = Mg (l - x)\sin \phi \]
+% constraint with \lambda
+\[ CONSTRAINT \]
+% motion of x
+\[ M \ddot{x} - Mg\sin \phi + \lambda = 0 \]
+% motion of \theta
+\[ Mr^2\ddot{\theta} - \lambda r = 0 \]
+"""
+
+    def test_constraints_on_coordinates_on_rates_and_on_accelerations(self):
+        # a hoop that rolls down an incline, as Goldstein (1950) has it
+        table = ("symbol, kind, unit, meaning\nx, coordinate, m, way\n\\theta, coordinate, rad, turn\nM, parameter, kg, mass\nr, parameter, m, radius\n"
+                 "g, parameter, m/s^2, gravity\nl, parameter, m, length\n\\phi, parameter, rad, slope\n\\lambda, multiplier, N, friction\n")
+        (self.folder / "symbols.csv").write_text(table, encoding="utf-8")
+        for written in (r"x - r\theta = 0", r"\dot x = r \dot\theta", r"r\ddot{\theta} = \ddot{x}"):
+            (self.folder / "paper.tex").write_text(self.HOOP.replace("CONSTRAINT", written), encoding="utf-8")
+            self.assertEqual(self.judged().findings, [], written)
+        self.change((r"- \lambda r = 0", r"+ \lambda r = 0"))
+        self.assertEqual([(f.slip, f.proved) for f in self.judged().findings], [("sign", True)])
+        self.change((r"r\ddot{\theta} = \ddot{x}", r"\dot{x}^2 = r^2 \dot\theta^2"))
+        self.refused(LatexError, "linear in what has the most dots")
+
+    def test_readings_of_a_paper_are_ranked(self):
+        # is theta measured from below or from above? The reading is that with which more terms agree
+        self.change(("\\begin{equation}\nV", "% potential energy in reading from above\n\\[ V = m g l \\cos\\theta \\]\n"
+                                         "% potential energy in reading from below\n\\begin{equation}\nV"))
+        result = self.judged()
+        self.assertEqual(([r.name for r in result.readings], result.findings), (["from below", "from above"], []))
+        self.change((r"m g l \sin\theta = 0", r"m g l \cos\theta = 0"))
+        (finding,) = self.judged().findings
+        # wrong in both; of two that are as good the first that is named is judged with, and the other beside it
+        self.assertEqual((finding.slip, finding.readings, list(finding.alternatives)), ("sign + function", ["from above", "from below"], ["from below"]))
+        self.change(("in reading from above", "from above"))
+        self.refused(LatexError, "'from above' says nothing of an energy")
+        self.change(("% potential energy from above\n", ""), ("% potential energy in reading from below\n", ""))
+        self.refused(LatexError, "V is given twice: where the paper may mean one or the other")
+
     def test_a_definition_is_put_in(self):
         self.change((r"\left( \dot{x}^2 + 2 l \cos\theta \, \dot{x} \dot{\theta} + l^2 \dot{\theta}^2 \right)", r"\left( v_x^2 + v_y^2 \right)"),
                     ("and the force", "\\[ v_x = \\dot{x} + l \\cos\\theta \\dot\\theta \\]\n\\[ v_y = l \\sin\\theta \\dot\\theta \\] and the force"))
