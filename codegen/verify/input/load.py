@@ -34,7 +34,7 @@ class Case:
 def load(folder, name: Optional[str] = None) -> Case:
     """The case in a model folder. The files may import one another as `.paper`."""
     folder = Path(folder)
-    name = name or folder.name
+    name = name or folder.resolve().name
     written = (folder / "paper.py").is_file()
     if not written and not is_manuscript(folder):
         raise PaperError(f"the model '{name}' has no hand-written equations: neither {folder / 'paper.py'} nor {folder / TEX} exists")

@@ -196,6 +196,21 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} &+ m g l \sin\theta \\ &= 0
         self.change((r"r\ddot{\theta} = \ddot{x}", r"\dot{x}^2 = r^2 \dot\theta^2"))
         self.refused(LatexError, "linear in what has the most dots")
 
+    def test_a_spring_pendulum_solved_for_its_accelerations_with_a_macro_and_nothing_said(self):
+        (self.folder / "paper.tex").write_text(r"""\newcommand{\half}{\frac{1}{2}}
+\begin{align}
+\mathcal{L} &= \half m\left(\dot{x}^2+(\ell_0+x)^2\dot\theta^2\right) - \half k x^2 + g m (\ell_0+x)\cos\theta \\
+\ddot x &= (\ell_0 + x)\dot\theta^2 - \frac{k}{m} x + g \cos \theta \\
+\ddot\theta &= -\frac{g}{\ell_0+x}\sin\theta - \frac{2\dot x}{\ell_0+x}\dot\theta
+\end{align}""", encoding="utf-8")
+        (self.folder / "symbols.csv").write_text("symbol, kind, unit, meaning\nx, coordinate, m, stretch\n\\theta, coordinate, rad, angle\nm, parameter, kg, mass\n"
+                                                 "k, parameter, N/m, stiffness\n\\ell_0, parameter, m, length\ng, parameter, m/s^2, gravity\n", encoding="utf-8")
+        self.assertEqual(self.judged().findings, [])
+        self.change((r"\frac{2\dot x}", r"\frac{\dot x}"))
+        self.assertEqual([(f.equation, f.slip, f.proved) for f in self.judged().findings], [("3", "number", True)])
+        (self.folder / "figures").mkdir()
+        self.assertEqual(load(self.folder / "figures" / "..").name, self.folder.name)
+
     def test_readings_of_a_paper_are_ranked(self):
         # is theta measured from below or from above? The reading is that with which more terms agree
         self.change(("\\begin{equation}\nV", "% potential energy in reading from above\n\\[ V = m g l \\cos\\theta \\]\n"
