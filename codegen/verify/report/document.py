@@ -93,7 +93,7 @@ def _judged(report):
     if motion.dissipation:
         blocks.append(Paragraph(["D = ", motion.dissipation, " (Rayleigh's function)"]))
     for name, force in motion.energies.forces.items():
-        blocks.append(Paragraph([f"generalized force on {name}: ", motion.ring.read(force(motion.s, motion.m))]))
+        blocks.append(Paragraph([f"generalized force on {motion.paper.shown(name)}: ", motion.ring.read(force(motion.s, motion.m))]))
     blocks.append(Paragraph(["Lagrange's equations of these are what the printed equations are compared with, term by term."]))
     return blocks
 
@@ -234,7 +234,7 @@ def _symbols(report):
     """The table of symbols."""
     paper = report.case.paper
     undefined = words.undefined_symbols(paper)
-    rows = [[[report.printed.ring.symbol(n)], [Unit(x.unit)], [("NOT DEFINED in the paper: " if n in undefined else "") + x.meaning]]
+    rows = [[[report.printed.ring.symbol(n)], [Unit(x.unit.removesuffix("*s") if x.velocity else x.unit)], [("NOT DEFINED in the paper: " if n in undefined else "") + x.meaning]]
             for n, x in paper.symbols.items()]
     return [Heading("Symbols"), Table(["symbol", "unit", "meaning"], rows, [.12, .16, .72])]
 

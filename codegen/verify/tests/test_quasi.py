@@ -1,6 +1,7 @@
 """Equations of motion in quasi-velocities: a single-track vehicle in body axes, Euler's equations of a rigid body."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -72,7 +73,7 @@ class Vehicle(unittest.TestCase):
         shown = unicodedata.normalize("NFC", text.as_text(result))
         self.assertIn(unicodedata.normalize("NFC", "T = 1/2 I ψ̇² + 1/2 m ẋ² + 1/2 m ẏ²"), shown)
         for page in (shown, html.as_html(result), machine.as_json(result)):
-            self.assertNotIn("integral_of", page)
+            self.assertEqual(re.findall(r".{0,60}integral_of.{0,60}", page), [])
 
     def test_slips_are_found_and_undone(self):
         self.loaded()
