@@ -8,9 +8,9 @@ with CasADi symbols works where SymPy is not installed.
 """
 
 from .input.corrections import Correction, apply, without
+from .input.effects import Effects
 from .input.printed import Paper, group
 from .judgements.numbers import Number
 from .readings.lagrange import Energies
-from .report.effects import Effects
 
 __all__ = ["Correction", "Effects", "Energies", "Number", "Paper", "apply", "group", "without"]

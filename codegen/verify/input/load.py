@@ -9,7 +9,7 @@ from typing import Dict, List, Optional
 
 from ...errors import error_location
 from ..errors import PaperError
-from ..report.effects import Effects
+from .effects import Effects
 from .manuscript import TEX, is_manuscript, read
 from .printed import Paper
 

@@ -25,6 +25,8 @@ def as_certificate(report):
 class _Writer:
     def __init__(self, report):
         self.report, self.paper, self.printed = report, report.case.paper, report.printed
+        # objections are raised by what the repairs, or corrections, leave
+        self.objected = report.corrected
         self.motion = report.motions[0] if report.motions else None
         self.moving = [n for n, x in self.paper.symbols.items() if x.role in ("coordinate", "input") and not x.velocity]
         self.extra = list(self.motion.energies.extra) if self.motion else []
@@ -71,7 +73,7 @@ class _Writer:
     def _rows(self):
         """The equations of motion without what is dissipative, each times its multiplier."""
         for k, equation in enumerate(self.paper.motions()):
-            row = self.printed.multipliers[equation.number] * self.printed.conservative(equation.number)
+            row = self.objected.multipliers[equation.number] * self.objected.conservative(equation.number)
             self.let[f"row__{k}"] = str(expression(row))
 
     def derivation(self, name):
@@ -171,7 +173,7 @@ class _Writer:
         number, words = v.equations[0], v.message[0]
         symbols = {e.number: k for k, e in enumerate(self.paper.motions())}
         rows = [(symbols[n], self.paper.equations[n].of) for n in v.equations if n in symbols]
-        terms = [str(self.printed.expressions[number][k]) for k in v.terms]
+        terms = [str(self.objected.expressions[number][k]) for k in v.terms]
         if v.judgement == "dimensions":
             unit = next((self._unit(part) for part in v.message if isinstance(part, tuple)), None)
             expected = [self._unit(part) for part in v.message if isinstance(part, tuple)]
@@ -179,7 +181,7 @@ class _Writer:
                 self._claim(about, "different", f"scaled({terms[0]})", f"({expected[1]})*({terms[0]})")
         elif v.judgement == "mirror":
             equation = self.paper.equations[number]
-            signs = [self.printed.forms[number][k] for k in v.terms]
+            signs = [self.objected.forms[number][k] for k in v.terms]
             for term in terms[:len(signs)]:
                 self._claim(about, "different", f"mirror({term})", f"({self._parity(number, equation)})*({term})")
         elif v.judgement == "lagrangian" and len(rows) == 2 and len(v.message) == 2 and not self.paper.quasi:
@@ -205,7 +207,7 @@ class _Writer:
 
     def _alone(self, about, v, number, words):
         """An objection to one equation: to a momentum, or by Galilei's principle."""
-        total = self.printed.total(number)
+        total = self.objected.total(number)
         if found := re.search(r"is not the rate of a momentum: its terms in (the velocity of )?(\w+) do not", words):
             # a sign that multiplies all of it counts as a constant
             name, whole = found[2], _steady(expression(total))
@@ -214,16 +216,16 @@ class _Writer:
             self._claim(about, "equal", text, str(_steady(expression(v.message[1]))))
             self._claim(about, "different", text, "0")
         elif found := re.match(r"the accelerations of (\w+) and (\w+) do not enter as their sum", words):
-            rest_ = _steady(expression(self.printed.conservative(number)))
+            rest_ = _steady(expression(self.objected.conservative(number)))
             self._claim(about, "different", f"diff({rest_}, dd{found[1]}) - diff({rest_}, dd{found[2]})", "0")
         elif found := re.match(r"the accelerations of (\w+) and (\w+) in \(.*\) do not belong to one first moment", words):
-            whole = _steady(expression(self.printed.scales.get(number, self.printed.ring.number(1)) * self.printed.conservative(number)))
+            whole = _steady(expression(self.objected.scales.get(number, self.objected.ring.number(1)) * self.objected.conservative(number)))
             self._claim(about, "different", f"diff(diff({whole}, dd{found[1]}), {found[2]}) - diff(diff({whole}, dd{found[2]}), {found[1]})", "0")
         elif found := re.match(r"a constant (displacement|velocity)", words):
             for name in self.paper.translation:
                 name = name if found[1] == "displacement" else "d" + name
-                if self.printed.conservative(number).diff(name):
-                    self._claim(about, "different", f"diff({_steady(expression(self.printed.conservative(number)))}, {name})", "0")
+                if self.objected.conservative(number).diff(name):
+                    self._claim(about, "different", f"diff({_steady(expression(self.objected.conservative(number)))}, {name})", "0")
 
     def _minor(self, about, v):
         """A leading minor of the printed mass matrix at rest, and its value for a parameter set."""
@@ -232,7 +234,7 @@ class _Writer:
             return
         motions = self.paper.motions()[:int(found[2])]
         for k, equation in enumerate(motions):
-            self.let[f"full__{k}"] = str(expression(self.printed.multipliers[equation.number] * self.printed.total(equation.number)))
+            self.let[f"full__{k}"] = str(expression(self.objected.multipliers[equation.number] * self.objected.total(equation.number)))
         entries = [[f"(diff(full__{i}, dd{f.of}) + diff(full__{j}, dd{e.of}))/2" for j, f in enumerate(motions)] for i, e in enumerate(motions)]
         zeros = "".join(f", {n}, 0" for n in rest(self.paper)[0])
         self._claim(about, "equal", f"put({_determinant(entries)}{zeros})", str(expression(v.message[1])))
@@ -244,7 +246,7 @@ class _Writer:
 
     def _without_objection(self):
         """The Helmholtz conditions, where they are judged and hold: without energies they are what is proved."""
-        if self.motion or self.paper.quasi or "lagrangian" in self.report.unjudged or self.report.violations["lagrangian"]:
+        if self.motion or self.paper.quasi or "lagrangian" in self.report.unjudged or self.report.corrected_violations["lagrangian"]:
             return
         of = [equation.of for equation in self.paper.motions()]
         for i, j in product(range(len(of)), repeat=2):
@@ -255,10 +257,10 @@ class _Writer:
         """The sign that the terms of an equation take in the mirror image: that of most of them."""
         if equation.kind != "motion":
             return "1" if equation.kind == "condition" else str(self.paper.symbols[equation.of].mirror)
-        flip = {n: -self.printed.ring.symbol(n) for x in self.paper.symbols.values() if x.mirror == -1
+        flip = {n: -self.objected.ring.symbol(n) for x in self.paper.symbols.values() if x.mirror == -1
                 for n in (self._named([x.name]) if x.name in self.moving else [x.name])}
         signs = [1 if image == form else -1 if image == -form else 0
-                 for form in self.printed.forms[number] for image in [form.substitute(flip)]]
+                 for form in self.objected.forms[number] for image in [form.substitute(flip)]]
         return str(max((self.paper.symbols[equation.of].mirror, -self.paper.symbols[equation.of].mirror), key=signs.count))
 
     def _impact(self, about, f):

@@ -2,6 +2,8 @@
 
 import ast
 import json
+import shutil
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -9,6 +11,7 @@ from codegen.verify import Paper, check_certificate as script, seeded
 from codegen.verify.input.load import Case, load
 from codegen.verify.report import certificate, gather
 from codegen.verify.tests.cases import ROOT, TANK, report_of
+from codegen.verify.tests.mutations import mutated
 
 
 def certified(name):
@@ -48,6 +51,17 @@ class Certificate(unittest.TestCase):
         self.assertEqual([(c["is"], c.get("at")) for c in claims], [("equal", None), ("greater", {"m": "1.5"})])
         self.assertTrue(all(map(checker.holds, claims)))
         self.assertFalse(checker.holds({**claims[1], "of": claims[1]["of"][::-1]}))
+
+    def test_what_repairs_leave_is_certified(self):
+        """Objections are to the repaired equations, whose terms are others: here a line of one is printed twice."""
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copytree(ROOT / "codegen/verify/published/double_pendulum_momenta", Path(folder) / "wrong")
+            paper = Path(folder) / "wrong" / "paper.tex"
+            paper.write_text(mutated(paper.read_text(encoding="utf-8"), 5), encoding="utf-8")
+            content = json.loads(certificate.as_certificate(gather.verify(load(Path(folder) / "wrong"), thorough=False)))
+        checker = script.Checker(content)
+        self.assertTrue([c for c in content["claims"] if c.get("finding") == "dimensions-2"])
+        self.assertEqual([c for c in content["claims"] if not checker.holds(c)], [])
 
     def test_without_energies_the_conditions_that_hold_are_claims(self):
         content = json.loads(certificate.as_certificate(report_of(ROOT / "codegen/verify/published/compass_gait")))
