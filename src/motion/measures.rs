@@ -85,6 +85,14 @@ impl Samples {
         }
         rows
     }
+
+    /// Part of the Arias intensity that is reached at each sample (Husid, 1969); zeros where there is none.
+    pub fn husid(&self) -> Vec<f64> {
+        let squares = squares(self);
+        let whole = squares[squares.len() - 1];
+        let part = |s: &f64| if whole > 0.0 { s / whole } else { 0.0 };
+        squares.iter().map(part).collect()
+    }
 }
 
 /// ∫ a² dt up to each sample, m²/s³.

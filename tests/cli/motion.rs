@@ -175,9 +175,12 @@ fn several_files_are_shown_side_by_side_and_written() {
         ".dalembert-output",
         "acceleration.svg",
         "displacement.svg",
+        "husid.svg",
         "measures.csv",
         "spectra.csv",
-        "spectrum.svg",
+        "spectrum_acceleration.svg",
+        "spectrum_displacement.svg",
+        "spectrum_velocity.svg",
         "velocity.svg",
     ];
     assert_eq!(written, expected);
@@ -185,4 +188,26 @@ fn several_files_are_shown_side_by_side_and_written() {
     assert_eq!(spectra.lines().count(), 3);
     let files = shown(&[SMC, "tests/data/records/test.v1", "--periods", "1"]);
     assert_eq!(files[1]["format"], "COSMOS");
+}
+
+#[test]
+fn a_page_has_all_plots_and_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = project().join(SMC).display().to_string();
+    let arguments = ["motion", &file, "--html", "page.html", "--units", "cm,g_n"];
+    ends_with(0, folder.path(), &arguments);
+    let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    for part in [
+        "Ground motion: 0111a.smc",
+        "growth of the Arias intensity",
+        "spectrum of pseudo-velocity, damping 0.05",
+        "spectrum of displacement",
+        "g_n",
+        "Made by",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    let refused = ["motion", &file, "--html", "none/page.html"];
+    let output = ends_with(1, folder.path(), &refused);
+    assert!(stderr(&output).contains("none/page.html"));
 }

@@ -1,14 +1,19 @@
 //! `dalembert motion`.
 
+mod charts;
 mod json;
+mod page;
 mod write;
 
 use std::path::{Path, PathBuf};
 
 use super::outcome::{Failure, Outcome, Result};
+use super::page::write_page;
+use super::pictures::{PictureArguments, WindowArguments};
 use super::print;
 use crate::motion::{Channel, Given, Measures, Ordinate, Unit, ordinate};
 use crate::record::OutputFolder;
+use crate::record::plot::Look;
 use crate::scene::{Record, SceneError};
 
 /// Periods of a spectrum that names none: from `FIRST` to `LAST`, s, spread evenly by their logarithm.
@@ -33,7 +38,9 @@ the record.
 first of these channels (`channel`, `damping`, `periods`, `psa_samples` at samples, `psa` at any time), `spectra` \
 of all, and `notes`.
 
---out DIR writes the motions and spectra as tables and plots.")]
+--out DIR writes measures and spectra as tables, and plots: acceleration, velocity, displacement, the growth of the \
+Arias intensity (Husid plot), spectra of pseudo-acceleration, pseudo-velocity and displacement. --html FILE writes \
+them as one page.")]
 pub struct MotionArguments {
     /// Record files
     #[arg(required = true)]
@@ -62,6 +69,13 @@ pub struct MotionArguments {
     /// Folder for tables and plots
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Also write a page with plots that zoom
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    #[command(flatten)]
+    window: WindowArguments,
+    #[command(flatten)]
+    pictures: PictureArguments,
 }
 
 fn period(text: &str) -> std::result::Result<f64, String> {
@@ -101,14 +115,19 @@ struct File<'a> {
     channels: Vec<Told>,
 }
 
-/// The files, with the periods and the damping of the spectra.
+/// The files, with the periods and the damping of the spectra, and how plots look.
 struct Report<'a> {
     files: Vec<File<'a>>,
     periods: Vec<f64>,
     damping: f64,
+    look: Look,
 }
 
 pub fn motion(arguments: &MotionArguments) -> Result {
+    let look = Look {
+        window: arguments.window.window(),
+        ..arguments.pictures.look()?
+    };
     let out = arguments.out.as_ref();
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
     let periods = if arguments.periods.is_empty() {
@@ -128,9 +147,13 @@ pub fn motion(arguments: &MotionArguments) -> Result {
         files: files?,
         periods,
         damping: arguments.damping,
+        look,
     };
     if let Some(folder) = &folder {
         report.write(folder)?;
+    }
+    if let Some(path) = &arguments.html {
+        write_page(path, &report.page())?;
     }
     if arguments.json {
         print::output(format_args!("{:#}", report.json()))?;

@@ -3,19 +3,26 @@
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
 
-use super::{Report, Told};
+use super::{File, Report, Told};
 use crate::cli::table::Table;
 use crate::motion::GRAVITY;
-use crate::record::plot::{Chart, Curve, Dimension};
 use crate::record::{FolderError, OutputFolder, exact, rounded};
 
-/// File names of the tables; plots are called after what they show.
+/// File names of the tables; plots are called as [`Report::charts`] says.
 const MEASURES: &str = "measures.csv";
 const SPECTRA: &str = "spectra.csv";
 /// Size of a plot, in pixels.
 const SIZE: (f64, f64) = (900.0, 320.0);
 /// Periods of the spectra that the terminal shows, at most.
 const SHOWN: usize = 13;
+
+impl File<'_> {
+    /// The last part of its path.
+    pub fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or(self.path.as_os_str());
+        name.to_string_lossy().into_owned()
+    }
+}
 
 impl Told {
     /// Time from the first to the last sample, s.
@@ -28,84 +35,29 @@ impl Told {
 impl Report<'_> {
     /// Writes tables and plots.
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
-        let motion = |title: &str, unit: &str, rows: &dyn Fn(&Told) -> Vec<f64>| Chart {
-            title: title.to_owned(),
-            x: Dimension::linear("time t", "s"),
-            y: Dimension::linear(title, unit),
-            curves: self.curves(|told| {
-                told.channel
-                    .samples
-                    .all_times()
-                    .into_iter()
-                    .zip(rows(told))
-                    .collect()
-            }),
-            marks: false,
-        };
-        let spectrum = Chart {
-            title: format!("spectrum of pseudo-acceleration, damping {}", self.damping),
-            x: Dimension::log("period T", "s"),
-            y: Dimension::linear("pseudo-acceleration", "m/s^2"),
-            curves: self.curves(|told| {
-                let ordinates = told.spectrum.iter().map(|o| o.peak);
-                self.periods.iter().copied().zip(ordinates).collect()
-            }),
-            marks: false,
-        };
-        let charts = [
-            (
-                "acceleration.svg",
-                motion("acceleration", "m/s^2", &|told| {
-                    told.channel.samples.values.clone()
-                }),
-            ),
-            (
-                "velocity.svg",
-                motion("velocity", "m/s", &|told| {
-                    told.channel.samples.integrals()[0].clone()
-                }),
-            ),
-            (
-                "displacement.svg",
-                motion("displacement", "m", &|told| {
-                    told.channel.samples.integrals()[1].clone()
-                }),
-            ),
-            ("spectrum.svg", spectrum),
-        ];
         folder.replace(|files| {
             files.file(MEASURES, |out| self.measures(out))?;
             files.file(SPECTRA, |out| self.spectra(out))?;
-            for (name, chart) in &charts {
-                files.file(name, |out| out.write_all(chart.svg(SIZE).as_bytes()))?;
+            for (name, chart) in self.charts() {
+                let picture = chart.svg_as(SIZE, &self.look);
+                files.file(&format!("{name}.svg"), |out| {
+                    out.write_all(picture.as_bytes())
+                })?;
             }
             Ok(())
         })
     }
 
     /// Every channel with its label: its name, after that of its file if there are several.
-    fn channels(&self) -> impl Iterator<Item = (String, &Told)> {
+    pub fn channels(&self) -> impl Iterator<Item = (String, &Told)> {
         let several = self.files.len() > 1;
         self.files.iter().flat_map(move |file| {
-            let name = file
-                .path
-                .file_name()
-                .unwrap_or(file.path.as_os_str())
-                .to_string_lossy();
+            let name = file.name();
             file.channels.iter().map(move |told| match several {
                 true => (format!("{name} {}", told.channel.name), told),
                 false => (told.channel.name.clone(), told),
             })
         })
-    }
-
-    fn curves(&self, points: impl Fn(&Told) -> Vec<(f64, f64)>) -> Vec<Curve> {
-        let curve = |(label, told)| Curve {
-            label,
-            points: points(told),
-            ..Curve::default()
-        };
-        self.channels().map(curve).collect()
     }
 
     /// One row a channel, numbers with the digits that read back to the same.

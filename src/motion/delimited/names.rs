@@ -127,7 +127,7 @@ pub(super) fn step(comment: &str) -> Option<f64> {
         .find_map(|(rate, unit)| matches!(&*unit, "hz" | "" | "sps").then_some(1.0 / rate))
 }
 
-/// What a comment says the values are: `acceleration in g`, `units: cm/s^2`, `values [m/s2]`.
+/// What a comment says the values are: `acceleration in g`, `units: cm/s^2`, `values [m/s2]`, or `[m/s2]` alone.
 pub(super) fn quantity(comment: &str) -> Option<Measure> {
     let words = [
         "accelerations",
@@ -158,6 +158,16 @@ pub(super) fn quantity(comment: &str) -> Option<Measure> {
     words
         .into_iter()
         .find_map(|word| after(comment, word).find_map(|rest| stated(word, rest)))
+        .or_else(|| bracketed(comment))
+}
+
+/// The only unit but those of times that stands in square brackets.
+fn bracketed(comment: &str) -> Option<Measure> {
+    let inside = comment.split('[').skip(1);
+    let inside = inside.filter_map(|rest| measure(rest.split_once(']')?.0));
+    let mut units = inside.filter(|m| !matches!(m, Measure::Time(_)));
+    let unit = units.next()?;
+    units.all(|other| other == unit).then_some(unit)
 }
 
 /// The names that a comment lists: `columns: time_s, acc_m_s2; …`.

@@ -307,6 +307,8 @@ fn units_and_steps_are_found_where_they_are_stated() {
         "# dt = 0.5 s, acceleration in m/s^2\n1\n2\n3\n",
         "% units: m/s2\n% sampling rate = 2 Hz\n1\n2\n3\n",
         "# time step: 500 ms\nacc [m/s2]\n1\n2\n3\n",
+        "# [m/s2]\n# dt = 0.5 s\n1\n2\n3\n",
+        "# record of the shelf [cm/s^2], dt [s] = 0.5\n# dt = 0.5\n100\n200\n300\n",
         "# acceleration in cm/s2, dt = 0.5\n100\n200\n300\n",
         "# units m/s2, dt 0.5 s; low-cut frequency = 0.1 Hz, peak acceleration = 0.3 g\n1\n2\n3\n",
         "# step = 500 ms, filter step 7\nacc_mps2\n1\n2\n3\n",

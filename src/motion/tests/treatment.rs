@@ -233,3 +233,19 @@ fn the_high_pass_filter_is_butterworths() {
         }
     }
 }
+
+/// A constant grows evenly; of a line, the integral of its square.
+#[test]
+fn the_arias_intensity_grows_from_zero_to_its_whole() {
+    let samples = |values: &[f64]| Samples {
+        times: Times::Every {
+            start: 0.0,
+            dt: 0.25,
+        },
+        values: values.to_vec(),
+    };
+    assert_eq!(samples(&[2.0; 5]).husid(), [0.0, 0.25, 0.5, 0.75, 1.0]);
+    let line = samples(&[0.0, 1.0, 2.0]).husid();
+    assert_eq!(line, [0.0, 0.125, 1.0]);
+    assert_eq!(samples(&[0.0; 3]).husid(), [0.0; 3]);
+}
