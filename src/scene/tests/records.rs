@@ -86,6 +86,59 @@ fn channels_and_treatment() {
     }
 }
 
+/// Scaled to a spectral ordinate, corrected, smooth between samples: what a scene says is what is done.
+#[test]
+fn sizes_and_corrections_are_those_that_are_asked_for() {
+    use crate::motion::{Baseline, Given, Size, Treatment, ordinate, read};
+    let text = std::str::from_utf8(AT2).expect("ASCII");
+    let samples = &read(text, &Given::default()).expect("a record").channels[0].samples;
+    let treated = |treatment: Treatment| treatment.apply(samples).expect("it can be done");
+    let table = |treatment| {
+        let samples = treated(treatment);
+        table(&samples.all_times(), &samples.values)
+    };
+    let sized = Treatment {
+        size: Size::Sa {
+            period: 0.5,
+            damping: 0.02,
+            value: 0.3 * 9.80665,
+        },
+        ..Treatment::default()
+    };
+    let reached = ordinate(&treated(sized), 0.5, 0.02).peak;
+    assert!((reached / (0.3 * 9.80665) - 1.0).abs() < 1e-12, "{reached}");
+    let options = r#", "Sa": { "T": "500 ms", "damping": 0.02, "value": "0.3 g_n" }"#;
+    assert_eq!(function(options, AT2), table(sized));
+    let corrected = |polynomial, high_pass| Treatment {
+        baseline: Baseline {
+            polynomial,
+            high_pass,
+        },
+        ..Treatment::default()
+    };
+    let options = r#", "baseline": { "polynomial": 2 }"#;
+    assert_eq!(function(options, AT2), table(corrected(Some(2), None)));
+    let options = r#", "baseline": { "high_pass": { "frequency": "0.1 Hz" } }"#;
+    let filtered = table(corrected(None, Some((0.1, 4))));
+    assert_eq!(function(options, AT2), filtered);
+    let options = r#", "interpolation": "cubic""#;
+    let (times, values) = (samples.all_times(), &samples.values);
+    let spline = Table::new(&times, values, Interpolation::Cubic, Outside::Zero);
+    assert_eq!(function(options, AT2), spline.expect("a table").into());
+}
+
+/// A line has nothing left when a line is subtracted.
+#[test]
+fn a_drift_is_taken_away_and_nothing_else() {
+    let drift = b"t_s,a_m_s2\n0,1\n0.5,2\n1,3\n1.5,4\n";
+    let options = r#", "baseline": { "polynomial": 1 }"#;
+    let left = function(options, drift);
+    for i in 0..=15 {
+        let jet = left.at(0.1 * f64::from(i), crate::input::Side::Right);
+        assert!(jet.value.abs() < 1e-14, "{jet:?}");
+    }
+}
+
 #[test]
 fn records_add_up_with_other_functions() {
     let scene = r#"{ "model": "walking_tank", "end": 1, "inputs": { "ground_acceleration": { "sum": [
