@@ -4,7 +4,7 @@ mod common;
 
 use common::{lifted_slider, numbers, problem, reference};
 use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
-use dalembert::input::{Function, Sine};
+use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::kernel::processor_level;
 use dalembert::record::{Jump, Silent};
 
@@ -448,5 +448,33 @@ fn members_start_where_their_initial_state_says() {
             "{} {fall}",
             end.events[0].1
         );
+    }
+}
+
+/// Blocks under a record whose lines have a kink every hundredth of a second: lanes go on across it, to the same bits on every
+/// level and with any threads, and to what single runs give.
+#[test]
+fn kinks_of_a_record_are_passed_in_lanes() {
+    let times: Vec<f64> = (0..1001).map(|i| 0.01 * f64::from(i)).collect();
+    let shake = |t: &f64| -3.4 * (3.0 * std::f64::consts::PI * t + 0.3).sin();
+    let values: Vec<f64> = times.iter().map(shake).collect();
+    let mut problems = shaken_blocks(1e-10, 16);
+    for problem in &mut problems {
+        let table = Table::new(&times, &values, Interpolation::Linear, Outside::Zero);
+        problem
+            .set_input("ground_acceleration", table.unwrap().into())
+            .unwrap();
+    }
+    let single = alone(&problems);
+    assert!(
+        single
+            .iter()
+            .all(|end| end.steps > 1000 && end.failure.is_none())
+    );
+    let all = together(&problems, 0, 1);
+    let found = difference(&all, &single);
+    assert!(found < 1e-9, "{found:e}");
+    for level in 0..=processor_level() {
+        assert_eq!(together(&problems, level, 2), all, "level {level}");
     }
 }
