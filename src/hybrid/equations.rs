@@ -55,13 +55,20 @@ impl Clock<'_> {
     fn piece(&self, tau: f64, last: Piece) -> (f64, Piece) {
         let mut t = self.start.plus(tau).seconds();
         if t < last.knot && tau < last.limit {
-            return (t, last);
+            return (t.max(last.from), last);
         }
         loop {
             let knot = self.signals.next_knot(t);
             let limit = self.local(knot);
             if limit > tau {
-                return (t, Piece { knot, limit });
+                return (
+                    t,
+                    Piece {
+                        from: t,
+                        knot,
+                        limit,
+                    },
+                );
             }
             t = knot;
         }
@@ -89,6 +96,8 @@ impl Clock<'_> {
 /// A stretch of time within which all inputs are analytic.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
+    /// An absolute time from which on it acts, s: its knot, if it was found at an instant that is rounded to before.
+    from: f64,
     /// Absolute time at which it ends, s.
     knot: f64,
     /// The same in local time.
@@ -98,11 +107,13 @@ pub(super) struct Piece {
 impl Piece {
     /// One that has ended before all times: where it must be looked for.
     pub const UNKNOWN: Piece = Piece {
+        from: f64::NEG_INFINITY,
         knot: f64::NEG_INFINITY,
         limit: f64::NEG_INFINITY,
     };
     /// One that never ends.
     pub const ENDLESS: Piece = Piece {
+        from: f64::NEG_INFINITY,
         knot: f64::INFINITY,
         limit: f64::INFINITY,
     };
@@ -339,11 +350,12 @@ impl<F: Size> Analytic<F> for Equations<'_, F> {
         self.kernel.series_run(self.context, n, inverse, series)
     }
 
-    fn horizon(&self, t: f64) -> f64 {
-        match self.context.quiet {
-            true => f64::INFINITY,
-            false => self.clock.piece(t, self.piece).1.limit,
+    fn horizon(&mut self, t: f64) -> f64 {
+        if self.context.quiet {
+            return f64::INFINITY;
         }
+        self.piece = self.clock.piece(t, self.piece).1;
+        self.piece.limit
     }
 }
 

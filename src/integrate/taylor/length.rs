@@ -156,11 +156,56 @@ impl Terms {
     }
 }
 
+/// What limits the length of steps of several orders, and how these lengths compare.
+#[derive(Debug, Clone)]
+pub(super) struct Orders {
+    first: usize,
+    terms: Vec<Terms>,
+    /// Lengths of steps, ÷ that of the highest order.
+    lengths: Vec<f64>,
+}
+
+impl Orders {
+    /// Those from `least` to `highest` of a method of that order, none below [`LEAST`].
+    pub fn new(tolerance: f64, least: usize, highest: usize, kind: SeriesKind) -> Self {
+        let first = least.max(LEAST).min(highest);
+        let one = f64::from(1_u32 << PLACES);
+        // As a term of one order tells the length that another has.
+        let length = |p| power_of_two((one * factor_of_orders(tolerance, highest, p, kind)) as i64);
+        Orders {
+            first,
+            terms: (first..=highest)
+                .map(|p| Terms::new(tolerance, p, kind))
+                .collect(),
+            lengths: (first..=highest).map(length).collect(),
+        }
+    }
+
+    /// The terms that limit a step of an order.
+    #[inline(always)]
+    pub fn terms(&self, order: usize) -> &Terms {
+        &self.terms[order - self.first]
+    }
+
+    /// The least order whose step has a length, or the highest, where one of an order would have had the length `last.1`.
+    #[inline]
+    pub fn least(&self, last: (usize, f64), length: f64) -> usize {
+        let scale = last.1 / self.lengths[last.0 - self.first];
+        let enough = self.lengths.iter().position(|own| own * scale >= length);
+        self.first + enough.unwrap_or(self.lengths.len() - 1)
+    }
+}
+
 /// Binary logarithm of what the length at which the term of a power equals the tolerance is multiplied with.
 fn factor(tolerance: f64, power: usize, p: usize, kind: SeriesKind) -> f64 {
-    if power + 1 >= p {
-        return 0.0;
+    match power + 1 >= p {
+        true => 0.0,
+        false => factor_of_orders(tolerance, power, p, kind),
     }
+}
+
+/// Binary logarithm of the length of a step of order `p` ÷ that of a step of order `power`.
+fn factor_of_orders(tolerance: f64, power: usize, p: usize, kind: SeriesKind) -> f64 {
     let radius = (1.0 / p as f64 - 1.0 / power as f64) * binary_logarithm(tolerance);
     match kind {
         SeriesKind::Convolved(_) => radius,
@@ -214,6 +259,31 @@ mod tests {
             let factorial = |p: usize| (1..=p).map(|k| k as f64).product::<f64>();
             let length = |p| f64::powf(factorial(p) * tolerance, 1.0 / p as f64);
             assert!(length(p) >= LONGEST && length(p - 1) < LONGEST, "{p}");
+        }
+    }
+
+    /// Lengths of the series of 1/(1 − τ) and of exp τ, whose terms are known.
+    #[test]
+    fn the_least_order_that_reaches_a_length_is_found() {
+        let tolerance = 1e-9;
+        let of_pole = |p: usize| f64::powf(tolerance, 1.0 / p as f64);
+        let of_exponential = |p: usize| p as f64 * of_pole(p); // (p!)^(1/p) grows as p
+        let convolved = SeriesKind::Convolved(3);
+        for (kind, length) in [
+            (convolved, &of_pole as &dyn Fn(usize) -> f64),
+            (SeriesKind::Entire, &of_exponential),
+        ] {
+            let orders = Orders::new(tolerance, 0, 22, kind);
+            for last in [6, 13, 22] {
+                for p in 7..=22 {
+                    let between = 0.5 * (length(p - 1) + length(p));
+                    assert_eq!(orders.least((last, length(last)), between), p);
+                }
+                let least = orders.least((last, length(last)), 0.5 * length(6));
+                assert_eq!(least, LEAST);
+            }
+            assert_eq!(orders.least((22, length(22)), 2.0 * length(22)), 22);
+            assert_eq!(orders.least((22, f64::INFINITY), 1.0), LEAST);
         }
     }
 

@@ -13,7 +13,7 @@ mod lanes;
 mod length;
 mod series;
 
-use length::Terms;
+use length::Orders;
 
 pub use dense::TaylorDense;
 pub(crate) use lanes::LaneTaylor;
@@ -78,8 +78,9 @@ pub struct Taylor<F: Size> {
     tolerances: Tolerances<F>,
     order: usize,
     /// The lower order where there are many steps.
-    lower: Option<(usize, Terms)>,
-    terms: Terms,
+    lower: Option<usize>,
+    /// Of each order that a step can have.
+    orders: Orders,
     start: State<F>,
     end: State<F>,
     lost_at_start: Lost<F>,
@@ -103,7 +104,7 @@ pub struct Taylor<F: Size> {
 
 persist!([F: Size] Taylor<F> {
     start, end, lost_at_start, lost, dense, open, last, weights, inverse, accelerations_given, length, counters
-} but { tolerances, order, lower, terms, implicit });
+} but { tolerances, order, lower, orders, implicit });
 
 impl Persist for Last {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
@@ -128,8 +129,8 @@ impl<F: Size> Taylor<F> {
             length: f64::INFINITY,
             tolerances: tolerances.clone(),
             order,
-            lower: length::half_period(relative, kind).map(|p| (p, Terms::new(relative, p, kind))),
-            terms: Terms::new(relative, order, kind),
+            lower: length::half_period(relative, kind),
+            orders: Orders::new(relative, implicit.power, order, kind),
             start: State::origin(size),
             end: State::origin(size),
             lost_at_start: Lost::nothing(size),
@@ -237,12 +238,12 @@ impl<F: Size> Taylor<F> {
         if self.last != Last::Restart {
             self.weights = self.weights_at(&self.end.q, &self.end.v);
         }
-        self.expand(system)?;
         let from = self.end.t;
         let remaining = (t_end - from) - self.lost.t;
         let horizon = system.horizon(from) - from;
+        self.expand(system, self.order_up_to(horizon))?;
         self.length = self.accurate_length();
-        if let Some((lower, _)) = self.lower
+        if let Some(lower) = self.lower
             && lower < self.dense.known
             && self.length * length::MANY < remaining.min(horizon)
         {
@@ -280,7 +281,7 @@ impl<F: Size> Taylor<F> {
     ) -> Result<StepReport, StepError> {
         assert!(h > 0.0, "h = {h} is not positive");
         if !self.last.is_step() {
-            self.expand(system)?;
+            self.expand(system, self.order)?;
             self.start_here();
             self.dense.h = h;
         }
@@ -289,8 +290,22 @@ impl<F: Size> Taylor<F> {
         Ok(self.report())
     }
 
-    /// Expands the motion about the end of the last step.
-    fn expand<Y: Analytic<F>>(&mut self, system: &mut Y) -> Result<(), StepError> {
+    /// The order of a step that need not go beyond `horizon`, s: the least whose step would be twice as long, as far as the
+    /// length of the step before tells. Twice, since that tells the radius of convergence to some per cent only, and what
+    /// follows has another.
+    #[inline]
+    fn order_up_to(&self, horizon: f64) -> usize {
+        match self.last.is_step() && horizon < f64::INFINITY {
+            true => {
+                let last = (self.dense.known, self.length);
+                self.orders.least(last, 2.0 * horizon)
+            }
+            false => self.order,
+        }
+    }
+
+    /// Expands the motion about the end of the last step to an order, or to the lower one where it is not finite.
+    fn expand<Y: Analytic<F>>(&mut self, system: &mut Y, order: usize) -> Result<(), StepError> {
         let restarted = self.last == Last::Restart;
         if !restarted {
             self.last = Last::Failure;
@@ -306,7 +321,7 @@ impl<F: Size> Taylor<F> {
         for i in 0..n {
             (series.q[0][i], series.v[0][i]) = (origin.q[i], origin.v[i]);
         }
-        let (mass, load) = system.start(t, self.order, series);
+        let (mass, load) = system.start(t, order, series);
         if self.inverse.get().is_none_or(|(of, _)| *of != mass) {
             self.invert(mass)?;
         }
@@ -323,15 +338,18 @@ impl<F: Size> Taylor<F> {
             (series.a[0][i], series.v[1][i], series.q[2][i]) = (a, a, a * 0.5);
             series.q[1][i] = origin.v[i];
         }
-        system.run(self.order, inverse, series);
-        self.counters.residual_evaluations += self.order as u64;
-        self.dense.known = self.order;
+        system.run(order, inverse, series);
+        self.counters.residual_evaluations += order as u64;
+        let before = std::mem::replace(&mut self.dense.known, order);
+        if order < before {
+            self.leave_out(order, before + 2);
+        }
         // What is not finite stays so in all higher orders.
         let is_finite =
             |order: usize| (0..n).all(|i| self.dense.series.a[order - 1][i].is_finite());
         match self.lower {
-            _ if is_finite(self.order) => {}
-            Some((lower, _)) if is_finite(lower) => self.lower_order(lower),
+            _ if is_finite(order) => {}
+            Some(lower) if lower < order && is_finite(lower) => self.lower_order(lower),
             _ => {
                 return Err(StepError::NonFinite {
                     t,
@@ -347,9 +365,16 @@ impl<F: Size> Taylor<F> {
     /// Leaves out the coefficients that a method of lower order does not have.
     #[cold]
     fn lower_order(&mut self, order: usize) {
+        self.leave_out(order, ORDERS);
+        self.dense.known = order;
+        self.find_last();
+    }
+
+    /// Sets the coefficients that an order does not have to zero, in rows below `end`.
+    fn leave_out(&mut self, order: usize, end: usize) {
         let series = &mut self.dense.series;
         let n = series.size().get();
-        for k in order..ORDERS {
+        for k in order..end {
             for i in 0..n {
                 series.a[k][i] = 0.0;
                 if k > order {
@@ -360,8 +385,6 @@ impl<F: Size> Taylor<F> {
                 }
             }
         }
-        self.dense.known = order;
-        self.find_last();
     }
 
     /// Looks for the last coefficients that differ from zero.
@@ -425,10 +448,7 @@ impl<F: Size> Taylor<F> {
             of_v(p - 3),
             of_v(p - 2),
         ];
-        match &self.lower {
-            Some((lower, terms)) if *lower == p => terms.length(sizes),
-            _ => self.terms.length(sizes),
-        }
+        self.orders.terms(p).length(sizes)
     }
 
     /// Length of a step of Radau IIA, as the term of its error estimate allows, ÷ that of the last step, as

@@ -17,7 +17,7 @@ pub trait Analytic<F: Size>: System<F> {
 
     /// Time until which the equations are the analytic functions of time that they are just after
     /// `t`; infinite if there is no limit.
-    fn horizon(&self, _t: f64) -> f64 {
+    fn horizon(&mut self, _t: f64) -> f64 {
         f64::INFINITY
     }
 }
