@@ -26,6 +26,11 @@ impl<F: Size> Slots<F> {
         }
     }
 
+    /// As [`Taylor::order_between_knots`] of a mode; `None` where it was not used.
+    fn order_between_knots(&self, mode: usize) -> Option<usize> {
+        self.taylor.get(mode)?.as_ref()?.order_between_knots()
+    }
+
     /// Work done since it was last taken, of each method.
     fn take_counters(&mut self) -> impl Iterator<Item = Counters> {
         let taylor = self.taylor.iter_mut().flatten();
@@ -55,6 +60,11 @@ macro_rules! solvers {
             /// None yet.
             pub fn new(modes: &[Mode]) -> Self {
                 Solvers { $($name: Slots::new(modes, |of| matches!(of, ModeKernels::$kernels(_))),)* }
+            }
+
+            /// As [`Taylor::order_between_knots`] of a mode; `None` where it was not used.
+            pub fn order_between_knots(&self, mode: usize) -> Option<usize> {
+                None$(.or_else(|| self.$name.order_between_knots(mode)))*
             }
 
             /// Work done since it was last taken, of each method.

@@ -134,11 +134,13 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
 }
 
 impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
-    /// An empty group for the mode of a simulation, whose state is put into the empty lanes.
+    /// An empty group for the mode of a simulation, whose state is put into the empty lanes. `order`: where it is to be
+    /// lower than usual.
     pub fn new(
         kernel: &'p ModeKernel<Const<F>>,
         level: LaneLevel<W>,
         quiet: bool,
+        order: Option<usize>,
         like: &Simulation<'p>,
     ) -> Self {
         let (problem, mode) = (like.problem, like.mode());
@@ -190,7 +192,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             index: like.here.mode,
             level,
             quiet,
-            taylor: LaneTaylor::new(level, &tolerances, kind),
+            taylor: LaneTaylor::new(level, &tolerances, kind, order),
             context,
             signals: LaneSignals::new(level, &problem.signals),
             guards: guards.collect(),

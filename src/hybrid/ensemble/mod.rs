@@ -8,7 +8,8 @@
 //! room for the next that has entered it (`worker`).
 //!
 //! What a trajectory gives is independent of the others, of their number, of the number of lanes and of
-//! threads: to the bit. A single run by the Taylor method takes the same steps, with other roundings.
+//! threads: to the bit. A single run by the Taylor method takes the same steps, with other roundings; from knot to knot of
+//! a table it chooses the order of each, where lanes have one for all.
 
 mod group;
 mod step;
@@ -29,6 +30,8 @@ pub struct Ensemble {
     problem: Problem,
     /// Whether the trajectories in a mode are to go side by side.
     in_lanes: Vec<bool>,
+    /// Orders of modes whose steps go from knot to knot of inputs, where they are to be lower than usual.
+    orders: Vec<Option<usize>>,
     /// Level of the processor.
     level: usize,
 }
@@ -44,7 +47,7 @@ impl Ensemble {
     /// Prepares a scene. Neither a trajectory nor the ledger nor states at events are recorded.
     ///
     /// With [`Method::Auto`] the scene itself is run once: modes that turn out to be stiff in it do not
-    /// go in lanes.
+    /// go in lanes, and where most steps go from knot to knot of a record, they have the order that costs least.
     ///
     /// # Errors
     /// As [`super::simulate`].
@@ -69,6 +72,9 @@ impl Ensemble {
                 verdicts.map(|s| s.is_stiff()).collect()
             }
         };
+        let orders = (0..modes.len())
+            .map(|mode| pilot.solvers.order_between_knots(mode))
+            .collect();
         drop(pilot);
         let in_lanes = (modes.iter().zip(stiff))
             .map(|(mode, stiff)| {
@@ -80,6 +86,7 @@ impl Ensemble {
         Ok(Ensemble {
             problem,
             in_lanes,
+            orders,
             level: processor_level(),
         })
     }

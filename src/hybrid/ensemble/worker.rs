@@ -170,11 +170,12 @@ impl<'a, const W: usize> Worker<'a, W> {
         let simulation = &self.slots[slot].simulation;
         let mode = simulation.here.mode;
         let (level, quiet) = (self.level, self.quiet);
+        let order = self.ensemble.orders[mode];
         let lanes = self.lanes[mode].get_or_insert_with(|| {
             let kernels = &simulation.mode().kernels;
             let group: Box<dyn AnyGroup<W> + 'a> =
                 with_kernel!(kernels,
-                    k => Box::new(Group::new(k, level, quiet, simulation)),
+                    k => Box::new(Group::new(k, level, quiet, order, simulation)),
                     _any => unreachable!("a mode of so many free coordinates does not go in lanes"));
             Lanes {
                 group,

@@ -19,13 +19,19 @@ pub(crate) struct LaneTaylor<const F: usize, const W: usize> {
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
-    /// A method of the order that [`super::Taylor::new`] chooses.
-    pub fn new(level: LaneLevel<W>, tolerances: &Tolerances<Const<F>>, kind: SeriesKind) -> Self {
+    /// A method of the order that [`super::Taylor::new`] chooses, or of a lower one.
+    pub fn new(
+        level: LaneLevel<W>,
+        tolerances: &Tolerances<Const<F>>,
+        kind: SeriesKind,
+        lower: Option<usize>,
+    ) -> Self {
         let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
         let relative = tolerances.relative();
         let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
         let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
-        let order = length::order(relative, kind, F);
+        let own = length::order(relative, kind, F);
+        let order = lower.map_or(own, |lower| lower.min(own));
         let terms = Terms::new(relative, order, kind);
         LaneTaylor {
             series: LaneSeries {

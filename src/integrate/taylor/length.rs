@@ -163,13 +163,24 @@ pub(super) struct Orders {
     terms: Vec<Terms>,
     /// Lengths of steps, ÷ that of the highest order.
     lengths: Vec<f64>,
+    /// What a step costs, in ns.
+    costs: Vec<f64>,
 }
 
 impl Orders {
     /// Those from `least` to `highest` of a method of that order, none below [`LEAST`].
-    pub fn new(tolerance: f64, least: usize, highest: usize, kind: SeriesKind) -> Self {
+    pub fn new(
+        tolerance: f64,
+        (least, highest): (usize, usize),
+        kind: SeriesKind,
+        coordinates: usize,
+    ) -> Self {
         let first = least.max(LEAST).min(highest);
         let one = f64::from(1_u32 << PLACES);
+        let convolutions = match kind {
+            SeriesKind::Convolved(convolutions) => convolutions,
+            _ => 0,
+        };
         // As a term of one order tells the length that another has.
         let length = |p| power_of_two((one * factor_of_orders(tolerance, highest, p, kind)) as i64);
         Orders {
@@ -178,6 +189,9 @@ impl Orders {
                 .map(|p| Terms::new(tolerance, p, kind))
                 .collect(),
             lengths: (first..=highest).map(length).collect(),
+            costs: (first..=highest)
+                .map(|p| STEP + series(p, convolutions, coordinates))
+                .collect(),
         }
     }
 
@@ -185,6 +199,24 @@ impl Orders {
     #[inline(always)]
     pub fn terms(&self, order: usize) -> &Terms {
         &self.terms[order - self.first]
+    }
+
+    /// The order with which steps cost least of which so many need an order for twice the length that they are to have
+    /// ([`super::Taylor::step`]): with a lower one they are made in pieces.
+    pub fn cheapest_for(&self, needed: &[u64]) -> usize {
+        let pieces = |need: usize, own: usize| {
+            let whole = 0.5 * self.lengths[need] / self.lengths[own];
+            whole.ceil().max(1.0)
+        };
+        let needed = &needed[self.first..][..self.lengths.len()];
+        let cost = |own: usize| {
+            let steps = needed.iter().enumerate();
+            let steps: f64 = steps.map(|(need, &n)| n as f64 * pieces(need, own)).sum();
+            steps * self.costs[own]
+        };
+        let all = 0..self.lengths.len();
+        let best = all.min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
+        self.first + best.expect("there is an order")
     }
 
     /// The least order whose step has a length, or the highest, where one of an order would have had the length `last.1`.
@@ -273,7 +305,7 @@ mod tests {
             (convolved, &of_pole as &dyn Fn(usize) -> f64),
             (SeriesKind::Entire, &of_exponential),
         ] {
-            let orders = Orders::new(tolerance, 0, 22, kind);
+            let orders = Orders::new(tolerance, (0, 22), kind, 1);
             for last in [6, 13, 22] {
                 for p in 7..=22 {
                     let between = 0.5 * (length(p - 1) + length(p));
@@ -285,6 +317,20 @@ mod tests {
             assert_eq!(orders.least((22, length(22)), 2.0 * length(22)), 22);
             assert_eq!(orders.least((22, f64::INFINITY), 1.0), LEAST);
         }
+    }
+
+    #[test]
+    fn one_order_for_all_steps_is_that_of_most_of_them() {
+        let orders = Orders::new(1e-9, (0, 22), SeriesKind::Convolved(3), 1);
+        let mut needed = [0; ORDERS];
+        needed[9] = 1;
+        assert!(orders.cheapest_for(&needed) <= 9);
+        let of_one = orders.cheapest_for(&needed);
+        needed[9] = 10_000;
+        needed[20] = 1;
+        assert_eq!(orders.cheapest_for(&needed), of_one);
+        needed[20] = 1_000_000;
+        assert!(orders.cheapest_for(&needed) > of_one);
     }
 
     #[test]

@@ -81,6 +81,9 @@ pub struct Taylor<F: Size> {
     lower: Option<usize>,
     /// Of each order that a step can have.
     orders: Orders,
+    /// How many steps that the inputs limited took an order, and how many others went on from a step.
+    limited: [u64; ORDERS],
+    unlimited: u64,
     start: State<F>,
     end: State<F>,
     lost_at_start: Lost<F>,
@@ -104,7 +107,7 @@ pub struct Taylor<F: Size> {
 
 persist!([F: Size] Taylor<F> {
     start, end, lost_at_start, lost, dense, open, last, weights, inverse, accelerations_given, length, counters
-} but { tolerances, order, lower, orders, implicit });
+} but { tolerances, order, lower, orders, limited, unlimited, implicit });
 
 impl Persist for Last {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
@@ -130,7 +133,9 @@ impl<F: Size> Taylor<F> {
             tolerances: tolerances.clone(),
             order,
             lower: length::half_period(relative, kind),
-            orders: Orders::new(relative, implicit.power, order, kind),
+            orders: Orders::new(relative, (implicit.power, order), kind, size.get()),
+            limited: [0; ORDERS],
+            unlimited: 0,
             start: State::origin(size),
             end: State::origin(size),
             lost_at_start: Lost::nothing(size),
@@ -181,6 +186,13 @@ impl<F: Size> Taylor<F> {
     /// Order of the method: that of the last coefficient of the velocities.
     pub fn order(&self) -> usize {
         self.order
+    }
+
+    /// The one order with which the steps made so far would have cost least, if most of them went no farther than to where an
+    /// input is not smooth.
+    pub(crate) fn order_between_knots(&self) -> Option<usize> {
+        let most = self.limited.iter().sum::<u64>() > self.unlimited;
+        most.then(|| self.orders.cheapest_for(&self.limited))
     }
 
     /// The state the last step started from; after a restart, that of the step before it.
@@ -241,7 +253,13 @@ impl<F: Size> Taylor<F> {
         let from = self.end.t;
         let remaining = (t_end - from) - self.lost.t;
         let horizon = system.horizon(from) - from;
-        self.expand(system, self.order_up_to(horizon))?;
+        let order = self.order_up_to(horizon);
+        match horizon < f64::INFINITY {
+            _ if !self.last.is_step() => {}
+            true => self.limited[order] += 1,
+            false => self.unlimited += 1,
+        }
+        self.expand(system, order)?;
         self.length = self.accurate_length();
         if let Some(lower) = self.lower
             && lower < self.dense.known
