@@ -2,7 +2,8 @@
 
 use super::commanded::{Command, Commanded};
 use super::lanes::LaneJet;
-use super::{Signals, Sine, Table};
+use super::sine::{self, Sine};
+use super::{Signals, Table};
 use crate::kernel::LaneLevel;
 use crate::numerics::{Lanes, Side};
 use crate::numerics::{Memory, Persist};
@@ -135,9 +136,16 @@ impl Function {
         if let [Term::Sine(sine)] = &self.terms[..] {
             return sine.at(t, side);
         }
-        self.terms
-            .iter()
-            .fold(Jet::default(), |sum, term| sum + term.at(t, side))
+        let mut sum = Jet::default();
+        let mut rest = &self.terms[..];
+        while let [first, others @ ..] = rest {
+            let (sines, behind) = leading_sines(rest);
+            (sum, rest) = match rest.len() - behind.len() {
+                0 | 1 => (sum + first.at(t, side), others),
+                _ => (sine::add_jets(sines, t, side, sum), behind),
+            };
+        }
+        sum
     }
 
     /// The values alone at up to eight instants; the others are zero.
@@ -168,8 +176,16 @@ impl Function {
         let out = out.iter_mut().step_by(stride);
         let mut room = [0.0; Signals::MOST_ORDERS];
         let room = &mut room[..out.len()];
-        for term in &self.terms {
-            term.add_series(t, side, room);
+        let mut rest = &self.terms[..];
+        while let [first, others @ ..] = rest {
+            let (sines, behind) = leading_sines(rest);
+            rest = if rest.len() - behind.len() > 1 {
+                sine::add_series(sines, t, side, room);
+                behind
+            } else {
+                first.add_series(t, side, room);
+                others
+            };
         }
         out.zip(room).for_each(|(out, c)| *out = *c);
     }
@@ -268,6 +284,18 @@ impl From<Table> for Function {
     }
 }
 
+/// The sines that a sum begins with, as many as go side by side, and the terms behind them.
+#[inline]
+fn leading_sines(terms: &[Term]) -> (impl Iterator<Item = &Sine> + Clone, &[Term]) {
+    let sines = terms.iter().map_while(|term| match term {
+        Term::Sine(sine) => Some(sine),
+        _ => None,
+    });
+    let sines = sines.take(sine::SIDE_BY_SIDE);
+    let behind = &terms[sines.clone().count()..];
+    (sines, behind)
+}
+
 impl Term {
     fn at(&self, t: f64, side: Side) -> Jet {
         match self {
@@ -290,12 +318,7 @@ impl Term {
                     *first += c;
                 }
             }
-            Term::Sine(sine) => {
-                let jet = sine.at(t, side);
-                let mut room = [0.0; Signals::MOST_ORDERS];
-                sine.fill_series([jet.value, jet.rate], 1, &mut room[..out.len()]);
-                (out.iter_mut().zip(room)).for_each(|(out, c)| *out += c);
-            }
+            Term::Sine(sine) => sine::add_series(std::iter::once(sine), t, side, out),
             Term::Table(table) => table.add_series(t, side, out),
             Term::Commanded(commanded) => commanded.add_series(t, side, out),
         }

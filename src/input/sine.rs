@@ -234,6 +234,64 @@ impl Sine {
     }
 }
 
+/// How many sines of a sum are evaluated side by side.
+pub(super) const SIDE_BY_SIDE: usize = 8;
+
+/// [`Sine::at`] of up to [`SIDE_BY_SIDE`] sines, added to a sum one after the other.
+#[inline]
+pub(super) fn add_jets<'a>(
+    sines: impl Iterator<Item = &'a Sine> + Clone,
+    t: f64,
+    side: Side,
+    sum: Jet,
+) -> Jet {
+    jets(sines, t, side).fold(sum, |sum, (_, jet)| sum + jet)
+}
+
+/// Sines and what they are at a time.
+#[inline]
+fn jets<'a>(
+    sines: impl Iterator<Item = &'a Sine> + Clone,
+    t: f64,
+    side: Side,
+) -> impl Iterator<Item = (&'a Sine, Jet)> {
+    let mut angles = [0.0; SIDE_BY_SIDE];
+    for (angle, sine) in angles.iter_mut().zip(sines.clone()) {
+        *angle = sine.angle(t);
+    }
+    let [sin, cos] = sin_cos_of_eight(&angles.map(|y| 0.5 * y));
+    let all = sines.zip(angles).zip(sin.into_iter().zip(cos));
+    all.map(move |((sine, y), of_half)| (sine, sine.jet(t, side, y, of_half)))
+}
+
+/// Adds the Taylor coefficients about `t` (s) of up to [`SIDE_BY_SIDE`] sines, as [`Sine::fill_series`] has them.
+pub(super) fn add_series<'a>(
+    sines: impl Iterator<Item = &'a Sine> + Clone,
+    t: f64,
+    side: Side,
+    out: &mut [f64],
+) {
+    let [mut now, mut next, mut factors] = [[0.0; SIDE_BY_SIDE]; 3];
+    for (i, (sine, jet)) in jets(sines, t, side).enumerate() {
+        (now[i], next[i]) = (jet.value, jet.rate);
+        factors[i] = -(sine.angular_frequency * sine.angular_frequency);
+    }
+    // In pairs, so that no addition waits for the one before.
+    let sum =
+        |x: &[f64; SIDE_BY_SIDE]| ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+    let inverses = INVERSES_OF_PAIRS.as_chunks::<2>().0;
+    for (pair, inverses) in out.chunks_mut(2).zip(inverses) {
+        for (out, terms) in pair.iter_mut().zip([&now, &next]) {
+            *out += sum(terms);
+        }
+        let both = now.iter_mut().zip(&mut next);
+        for ((now, next), factor) in both.zip(factors) {
+            *now *= factor * inverses[0];
+            *next *= factor * inverses[1];
+        }
+    }
+}
+
 /// y − sin y for y ≥ 0, without cancellation; `sin_y` is sin y.
 fn less_its_sine(y: f64, sin_y: f64) -> f64 {
     // From y = 1 on the difference loses less than three bits. Below, the Taylor series does:

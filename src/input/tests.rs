@@ -460,3 +460,42 @@ proptest! {
         }
     }
 }
+
+/// Side by side or one after the other: a sum is the sum of its terms, to the bit, and so are its coefficients to rounding.
+#[test]
+fn sums_of_many_sines_are_the_sums_of_their_terms() {
+    let sine = |k: u32| {
+        let k = f64::from(k);
+        let sine = Sine::new(1.0 / k, 0.7 * k * 2.0_f64.sqrt(), k);
+        sine.between(0.1 * k, 0.1 * k + 3.0)
+    };
+    for count in [1, 2, 8, 9, 27] {
+        let single = |k: u32| match k {
+            5 => Function::constant(0.3),
+            _ => sine(k).into(),
+        };
+        let all = Function::sum((1..=count).map(single));
+        for i in 0..50 {
+            let t = 0.1 * f64::from(i);
+            for side in [Side::Left, Side::Right] {
+                let jets = (1..=count).map(|k| single(k).at(t, side));
+                let sum = jets.fold(Jet::default(), |sum, jet| sum + jet);
+                assert_eq!(all.at(t, side), sum, "{count} at {t}");
+                let known = [sum.value, sum.rate];
+                let [mut found, mut expected, mut own] = [[0.0; 21]; 3];
+                all.series(t, side, known, 1, &mut found);
+                for k in 1..=count {
+                    let jet = single(k).at(t, side);
+                    single(k).series(t, side, [jet.value, jet.rate], 1, &mut own);
+                    expected.iter_mut().zip(own).for_each(|(e, own)| *e += own);
+                }
+                for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
+                    // Of the largest of the terms, whose frequency is the highest.
+                    let scale = (0.7 * f64::from(count) * 1.5).powi(k as i32).max(1.0);
+                    let off = (found - expected).abs();
+                    assert!(off <= 1e-14 * scale, "{count} at {t}, {k}: {off:e}");
+                }
+            }
+        }
+    }
+}
