@@ -1,8 +1,8 @@
-"""A ground motion of our own, with a horizontal and a vertical component: scenes/records/synthetic.csv.
+"""A ground motion of our own, with a horizontal and a vertical component: studies/records/synthetic.csv.
 
 Sums of cosines with random phases (Shinozuka, M. and Deodatis, G. (1991), Appl. Mech. Rev. 44(4), 191-204), whose spectrum
 is that of Kanai and Tajimi times the high-pass filter of Clough and Penzien, under the envelope of Amin and Ang (1968).
-No record of an earthquake is in it. Run: python3 tools/synthetic_record.py > scenes/records/synthetic.csv
+No record of an earthquake is in it. Run: python3 tools/synthetic_record.py > studies/records/synthetic.csv
 """
 
 import math
