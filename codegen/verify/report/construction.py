@@ -33,10 +33,10 @@ def construction_parts(constructed, paper):
 
 
 def _frequencies(found):
-    """Small undamped motions about rest: w is the square of a frequency."""
+    """Small motions about rest, without damping and forces: w is the square of a frequency."""
     if not found:
         return []
-    parts, about = [], "Small undamped motions about rest: "
+    parts, about = [], "Small motions about rest, without damping and forces: "
     if len(found.polynomial) == 2:
         # k - w m = 0
         parts.append((f"{about}the square of the frequency is w = ", -found.polynomial[0] * found.polynomial[1].inverse()))

@@ -70,7 +70,7 @@ class Unsaid(unittest.TestCase):
                             dissipation=lambda s, m: s.c * s.dx**2 / 2, forces={"x": lambda s, m: s.F})
         result = report.verify(Case("oscillator", Path("."), paper, [energies]), thorough=False)
         self.assertEqual(result.constructed[0].frequencies.values, {"one": [4.0]})
-        self.assertIn("Small undamped motions about rest: 2 rad/s (one)", text.as_text(result))
+        self.assertIn("Small motions about rest, without damping and forces: 2 rad/s (one)", text.as_text(result))
 
 
 if __name__ == "__main__":
