@@ -86,6 +86,16 @@ impl Observer for Outputs {
         }
     }
 
+    fn sees_points(&self) -> bool {
+        self.sketch.is_some()
+    }
+
+    fn point(&mut self, t: f64, _mode: usize, values: &[f64]) {
+        if let Some(sketch) = &mut self.sketch {
+            sketch.point(t, values);
+        }
+    }
+
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
         let sides = sides.map(|[before, after]| [before, after]);
         if let Some(stream) = &mut self.stream {

@@ -5,9 +5,10 @@
 //! each column stay. Intervals of a larger k are made of whole ones of a smaller k, so that the extremes are those of
 //! all rows, however often it happens.
 
+use crate::hybrid::Observer;
 use crate::run::Layout;
 use crate::run::{Column, Event, Jump, Run, Snapshot};
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// Most numbers that are kept of the rows: 32 MB, some thousand intervals of a model with twenty columns.
 const MOST_OF_ROWS: usize = 1 << 22;
@@ -23,6 +24,8 @@ pub struct Sketch {
     rows: Series,
     sides: Series,
     marks: Marks,
+    /// Number of rows and points that it was given.
+    taken: usize,
 }
 
 /// Values of columns over time.
@@ -78,6 +81,7 @@ impl Sketch {
                 interval: 0.0,
                 thinned: [0; 2],
             },
+            taken: 0,
         }
     }
 
@@ -96,7 +100,13 @@ impl Sketch {
 
     /// Takes a row of the trajectory. Times do not decrease.
     pub fn row(&mut self, t: f64, values: &[f64]) {
+        self.taken += 1;
         self.rows.push(t, values.iter().copied());
+    }
+
+    /// Takes a point between rows. Times do not decrease.
+    pub fn point(&mut self, t: f64, values: &[f64]) {
+        self.row(t, values);
     }
 
     /// Takes a transition, with the states before and after it where they are kept. Times do not decrease.
@@ -124,6 +134,11 @@ impl Sketch {
             (_, Some(_)) => sides.next(),
             _ => samples.next(),
         })
+    }
+
+    /// Number of rows and points that it was given.
+    pub(crate) fn taken(&self) -> usize {
+        self.taken
     }
 
     /// From when on every row and every transition is kept, s; −∞ where nothing was left out.
@@ -154,6 +169,23 @@ impl Sketch {
     /// Index of a column by name.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c.name == name)
+    }
+}
+
+/// A run goes into a sketch while it is computed, with the points that its curves have between rows.
+impl Observer for Sketch {
+    fn row(&mut self, t: f64, _mode: usize, values: &[f64]) -> ControlFlow<()> {
+        Sketch::row(self, t, values);
+        ControlFlow::Continue(())
+    }
+    fn sees_points(&self) -> bool {
+        true
+    }
+    fn point(&mut self, t: f64, _mode: usize, values: &[f64]) {
+        Sketch::point(self, t, values);
+    }
+    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+        Sketch::event(self, jump, sides.map(|[before, after]| [before, after]));
     }
 }
 

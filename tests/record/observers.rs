@@ -7,7 +7,9 @@ use dalembert::hybrid::{
     MadeStep, Observer, Problem, Replay, resume, resume_with, simulate, simulate_with,
 };
 use dalembert::model::models;
-use dalembert::record::{Earlier, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream};
+use dalembert::record::{
+    Earlier, Group, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream,
+};
 use dalembert::scene::Scene;
 
 fn scene(name: &str, overrides: &[&str]) -> Scene {
@@ -23,6 +25,9 @@ type At = (f64, Vec<f64>, Vec<f64>);
 #[derive(Default)]
 struct Told {
     rows: Vec<(f64, usize, Vec<f64>)>,
+    /// Rows and points, in the order in which they came.
+    curve: Vec<(f64, Vec<f64>)>,
+    sees_points: bool,
     events: Vec<(Jump, Option<[Snapshot; 2]>)>,
     /// Times at which steps begin and end, and the states at these.
     steps: Vec<[At; 2]>,
@@ -34,6 +39,7 @@ struct Told {
 impl Observer for Told {
     fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()> {
         self.rows.push((t, mode, values.to_vec()));
+        self.curve.push((t, values.to_vec()));
         match self.end_at == Some(self.rows.len()) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
@@ -41,6 +47,12 @@ impl Observer for Told {
     }
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
         self.events.push((*jump, sides.cloned()));
+    }
+    fn sees_points(&self) -> bool {
+        self.sees_points
+    }
+    fn point(&mut self, t: f64, _mode: usize, values: &[f64]) {
+        self.curve.push((t, values.to_vec()));
     }
     fn sees_steps(&self) -> bool {
         self.sees_steps
@@ -121,6 +133,53 @@ fn steps_are_shown_with_their_dense_output_up_to_their_events() {
         }
         assert!(2 * seen > told.events.len(), "{name}: {seen}");
     }
+}
+
+#[test]
+fn points_between_rows_are_those_of_the_motion() {
+    // A fall: y = 1 − g t²/2, of which the energy is kept; rows are 0.1 s apart.
+    for method in ["method=taylor", "method=radau"] {
+        let scene = scene("bouncing_ball", &["end=0.4", "record.every=0.1", method]);
+        let problem = &scene.problem;
+        let mut told = Told {
+            sees_points: true,
+            ..Told::default()
+        };
+        simulate_with(problem, &mut told, &mut Silent).unwrap();
+        let run = simulate(problem, &mut Silent).unwrap();
+        same(&run, &told);
+        let gravity = run
+            .subject
+            .parameters
+            .iter()
+            .find(|p| p.0 == "g")
+            .unwrap()
+            .1;
+        assert!(
+            told.curve.len() > told.rows.len() + 25,
+            "{method}: {}",
+            told.curve.len()
+        );
+        assert!(told.curve.is_sorted_by(|a, b| a.0 <= b.0), "{method}");
+        let energy = problem.layout().range(Group::Energy).start;
+        for (t, values) in &told.curve {
+            let (h, rate) = (1.0 - gravity * t * t / 2.0, -gravity * t);
+            assert!((values[0] - h).abs() < 1e-14, "{method}: h at {t}");
+            assert!(
+                (values[1] - rate).abs() < 1e-14 * 4.0,
+                "{method}: rate at {t}"
+            );
+            assert!((values[energy] / told.curve[0].1[energy] - 1.0).abs() < 1e-14);
+        }
+    }
+    // Rows that are as close as that are the curve.
+    let scene = scene("bouncing_ball", &["end=0.4", "record.every=5e-5"]);
+    let mut told = Told {
+        sees_points: true,
+        ..Told::default()
+    };
+    simulate_with(&scene.problem, &mut told, &mut Silent).unwrap();
+    assert_eq!(told.curve.len(), told.rows.len());
 }
 
 /// Problems of which steps hold many samples: a flight, and a motion with energies in its rows.

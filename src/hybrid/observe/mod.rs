@@ -34,6 +34,7 @@ use interpolants::{Interpolants, MOST};
 use ledger::RunningLedger;
 pub use observer::{Collected, MadeStep, Observer};
 pub(super) use recording::Recording;
+use samples::Points;
 pub(super) use samples::{Samples, sample_time};
 use std::ops::ControlFlow;
 
@@ -53,6 +54,9 @@ pub(super) struct Observers<'o> {
     /// Where rows and transitions go.
     pub recording: Recording<'o>,
     pub samples: Samples,
+    points: Points,
+    /// When the run ends, if not before, s.
+    end: f64,
     /// Evaluates outputs, where they are recorded.
     pub outputs: Outputs,
     /// The energy ledger, where it is kept.
@@ -162,6 +166,8 @@ impl<'o> Observers<'o> {
         Observers {
             recording,
             samples: Samples::from(record.every, 0),
+            points: Points::new(),
+            end: problem.end.time,
             outputs: Outputs::new(problem),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             interpolants: match extremes.is_some() || record.ledger || record.columns.energies {
@@ -187,7 +193,9 @@ impl<'o> Observers<'o> {
 
     /// Whether steps are looked at beyond the samples.
     pub fn watch_steps(&self) -> bool {
-        self.ledger.is_some() || self.extremes.is_some() || self.recording.sees_steps
+        let recording = &self.recording;
+        let seen = recording.sees_steps || recording.sees_points;
+        self.ledger.is_some() || self.extremes.is_some() || seen
     }
 
     /// Whether what is recorded depends on the accelerations.
@@ -277,6 +285,7 @@ impl<'o> Observers<'o> {
     pub fn rewind(&mut self) {
         self.recording.rewind();
         self.samples.rewind();
+        self.points = Points::new();
         if let Some(extremes) = &mut self.extremes {
             *extremes = Extremes::new(&self.layout);
         }
@@ -293,6 +302,12 @@ impl<'o> Observers<'o> {
     pub fn step<F: Size, M: Motion<F>>(&mut self, mut step: Step<F, M>) -> ControlFlow<f64> {
         if self.recording.sees_steps {
             self.show(&mut step);
+        }
+        if self.recording.sees_points {
+            let (from, to) = (step.motion.start(), step.end + step.beyond);
+            let t = step.equations.clock.start.plus(from).seconds();
+            self.points
+                .enter([from, to], t, self.record.every, self.end);
         }
         let due = self.due(step.equations, step.end + step.beyond).is_some();
         // What the method gives in one number is not enough inside of the step.

@@ -15,6 +15,15 @@ pub trait Observer {
     /// [`crate::hybrid::Record::event_states`] asks for them.
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>);
 
+    /// Whether [`Observer::point`] is to be called; asked once, before the run.
+    fn sees_points(&self) -> bool {
+        false
+    }
+
+    /// A point of the dense output between rows, laid out as a row: as many a step as a curve needs to look like one,
+    /// where rows are further apart than that.
+    fn point(&mut self, _t: f64, _mode: usize, _values: &[f64]) {}
+
     /// Whether [`Observer::step`] is to be called; asked once, before the run.
     fn sees_steps(&self) -> bool {
         false
@@ -51,6 +60,12 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
         (**self).event(jump, sides);
+    }
+    fn sees_points(&self) -> bool {
+        (**self).sees_points()
+    }
+    fn point(&mut self, t: f64, mode: usize, values: &[f64]) {
+        (**self).point(t, mode, values);
     }
     fn sees_steps(&self) -> bool {
         (**self).sees_steps()

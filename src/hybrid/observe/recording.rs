@@ -19,8 +19,9 @@ enum To<'o> {
 /// The rows and transitions of a run on their way to who wants them.
 pub(in crate::hybrid) struct Recording<'o> {
     to: To<'o>,
-    /// Whether the observer sees steps.
+    /// Whether the observer sees steps, and points between rows.
     pub sees_steps: bool,
+    pub sees_points: bool,
     /// Room for a row.
     row: Box<[f64]>,
     /// Time of the last one, s.
@@ -55,9 +56,10 @@ impl<'o> Recording<'o> {
 
     /// To an observer.
     pub fn told(observer: &'o mut dyn Observer, layout: &Layout) -> Self {
-        let sees_steps = observer.sees_steps();
+        let (sees_steps, sees_points) = (observer.sees_steps(), observer.sees_points());
         Recording {
             sees_steps,
+            sees_points,
             ..Self::new(To::Observer(Box::new(observer)), layout)
         }
     }
@@ -66,6 +68,7 @@ impl<'o> Recording<'o> {
         Recording {
             to,
             sees_steps: false,
+            sees_points: false,
             row: vec![0.0; layout.columns().len()].into(),
             last: None,
             tally: Tally::default(),
@@ -102,6 +105,15 @@ impl<'o> Recording<'o> {
         match &mut self.to {
             To::Collected(collected) => collected.row(t, mode, &self.row),
             To::Observer(observer) => observer.row(t, mode, &self.row),
+        }
+    }
+
+    /// A point between rows, which `fill` fills.
+    pub fn point(&mut self, t: f64, mode: usize, fill: impl FnOnce(&mut [f64])) {
+        if let To::Observer(observer) = &mut self.to {
+            self.row.fill(0.0);
+            fill(&mut self.row);
+            observer.point(t, mode, &self.row);
         }
     }
 

@@ -79,6 +79,69 @@ pub(in crate::hybrid) fn sample_time(every: Option<f64>, index: u64) -> f64 {
     }
 }
 
+/// Points that a curve has in a step: a line between two of them is off by (4/32)²/8 = 0.2 % of the amplitude of an
+/// oscillation, 4 rad of which are about the longest step that any method takes.
+const POINTS: f64 = 32.0;
+/// Points that a curve has in the time of a run, at most: some on each pixel of a screen, also after a zoom.
+const POINTS_OF_A_RUN: f64 = 5000.0;
+
+/// Points of curves, between the rows.
+#[derive(Debug)]
+pub(super) struct Points {
+    /// The next one and the end of the step, in local time, and from one to the next, s.
+    next: f64,
+    end: f64,
+    spacing: f64,
+    /// When the last one was, s.
+    last: f64,
+}
+
+impl Points {
+    /// None yet.
+    pub fn new() -> Self {
+        Points {
+            next: f64::INFINITY,
+            end: f64::NEG_INFINITY,
+            spacing: 0.0,
+            last: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Those of a step between two local times that begins at time `t`, with rows at these intervals: none where rows are
+    /// as close. The run ends at time `end`, if not before. All in s.
+    pub fn enter(&mut self, [from, to]: [f64; 2], t: f64, every: Option<f64>, end: f64) {
+        let (of_step, least) = ((to - from) / POINTS, end / POINTS_OF_A_RUN);
+        let spacing = of_step.max(least);
+        *self = match every {
+            Some(every) if every <= spacing => Points {
+                last: self.last,
+                ..Points::new()
+            },
+            _ => Points {
+                next: from + of_step.max(self.last + least - t),
+                end: to,
+                spacing,
+                last: self.last,
+            },
+        };
+    }
+
+    /// Local time of the next one, s; infinite where there is none. The end of a step is the start of the next one, or an
+    /// event, which has rows of its own.
+    fn next(&self) -> f64 {
+        match self.next < self.end {
+            true => self.next,
+            false => f64::INFINITY,
+        }
+    }
+
+    /// The next one was told, for this time, s.
+    fn pass(&mut self, t: f64) {
+        self.last = t;
+        self.next += self.spacing;
+    }
+}
+
 /// When samples are due.
 #[derive(Debug)]
 pub(in crate::hybrid) struct Samples {
@@ -141,10 +204,13 @@ fn held<F: Size>(
 }
 
 impl Observers<'_> {
-    /// Local time of the next sample, if it is due up to local time `to`.
-    pub(super) fn due<F: Size>(&self, equations: &Equations<F>, to: f64) -> Option<f64> {
-        let tau = Instant::new(self.samples.next()).since(equations.clock.start);
-        (tau <= to).then_some(tau)
+    /// Local time of the next sample or point of curves, if one is due up to local time `to`, and whether it is a point.
+    pub(super) fn due<F: Size>(&self, equations: &Equations<F>, to: f64) -> Option<(f64, bool)> {
+        let sample = Instant::new(self.samples.next()).since(equations.clock.start);
+        let point = self.points.next();
+        let is_point = point < sample;
+        let tau = if is_point { point } else { sample };
+        (tau <= to).then_some((tau, is_point))
     }
 
     /// Records the samples that are due in a part of a step.
@@ -158,7 +224,7 @@ impl Observers<'_> {
             true => step.end + step.beyond,
             false => part.to,
         };
-        while let Some(tau) = self.due(step.equations, to) {
+        while let Some((tau, is_point)) = self.due(step.equations, to) {
             let equations = &mut *step.equations;
             let [q, v, a] = guards::motion(equations, step.motion, tau, self.needs_accelerations());
             let (mode, here) = (step.mode, &mut *step.here);
@@ -185,8 +251,14 @@ impl Observers<'_> {
                 a: &a,
             };
             let (kernel, context) = (equations.kernel, &*equations.context);
-            let t = self.samples.next();
             let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);
+            if is_point {
+                let t = equations.clock.start.plus(tau).seconds();
+                self.recording.point(t, here.shown, fill);
+                self.points.pass(t);
+                continue;
+            }
+            let t = self.samples.next();
             let flow = self.recording.row(t, here.shown, fill);
             self.samples.pass();
             if flow.is_break() {
