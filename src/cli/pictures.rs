@@ -2,7 +2,8 @@
 
 use super::outcome::Failure;
 use crate::record::Units;
-use crate::record::plot::{LEAST, Look};
+use crate::record::plot::{Format, LEAST, Look};
+use clap::builder::PossibleValuesParser;
 
 #[derive(Debug, Clone, clap::Args)]
 pub struct UnitsArguments {
@@ -16,6 +17,9 @@ pub struct PictureArguments {
     /// Width and height of plots in pixels, such as 1200x800
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     plot_size: Option<(f64, f64)>,
+    /// Formats of plots: svg, png, pdf; svg if absent
+    #[arg(long, value_name = "FORMAT,…", value_delimiter = ',', value_parser = formats())]
+    plot_format: Vec<String>,
     #[command(flatten)]
     units: UnitsArguments,
 }
@@ -38,11 +42,43 @@ impl UnitsArguments {
 impl PictureArguments {
     /// How pictures look, with all of time and all panels.
     pub fn look(&self) -> Result<Look, Failure> {
+        let named = |name: &String| Format::ALL.iter().find(|f| f.ending() == name).copied();
+        let mut formats: Vec<Format> = self.plot_format.iter().filter_map(named).collect();
+        formats.dedup();
+        let is_png = |format: &&Format| format.ending() == "png";
+        if let (Some(png), Some((width, height))) = (formats.iter().find(is_png), self.plot_size)
+            && !png.has_room((width, height))
+        {
+            return Err(Failure::wrong_input(format!(
+                "--plot-size: a PNG of {width}x{height}, with two pixels on each, has more than 100 million; choose a smaller \
+                 size, or pdf or svg"
+            )));
+        }
         Ok(Look {
             units: self.units.units()?,
             size: self.plot_size,
+            formats,
             ..Look::default()
         })
+    }
+}
+
+impl PictureArguments {
+    /// For a command without a folder for plots, which these arguments would say nothing about.
+    pub fn refuse_without_plots(&self) -> Result<(), Failure> {
+        refuse_without_plots("--plot-size", self.plot_size.is_some())?;
+        refuse_without_plots("--plot-format", !self.plot_format.is_empty())
+    }
+}
+
+/// Refuses an argument about plots where none are written.
+pub fn refuse_without_plots(argument: &str, is_given: bool) -> Result<(), Failure> {
+    match is_given {
+        false => Ok(()),
+        true => Err(Failure::wrong_input(format!(
+            "{argument} says how plots look, and none are written without a folder; add --out DIR, or leave it out (a page \
+             shows all of a run, and its reader zooms there)"
+        ))),
     }
 }
 
@@ -51,6 +87,11 @@ impl WindowArguments {
     pub fn window(&self) -> Option<(f64, f64)> {
         self.plot_window
     }
+}
+
+/// The formats of this build, by their endings.
+fn formats() -> PossibleValuesParser {
+    PossibleValuesParser::new(Format::ALL.iter().map(|format| format.ending()))
 }
 
 fn size(text: &str) -> Result<(f64, f64), String> {

@@ -8,7 +8,7 @@ use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::outputs::{NotReplayed, Outputs};
 use super::page::{command_line, write_page};
-use super::pictures::{PictureArguments, WindowArguments};
+use super::pictures::{PictureArguments, WindowArguments, refuse_without_plots};
 use super::{print, room, warnings, watch};
 use crate::hybrid::{Invalid, Reason, Replay, check_same, resume_with, simulate_with};
 use crate::model::Models;
@@ -108,6 +108,12 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         panels: arguments.plot_panels.clone(),
         ..arguments.pictures.look()?
     };
+    if arguments.out.is_none() && arguments.resume.is_none() {
+        let panels = !arguments.plot_panels.is_empty();
+        arguments.pictures.refuse_without_plots()?;
+        refuse_without_plots("--plot-window", look.window.is_some())?;
+        refuse_without_plots("--plot-panels", panels)?;
+    }
     let shown = look.check(&layout);
     shown.map_err(|message| Failure::wrong_input(format!("--plot-panels: {message}")))?;
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
@@ -167,7 +173,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     }
     interrupt::leave();
     // The report is shown also where files cannot be written.
-    let report = Report::new(&run);
+    let report = Report::new(&run).in_units(&look.units);
     print::output(&report)?;
     warnings::after(report.summary());
     let Outputs { stream, sketch, .. } = outputs;

@@ -21,6 +21,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::digest::{Digesting, Digests, difference};
+#[cfg(feature = "plots")]
+use super::plot::{Format, Picture};
 
 /// Name of the marker.
 const MARKER: &str = ".dalembert-output";
@@ -220,9 +222,19 @@ impl Staging {
         self.close(file)
     }
 
-    /// Writes a picture into the file that is called `stem` with the ending of its format.
-    pub fn picture(&mut self, stem: &str, svg: &str) -> Result<(), FolderError> {
-        self.file(&format!("{stem}.svg"), |out| out.write_all(svg.as_bytes()))
+    /// Writes a picture into the files that are called `stem` with the endings of the formats.
+    #[cfg(feature = "plots")]
+    pub fn picture(
+        &mut self,
+        stem: &str,
+        picture: &Picture,
+        formats: &[Format],
+    ) -> Result<(), FolderError> {
+        for &format in formats {
+            let name = format!("{stem}.{}", format.ending());
+            self.file(&name, |out| out.write_all(&picture.file(format)))?;
+        }
+        Ok(())
     }
 
     /// Creates a file that is filled while others are, until [`Staging::close`].

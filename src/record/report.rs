@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use super::number::rounded;
-use super::{Question, Run, Summary};
+use super::{Question, Run, Summary, Units};
 
 /// Digits shown: enough to compare two runs by eye. The exact numbers are in the files.
 const DIGITS: usize = 6;
@@ -13,6 +13,8 @@ const DIGITS: usize = 6;
 #[derive(Debug)]
 pub struct Report {
     summary: Summary,
+    /// The reader's.
+    units: Units,
 }
 
 impl Report {
@@ -20,7 +22,28 @@ impl Report {
     pub fn new(run: &Run) -> Report {
         Report {
             summary: Summary::new(run),
+            units: Units::default(),
         }
+    }
+
+    /// The same with extremes, times and energies in the reader's units.
+    pub fn in_units(self, units: &Units) -> Report {
+        Report {
+            units: units.clone(),
+            ..self
+        }
+    }
+
+    /// A number in a unit as it is shown, to so many digits, and the unit.
+    fn shown(&self, x: f64, unit: &str, digits: usize) -> (String, String) {
+        let (x, unit) = self.units.show(x, unit);
+        (rounded(x, digits), unit)
+    }
+
+    /// A time with its unit.
+    fn time(&self, t: f64) -> String {
+        let (t, unit) = self.shown(t, "s", DIGITS);
+        format!("{t} {unit}")
     }
 }
 
@@ -42,31 +65,31 @@ impl Display for Report {
         writeln!(f, "{}{}", summary.model, choices.collect::<String>())?;
         let end = &summary.end;
         match &summary.failure {
-            None => write!(f, "reached t = {} s", number(end.t))?,
+            None => write!(f, "reached t = {}", self.time(end.t))?,
             Some(failure) => {
                 let at = &failure.at;
                 writeln!(
                     f,
-                    "stopped early at t = {} s, after {} transitions, in mode {}:\n  {}",
-                    number(at.t),
+                    "stopped early at t = {}, after {} transitions, in mode {}:\n  {}",
+                    self.time(at.t),
                     at.j,
                     at.mode,
                     failure.reason
                 )?;
-                write!(f, "computed up to t = {} s", number(end.t))?;
+                write!(f, "computed up to t = {}", self.time(end.t))?;
             }
         }
         writeln!(f, ", mode {}{}\n", end.mode, discrete(summary))?;
-        table(f, &states(summary))?;
+        table(f, &self.states())?;
         write!(f, "\ntransitions {}", summary.events.total)?;
         for (i, (name, count)) in summary.events.by_transition.iter().enumerate() {
             write!(f, "{} {count} {name}", if i == 0 { ":" } else { "," })?;
         }
         writeln!(f)?;
-        energies(f, summary)?;
+        self.energies(f)?;
         error_estimate(f, summary)?;
-        uncertain(f, summary)?;
-        reached(f, summary)?;
+        self.uncertain(f)?;
+        self.reached(f)?;
         let solver = &summary.solver;
         writeln!(
             f,
@@ -96,24 +119,118 @@ fn discrete(summary: &Summary) -> String {
     states.collect()
 }
 
-/// One row a coordinate, velocity, reaction, output or energy.
-fn states(summary: &Summary) -> Vec<[String; 7]> {
-    let mut rows = vec![["", "unit", "end", "min", "at t/s", "max", "at t/s"].map(str::to_owned)];
-    let end = &summary.end;
-    for (name, peak) in &summary.peaks.0 {
-        let mut state = end.state();
-        let value = state.find(|(n, _)| n == name);
-        rows.push([
-            name.clone(),
-            peak.unit.clone(),
-            value.map_or(String::new(), |(_, x)| number(*x)),
-            number(peak.min),
-            number(peak.t_min),
-            number(peak.max),
-            number(peak.t_max),
-        ]);
+impl Report {
+    /// One row a coordinate, velocity, reaction, output or energy.
+    fn states(&self) -> Vec<[String; 7]> {
+        let (_, second) = self.units.show(1.0, "s");
+        let at = format!("at t/{second}");
+        let heads = ["", "unit", "end", "min", &at, "max", &at];
+        let mut rows = vec![heads.map(str::to_owned)];
+        let end = &self.summary.end;
+        for (name, peak) in &self.summary.peaks.0 {
+            let mut state = end.state();
+            let value = state.find(|(n, _)| n == name);
+            let shown = |x: f64| self.shown(x, &peak.unit, DIGITS).0;
+            let time = |t: f64| self.shown(t, "s", DIGITS).0;
+            rows.push([
+                name.clone(),
+                self.units.show(1.0, &peak.unit).1,
+                value.map_or(String::new(), |(_, x)| shown(*x)),
+                shown(peak.min),
+                time(peak.t_min),
+                shown(peak.max),
+                time(peak.t_max),
+            ]);
+        }
+        rows
     }
-    rows
+
+    /// One line: how many places are in doubt, the first of them, and what to do.
+    fn uncertain(&self, f: &mut Formatter) -> fmt::Result {
+        let uncertain = &self.summary.uncertain;
+        let Some(first) = uncertain.first.first() else {
+            return Ok(());
+        };
+        let (value, error) = (rounded(first.value, 2), rounded(first.error, 2));
+        let what = match first.what {
+            Question::Graze => format!("crosses zero by {value}, with an error of {error}"),
+            Question::NearMiss => format!("turns back at {value}, with an error of {error}"),
+            Question::Unresolved => "could not be resolved".to_owned(),
+            Question::Choice => format!("decides by {value}, with an error of {error}"),
+            Question::Unsettled => format!(
+                "is another event at another tolerance, where the one before differs by {value}"
+            ),
+        };
+        writeln!(
+            f,
+            "uncertain   {} times what happens, first at t = {}: {} {what} {}; tighten accuracy.relative",
+            uncertain.total,
+            self.time(first.t),
+            first.guard,
+            first.unit,
+        )
+    }
+
+    /// One line a limit state, and one a condition of the model that does not hold.
+    fn reached(&self, f: &mut Formatter) -> fmt::Result {
+        for state in &self.summary.reached.limit_states {
+            let ended = if state.ends {
+                "; the run ends there"
+            } else {
+                ""
+            };
+            let (name, t, message) = (&state.name, self.time(state.t), &state.message);
+            writeln!(f, "limit       {name} at t = {t}: {message}{ended}")?;
+        }
+        for left in &self.summary.reached.validity {
+            let when = left
+                .t
+                .map_or(String::new(), |t| format!(" from t = {} on", self.time(t)));
+            writeln!(
+                f,
+                "validity    not {}{when}: {}",
+                left.condition, left.message
+            )?;
+        }
+        Ok(())
+    }
+
+    fn energies(&self, f: &mut Formatter) -> fmt::Result {
+        let Some(energy) = &self.summary.energy else {
+            return Ok(());
+        };
+        let (_, unit) = self.units.show(1.0, "J");
+        let number = |x: f64, digits: usize| self.shown(x, "J", digits).0;
+        writeln!(
+            f,
+            "energy / {unit:<2} initial {} + input work {} − dissipated {} − lost at impacts {} = final {}\n            \
+             imbalance {}",
+            number(energy.initial, DIGITS),
+            number(energy.input_work, DIGITS),
+            number(energy.dissipated, DIGITS),
+            number(energy.lost_at_impacts, DIGITS),
+            number(energy.final_, DIGITS),
+            number(energy.imbalance, 2),
+        )?;
+        if !energy.frame.is_empty() {
+            writeln!(f, "            {}", energy.frame)?;
+        }
+        for (name, impacts) in &self.summary.impacts.by_transition.0 {
+            writeln!(
+                f,
+                "            {} × {name}: lost {} {unit}, from {} to {} {unit} each{}",
+                impacts.count,
+                number(impacts.lost, DIGITS),
+                number(impacts.smallest_loss, 3),
+                number(impacts.largest_loss, 3),
+                match impacts.gaining {
+                    0 => String::new(),
+                    n => format!("; {n} gained energy"),
+                },
+            )?;
+        }
+        Ok(())
+    }
 }
 
 /// Writes rows with aligned columns, the first two to the left.
@@ -135,58 +252,6 @@ fn table<const N: usize>(f: &mut Formatter, rows: &[[String; N]]) -> fmt::Result
         };
         let line: Vec<String> = row.iter().enumerate().map(cell).collect();
         writeln!(f, "{}", line.join("  ").trim_end())?;
-    }
-    Ok(())
-}
-
-/// One line: how many places are in doubt, the first of them, and what to do.
-fn uncertain(f: &mut Formatter, summary: &Summary) -> fmt::Result {
-    let uncertain = &summary.uncertain;
-    let Some(first) = uncertain.first.first() else {
-        return Ok(());
-    };
-    let (value, error) = (rounded(first.value, 2), rounded(first.error, 2));
-    let what = match first.what {
-        Question::Graze => format!("crosses zero by {value}, with an error of {error}"),
-        Question::NearMiss => format!("turns back at {value}, with an error of {error}"),
-        Question::Unresolved => "could not be resolved".to_owned(),
-        Question::Choice => format!("decides by {value}, with an error of {error}"),
-        Question::Unsettled => {
-            format!(
-                "is another event at another tolerance, where the one before differs by {value}"
-            )
-        }
-    };
-    writeln!(
-        f,
-        "uncertain   {} times what happens, first at t = {} s: {} {what} {}; tighten accuracy.relative",
-        uncertain.total,
-        number(first.t),
-        first.guard,
-        first.unit,
-    )
-}
-
-/// One line a limit state, and one a condition of the model that does not hold.
-fn reached(f: &mut Formatter, summary: &Summary) -> fmt::Result {
-    for state in &summary.reached.limit_states {
-        let ended = if state.ends {
-            "; the run ends there"
-        } else {
-            ""
-        };
-        let (name, t, message) = (&state.name, number(state.t), &state.message);
-        writeln!(f, "limit       {name} at t = {t} s: {message}{ended}")?;
-    }
-    for left in &summary.reached.validity {
-        let when = left
-            .t
-            .map_or(String::new(), |t| format!(" from t = {} s on", number(t)));
-        writeln!(
-            f,
-            "validity    not {}{when}: {}",
-            left.condition, left.message
-        )?;
     }
     Ok(())
 }
@@ -213,39 +278,4 @@ fn error_estimate(f: &mut Formatter, summary: &Summary) -> fmt::Result {
         estimate.method,
         rounded(estimate.tolerance, 2),
     )
-}
-
-fn energies(f: &mut Formatter, summary: &Summary) -> fmt::Result {
-    let Some(energy) = &summary.energy else {
-        return Ok(());
-    };
-    writeln!(
-        f,
-        "energy / J  initial {} + input work {} − dissipated {} − lost at impacts {} = final {}\n            \
-         imbalance {}",
-        number(energy.initial),
-        number(energy.input_work),
-        number(energy.dissipated),
-        number(energy.lost_at_impacts),
-        number(energy.final_),
-        rounded(energy.imbalance, 2),
-    )?;
-    if !energy.frame.is_empty() {
-        writeln!(f, "            {}", energy.frame)?;
-    }
-    for (name, impacts) in &summary.impacts.by_transition.0 {
-        writeln!(
-            f,
-            "            {} × {name}: lost {} J, from {} to {} J each{}",
-            impacts.count,
-            number(impacts.lost),
-            rounded(impacts.smallest_loss, 3),
-            rounded(impacts.largest_loss, 3),
-            match impacts.gaining {
-                0 => String::new(),
-                n => format!("; {n} gained energy"),
-            },
-        )?;
-    }
-    Ok(())
 }

@@ -138,9 +138,9 @@ impl Stream {
         staging.close(events.map_err(io_error("write", Path::new(EVENTS)))?)?;
         staging.file(METADATA, |out| write_metadata(run, out))?;
         staging.file(SUMMARY, |out| Summary::new(run).write(out))?;
-        staging.picture(OVERVIEW, &overview_of(run, sketch, look))?;
+        staging.picture(OVERVIEW, &overview_of(run, sketch, look), look.formats())?;
         if let Some(portraits) = phase_portraits_of(run, sketch, look) {
-            staging.picture(PHASE, &portraits)?;
+            staging.picture(PHASE, &portraits, look.formats())?;
         }
         staging.put_in_place()
     }

@@ -348,3 +348,27 @@ fn events_that_no_tolerance_settles_are_said_to_be_unsettled() {
     assert_eq!(first["guard"], "landing", "{uncertain}");
     assert!(stdout(&output).contains("is another event at another tolerance"));
 }
+
+#[test]
+fn pictures_come_in_the_formats_that_are_asked_for() {
+    let home = tempfile::tempdir().unwrap();
+    let scene = scene("bouncing_ball");
+    let run = |more: &[&str], status| {
+        ends_with(
+            status,
+            home.path(),
+            &[&["run", &scene, "--out", "out"], more].concat(),
+        )
+    };
+    run(&["--plot-format", "png,pdf", "--set", "end=0.5"], 0);
+    let file = |name: &str| fs::read(home.path().join("out").join(name)).unwrap();
+    let pdf = file("overview.pdf");
+    assert!(pdf.starts_with(b"%PDF-1.") && pdf.trim_ascii_end().ends_with(b"%%EOF"));
+    // Width and height stand behind the name of the first part: twice those of the picture.
+    let png = file("phase.png");
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
+    assert_eq!(png[16..24], [0, 0, 2, 248, 0, 0, 2, 148]);
+    assert!(!home.path().join("out/overview.svg").exists());
+    run(&["--plot-format", "gif"], 2);
+    run(&["--plot-format", "png", "--plot-size", "20000x20000"], 2);
+}

@@ -18,7 +18,7 @@ impl Comparison<'_> {
     /// The runs there are.
     pub fn runs(&self) -> impl Iterator<Item = (&Case, &Run)> {
         let cases = self.cases.iter();
-        cases.filter_map(|case| Some((case, case.run.as_ref().ok()?)))
+        cases.filter_map(|case| Some((case, &case.run.as_ref().ok()?.0)))
     }
 
     /// The coordinates that are not zero throughout in every run.
@@ -73,7 +73,7 @@ impl Comparison<'_> {
     }
 
     fn measure(&self, name: &str, unit: &str, of: impl Fn(&Run) -> Option<f64>) -> Measure {
-        let value = |case: &Case| case.run.as_ref().ok().and_then(&of);
+        let value = |case: &Case| case.run.as_ref().ok().and_then(|(run, _)| of(run));
         Measure {
             name: name.to_owned(),
             unit: unit.to_owned(),

@@ -13,13 +13,13 @@ use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
 use super::page::write_page;
-use super::pictures::{PictureArguments, WindowArguments};
+use super::pictures::{PictureArguments, WindowArguments, refuse_without_plots};
 use super::run::refusal;
 use super::{models, print, room};
-use crate::hybrid::simulate;
+use crate::hybrid::simulate_with;
 use crate::model::Model;
 use crate::record::plot::Look;
-use crate::record::{OutputFolder, Run, Silent};
+use crate::record::{OutputFolder, Run, Silent, Sketch};
 use crate::scene::Scene;
 
 #[derive(Debug, clap::Args)]
@@ -66,8 +66,8 @@ struct Comparison<'m> {
 struct Case {
     /// Options of the choices that vary.
     options: Vec<&'static str>,
-    /// The run, complete or stopped early, or why there is none.
-    run: std::result::Result<Run, String>,
+    /// The run, complete or stopped early, with its curves, or why there is none.
+    run: std::result::Result<(Run, Sketch), String>,
 }
 
 impl Case {
@@ -94,6 +94,10 @@ pub fn compare(arguments: &CompareArguments) -> Result {
         window: arguments.window.window(),
         ..arguments.pictures.look()?
     };
+    if folder.is_none() {
+        arguments.pictures.refuse_without_plots()?;
+        refuse_without_plots("--plot-window", look.window.is_some())?;
+    }
     interrupt::listen()?;
 
     let combinations = combinations(model, &varied);
@@ -184,8 +188,10 @@ fn case(
         .map_err(|errors| errors.to_string())
         .and_then(|scene| {
             room::check_memory(&scene, variants).map_err(|error| error.to_string())?;
-            let run = simulate(&scene.problem, &mut Interruptible(Silent));
-            run.map_err(|reason| refusal(&scene, &reason).to_string())
+            let mut sketch = Sketch::new(&scene.problem.layout());
+            let run = simulate_with(&scene.problem, &mut sketch, &mut Interruptible(Silent));
+            let run = run.map_err(|reason| refusal(&scene, &reason).to_string())?;
+            Ok((run, sketch))
         });
     Case { options, run }
 }

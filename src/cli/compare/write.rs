@@ -19,7 +19,7 @@ impl Case {
     /// How it ended, in a word.
     pub(super) fn outcome(&self) -> &'static str {
         match &self.run {
-            Ok(Run { failure: None, .. }) => "reached end",
+            Ok((run, _)) if run.failure.is_none() => "reached end",
             Ok(_) => "stopped early",
             Err(_) => "refused",
         }
@@ -28,7 +28,7 @@ impl Case {
     /// Why there is no complete run.
     pub(super) fn reason(&self) -> Option<String> {
         match &self.run {
-            Ok(run) => run.failure.as_ref().map(|failure| stopped(run, failure)),
+            Ok((run, _)) => run.failure.as_ref().map(|failure| stopped(run, failure)),
             Err(refusal) => Some(refusal.clone()),
         }
     }
@@ -104,8 +104,9 @@ impl Comparison<'_> {
             files.file(TABLE, |out| self.table(out))?;
             for i in self.coordinates() {
                 let name = self.model.coordinates[i].name;
-                let svg = self.chart(i, Group::Coordinate).svg_as(PLOT, &self.look);
-                files.picture(name, &svg)?;
+                let chart = self.chart(i, Group::Coordinate);
+                let picture = chart.picture(PLOT, &self.look);
+                files.picture(name, &picture, self.look.formats())?;
             }
             Ok(())
         })
@@ -138,14 +139,16 @@ impl Comparison<'_> {
 
     /// A coordinate or its rate over time, one curve a run.
     pub(super) fn chart(&self, coordinate: usize, group: Group) -> Chart {
-        let curve = |(case, run): (&Case, &Run)| Curve {
-            label: case.label(),
-            points: run
-                .curve(run.layout.range(group).start + coordinate)
-                .collect(),
-            ..Curve::default()
+        let curve = |case: &Case| {
+            let (run, sketch) = case.run.as_ref().ok()?;
+            let column = run.layout.range(group).start + coordinate;
+            Some(Curve {
+                label: case.label(),
+                points: sketch.curve(column).collect(),
+                ..Curve::default()
+            })
         };
-        let curves: Vec<Curve> = self.runs().map(curve).collect();
+        let curves: Vec<Curve> = self.cases.iter().filter_map(curve).collect();
         let (_, run) = self
             .runs()
             .next()

@@ -100,6 +100,9 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
     let folder = arguments.out.as_deref().map(OutputFolder::new);
     let folder = folder.transpose()?;
     let look = arguments.pictures.look()?;
+    if folder.is_none() {
+        arguments.pictures.refuse_without_plots()?;
+    }
     interrupt::listen()?;
 
     let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs  {elapsed}");

@@ -1,7 +1,7 @@
 //! The page of a study of precision.
 
 use super::Precision;
-use super::write::{HEADS, described};
+use super::write::described;
 use crate::cli::page::command_line;
 use crate::page::{Page, Table};
 use crate::record::plot::Chart;
@@ -34,7 +34,7 @@ impl Precision {
             ..self.chart()
         });
         page.heading("Runs");
-        let mut table = Table::new(HEADS);
+        let mut table = Table::new(self.heads());
         for row in self.shown_rows(reference.bound) {
             table.row(row);
         }

@@ -7,7 +7,7 @@ use super::Precision;
 use crate::cli::table::Table;
 use crate::precision::{Bound, GIVEN_UP, Measured, Reference, Row, Verdict, method_name};
 use crate::record::plot::{Chart, Curve, Dimension};
-use crate::record::{FolderError, OutputFolder, exact, rounded};
+use crate::record::{FolderError, OutputFolder, Units, exact, rounded};
 
 /// File name of the table, and that of the plot without the format.
 const TABLE: &str = "precision.csv";
@@ -20,7 +20,8 @@ impl Precision {
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         folder.replace(|files| {
             files.file(TABLE, |out| self.table(out))?;
-            files.picture(PLOT, &self.chart().svg_as(SIZE, &self.look))
+            let picture = self.chart().picture(SIZE, &self.look);
+            files.picture(PLOT, &picture, self.look.formats())
         })
     }
 
@@ -146,7 +147,8 @@ fn duration(seconds: f64) -> String {
 }
 
 /// What the table shows of a run, after method and tolerance.
-fn cells(verdict: &Verdict, bound: Bound) -> [String; 9] {
+fn cells(verdict: &Verdict, bound: Bound, units: &Units) -> [String; 9] {
+    let in_unit = |x: f64, unit: &str| units.show(x, unit).0;
     let only = |word: &str, time: String| {
         let mut cells: [String; 9] = Default::default();
         (cells[0], cells[8]) = (word.to_owned(), time);
@@ -166,14 +168,14 @@ fn cells(verdict: &Verdict, bound: Bound) -> [String; 9] {
         shown(found.error.end, bound.end),
         match events.matched {
             0 => "–".to_owned(),
-            _ => shown(events.time, bound.event_time),
+            _ => shown(in_unit(events.time, "s"), in_unit(bound.event_time, "s")),
         },
         events.missed.to_string(),
         events.extra.to_string(),
         events.in_tails.to_string(),
         found
             .imbalance
-            .map_or("–".to_owned(), |x| format!("{x:.1e}")),
+            .map_or("–".to_owned(), |x| format!("{:.1e}", in_unit(x, "J"))),
         found.steps.to_string(),
         found.evaluations.to_string(),
         duration(found.seconds),
@@ -197,7 +199,9 @@ impl Display for Precision {
         let Some(reference) = &study.reference else {
             return write!(f, "the reference is not there, so nothing can be compared");
         };
-        let mut table = Table::new(HEADS).right(1..HEADS.len());
+        let heads = self.heads();
+        let columns = 1..heads.len();
+        let mut table = Table::new(heads).right(columns);
         for row in self.shown_rows(reference.bound) {
             table.row(row);
         }
@@ -213,22 +217,26 @@ impl Display for Precision {
     }
 }
 
-/// Heads of the table of runs.
-pub(super) const HEADS: [&str; 11] = [
-    "method",
-    "tolerance",
-    "end error",
-    "event time/s",
-    "missed",
-    "extra",
-    "in tails",
-    "imbalance/J",
-    "steps",
-    "evaluations",
-    "time",
-];
-
 impl Precision {
+    /// Heads of the table of runs, with the reader's units.
+    pub(super) fn heads(&self) -> [String; 11] {
+        let unit = |unit: &str| self.look.units.show(1.0, unit).1;
+        [
+            "method",
+            "tolerance",
+            "end error",
+            &format!("event time/{}", unit("s")),
+            "missed",
+            "extra",
+            "in tails",
+            &format!("imbalance/{}", unit("J")),
+            "steps",
+            "evaluations",
+            "time",
+        ]
+        .map(str::to_owned)
+    }
+
     /// The rows, method by method.
     fn sorted(&self) -> Vec<&Row> {
         let mut rows: Vec<&Row> = self.study.rows.iter().collect();
@@ -236,14 +244,14 @@ impl Precision {
         rows
     }
 
-    /// The rows of the table, as [`HEADS`] says.
+    /// The rows of the table, as [`Precision::heads`] says.
     pub(super) fn shown_rows(&self, bound: Bound) -> Vec<Vec<String>> {
         let row = |row: &Row| {
             let first = [
                 method_name(row.method).to_owned(),
                 format!("{:.0e}", row.tolerance),
             ];
-            let cells = cells(&row.verdict, bound);
+            let cells = cells(&row.verdict, bound, &self.look.units);
             first.into_iter().chain(cells).collect()
         };
         self.sorted().into_iter().map(row).collect()

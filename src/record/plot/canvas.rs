@@ -1,19 +1,53 @@
-//! Drawing in pixels, on plotters' SVG backend.
+//! Drawing in pixels: a picture is a list of marks, which each format writes in its way.
 
 use super::marked::{DOTS, END_SUB, SUB, is_tall};
 use super::palette::PAPER;
-use plotters::backend::{DrawingBackend, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle,
-};
+use plotters::style::RGBColor;
 
-/// The backend draws on whole units only, so a picture is drawn this many times as large and
-/// shown in its size through the `viewBox`. A tenth of a pixel is below what a screen resolves.
-const UNITS: f64 = 10.0;
+/// Marks are placed on tenths of a pixel, which is below what a screen resolves: so that a long line has few different
+/// points, and every format has the same ones.
+pub(super) const UNITS: f64 = 10.0;
 
-/// The backend writes font sizes divided by this.
-const FONT_FACTOR: f64 = 1.24;
+/// A place in [`UNITS`], from the upper left corner to the right and down.
+pub(super) type Place = (i32, i32);
+
+/// What a picture consists of. Lengths are in [`UNITS`].
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Mark {
+    Line {
+        path: Vec<Place>,
+        width: u32,
+        colour: RGBColor,
+    },
+    Polygon {
+        path: Vec<Place>,
+        colour: RGBColor,
+    },
+    Rectangle {
+        corners: [Place; 2],
+        colour: RGBColor,
+    },
+    Disc {
+        centre: Place,
+        radius: u32,
+        colour: RGBColor,
+    },
+    /// With marks of subscripts, and no dots.
+    Text {
+        text: String,
+        at: Place,
+        anchor: Anchor,
+        font: Font,
+    },
+}
+
+/// A picture, to be written in any format ([`super::Format`]).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Width and height, px.
+    pub(super) size: (f64, f64),
+    pub(super) marks: Vec<Mark>,
+}
 
 /// Which point of a text is at the given position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +67,7 @@ pub(super) enum Anchor {
 }
 
 /// How a text looks.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Font {
     /// Height (px).
     pub size: f64,
@@ -44,43 +78,30 @@ pub(super) struct Font {
 }
 
 /// A picture being drawn; positions are in pixels from the upper left corner.
-pub(super) struct Canvas<'a> {
-    backend: SVGBackend<'a>,
+pub(super) struct Canvas {
+    marks: Vec<Mark>,
 }
 
-/// Draws a picture of `width` × `height` pixels on white and gives it as SVG.
-pub(super) fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> String {
-    let (w, h) = (units(width) as u32, units(height) as u32);
-    let mut svg = String::new();
-    let mut canvas = Canvas {
-        backend: SVGBackend::with_string(&mut svg, (w, h)),
-    };
+/// Draws a picture of `width` × `height` pixels on white.
+pub(super) fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> Picture {
+    let mut canvas = Canvas { marks: Vec::new() };
     canvas.rectangle((0.0, 0.0), (width, height), PAPER);
     draw(&mut canvas);
-    canvas.backend.present().expect(INTO_A_STRING);
-    drop(canvas);
-    let shown = svg.replacen(
-        &format!("width=\"{w}\" height=\"{h}\""),
-        &format!("width=\"{width}\" height=\"{height}\""),
-        1,
-    );
-    // In em, since some viewers take a percentage to be of the picture. 0.21 em of the text is 0.3 em of the subscript, which is 0.7 times as high.
-    shown
-        .replace(SUB, "<tspan font-size=\"0.7em\" dy=\"0.3em\">")
-        .replace(END_SUB, "</tspan><tspan dy=\"-0.21em\">\u{200b}</tspan>")
+    Picture {
+        size: (width, height),
+        marks: canvas.marks,
+    }
 }
 
-const INTO_A_STRING: &str = "drawing into a string succeeds";
-
-fn units(pixels: f64) -> i32 {
+pub(super) fn units(pixels: f64) -> i32 {
     (pixels * UNITS).round() as i32
 }
 
-fn point((x, y): (f64, f64)) -> (i32, i32) {
+fn point((x, y): (f64, f64)) -> Place {
     (units(x), units(y))
 }
 
-impl Canvas<'_> {
+impl Canvas {
     /// A line through the points. Points that would not be seen are left out.
     pub fn line(
         &mut self,
@@ -89,38 +110,35 @@ impl Canvas<'_> {
         colour: RGBColor,
     ) {
         let path = simplified(points.into_iter().map(point));
-        let style = ShapeStyle {
-            color: colour.into(),
-            filled: false,
-            stroke_width: units(width) as u32,
-        };
+        let width = units(width) as u32;
         if path.len() > 1 {
-            self.backend.draw_path(path, &style).expect(INTO_A_STRING);
+            self.marks.push(Mark::Line {
+                path,
+                width,
+                colour,
+            });
         }
     }
 
     /// A filled rectangle between two corners.
     pub fn rectangle(&mut self, upper_left: (f64, f64), lower_right: (f64, f64), colour: RGBColor) {
-        let style: RGBColor = colour;
-        self.backend
-            .draw_rect(point(upper_left), point(lower_right), &style, true)
-            .expect(INTO_A_STRING);
+        let corners = [point(upper_left), point(lower_right)];
+        self.marks.push(Mark::Rectangle { corners, colour });
     }
 
     /// A filled polygon.
     pub fn polygon(&mut self, points: impl IntoIterator<Item = (f64, f64)>, colour: RGBColor) {
         let path = simplified(points.into_iter().map(point));
-        self.backend
-            .fill_polygon(path, &colour)
-            .expect(INTO_A_STRING);
+        self.marks.push(Mark::Polygon { path, colour });
     }
 
     /// A filled circle.
     pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: RGBColor) {
-        let radius = units(radius) as u32;
-        self.backend
-            .draw_circle(point(centre), radius, &colour, true)
-            .expect(INTO_A_STRING);
+        self.marks.push(Mark::Disc {
+            centre: point(centre),
+            radius: units(radius) as u32,
+            colour,
+        });
     }
 
     /// A text, in which letters may have dots above. Viewers place combining dots as their fonts please, some of them
@@ -184,33 +202,12 @@ impl Canvas<'_> {
 
     /// A text without dots.
     fn plain(&mut self, text: &str, at: (f64, f64), anchor: Anchor, font: Font) {
-        // SVG drops a space at the start, and the height of a text where a subscript, with a height of its own, starts it.
-        let text = &match text.chars().next() {
-            Some(' ') => text.replacen(' ', "\u{a0}", 1),
-            Some(SUB) => format!("\u{200b}{text}"),
-            _ => text.to_owned(),
-        };
-        let style = if font.bold {
-            FontStyle::Bold
-        } else {
-            FontStyle::Normal
-        };
-        let size = font.size * UNITS * FONT_FACTOR;
-        let (horizontal, transform) = match anchor {
-            Anchor::Left => (HPos::Left, FontTransform::None),
-            Anchor::Centre => (HPos::Center, FontTransform::None),
-            Anchor::Right => (HPos::Right, FontTransform::None),
-            Anchor::Upwards => (HPos::Center, FontTransform::Rotate270),
-            Anchor::UpwardsFrom => (HPos::Left, FontTransform::Rotate270),
-            Anchor::UpwardsTo => (HPos::Right, FontTransform::Rotate270),
-        };
-        let style = TextStyle::from(FontDesc::new(FontFamily::SansSerif, size, style))
-            .color(&font.colour)
-            .pos(Pos::new(horizontal, VPos::Center))
-            .transform(transform);
-        self.backend
-            .draw_text(text, &style, point(at))
-            .expect(INTO_A_STRING);
+        self.marks.push(Mark::Text {
+            text: text.to_owned(),
+            at: point(at),
+            anchor,
+            font,
+        });
     }
 }
 
@@ -299,45 +296,5 @@ mod tests {
             simplified(path.into_iter()),
             [(0, 0), (5, 5), (4, 4), (4, 9)]
         );
-    }
-
-    #[test]
-    fn dots_are_discs_above_their_letter() {
-        let font = Font {
-            size: 10.0,
-            colour: RGBColor(0, 0, 0),
-            bold: false,
-        };
-        for (dots, anchor) in [(0, Anchor::Left), (1, Anchor::Upwards)] {
-            let text = format!("{}θ{SUB}I{END_SUB} (s)", DOTS[dots]);
-            let svg = picture(90.0, 90.0, |canvas| {
-                canvas.text(&text, (40.0, 40.0), anchor, font)
-            });
-            assert_eq!(svg.matches("<circle").count(), dots + 1, "{svg}");
-            assert!(!svg.contains(DOTS), "{svg}");
-        }
-    }
-
-    #[test]
-    fn the_picture_is_shown_in_its_size_and_texts_are_escaped() {
-        let font = Font {
-            size: 10.0,
-            colour: RGBColor(0, 0, 0),
-            bold: false,
-        };
-        let svg = picture(30.0, 20.0, |canvas| {
-            canvas.text(
-                &format!("a<b{SUB}I{END_SUB}"),
-                (1.0, 2.0),
-                Anchor::Left,
-                font,
-            );
-        });
-        assert!(
-            svg.starts_with("<svg width=\"30\" height=\"20\" viewBox=\"0 0 300 200\""),
-            "{svg}"
-        );
-        assert!(svg.contains("a&lt;b<tspan"), "{svg}");
-        assert!(svg.trim_end().ends_with("</svg>"), "{svg}");
     }
 }

@@ -1,7 +1,7 @@
 //! A single pair of axes: comparisons, studies, phase portraits.
 
 use super::axis::{Axis, Scale};
-use super::canvas::{Anchor, Canvas, Font, picture};
+use super::canvas::{Anchor, Canvas, Font, Picture, picture};
 use super::look::{Look, windowed};
 use super::palette::INK;
 use super::panel::{
@@ -96,12 +96,12 @@ pub fn comparison(quantity: &Quantity, runs: Vec<Curve>) -> Chart {
 impl Chart {
     /// The chart as SVG, `width` × `height` pixels.
     pub fn svg(&self, size: (f64, f64)) -> String {
-        self.svg_as(size, &Look::default())
+        self.picture(size, &Look::default()).svg()
     }
 
-    /// The chart as SVG, in the size that `look` has or else in `size`. A window is one of time: it cuts the curves of
-    /// a chart over time.
-    pub fn svg_as(&self, size: (f64, f64), look: &Look) -> String {
+    /// The picture of the chart, in the size that `look` has or else in `size`. A window is one of time: it cuts the
+    /// curves of a chart over time.
+    pub fn picture(&self, size: (f64, f64), look: &Look) -> Picture {
         let (width, height) = look.size.unwrap_or(size);
         let mut shown = self.clone();
         if self.x.unit == "s" && self.x.scale == Scale::Linear {

@@ -1,5 +1,6 @@
 //! How pictures look, where the reader has a choice.
 
+use super::format::Format;
 use crate::record::{Column, Group, Layout, Units};
 
 /// Least width and height of a picture, in pixels: below that labels cover each other.
@@ -17,6 +18,8 @@ pub struct Look {
     /// The panels, from top to bottom, each by a column, by columns of the same unit as `theta+x`, or by a group of
     /// columns, which is divided as it suits; everything where there is none.
     pub panels: Vec<String>,
+    /// Formats of the files; SVG where there is none.
+    pub formats: Vec<Format>,
 }
 
 /// Columns that are asked for in one panel, or a whole group.
@@ -37,6 +40,14 @@ const GROUPS: [(&str, Group); 6] = [
 ];
 
 impl Look {
+    /// Formats of the files.
+    pub fn formats(&self) -> &[Format] {
+        match self.formats[..] {
+            [] => &[Format::Svg],
+            _ => &self.formats,
+        }
+    }
+
     /// The panels that are asked for, of a run with this layout.
     ///
     /// # Errors

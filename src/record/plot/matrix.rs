@@ -68,4 +68,5 @@ pub(crate) fn scatter_matrix(
             }
         }
     })
+    .svg()
 }

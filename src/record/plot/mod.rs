@@ -1,6 +1,6 @@
-//! Pictures of runs, as SVG.
+//! Pictures of runs, as SVG, PNG and PDF ([`Format`]).
 //!
-//! plotters writes the SVG; the layout is made here, in pixels. Symbols, units and colours follow
+//! The layout is made here, in pixels; what a picture then consists of is the same for every format. Symbols, units and colours follow
 //! the names and units of the model, and a run of any length gives a file of bounded size.
 
 mod axis;
@@ -8,6 +8,7 @@ mod canvas;
 mod chart;
 mod coincide;
 mod decimate;
+mod format;
 mod look;
 pub(crate) mod marked;
 #[cfg(feature = "cli")]
@@ -15,12 +16,21 @@ mod matrix;
 mod overview;
 mod palette;
 mod panel;
+#[cfg(feature = "png-pdf")]
+mod pdf;
 mod phase;
+#[cfg(feature = "png-pdf")]
+mod png;
 mod strip;
+mod svg;
 mod symbol;
+#[cfg(feature = "png-pdf")]
+mod typeface;
 
 pub use axis::Scale;
+pub use canvas::Picture;
 pub use chart::{Chart, Dimension, comparison};
+pub use format::Format;
 pub use look::{LEAST, Look};
 #[cfg(feature = "cli")]
 pub(crate) use matrix::scatter_matrix;

@@ -1,7 +1,7 @@
 //! A run on one page: everything over the same time.
 
 use super::axis::{Axis, Scale};
-use super::canvas::{Anchor, Canvas, Font, picture, text_width};
+use super::canvas::{Anchor, Canvas, Font, Picture, picture, text_width};
 use super::look::{Asked, Look, windowed};
 use super::palette::{ALARM, INK, LINE_COLOURS};
 use super::panel::{
@@ -54,11 +54,11 @@ struct Panel {
 /// with the modes and the transitions underneath, as SVG. Quantities of the same kind and unit
 /// share a panel where each is readable there; those that never change are listed.
 pub fn overview(run: &Run) -> String {
-    overview_of(run, &Sketch::of(run), &Look::default())
+    overview_of(run, &Sketch::of(run), &Look::default()).svg()
 }
 
 /// The same from a sketch of a run, as `look` says, whose panels are those of the run.
-pub(crate) fn overview_of(run: &Run, sketch: &Sketch, look: &Look) -> String {
+pub(crate) fn overview_of(run: &Run, sketch: &Sketch, look: &Look) -> Picture {
     let (panels, constants) = panels(run, sketch, look);
     let time = time_axis(run, sketch, look);
     let strip = Strip::new(run, sketch, look.window);

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::canvas::{Anchor, Canvas, picture};
+use super::canvas::{Anchor, Canvas, Picture, picture};
 use super::chart::{Chart, Dimension};
 use super::look::Look;
 use super::palette::{PAPER, line};
@@ -22,11 +22,11 @@ const PIECES: usize = 16_000;
 
 /// Draws the phase portrait of every coordinate that moves, as SVG; `None` when none does.
 pub fn phase_portraits(run: &Run) -> Option<String> {
-    phase_portraits_of(run, &Sketch::of(run), &Look::default())
+    phase_portraits_of(run, &Sketch::of(run), &Look::default()).map(|picture| picture.svg())
 }
 
 /// The same from a sketch of a run, as `look` says; of a long one what is kept whole.
-pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Option<String> {
+pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Option<Picture> {
     let charts = portraits(run, sketch, look);
     if charts.is_empty() {
         return None;
@@ -49,7 +49,8 @@ pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Opt
             let at = |p: &(f64, f64)| inner.at(x.position(p.0), y.position(p.1));
             let path: Vec<_> = chart.curves[0].points.iter().map(at).collect();
             way(canvas, &path);
-            let corner = (area.left + area.width - 24.0, area.top + 12.0);
+            // Beside the title of the axis, where no curve is.
+            let corner = (inner.right(), inner.bottom() + 25.0);
             canvas.text("○ start", corner, Anchor::Right, SMALL);
         }
     }))
