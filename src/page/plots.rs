@@ -28,6 +28,9 @@ pub(super) struct Plot {
     /// What is not drawn, and why.
     #[serde(skip)]
     left_out: Vec<String>,
+    /// How many points of how many a curve keeps, where that are not all.
+    #[serde(skip)]
+    thinned: Option<[usize; 2]>,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -105,6 +108,7 @@ impl Plot {
             curves: Vec::new(),
             title: symbols(&chart.title),
             left_out: Vec::new(),
+            thinned: None,
         };
         for (i, curve) in chart.curves.iter().enumerate() {
             let name = plain(&curve.label);
@@ -193,6 +197,7 @@ impl Plot {
             curves: Vec::new(),
             title: String::new(),
             left_out: Vec::new(),
+            thinned: None,
         };
         let (drawn, refused): (Vec<Column>, Vec<Column>) =
             columns.into_iter().partition(|column| {
@@ -210,6 +215,7 @@ impl Plot {
         }
         let values: Vec<&[f64]> = drawn.iter().map(|column| &column.y[..]).collect();
         let kept = thin(&values, t.len(), MOST_POINTS);
+        plot.thinned = (kept.len() < t.len()).then_some([kept.len(), t.len()]);
         let pick = |of: &[f64]| -> Vec<f64> { kept.iter().map(|&i| of[i]).collect() };
         plot.xs.push(pick(t));
         for column in &drawn {
@@ -232,6 +238,11 @@ impl Plot {
     /// What is not drawn, and why.
     pub fn left_out(&self) -> &[String] {
         &self.left_out
+    }
+
+    /// How many points of how many a curve keeps, where that are not all.
+    pub fn thinned(&self) -> Option<[usize; 2]> {
+        self.thinned
     }
 
     /// Whether nothing is drawn.

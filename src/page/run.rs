@@ -40,14 +40,23 @@ pub fn run_page(run: &Run, sketch: &Sketch, told: Told) -> String {
         "<p class=\"faint\">Drag to zoom all plots, double-click for the whole run, click to go to a time. Modes: \
          <span id=\"modes\"></span></p>\n",
     );
+    let mut thinned = None;
     for group in &groups {
         let plot = columns(sketch, group);
+        thinned = thinned.or(plot.thinned());
         for reason in plot.left_out() {
             page.note(reason);
         }
         if !plot.is_empty() {
             page.plot(plot);
         }
+    }
+    if let Some([kept, all]) = thinned {
+        let all = all.max(sketch.taken());
+        page.note(&format!(
+            "Curves keep {kept} of {all} points: of each part of the run the first and those with the least and the largest \
+             value, so that no extreme is lost. What lies between them is in trajectory.csv."
+        ));
     }
     if groups.is_empty() {
         page.note("Nothing that was recorded changes, so there is nothing to draw over time.");

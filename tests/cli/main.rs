@@ -1,5 +1,7 @@
 //! The command line, from outside: statuses, messages, files.
 
+#[path = "../browser/mod.rs"]
+mod browser;
 mod cache;
 mod check;
 mod compare;

@@ -1,5 +1,6 @@
 //! `--html`: pages are whole, safe, and work in a browser, where there is one.
 
+use super::browser::in_browser;
 use super::*;
 
 /// The page of a run with these further arguments.
@@ -80,80 +81,17 @@ fn runs_that_cannot_be_drawn_have_a_page_that_says_so() {
         let more = ["--set", sets[0], "--set", sets[1], "--set", "record={}"];
         let page = page(0, home.path(), &scene("bouncing_ball"), &more);
         assert!(page.contains(words), "{sets:?}");
-        in_browser(home.path(), &page, "done([])");
+        in_browser(home.path(), &[page], "done([])");
     }
-}
-
-/// What a browser does with a page: `script` calls `done` with what it has seen, a list of texts. Gives that and what
-/// was said on the console; nothing where there is no browser, unless `DALEMBERT_BROWSER=required`, as in `.ci/run`.
-pub fn in_browser(home: &Path, page: &str, script: &str) -> Option<Vec<String>> {
-    let names = ["chromium", "chromium-browser", "google-chrome"];
-    let browser = names.iter().find(|name| {
-        let found = std::process::Command::new(name).arg("--version").output();
-        found.is_ok_and(|output| output.status.success())
-    });
-    let Some(browser) = browser else {
-        assert!(
-            std::env::var_os("DALEMBERT_BROWSER").is_none(),
-            "no Chromium on this machine"
-        );
-        eprintln!("left out: no Chromium on this machine");
-        return None;
-    };
-    let listen = "<script>window.said = [];
-        window.onerror = (e) => said.push('error: ' + e);
-        for (const kind of ['error', 'warn', 'log']) console[kind] = (...x) => said.push(kind + ': ' + x.join(' '));
-        window.done = (seen) => { document.body.innerHTML = '';
-            document.body.textContent = 'seen:' + JSON.stringify([...said, ...seen]) + ':seen'; };
-        </script></head>";
-    let act = format!("<script>setTimeout(() => {{ {script} }}, 200)</script></body>");
-    let page = page.replacen("</head>", listen, 1);
-    let (before, _) = page.rsplit_once("</body>").unwrap();
-    let file = home.join("seen.html");
-    fs::write(&file, format!("{before}{act}</html>")).unwrap();
-    let profile = tempfile::tempdir().unwrap();
-    let output = std::process::Command::new(browser)
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--no-first-run",
-        ])
-        .args([
-            "--disable-background-networking",
-            "--disable-component-update",
-        ])
-        .args([
-            "--disable-sync",
-            "--disable-quic",
-            "--window-size=1200,1000",
-        ])
-        .args(["--virtual-time-budget=3000", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", profile.path().display()))
-        .arg(format!("file://{}", file.display()))
-        .output()
-        .unwrap();
-    let dom = String::from_utf8_lossy(&output.stdout);
-    let (_, rest) = dom.rsplit_once("seen:[").unwrap_or_else(|| {
-        panic!(
-            "the page never ended its script: {}",
-            String::from_utf8_lossy(&output.stderr)
-        )
-    });
-    let (seen, _) = rest.split_once(":seen").unwrap();
-    let seen = seen
-        .replace("&amp;", "&")
-        .replace("&lt;", "<")
-        .replace("&gt;", ">");
-    Some(serde_json::from_str(&format!("[{seen}")).unwrap())
 }
 
 /// The page of a command, seen by a browser.
 fn seen_page(home: &Path, arguments: &[&str], script: &str) -> Option<Vec<String>> {
     ends_with(0, home, &[arguments, &["--html", "page.html"]].concat());
     let page = fs::read_to_string(home.join("page.html")).unwrap();
-    assert!(page.len() < 1_000_000, "{} bytes", page.len());
-    in_browser(home, &page, script)
+    let beside = page.len() - data(&page).to_string().len();
+    assert!(beside < 200_000, "{beside} bytes beside the data");
+    in_browser(home, &[page], script)?.pop()
 }
 
 #[test]
@@ -197,25 +135,116 @@ fn pages_of_studies_of_precision_read_points_out() {
 #[test]
 fn pages_work_in_a_browser() {
     let home = tempfile::tempdir().unwrap();
-    for name in names(&project().join("scenes")) {
-        let Some(name) = name.strip_suffix(".json") else {
-            continue;
-        };
-        let page = page(0, home.path(), &scene(name), &[]);
-        let script = "
-            const { show, plots, motion, picture, zoomGroup } = dalembert, [first, last] = motion.span;
-            const at = (t) => { show(t); return picture.toDataURL(); };
-            const frames = new Set([0.11, 0.31, 0.57].map((part) => at(first + part * (last - first))));
-            const timed = plots.filter((plot) => plot.spec.time);
-            const before = timed.map((plot) => plot.u.scales.x.max);
-            zoomGroup(timed[0], [first, first + 0.25 * (last - first)], null);
-            setTimeout(() => {
-                const moved = timed.every((plot, i) => plot.u.scales.x.max < before[i]);
-                done([`frames ${frames.size > 1}`, `zoom ${moved}`, `plots ${timed.length > 0}`]);
-            }, 200);";
-        let Some(seen) = in_browser(home.path(), &page, script) else {
-            return;
-        };
+    let scenes = names(&project().join("scenes"));
+    let scenes: Vec<&str> = scenes
+        .iter()
+        .filter_map(|name| name.strip_suffix(".json"))
+        .collect();
+    let pages: Vec<String> = scenes
+        .iter()
+        .map(|name| page(0, home.path(), &scene(name), &[]))
+        .collect();
+    let script = "
+        const { show, plots, motion, picture, zoomGroup } = dalembert, [first, last] = motion.span;
+        const at = (t) => { show(t); return picture.toDataURL(); };
+        const frames = new Set([0.11, 0.31, 0.57].map((part) => at(first + part * (last - first))));
+        const timed = plots.filter((plot) => plot.spec.time);
+        const before = timed.map((plot) => plot.u.scales.x.max);
+        zoomGroup(timed[0], [first, first + 0.25 * (last - first)], null);
+        setTimeout(() => {
+            const moved = timed.every((plot, i) => plot.u.scales.x.max < before[i]);
+            const loaded = performance.getEntriesByType('resource').map((entry) => entry.name);
+            done([`frames ${frames.size > 1}`, `zoom ${moved}`, `plots ${timed.length > 0}`, ...loaded]);
+        }, 200);";
+    let Some(seen) = in_browser(home.path(), &pages, script) else {
+        return;
+    };
+    for (name, seen) in scenes.iter().zip(seen) {
         assert_eq!(seen, ["frames true", "zoom true", "plots true"], "{name}");
+    }
+}
+
+#[test]
+fn a_page_is_used_by_keys_in_the_dark_and_on_paper() {
+    let home = tempfile::tempdir().unwrap();
+    let page = page(0, home.path(), &scene("rocking_block"), &["--set", "end=1"]);
+    let script = "
+        const { plots, motion, picture } = dalembert, byId = (id) => document.getElementById(id), seen = [];
+        const press = (key) => document.body.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
+        const time = () => Number(byId('time').value), is = (what, holds) => seen.push(`${what} ${holds}`);
+        press('ArrowRight'); is('step', time() > 0);
+        press('End'); is('end', time() === 1);
+        press('Home'); is('home', time() === 0);
+        const slow = byId('speed').value; press('+'); is('speed', Number(byId('speed').value) > Number(slow));
+        press(' '); is('play', byId('play').textContent === 'pause'); press(' ');
+        press('Home');
+        const plain = picture.toDataURL(); press('c');
+        is('contacts', picture.toDataURL() !== plain && byId('forces').textContent.includes('reaction.'));
+        const states = motion.drawing.shapes.flatMap((shape) => Object.values(shape.states ?? {}));
+        is('states', states.length > 0);
+        const paper = () => getComputedStyle(document.body).backgroundColor;
+        const light = paper(), ink = () => getComputedStyle(document.body).color, dark_on = light === 'rgb(255, 255, 255)';
+        document.querySelector('#tools button').click();
+        is('dark', dark_on && paper() !== light); is('ink', ink() !== 'rgb(27, 27, 27)');
+        dispatchEvent(new Event('beforeprint')); is('paper', paper() === light);
+        dispatchEvent(new Event('afterprint')); is('dark again', paper() !== light);
+        const printed = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules]).filter((rule) => rule.media?.mediaText === 'print');
+        is('print', printed.some((rule) => rule.cssText.includes('.bar')));
+        const whole = plots[0].u.scales.x.max; press('i');
+        setTimeout(() => {
+            is('zoom in', plots[0].u.scales.x.max < whole); press('0');
+            setTimeout(() => { is('whole', plots[0].u.scales.x.max === whole); done(seen); }, 100);
+        }, 100);";
+    if let Some(seen) = in_browser(home.path(), &[page], script) {
+        assert!(
+            seen[0].iter().all(|line| line.ends_with(" true")),
+            "{seen:#?}"
+        );
+        assert_eq!(seen[0].len(), 14, "{seen:#?}");
+    }
+}
+
+#[test]
+fn arguments_about_plots_are_refused_where_there_are_none() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    let tank = scene("tank_free_release");
+    for arguments in [
+        ["run", &ball, "--plot-window", "0:1"],
+        ["run", &ball, "--plot-panels", "h"],
+        ["run", &ball, "--plot-format", "svg"],
+        ["compare", &tank, "--plot-window", "0:1"],
+        ["precision", &ball, "--plot-size", "800x600"],
+    ] {
+        let output = ends_with(2, home.path(), &arguments);
+        assert!(stderr(&output).contains("add --out DIR"), "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_report_has_the_reader_s_units() {
+    let home = tempfile::tempdir().unwrap();
+    let ball = scene("bouncing_ball");
+    let report = |units: &[&str]| {
+        let arguments = [&["run", &ball, "--set", "end=0.2"], units].concat();
+        stdout(&ends_with(0, home.path(), &arguments)).to_owned()
+    };
+    let line = |report: &str| {
+        let line = report.lines().find(|line| line.starts_with("h "));
+        line.unwrap()
+            .split_whitespace()
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let (plain, shown) = (report(&[]), report(&["--units", "mm,ms,kJ"]));
+    assert!(
+        shown.contains("reached t = 200 ms") && shown.contains("energy / kJ"),
+        "{shown}"
+    );
+    let (plain, shown) = (line(&plain), line(&shown));
+    assert_eq!([&plain[1], &shown[1]], ["m", "mm"]);
+    for column in 2..7 {
+        let [a, b]: [f64; 2] = [&plain[column], &shown[column]].map(|x| x.parse().unwrap());
+        assert!((1000.0 * a - b).abs() <= 1e-5 * b.abs(), "{a} {b}");
     }
 }

@@ -1,8 +1,11 @@
 //! What is made of a run: tables, summary, pictures, and the folder they are in. The runs are made
 //! by formula.
 
+#[path = "../browser/mod.rs"]
+mod browser;
 mod killed;
 mod observers;
+mod pages;
 mod synthetic;
 
 use std::fs;

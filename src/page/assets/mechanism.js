@@ -108,9 +108,10 @@ const measureForces = () => {
       largest = Math.max(largest, ...extent(y).map(Math.abs).filter(Number.isFinite));
   for (const shape of drawing.shapes) largest = Math.max(largest, ...forceOf(shape, first).map(Math.abs));
 };
+const LINE = 15; // height of a line of words, px
 // A contact: a ring where it is open, a disc where it is closed, with its state in words and the force on the body, whose
 // arrow ends at the contact.
-const contact = (c, shape, [x, y], room) => {
+const contact = (c, shape, [x, y], room, labels) => {
   const state = shape.states?.[motion.modes[modeAt(now)]] ?? (shape.states ? "open" : null);
   const colour = style(state === "slides" ? "--s1" : "--s0");
   c.beginPath();
@@ -120,9 +121,16 @@ const contact = (c, shape, [x, y], room) => {
   if (state === "open" || state === null) c.stroke(); else c.fill();
   const words = [shape.name, state].filter(Boolean).join(": ");
   c.font = "12px system-ui, sans-serif";
-  const left = clamp(x - c.measureText(words).width / 2, 4, picture.clientWidth - c.measureText(words).width - 4);
+  const length_of_words = c.measureText(words).width;
+  const left = clamp(x - length_of_words / 2, 4, picture.clientWidth - length_of_words - 4);
+  // Words of contacts beside each other stand below each other.
+  let bottom = y + 22;
+  const covered = () => labels.some((label) => Math.abs(label.bottom - bottom) < LINE && label.left < left + length_of_words + 6
+    && left < label.left + label.width + 6);
+  while (covered()) bottom += LINE;
+  labels.push({ left, bottom, width: length_of_words });
   c.fillStyle = style("--ink");
-  c.fillText(words, left, Math.min(y + 30, picture.clientHeight - 4));
+  c.fillText(words, left, bottom);
   const [fx, fy] = forceOf(shape, now);
   if (state === "open" || !(Math.hypot(fx, fy) > 0) || !(largest > 0)) return;
   const scale = room / largest, [dx, dy] = [fx * scale, -fy * scale], length = Math.hypot(dx, dy);
@@ -145,9 +153,11 @@ const paint = () => {
   const c = picture.getContext("2d");
   c.setTransform(ratio, 0, 0, ratio, 0, 0);
   c.clearRect(0, 0, width, height);
-  const scale = Math.min(width / (box[2] - box[0]), height / (box[3] - box[1]));
+  // Room for forces from below, and for words.
+  const below = byId("with-forces").checked && drawing.shapes.some(({ kind }) => kind === "contact") ? 0.28 * height : 0;
+  const scale = Math.min(width / (box[2] - box[0]), (height - below) / (box[3] - box[1]));
   const [mx, my] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
-  const px = (x) => width / 2 + (x - mx) * scale, py = (y) => height / 2 - (y - my) * scale;
+  const px = (x) => width / 2 + (x - mx) * scale, py = (y) => (height - below) / 2 - (y - my) * scale;
   const out = points(now);
   const colours = { body: style("--body"), liquid: style("--liquid"), steel: style("--steel"), ink: style("--ink") };
   for (const shape of drawing.shapes) {
@@ -172,8 +182,9 @@ const paint = () => {
       if (shape.kind === "fixed") hatch(c, at);
     }
   }
+  const labels = [];
   if (byId("with-forces").checked) for (const shape of drawing.shapes) if (shape.kind === "contact")
-    contact(c, shape, [px(out[shape.start]), py(out[shape.start + 1])], Math.min(width, height) / 4);
+    contact(c, shape, [px(out[shape.start]), py(out[shape.start + 1])], Math.min(width, height) / 4, labels);
 };
 const spring = (c, [[x0, y0], [x1, y1]]) => {
   const [dx, dy] = [x1 - x0, y1 - y0], length = Math.hypot(dx, dy) || 1, [nx, ny] = [-dy / length * 6, dx / length * 6];

@@ -18,13 +18,15 @@ const valueAt = (x, y, at) => {
   if (y[i] == null || x[j] <= x[i]) return y[i];
   return y[j] == null ? y[i] : y[i] + (y[j] - y[i]) * ((at - x[i]) / (x[j] - x[i]));
 };
+const VARIES = 1e-12; // what varies by less than this part of its size varies by rounding alone, as in src/record/plot/overview.rs
 const widened = ([low, high], log, margin) => {
   if (!(low <= high)) return log ? [1, 10] : [0, 1];
   if (log) {
     const factor = high > low ? (high / low) ** margin : 3;
     return [low / factor, high * factor];
   }
-  const room = high > low ? (high - low) * margin : Math.abs(low) / 2 || 1;
+  const varies = high - low > VARIES * Math.max(Math.abs(low), Math.abs(high));
+  const room = varies ? (high - low) * margin : Math.abs(low) / 2 || 1;
   return [low - room, high + room];
 };
 const extent = (values) => values.reduce(([low, high], v) => v == null ? [low, high] : [Math.min(low, v), Math.max(high, v)],
@@ -253,9 +255,9 @@ data.plots.forEach((spec, index) => {
     return [1, 2, 5, 10].map((digit) => digit * power).find((found) => found >= least) ?? 10 * power;
   };
   const lineMultiples = (min, max, by) => {
-    const out = [];
-    for (let i = Math.ceil(min / by); i * by <= max; i++) out.push(i * by);
-    return out;
+    // Counted from the first: of a number beyond 2^53 the next whole one is the same.
+    const from = Math.ceil(min / by), count = Math.floor(max / by) - from + 1;
+    return Array.from({ length: clamp(count, 0, 1000) || 0 }, (_, i) => (from + i) * by);
   };
   const logMultiples = (min, max, count) => {
     const [low, high] = [Math.log10(min), Math.log10(max)], by = Math.max(1, Math.ceil((high - low) / count));
