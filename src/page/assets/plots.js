@@ -261,7 +261,7 @@ data.plots.forEach((spec, index) => {
   };
   const logMultiples = (min, max, count) => {
     const [low, high] = [Math.log10(min), Math.log10(max)], by = Math.max(1, Math.ceil((high - low) / count));
-    const powers = lineMultiples(Math.floor(low), high, by), digits = high - low < 2 ? [1, 2, 5] : [1];
+    const powers = lineMultiples(Math.floor(low), high, by), digits = high - low < 1 ? [1, 2, 3, 4, 5, 6, 7, 8, 9] : high - low < 2 ? [1, 2, 5] : [1];
     return powers.flatMap((e) => digits.map((d) => d * 10 ** e)).filter((v) => v >= min && v <= max);
   };
   const axis = (side) => ({

@@ -127,6 +127,36 @@ fn a_sweep_has_a_row_for_each_case_and_the_values_of_single_runs() {
 }
 
 #[test]
+fn the_studies_that_ship_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let studies = super::project().join("studies");
+    let mut count = 0;
+    for name in names(&studies)
+        .iter()
+        .filter(|name| name.ends_with(".json"))
+    {
+        let path = studies.join(name);
+        let study = read_json(&path);
+        // The scenes of studies stand beside them.
+        if study["scene"].is_null() {
+            continue;
+        }
+        let path = path.display().to_string();
+        let mut arguments = vec!["study", &path, "--out", name];
+        if study["random"].is_object() {
+            arguments.extend(["--set", "random.count=2"]);
+        }
+        let output = ends_with(0, folder.path(), &arguments);
+        let shown = stdout(&output);
+        assert!(shown.contains(" 0 refused"), "{name}: {shown}");
+        let page = fs::read_to_string(folder.path().join(name).join("study.html")).unwrap();
+        assert!(page.contains(study["title"].as_str().unwrap()), "{name}");
+        count += 1;
+    }
+    assert!(count >= 4);
+}
+
+#[test]
 fn parquet_has_what_csv_has() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
