@@ -24,7 +24,8 @@ def lagrangian(subject, motion=None) -> List[Violation]:
         rows = subject.quasi.unprojected(subject.in_order(rows))
     inputs = [x.name for x in subject.paper.symbols.values() if x.role == "input"]
     chain = {}
-    for name in q + inputs:
+    # a coordinate without an equation of its own moves too
+    for name in dict.fromkeys(q + subject.paper.coordinates() + inputs):
         chain.update({name: "d" + name, "d" + name: "dd" + name, "dd" + name: "ddd" + name})
     a = [[row.diff("dd" + name) for name in q] for row in rows]
     v = [[row.diff("d" + name) for name in q] for row in rows]

@@ -36,6 +36,8 @@ def _frequencies(found):
     """Small motions about rest, without damping and forces: w is the square of a frequency."""
     if not found:
         return []
+    if found.polynomial and not found.polynomial[-1]:
+        return [("Small motions about rest have no frequencies: the mass matrix is singular there.", None)]
     parts, about = [], "Small motions about rest, without damping and forces: "
     if len(found.polynomial) == 2:
         # k - w m = 0

@@ -26,7 +26,7 @@ from .origin import origin
 
 @dataclass
 class Definiteness:
-    """One mass matrix: `at_rest` its determinant at zero coordinates, `neglected` the same with the
+    """One mass matrix: `at_rest` its determinant at zero coordinates (None: a divisor vanishes there), `neglected` the same with the
     negligible parameters at zero, `critical` values of the first of these, `boxes` the verdict over
     the box by parameter set, `squares` whether the sum of squares is proved (None: none is given)."""
 
@@ -238,6 +238,9 @@ def _construct(of, subject):
 def _definiteness(name, paper, mass):
     """The sixth judgement on one mass matrix."""
     zeros = rest(paper)[0]
-    at_rest = determinant([[form.substitute(zeros) for form in row] for row in mass])
+    try:
+        at_rest = determinant([[form.substitute(zeros) for form in row] for row in mass])
+    except ZeroDivisionError:
+        return Definiteness(name, None, None, None)
     neglected = at_rest.substitute({n: 0 for n in paper.negligible}) if paper.negligible else None
     return Definiteness(name, at_rest, neglected, critical(at_rest, paper.negligible[0], paper) if paper.negligible else None)

@@ -84,7 +84,7 @@ def as_dictionary(report):
         "effects": report.simulated and {"corrected": {scene: found[0] for scene, found in report.simulated.slips.items()},
                                          "corrected_tighter": report.simulated.again, "show_nowhere": hidden(report)},
         "definiteness": [{
-            "name": d.name, "determinant_at_rest": str(closed(d.at_rest)),
+            "name": d.name, "determinant_at_rest": None if d.at_rest is None else str(closed(d.at_rest)),
             "neglected": None if d.neglected is None else str(closed(d.neglected)) if d.neglected else "0",
             "critical": d.critical and {"parameter": d.critical.parameter, "roots": d.critical.roots,
                                         "coefficients": [str(closed(c)) if c else "0" for c in d.critical.coefficients]},

@@ -279,6 +279,8 @@ def squares_text(definiteness):
 
 def determinant_lines(definiteness, paper):
     """The determinant at rest, without what is negligible, and the coefficients of the critical value, as sentences."""
+    if definiteness.at_rest is None:
+        return [["determinant at rest: none, since a divisor vanishes there; a box without zero says where else it rests"]]
     lines = [["determinant at rest: ", closed(definiteness.at_rest)]]
     if definiteness.neglected is not None:
         zero = " = ".join([*paper.negligible, "0"])
