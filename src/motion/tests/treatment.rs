@@ -245,7 +245,7 @@ fn the_arias_intensity_grows_from_zero_to_its_whole() {
         values: values.to_vec(),
     };
     assert_eq!(samples(&[2.0; 5]).husid(), [0.0, 0.25, 0.5, 0.75, 1.0]);
-    let line = samples(&[0.0, 1.0, 2.0]).husid();
+    let line = samples(&[0.0, 3.0, 6.0]).husid();
     assert_eq!(line, [0.0, 0.125, 1.0]);
     assert_eq!(samples(&[0.0; 3]).husid(), [0.0; 3]);
 }
