@@ -1,4 +1,4 @@
-"""The report as a LaTeX file, for pdflatex with what every installation of LaTeX has (amsmath, color, geometry, hyperref, longtable)."""
+"""The report as a LaTeX file, for pdflatex with what every installation of LaTeX has (amsmath, array, color, geometry, hyperref, longtable)."""
 
 import re
 
@@ -11,7 +11,7 @@ from .show import Quantity, Unit, expression_latex, form_latex, unit_latex
 
 PREAMBLE = r"""\documentclass[10pt,a4paper]{article}
 \usepackage[margin=20mm]{geometry}
-\usepackage{amsmath,color,longtable}
+\usepackage{amsmath,array,color,longtable}
 \usepackage[colorlinks,linkcolor=link,urlcolor=link]{hyperref}
 \definecolor{link}{rgb}{.12,.37,.66}
 \definecolor{differ}{rgb}{.70,.15,.12}
@@ -93,7 +93,7 @@ class _Writer:
         return [r"\begin{itemize}\setlength{\itemsep}{0pt}", *(r"\item " + self.paragraph(item)[0] for item in block.items), r"\end{itemize}"]
 
     def table(self, block):
-        columns = "".join(rf"p{{{width - .02:.3f}\textwidth}}" for width in block.widths)
+        columns = "".join(rf">{{\raggedright\arraybackslash}}p{{{width - .02:.3f}\textwidth}}" for width in block.widths)
         head = " & ".join(rf"\textbf{{{words(cell)}}}" for cell in block.head)
         rows = [" & ".join(self.sentence(cell) for cell in row) + r" \\" for row in block.rows]
         return [rf"{{\footnotesize\begin{{longtable}}{{{columns}}}", head + r" \\ \hline \endhead", *rows, r"\end{longtable}}"]
