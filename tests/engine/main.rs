@@ -19,6 +19,7 @@ mod knots;
 mod libraries;
 mod limits;
 mod linkages;
+mod mechanisms;
 mod methods;
 mod multipliers;
 mod newmark;

@@ -1,0 +1,423 @@
+//! Shipped mechanisms, declared by contacts and constraints alone, against integrals of closed form, second methods and laws.
+
+use crate::common::*;
+use dalembert::hybrid::Method;
+use dalembert::input::{Interpolation, Outside, Table};
+use dalembert::model::models;
+use dalembert::record::Run;
+use std::fs;
+
+/// The shipped models that have contacts or constraints and nothing by hand.
+const DECLARED: [&str; 6] = [
+    "bead_on_hoop",
+    "four_bar",
+    "rigid_block",
+    "rod",
+    "slider_chain",
+    "woodpecker",
+];
+
+#[test]
+fn models_of_contacts_have_no_mode_no_transition_and_no_rest() {
+    for name in DECLARED {
+        let path = format!("{}/models/{name}/model.py", env!("CARGO_MANIFEST_DIR"));
+        let text = fs::read_to_string(path).unwrap();
+        for word in ["mode(", "transition(", "rest(", "requires(", "by_hand("] {
+            assert!(!text.contains(&format!("model.{word}")), "{name}: {word}");
+        }
+        assert!(models().find(name).is_some(), "{name}");
+    }
+}
+
+/// The integral of a smooth function: Gauss's rule of ten points on panels.
+fn integral(f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let rule = [
+        (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
+        (0.433_395_394_129_247_2, 0.269_266_719_309_996_36),
+        (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
+        (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
+        (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
+    ];
+    let panels = 200;
+    let half = (to - from) / (2 * panels) as f64;
+    let panel = |k: i32| {
+        let middle = from + half * f64::from(2 * k + 1);
+        let pair = |(x, w): &(f64, f64)| w * (f(middle + half * x) + f(middle - half * x));
+        rule.iter().map(pair).sum::<f64>() * half
+    };
+    (0..panels).map(panel).sum()
+}
+
+fn column(run: &Run, name: &str) -> usize {
+    run.trajectory.column(name).expect("a column")
+}
+
+/// The state of a four-bar linkage of one angle: its other pin, and the inertia and potential energy of uniform bars.
+struct FourBar {
+    lengths: [f64; 4],
+    g: f64,
+}
+
+impl FourBar {
+    fn pins(&self, angle: f64) -> [[f64; 2]; 2] {
+        let [crank, coupler, rocker, ground] = self.lengths;
+        let a = [crank * angle.cos(), crank * angle.sin()];
+        let (dx, dy) = (ground - a[0], -a[1]);
+        let d = dx.hypot(dy);
+        let along = (coupler * coupler - rocker * rocker + d * d) / (2.0 * d);
+        let across = (coupler * coupler - along * along).sqrt();
+        let b = [
+            a[0] + (along * dx - across * dy) / d,
+            a[1] + (along * dy + across * dx) / d,
+        ];
+        [a, b]
+    }
+
+    /// Rates of the pins over that of the angle: both bars at the second pin keep their lengths.
+    fn rates(&self, angle: f64) -> [[f64; 2]; 2] {
+        let [a, b] = self.pins(angle);
+        let u = [-a[1], a[0]];
+        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [b[0] - self.lengths[3], b[1]]);
+        let load = p[0] * u[0] + p[1] * u[1];
+        let determinant = p[0] * q[1] - p[1] * q[0];
+        [u, [load * q[1] / determinant, -load * q[0] / determinant]]
+    }
+
+    /// Twice the kinetic energy over the square of the rate of the angle, and the potential energy.
+    fn energies(&self, angle: f64) -> [f64; 2] {
+        let [crank, coupler, rocker, _] = self.lengths;
+        let [[a, b], [u, w]] = [self.pins(angle), self.rates(angle)];
+        let dot = |x: [f64; 2], y: [f64; 2]| x[0] * y[0] + x[1] * y[1];
+        let inertia = crank * dot(u, u) / 3.0
+            + coupler * (dot(u, u) + dot(u, w) + dot(w, w)) / 3.0
+            + rocker * dot(w, w) / 3.0;
+        let height = crank * a[1] / 2.0 + coupler * (a[1] + b[1]) / 2.0 + rocker * b[1] / 2.0;
+        [inertia, self.g * height]
+    }
+}
+
+#[test]
+fn a_crank_rocker_turns_as_its_one_angle_does() {
+    let of = FourBar {
+        lengths: [0.4, 1.0, 0.9, 1.1],
+        g: 9.81,
+    };
+    let (start, rate) = (0.3_f64, 20.0_f64);
+    let [a, b] = of.pins(start);
+    let mut linkage = problem("four_bar", &[]);
+    let [u, w] = of.rates(start);
+    for (name, value) in [
+        ("x_A", a[0]),
+        ("y_A", a[1]),
+        ("x_B", b[0]),
+        ("y_B", b[1]),
+        ("x_A.rate", u[0] * rate),
+        ("y_A.rate", u[1] * rate),
+        ("x_B.rate", w[0] * rate),
+        ("y_B.rate", w[1] * rate),
+    ] {
+        linkage.set_initial(name, value).unwrap();
+    }
+    linkage.set_tolerance(TIGHTEST);
+    linkage.end.time = 5.0;
+    linkage.record.every = Some(0.05);
+    linkage.record.columns.outputs = true;
+    linkage.record.columns.energies = true;
+    let run = run(&linkage);
+    let [angle, stored] = ["crank_angle", "energy.stored"].map(|name| column(&run, name));
+    let energy = run.trajectory.row(0)[stored];
+    let lag = |angle: f64| {
+        let [inertia, potential] = of.energies(angle);
+        (inertia / (2.0 * (energy - potential))).sqrt()
+    };
+    let pi = std::f64::consts::PI;
+    let turn = integral(lag, 0.0, 2.0 * pi);
+    let begun = run.trajectory.row(0)[angle];
+    let mut turns = 0.0;
+    let mut before = begun;
+    for (k, &t) in run.trajectory.t.iter().enumerate() {
+        let row = run.trajectory.row(k);
+        let now = row[angle];
+        turns += f64::from(u8::from(now < before - pi));
+        before = now;
+        let time = turns * turn + integral(lag, begun, now);
+        // Energy is kept to some 1e-13 of it, and so is the time of a turn.
+        assert!((time - t).abs() <= 1e-12, "{t}: {:e}", time - t);
+        let [a, b] = of.pins(now);
+        for (value, exact) in row[..4].iter().zip([a[0], a[1], b[0], b[1]]) {
+            assert!((value - exact).abs() <= 2e-14, "{t}: {value} {exact}");
+        }
+        assert!((row[stored] - energy).abs() <= 1e-12 * energy.abs().max(1.0));
+    }
+    assert!(turns >= 5.0, "{turns}");
+}
+
+#[test]
+fn a_bead_climbs_its_hoop_as_the_integral_of_its_energy_says() {
+    let (radius, omega, g, rate) = (0.5_f64, 6.0_f64, 9.81_f64, 2.0_f64);
+    let mut bead = problem("bead_on_hoop", &[]);
+    bead.set_initial("y", -radius).unwrap();
+    bead.set_initial("x.rate", radius * rate).unwrap();
+    bead.set_tolerance(TIGHTEST);
+    bead.end.time = 0.25;
+    bead.record.every = Some(0.01);
+    bead.record.columns.outputs = true;
+    bead.record.columns.reactions = true;
+    let run = run(&bead);
+    let [angle, force] = ["angle", "reaction.hoop.force"].map(|name| column(&run, name));
+    let square = |angle: f64| {
+        rate * rate + (omega * angle.sin()).powi(2) + 2.0 * g / radius * (angle.cos() - 1.0)
+    };
+    let m = 0.2;
+    for (k, &t) in run.trajectory.t.iter().enumerate() {
+        let row = run.trajectory.row(k);
+        let now = row[angle];
+        let time = integral(|angle| square(angle).sqrt().recip(), 0.0, now);
+        assert!((time - t).abs() <= 1e-13, "{t}: {:e}", time - t);
+        assert!((row[0].hypot(row[1]) - radius).abs() <= 1e-15);
+        // Outwards: against the weight, the centrifugal force of the hoop and that of the motion along it.
+        let exact =
+            -m * (radius * square(now) + radius * (omega * now.sin()).powi(2) + g * now.cos());
+        assert!(
+            (row[force] - exact).abs() <= 1e-12,
+            "{t}: {} {exact}",
+            row[force]
+        );
+    }
+    let mut resting = problem("bead_on_hoop", &[("c", 0.5)]);
+    resting.set_initial("x", 0.3).unwrap();
+    resting.set_initial("y", -0.4).unwrap();
+    resting.set_tolerance(TIGHTEST);
+    resting.end.time = 60.0;
+    let run = crate::common::run(&resting);
+    let exact = g / (omega * omega * radius);
+    assert!((-run.end.state.q[1] / radius - exact).abs() <= 1e-13);
+}
+
+#[test]
+fn a_woodpecker_pecks_as_matrix_exponentials_say() {
+    let reference = reference("woodpecker");
+    for method in [Method::Taylor, Method::Radau] {
+        let mut woodpecker = problem("woodpecker", &[]);
+        for (name, value) in [
+            ("phi_M", -0.1034),
+            ("phi_S", -0.2788),
+            ("y.rate", -0.3411),
+            ("phi_S.rate", -7.4583),
+        ] {
+            woodpecker.set_initial(name, value).unwrap();
+        }
+        woodpecker.method = method;
+        woodpecker.set_tolerance(TIGHTEST);
+        woodpecker.end.time = 0.45;
+        let run = run(&woodpecker);
+        let exact = reference["events"].as_array().unwrap();
+        assert_eq!(run.events.len(), exact.len());
+        let demand = if method == Method::Taylor {
+            1e-13
+        } else {
+            1e-11
+        };
+        for (event, exact) in run.events.iter().zip(exact) {
+            let off = event.t - number(&exact["t"]);
+            assert!(off.abs() <= demand, "{method:?}, {}: {off:e}", event.t);
+            assert_eq!(event.transition, exact["transition"].as_str().unwrap());
+            assert_eq!(
+                run.layout.modes[event.to],
+                exact["mode_after"].as_str().unwrap()
+            );
+            // The stiff spring at the light sleeve: rates up to 10 rad/s, accelerations up to 1e6 rad/s².
+            let sides = [
+                (&event.after.q, "q", 10.0 * demand),
+                (&event.after.v, "u_after", 1e6 * demand),
+            ];
+            for (state, key, demand) in sides {
+                for (value, exact) in state.iter().zip(numbers(&exact[key])) {
+                    assert!(
+                        (value - exact).abs() <= demand,
+                        "{}: {key} {value} {exact}",
+                        event.t
+                    );
+                }
+            }
+        }
+        let energy = run.energy.expect("a ledger");
+        assert!(
+            energy.imbalance().abs() <= 1e-15,
+            "{:e}",
+            energy.imbalance()
+        );
+    }
+}
+
+#[test]
+fn a_rod_slides_or_lifts_as_the_reaction_of_its_end_says() {
+    let reference = reference("06_painleve_rod");
+    let mut judged = 0;
+    for case in reference["reference"]["classification"].as_array().unwrap() {
+        let of = |key: &str| number(&case[key]);
+        let (theta, rate, mu) = (of("theta_deg").to_radians(), of("thetadot"), of("mu"));
+        let sign = case["slip_sign"].as_f64().unwrap();
+        let class = case["class"].as_str().unwrap();
+        if !class.starts_with("unique") {
+            continue;
+        }
+        let mut rod = problem("rod", &[("mu", mu)]);
+        // The lower end slips at 1 m/s and neither lifts nor falls.
+        for (name, value) in [
+            ("y", theta.sin()),
+            ("theta", theta),
+            ("theta.rate", rate),
+            ("x.rate", sign - rate * theta.sin()),
+            ("y.rate", rate * theta.cos()),
+        ] {
+            rod.set_initial(name, value).unwrap();
+        }
+        rod.end.time = 1e-6;
+        rod.record.every = Some(1e-6);
+        rod.record.columns.reactions = true;
+        let run = run(&rod);
+        let (mode, force) = (
+            run.trajectory.mode[0],
+            column(&run, "reaction.lower.normal"),
+        );
+        let name = &run.layout.modes[usize::from(mode)];
+        let expected = match class {
+            "unique detachment" => "lower open, upper open",
+            _ => "lower slides, upper open",
+        };
+        assert_eq!(name, expected, "{case}");
+        let (b, inverse) = (of("b"), of("B_times_m"));
+        let exact = if b < 0.0 { -b / inverse } else { 0.0 };
+        let normal = run.trajectory.row(0)[force];
+        assert!(
+            (normal - exact).abs() <= 1e-12 * exact.max(1.0),
+            "{normal} {exact}"
+        );
+        judged += 1;
+    }
+    assert!(judged > 40, "{judged}");
+}
+
+/// A stack of three blocks of 1 kg whose table has constant accelerations, so that all moves on parabolas: of all sets of sticking
+/// and sliding interfaces the one that agrees with itself.
+struct Stack {
+    /// Most friction of each interface, N.
+    most: [f64; 3],
+    /// Slip rates and slips.
+    u: [f64; 3],
+    s: [f64; 3],
+}
+
+impl Stack {
+    /// Slip accelerations under that of the table.
+    fn accelerations(&self, table: f64) -> [f64; 3] {
+        let mut found = Vec::new();
+        for set in 0..27_i32 {
+            // 0: sticks; ±1: slides that way.
+            let states = [set % 3, set / 3 % 3, set / 9].map(|s| f64::from(s - 1));
+            let fits = |k: usize| self.u[k] == 0.0 || self.u[k].signum() == states[k];
+            if !(0..3).all(fits) {
+                continue;
+            }
+            // An interface that slides moves what lies on it; one that sticks moves with what is beneath.
+            let mut slips = [0.0; 3];
+            for k in 0..3 {
+                if states[k] != 0.0 {
+                    // Blocks that stick on this one move with it.
+                    let with = (k + 1..3).take_while(|&j| states[j] == 0.0).count() + 1;
+                    let above = if k + with < 3 {
+                        -states[k + with] * self.most[k + with]
+                    } else {
+                        0.0
+                    };
+                    let force = -states[k] * self.most[k] - above;
+                    let beneath: f64 = table + slips[..k].iter().sum::<f64>();
+                    slips[k] = force / with as f64 - beneath;
+                }
+            }
+            let absolute = |k: usize| table + slips[..=k].iter().sum::<f64>();
+            let agrees = (0..3).all(|k| match states[k] {
+                0.0 => (k..3).map(absolute).sum::<f64>().abs() <= self.most[k],
+                way => self.u[k] != 0.0 || slips[k] * way > 0.0,
+            });
+            if agrees {
+                found.push(slips);
+            }
+        }
+        assert_eq!(found.len(), 1, "{found:?}");
+        found[0]
+    }
+
+    /// Moves on for a time; appends the times at which a slip ends.
+    fn advance(&mut self, from: f64, time: f64, table: f64, ends: &mut Vec<(f64, usize)>) {
+        let mut left = time;
+        while left > 0.0 {
+            let a = self.accelerations(table);
+            let stop = |k: usize| match self.u[k] * a[k] < 0.0 {
+                true => -self.u[k] / a[k],
+                false => f64::INFINITY,
+            };
+            let first = (0..3).min_by(|&i, &j| stop(i).total_cmp(&stop(j))).unwrap();
+            let step = left.min(stop(first));
+            for k in 0..3 {
+                self.s[k] += step * (self.u[k] + 0.5 * step * a[k]);
+                self.u[k] += step * a[k];
+            }
+            left -= step;
+            if left > 0.0 {
+                self.u[first] = 0.0;
+                ends.push((from + time - left, first));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stack_on_a_table_of_constant_accelerations_moves_on_parabolas() {
+    let (mu, grading, g) = (0.3, 0.9, 9.81);
+    let table = [6.0, -7.0, 4.0, -2.5, 3.1, 0.0];
+    let interval = 0.25;
+    let mut exact = Stack {
+        most: [
+            3.0 * mu * g,
+            2.0 * mu * grading * g,
+            mu * grading * grading * g,
+        ],
+        u: [0.0; 3],
+        s: [0.0; 3],
+    };
+    let mut ends = Vec::new();
+    for (k, &a) in table.iter().enumerate() {
+        exact.advance(k as f64 * interval, interval, a, &mut ends);
+    }
+    let given = [("mu_s", mu), ("mu_k", mu), ("grading", grading), ("g", g)];
+    for method in [Method::Taylor, Method::Radau] {
+        let mut stack = problem("slider_chain", &given);
+        let t: Vec<f64> = (0..table.len()).map(|k| k as f64 * interval).collect();
+        let steps = Table::new(&t, &table, Interpolation::Previous, Outside::Hold).unwrap();
+        stack.set_input("a", steps.into()).unwrap();
+        stack.method = method;
+        stack.set_tolerance(TIGHTEST);
+        stack.end.time = table.len() as f64 * interval;
+        let run = run(&stack);
+        let stops = ["sticks", "reverses"];
+        let found: Vec<(f64, &str)> = (run.events.iter())
+            .filter(|event| stops.iter().any(|verb| event.transition.ends_with(verb)))
+            .map(|event| (event.t, event.transition))
+            .collect();
+        assert_eq!(found.len(), ends.len(), "{found:?} {ends:?}");
+        for ((t, name), (exact, interface)) in found.iter().zip(&ends) {
+            assert!((t - exact).abs() <= 1e-13, "{name}: {t} {exact}");
+            assert!(
+                name.starts_with(&format!("block_{}", interface + 1)),
+                "{name}"
+            );
+        }
+        for k in 0..3 {
+            let off = run.end.state.q[k] - exact.s[k];
+            assert!(off.abs() <= 1e-14, "{k}: {off:e}");
+        }
+    }
+    assert!(ends.len() >= 4, "{ends:?}");
+}
