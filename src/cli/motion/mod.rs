@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::outcome::{Failure, Outcome, Result};
 use super::page::write_page;
-use super::pictures::{PictureArguments, WindowArguments};
+use super::pictures::{PictureArguments, WindowArguments, refuse_without_plots};
 use super::print;
 use crate::motion::{Channel, Given, Measures, Ordinate, Unit, ordinate};
 use crate::record::OutputFolder;
@@ -128,6 +128,10 @@ pub fn motion(arguments: &MotionArguments) -> Result {
         window: arguments.window.window(),
         ..arguments.pictures.look()?
     };
+    if arguments.out.is_none() {
+        arguments.pictures.refuse_without_plots()?;
+        refuse_without_plots("--plot-window", look.window.is_some())?;
+    }
     let out = arguments.out.as_ref();
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
     let periods = if arguments.periods.is_empty() {

@@ -39,10 +39,8 @@ impl Report<'_> {
             files.file(MEASURES, |out| self.measures(out))?;
             files.file(SPECTRA, |out| self.spectra(out))?;
             for (name, chart) in self.charts() {
-                let picture = chart.svg_as(SIZE, &self.look);
-                files.file(&format!("{name}.svg"), |out| {
-                    out.write_all(picture.as_bytes())
-                })?;
+                let picture = chart.picture(SIZE, &self.look);
+                files.picture(name, &picture, self.look.formats())?;
             }
             Ok(())
         })
