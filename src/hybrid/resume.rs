@@ -4,7 +4,7 @@ use super::failure::Reason;
 use super::instant::Instant;
 use super::observe::{Collected, Observer, Samples, sample_time};
 use super::outputs::OwnOutput;
-use super::problem::{Method, Problem};
+use super::problem::{Collisions, Method, Problem};
 use super::simulation::Simulation;
 use crate::run::digest;
 use crate::run::{Event, Progress, Recorder, Run};
@@ -194,6 +194,12 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
         Method::Radau => "radau",
         Method::Taylor => "taylor",
     };
+    // What the method of integration and the law of impacts are; the latter where it is not the default.
+    let collisions = match problem.collisions == Collisions::default() {
+        true => String::new(),
+        false => format!(" {:?}", problem.collisions),
+    };
+    let method = format!("{method}{collisions}");
     let outputs = problem
         .outputs
         .iter()
@@ -217,7 +223,7 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
             content(mode, |put| put_lists(&initial_lists, put)),
         ),
         ("inputs", content("", |put| problem.signals.content(put))),
-        ("method", content(method, |_| {})),
+        ("method", content(&method, |_| {})),
         ("model", model.digest.to_owned()),
         ("outputs", content(&outputs.concat(), |_| {})),
     ];
