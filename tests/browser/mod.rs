@@ -9,7 +9,8 @@ const LISTEN: &str = "<script>window.said = [];
 window.onerror = (e) => { said.push('error: ' + e); setTimeout(() => done([]), 500); };
 for (const kind of ['error', 'warn', 'log']) console[kind] = (...x) => said.push(kind + ': ' + x.join(' '));
 window.alert = (x) => said.push('alert: ' + x);
-window.done = (seen) => window.seen([...said, ...seen]);
+let ended = false; // what goes on in a page that is gone is nobody's
+window.done = (seen) => { if (!ended) window.seen([...said, ...seen]); ended = true; };
 </script></head>";
 
 /// What a browser does with pages: `script` calls `done` with what it has seen in one, a list of texts. Gives for each page
