@@ -28,7 +28,9 @@ nothing is written.
 the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, inputs, \
 initial state, accuracy, method, frozen coordinates, columns and the grid of the samples must be those of the \
 run, and its files as they were written; what does not fit is named. The integrator starts anew at \
-the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit.
+the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit. Pictures \
+have straight lines between the rows of what was there before; where nothing is left to run the folder stays \
+as it is.
 
 A run is followed by a second one at a tenth of its tolerance, of which events alone are kept: where another \
 event follows there, the report says so under `uncertain`.
@@ -146,6 +148,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
             .map_or(Duration::ZERO, Stream::spent)
     };
     let before = spent(&outputs);
+    let steps_before = (earlier.as_ref()).map(|(run, _)| run.solver.steps);
     interrupt::listen()?;
     let mut progress = Interruptible(ProgressLine::new(problem.end.time));
     let run = match earlier {
@@ -177,6 +180,10 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     print::output(&report)?;
     warnings::after(report.summary());
     let Outputs { stream, sketch, .. } = outputs;
+    // A run that had nothing left leaves its folder as it is: pictures are drawn from the dense output of the steps, and an earlier
+    // run has left no more of it than rows.
+    let is_idle = steps_before == Some(run.solver.steps);
+    let stream = stream.filter(|_| !is_idle || arguments.out.is_some() || look != Look::default());
     let sketch = sketch.unwrap_or_else(|| Sketch::new(&layout));
     let written = stream.map(|stream| stream.finish(&run, &sketch, &look));
     if let Some(page) = &arguments.html {

@@ -38,7 +38,7 @@ fn every_linked_model_is_as_the_contract_says() {
 fn two_models_of_one_name_are_refused() {
     let both = Models::linked().and(Models::linked());
     let error = both.unwrap_err().to_string();
-    assert!(error.contains("a model `belt_oscillator`"), "{error}");
+    assert!(error.contains("a model `bead_on_hoop`"), "{error}");
 }
 
 #[test]

@@ -117,7 +117,7 @@ fn keys() {
         &tank("\"model\": \"walking_tank\",", ""),
         "model missing",
         "1:1",
-        "known models: `belt",
+        "known models: `bead",
     );
     expect(
         &tank("\"end\"", "\"ende\": 2, \"end\""),
