@@ -31,6 +31,8 @@ for name, across in (("left", -b), ("right", b)):
     place, height = corner(across, -h)
     model.contact(name, gap=height, slip=place, static=mu_s, kinetic=mu_k, restitution=e)
 
+model.limit("overturned", "a side of the block reaches the ground", when=theta**2 > (pi / 2) ** 2)
+
 model.draw("ground", [(-3 * b, 0), (3 * b, 0)], kind="fixed")
 model.draw("block", [corner(-b, -h), corner(b, -h), corner(b, h), corner(-b, h)])
 for name, across in (("left", -b), ("right", b)):

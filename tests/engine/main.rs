@@ -39,6 +39,7 @@ mod rest;
 mod rocking;
 mod roots_cases;
 mod roots_properties;
+mod shipped;
 mod sin_cos;
 mod sizes;
 mod stacks;
