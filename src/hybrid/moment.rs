@@ -4,7 +4,7 @@ use super::advance::MadeBy;
 use super::equations::{Clock, Equations};
 use super::guards::motion;
 use super::instant::Instant;
-use super::observe::copy_drifting;
+use super::observe::{copy_drifting, held};
 use super::outputs::Outputs;
 use super::problem::Problem;
 use super::simulation::Simulation;
@@ -245,6 +245,13 @@ impl<'p> Simulation<'p> {
             from,
             to: now,
         })?;
+        let [q, v, a] = match &mode.contacts {
+            Some(contacts) => {
+                let tau = Instant::new(t).since(equations.clock.start);
+                held(&mut equations, contacts, tau, [q, v, a])
+            }
+            None => [q, v, a],
+        };
         if drifts {
             copy_drifting(&mut view.q, &mode.drifts, equations.context.held());
         }

@@ -35,7 +35,7 @@ use ledger::RunningLedger;
 pub use observer::{Collected, MadeStep, Observer};
 pub(super) use recording::Recording;
 use samples::Points;
-pub(super) use samples::{Samples, sample_time};
+pub(super) use samples::{Samples, held, sample_time};
 use std::ops::ControlFlow;
 
 /// Most times that a step is cut in halves: in a part with a kink the error is quartered each time, and a

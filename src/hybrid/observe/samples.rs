@@ -190,7 +190,7 @@ impl Samples {
 
 /// A state of a step's dense output, with what contacts and constraints hold brought back to where they hold it.
 #[cold]
-fn held<F: Size>(
+pub(in crate::hybrid) fn held<F: Size>(
     equations: &mut Equations<F>,
     contacts: &Contacts,
     tau: f64,
