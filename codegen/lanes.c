@@ -423,7 +423,7 @@ struct guard {
 
 /* The lanes in which an event before the time `last` certainly ends neither a standstill nor an accumulation that
  * is as short as its rounding, and those in which it may end another accumulation:
- * src/hybrid/accumulation.rs, which has the reasons. index: of the free coordinates among all. tolerances: as
+ * src/hybrid/accumulation/, which has the reasons. index: of the free coordinates among all. tolerances: as
  * for `length`. point: before the event, reset: all coordinates, velocities and discrete states after it,
  * after: the free ones, the time and the discrete states after the event before; where these are not numbers
  * there was none. hardly, shortest: parts of themselves that what stands still moves by at most, and part of

@@ -69,20 +69,9 @@ impl Report<'_> {
             table = table.unit(i + 2, unit);
         }
         for (label, told) in self.channels() {
-            let m = &told.measures;
-            let numbers = [
-                told.duration(),
-                m.pga.value,
-                m.pga.t,
-                m.pgv.value,
-                m.pgd.value,
-                m.arias,
-                m.significant_duration(),
-                m.mean,
-            ];
             let points = Cell::plain(told.channel.samples.values.len() as f64);
-            let numbers = numbers.iter().zip(heads);
-            let numbers = numbers.map(|(&x, (_, unit))| Cell::Number(x, unit.to_owned()));
+            let numbers = told.numbers().into_iter().zip(heads);
+            let numbers = numbers.map(|(x, (_, unit))| Cell::Number(x, unit.to_owned()));
             table.row([Cell::from(label), points].into_iter().chain(numbers));
         }
         table

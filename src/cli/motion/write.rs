@@ -30,6 +30,22 @@ impl Told {
         let samples = &self.channel.samples;
         samples.time(samples.values.len() - 1) - samples.time(0)
     }
+
+    /// What tables say of a channel, in the order of their columns: duration, PGA and its time, PGV, PGD, Arias intensity,
+    /// significant duration, mean; m and s.
+    pub fn numbers(&self) -> [f64; 8] {
+        let m = &self.measures;
+        [
+            self.duration(),
+            m.pga.value,
+            m.pga.t,
+            m.pgv.value,
+            m.pgd.value,
+            m.arias,
+            m.significant_duration(),
+            m.mean,
+        ]
+    }
 }
 
 impl Report<'_> {
@@ -74,19 +90,8 @@ impl Report<'_> {
             "mean [m/s^2]",
         ])?;
         for (label, told) in self.channels() {
-            let m = &told.measures;
-            let numbers = [
-                told.duration(),
-                m.pga.value,
-                m.pga.t,
-                m.pgv.value,
-                m.pgd.value,
-                m.arias,
-                m.significant_duration(),
-                m.mean,
-            ];
             let points = told.channel.samples.values.len().to_string();
-            csv.write_record([label, points].into_iter().chain(numbers.map(exact)))?;
+            csv.write_record([label, points].into_iter().chain(told.numbers().map(exact)))?;
         }
         csv.flush()
     }

@@ -10,7 +10,12 @@ use super::{Channel, Fault, Given, Motion, Samples, decode, read};
 /// A file of tests/data/records.
 macro_rules! record_file {
     ($name:literal) => {
-        include_bytes!(concat!("../../../tests/data/records/", $name)).as_slice()
+        include_bytes!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/tests/data/records/",
+            $name
+        ))
+        .as_slice()
     };
 }
 use record_file;
