@@ -96,3 +96,18 @@ class Document:
     blocks: list
     paper: object = field(repr=False)
     subtitle: Optional[str] = None
+
+
+class Writer:
+    """Blocks as lines of text in one format: a method for each kind of block, by its name in small letters, and `part`."""
+
+    def __init__(self, paper):
+        self.paper = paper
+
+    def written(self, found):
+        """The lines of blocks."""
+        return [line for block in found for line in getattr(self, type(block).__name__.lower())(block)]
+
+    def sentence(self, parts):
+        """The text of a sentence."""
+        return "".join(map(self.part, parts))

@@ -53,18 +53,7 @@ def _units(text):
     return re.sub(r"\^(-?[\d/]+)", lambda power: f"<sup>{power[1].replace('-', '−')}</sup>", escape(text)).replace("*", " ")
 
 
-class _Writer:
-    def __init__(self, paper):
-        self.paper = paper
-
-    def written(self, found):
-        """The HTML of blocks."""
-        return [line for block in found for line in getattr(self, type(block).__name__.lower())(block)]
-
-    def sentence(self, parts):
-        """The HTML of a sentence."""
-        return "".join(map(self.part, parts))
-
+class _Writer(blocks.Writer):
     def part(self, part):
         """The HTML of a part of a sentence."""
         if isinstance(part, blocks.Link):

@@ -52,18 +52,7 @@ def as_latex(report):
     return "\n".join(head + _Writer(made.paper).written(made.blocks) + [r"\end{document}"]) + "\n"
 
 
-class _Writer:
-    def __init__(self, paper):
-        self.paper = paper
-
-    def written(self, found):
-        """The LaTeX of blocks."""
-        return [line for block in found for line in getattr(self, type(block).__name__.lower())(block)]
-
-    def sentence(self, parts):
-        """The LaTeX of a sentence."""
-        return "".join(map(self.part, parts))
-
+class _Writer(blocks.Writer):
     def part(self, part):
         """The LaTeX of a part of a sentence."""
         if isinstance(part, blocks.Link):
