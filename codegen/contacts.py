@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import arguments, graph, limits, multipliers, units
+from . import arguments, contact_outputs, derive, graph, limits, multipliers, units
 from .declarations import Transition
 from .errors import ModelError, caller_location
 
@@ -69,16 +69,29 @@ class Contact:
     tangential_restitution: ca.SX
     direction: ca.SX
     location: str
+    permanent: bool = False
     law: list = field(default_factory=list)
+    """The rates after its impacts that the model states, as (coordinate, rate)."""
+    held: list = field(default_factory=list)
+    """Of a permanent contact in the form with multipliers, the constraints that hold it: its gap, its slip rate."""
 
     def states(self):
         """What it can do."""
         slipping = [STICKS, SLIDES] if self.slip else [CLOSED]
-        return ([OPEN] if self.gap else []) + slipping
+        return slipping[:1] if self.permanent else ([OPEN] if self.gap else []) + slipping
+
+    def hold(self, model):
+        """Makes the constraints of a permanent contact."""
+        if self.gap is not None:
+            self.held.append(multipliers.Constraint(f"{self.name}.gap", self.gap_expression, self.location, force=f"{self.name}.normal"))
+        if self.slip is not None:
+            rate = self.slip_rate_of(derive.configuration(model))
+            self.held.append(multipliers.Constraint(f"{self.name}.slip", rate, self.location, True, force=f"{self.name}.friction"))
 
     def is_reducible(self):
         """Whether its gap and its slip are coordinates, and its impacts are Newton's without a slip that turns back."""
-        return not self.law and self.tangential_restitution.is_zero() and isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
+        plain = self.permanent or not self.law and self.tangential_restitution.is_zero()
+        return plain and isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
 
     def slip_rate_of(self, x):
         """The slip rate as an expression in coordinates and rates (`derive.Configuration`)."""
@@ -96,13 +109,29 @@ class Contact:
 # ---- declarations ---------------------------------------------------------------------------------
 
 
-def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangential_restitution):
+ON, OFF, PERMANENT = "on", "off", "permanent"
+
+
+def switched(model, kind, name, switch):
+    """Which option of a contact or a constraint that scenes may switch is being built."""
+    if not switch:
+        return ON
+    options = [ON, OFF] if kind == "constraint" else [ON, OFF, PERMANENT]
+    meaning = f"{kind} `{name}`: as declared, left out" + ("" if kind == "constraint" else ", or held for good")
+    chosen = model._choose(f"contacts.{name}", options, meaning)
+    if chosen == OFF:
+        model.switched_off.append((name, kind))
+    return chosen
+
+
+def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangential_restitution, switch):
     """Adds a contact to a model; see `Model.contact` and `Model.friction`."""
     kind = "friction" if gap is None else "contact"
     what = f"{kind} `{name}`"
     arguments.name(model, kind, name)
     if any(known.name == name for known in model.contacts):
         raise model.error(f"{what}: there is a contact or a friction of this name above")
+    chosen = switched(model, kind, name, switch)
     of = lambda key, value: arguments.expression(model, f"{what}: {key}", value)
     gap_expression = None if gap is None else _of_motion(model, f"{what}: its gap", of("its gap", gap), rates=False)
     if slip is None and (static is not None or kinetic is not None):
@@ -125,21 +154,27 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
         if lines and known.slip.name == slip.name:
             raise model.error(f"{what}: `{known.name}` slips along `{slip.name}` too; of two friction forces along one coordinate"
                               " only the sum is determined: declare one friction with the sum of both")
-    direction = None if slip is None else model.discrete(
+    if chosen == OFF:
+        return
+    direction = None if slip is None or chosen == PERMANENT else model.discrete(
         f"{name}_direction", (+1, -1), f"sign of the slip rate of `{name}` when it slides")
+    if direction is not None:
+        model.discretes[-1].extra["of_contacts"] = True
     model.contacts.append(Contact(
         name, gap, gap_expression, slip, slip_expression, by_rate, None if normal is None else of("`normal`", normal), static,
-        kinetic, of("`restitution`", restitution), of("`tangential_restitution`", tangential_restitution), direction, caller_location(model.file)))
+        kinetic, of("`restitution`", restitution), of("`tangential_restitution`", tangential_restitution), direction,
+        caller_location(model.file), chosen == PERMANENT))
 
 
 def declare_impact(model, name, rates):
     """Adds a law of the model's own for the impacts of a contact; see `Model.impact`."""
     contact = next((c for c in model.contacts if c.name == name and c.gap is not None), None)
-    if contact is None:
+    if contact is None and (name, "contact") not in model.switched_off:
         known = ", ".join(f"`{c.name}`" for c in model.contacts if c.gap is not None) or "none"
         raise model.error(f"impact: there is no contact `{name}` with a gap above (contacts: {known})")
-    if contact.law:
+    if contact is not None and contact.law:
         raise model.error(f"impact of `{name}`: its law is stated twice")
+    law = []
     declared = {c.symbol.rate.element_hash(): c for c in model.coordinates}
     places = [s for c in model.coordinates + model.motions for s in (c.symbol, c.symbol.rate)]
     allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters)]}
@@ -160,14 +195,18 @@ def declare_impact(model, name, rates):
             units.dimension_of(value - rate, model.dimensions)
         except units.UnitError as error:
             raise model.error(f"{what}: {error}") from None
-        contact.law.append((of.symbol, value))
-    if not contact.law:
+        law.append((of.symbol, value))
+    if not law:
         raise model.error(f"impact of `{name}`: it lists no rates")
+    # A contact that is switched off, or held for good, has no impacts.
+    if contact is not None and not contact.permanent:
+        contact.law = law
 
 
-def declare_constraint(model, name, expressions):
+def declare_constraint(model, name, expressions, switch):
     """Adds a constraint to a model; see `Model.constraint`."""
     arguments.name(model, "constraint", name)
+    chosen = switched(model, "constraint", name, switch)
     if any(known.name == name or known.name.startswith(f"{name}.") for known in [*model.constraints, *model.contacts]):
         raise model.error(f"constraint `{name}`: there is a contact, a friction or a constraint of this name above")
     listed = list(expressions) if isinstance(expressions, (list, tuple)) else [expressions]
@@ -175,6 +214,8 @@ def declare_constraint(model, name, expressions):
         own = name if len(listed) == 1 else f"{name}.{k + 1}"
         what = f"constraint `{own}`"
         expression = _of_motion(model, what, arguments.expression(model, what, expression), rates=False)
+        if chosen == OFF:
+            continue
         model.constraints.append(multipliers.Constraint(own, expression, caller_location(model.file)))
 
 
@@ -237,17 +278,27 @@ def _bound(model, contact):
 def expand(model):
     """Adds the modes, transitions and rests of a model with contacts or constraints; those of any other stay as they are."""
     if not model.contacts and not model.constraints:
+        if model.switched_off and not model.modes:
+            model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
         return
     if model.modes:
         raise ModelError("the model has contacts and modes by hand; contacts make all modes: leave `model.mode(…)` out, or write"
                          " all of it by hand", model.modes[0].location)
-    if not model.by_multipliers and not model.constraints and all(contact.is_reducible() for contact in model.contacts):
-        try:
-            Expansion(model).build()
-            return
-        except NotReducible:
-            model.modes, model.transitions, model.rests, model.placeholders = [], [], [], {}
-    multipliers.build(model)
+    if not _reduce(model):
+        multipliers.build(model)
+    contact_outputs.add(model)
+
+
+def _reduce(model):
+    """Adds the modes of the reduced form; whether there is one."""
+    if model.by_multipliers or model.constraints or not all(contact.is_reducible() for contact in model.contacts):
+        return False
+    try:
+        Expansion(model).build()
+    except NotReducible:
+        model.modes, model.transitions, model.rests, model.placeholders = [], [], [], {}
+        return False
+    return True
 
 
 class Expansion:
@@ -294,12 +345,13 @@ class Expansion:
                     drift.append((contact.slip.coordinate, contact.slip.value()))
         mode = model._mode(_words(self.contacts, states), "", freeze, drift)
         mode.location = self.contacts[0].location
+        mode.contact_states = {contact.name: state for contact, state in zip(self.contacts, states)}
         for contact, state in zip(self.contacts, states):
             if state == SLIDES:
                 mode.friction(contact.slip.coordinate, normal=contact.normal_force(mode), coefficient=contact.kinetic,
                               direction=contact.slip.sign * contact.direction, against=contact.slip.value())
                 model.locations[id(mode.forces), len(mode.forces) - 1] = contact.location
-            if contact.gap is None:
+            if contact.gap is None and not contact.permanent:
                 self._require_normal(mode, contact)
         return mode
 

@@ -7,7 +7,7 @@ the names of the fields there.
 
 import casadi as ca
 
-from . import analysis, drawing, limits, units
+from . import analysis, contact_outputs, drawing, limits, units
 from .emit_c import KEPT_ANGLES
 
 MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions", "outputs", "energies",
@@ -45,7 +45,7 @@ def describe(name, models, chosen, constants, for_tests):
             "expanded": analysis.used_signals(variants, (*analysis.SERIES, "requirements")),
             "required": [i for i, used in enumerate(required) if used],
         },
-        "coordinates": [_coordinate(c) for c in model.coordinates],
+        "coordinates": [_coordinate(model, c) for c in model.coordinates],
         "motions": [{"name": m.name, "unit": m.unit, "reaction_unit": _reaction_unit(m.unit), "meaning": m.meaning}
                     for m in model.motions],
         "parameters": [_parameter(p) for p in model.parameters],
@@ -53,7 +53,8 @@ def describe(name, models, chosen, constants, for_tests):
             {"name": set_name, "meaning": meaning, "values": [[k, _number(v)] for k, v in values.items()]}
             for set_name, meaning, values in model.parameter_sets],
         "inputs": list(_inputs(model)),
-        "discretes": [{"name": d.name, "values": [_number(v) for v in d.values], "meaning": d.meaning}
+        "discretes": [{"name": d.name, "values": [_number(v) for v in d.values], "meaning": d.meaning,
+                       "internal": "internal" in d.extra}
                       for d in model.discretes],
         "choices": [{"name": c[0], "options": list(c[1]), "meaning": c[2]} for c in model.choices],
         "combinations": [[c[3] for c in m.choices] for m in models],
@@ -73,16 +74,22 @@ def _number(value):
 
 def _reaction_unit(unit):
     """Unit of the generalized force of a coordinate: N for lengths, N m for angles."""
-    force = units.combine(units.parse("N m"), units.parse(unit), -1)
-    return next((name for name in ("N", "N m") if units.parse(name) == force), units.text(force))
+    return units.named(units.combine(units.parse("N m"), units.parse(unit), -1), ("N", "N m"))
 
 
-def _coordinate(c):
+def _coordinate(model, c):
     reaction_unit = c.extra.get("multiplier") or _reaction_unit(c.unit)
     return {"name": c.name, "unit": c.unit, "meaning": c.meaning, "reaction_unit": reaction_unit,
-            "multiplier": "multiplier" in c.extra,
+            "multiplier": "multiplier" in c.extra, "impulse": _impulse(model, c),
             "scale": _number(c.scale), "rate_scale": _number(c.rate_scale),
             "minimum": _fixed_bound(c.minimum), "maximum": _fixed_bound(c.maximum)}
+
+
+def _impulse(model, c):
+    """Which output the rate of a multiplier is; other choices may leave it out, so that it is told by its name."""
+    if "impulse" not in c.extra:
+        return None
+    return next(i for i, output in enumerate(model.outputs) if output.name == c.impulse.name)
 
 
 def _fixed_bound(bound):
@@ -125,9 +132,10 @@ def _variant(variant, tables):
         "barred": barred,
         "modes": [_mode(variant, i, equations, tables) for i, equations in enumerate(variant.modes)],
         "rests": [{"source": index[s.name], "target": index[t.name]} for s, t in model.rests],
+        "contacts": contact_outputs.described(model),
         "limits": [{"name": limit.name, "message": limit.message, "text": limit.text, "ends": bool(limit.ends)}
                    for limit in model.limits],
-        "outputs": [{"name": o.name, "unit": o.unit, "meaning": o.meaning, "text": units.short(o.expression, 200)}
+        "outputs": [{"name": o.name, "unit": o.unit, "meaning": o.meaning, "text": o.text or units.short(o.expression, 200)}
                     for o in model.outputs],
         "valid_motion": [entry for of_parameters, entry in validity if not of_parameters],
         "valid_parameters": [entry for of_parameters, entry in validity if of_parameters],

@@ -10,6 +10,7 @@ import casadi as ca
 
 from . import (analysis, bounds, check, combinations, derive, description, dimensions, emit_model, emit_series, graph, limits,
                momentum, outputs, tape)
+from .align import align, own
 from .arguments import NOT_FOLDERS
 from .context import build
 from .emit_c import Source
@@ -96,6 +97,7 @@ def generate(folder, for_tests=False, named=None, owner=""):
     name = models[0].name
     check_same_declarations(models)
     derived = models if named is None else [combinations.fitting(models, named)]
+    align(derived)
     chosen = [variants_of(model) for model in derived]
     variants = [v for variant in chosen for v in (variant, variant.lean) if v]
     constants = _extract_constants(variants)
@@ -189,8 +191,8 @@ def _emit_series(source, prefix, variant, slot, function, constants):
 
 def check_same_declarations(models):
     def declared(model):
-        groups = (model.parameters, model.coordinates, model.motions, model.inputs, model.discretes, model.outputs)
-        return [[(d.name, d.unit) for d in group] for group in groups]
+        kinds = ("parameters", "coordinates", "motions", "inputs", "discretes", "outputs")
+        return [[(d.name, d.unit) for d in own(model, kind)] for kind in kinds]
     for model in models[1:]:
         if declared(model) != declared(models[0]):
             raise ModelError(

@@ -8,14 +8,14 @@ import sys
 
 import casadi as ca
 
-from . import check, dimensions, generate, momentum
+from . import check, contact_outputs, dimensions, generate, momentum
 from .context import build
 from .errors import Location, ModelError, collected, error_location, report, split
 
 
 def judge(folder):
     """The judgement as data for JSON: model, ok, errors, and for a model without errors its modes."""
-    result = {"model": os.path.basename(os.path.abspath(folder)), "ok": False, "errors": [], "modes": [], "variants": []}
+    result = {"model": os.path.basename(os.path.abspath(folder)), "ok": False, "errors": [], "modes": [], "contacts": [], "variants": []}
     # Whatever the model file prints is not the answer.
     with contextlib.redirect_stdout(sys.stderr), collected() as errors:
         models = generate.load(folder, _build)
@@ -26,7 +26,7 @@ def judge(folder):
     if not errors:
         result["variants"] = variants
         default = next((v for v in variants if all(v["defaults"])), variants[0])
-        result["modes"] = default["modes"]
+        result["modes"], result["contacts"] = default["modes"], default["contacts"]
     return result
 
 
@@ -139,7 +139,7 @@ def _work(k):
 def _variant(model, variant):
     defaults = [c[3] == c[4] for c in model.choices]
     return {
-        "options": {c[0]: c[3] for c in model.choices}, "defaults": defaults,
+        "options": {c[0]: c[3] for c in model.choices}, "defaults": defaults, "contacts": contact_outputs.described(model),
         "modes": [_mode(variant, i, equations, all(defaults)) for i, equations in enumerate(variant.modes)]}
 
 
@@ -147,8 +147,10 @@ def _mode(variant, i, equations, counts):
     """A mode; with the operations of its functions if they are to be counted, which takes longer than the derivation."""
     coordinates = variant.model.coordinates
     mode = {
-        "name": equations.mode.name, "free": [coordinates[k].name for k in equations.free],
-        "guards": [" / ".join(dict.fromkeys(t.name for t in transitions)) for _, transitions in equations.guards]}
+        "name": equations.mode.name,
+        "free": [coordinates[k].name for k in equations.free if "multiplier" not in coordinates[k].extra],
+        # Those of a mode of all sets of contact states have no transitions.
+        "guards": [" / ".join(dict.fromkeys(t.name for t in transitions)) for _, transitions in equations.guards if transitions]}
     if counts:
         functions = {slot: f for slot, f in variant.functions.items() if slot[0] == i}
         mode["operations"] = {" ".join(map(str, slot[1:])): _operations(f.output) for slot, f in functions.items()}

@@ -41,6 +41,7 @@ class Mode:
         self.location = caller_location(model.file)
         self.forces, self.requirements = [], []
         self.form = None
+        self.contact_states = {}
 
     @property
     def identifier(self):
@@ -96,7 +97,7 @@ class Model:
         self.external, self.hand_written, self.unchecked = [], {}, set()
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
-        self.contacts, self.constraints, self.by_multipliers = [], [], False
+        self.contacts, self.constraints, self.switched_off, self.by_multipliers = [], [], [], False
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -191,9 +192,7 @@ class Model:
         depend on the choices made before; the first run must see all options.
         """
         arguments.name(self, "choice", name)
-        option = CONTEXT[-1].choose(name, list(options))
-        self.choices.append((name, list(options), meaning, option, default or options[0]))
-        return option
+        return self._choose(name, list(options), meaning, default)
 
     # ---- energies -----------------------------------------------------------------------------
 
@@ -250,19 +249,23 @@ class Model:
 
     # ---- contacts -----------------------------------------------------------------------------
 
-    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0, tangential_restitution=0):
+    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0, tangential_restitution=0, switch=False):
         """A contact: `gap` ≥ 0, and a force that pushes where it is zero.
 
         With `slip`, a place along the contact or its slip rate, it has Coulomb friction, `static` (`kinetic` where it is
         not given) and `kinetic`. An impact multiplies the rate of the gap by −`restitution` (Newton's law); friction impulses
         keep within the kinetic coefficient; an impact that sticks turns the slip rate back by −`tangential_restitution` times
         it. Modes, guards, impacts and rests follow; see docs/models.md.
-        """
-        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution, tangential_restitution)
 
-    def friction(self, name, *, slip, normal, kinetic, static=None):
-        """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N."""
-        contacts.declare(self, name, None, slip, normal, static, kinetic, 0, 0)
+        With `switch=True` a scene may leave it out (`"contacts": {name: "off"}`), or hold it for good (`"permanent"`: it
+        neither opens nor slips); there is code of its own for each, so that what is off costs nothing.
+        """
+        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution, tangential_restitution, switch)
+
+    def friction(self, name, *, slip, normal, kinetic, static=None, switch=False):
+        """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N. `switch` as for
+        contacts."""
+        contacts.declare(self, name, None, slip, normal, static, kinetic, 0, 0, switch)
 
     def impact(self, contact, rates):
         """A law of the model's own for what happens when a contact, by its name, strikes, in place of the general one: a list of
@@ -274,10 +277,10 @@ class Model:
         a scene may ask for."""
         self.by_multipliers = True
 
-    def constraint(self, name, expressions):
+    def constraint(self, name, expressions, *, switch=False):
         """A constraint that always holds: each of the expressions is zero. Its multipliers are the reactions: forces along
-        what the expressions measure, positive where they push it to grow."""
-        contacts.declare_constraint(self, name, expressions)
+        what the expressions measure, positive where they push it to grow. With `switch=True` a scene may leave it out."""
+        contacts.declare_constraint(self, name, expressions, switch)
 
     # ---- hybrid structure ---------------------------------------------------------------------
 
@@ -413,6 +416,11 @@ class Model:
         self.shapes.append(drawing.shape(self, name, points, kind, radius, caller_location(self.file), force, states))
 
     # ---- helpers ------------------------------------------------------------------------------
+
+    def _choose(self, name, options, meaning, default=None):
+        option = CONTEXT[-1].choose(name, options)
+        self.choices.append((name, options, meaning, option, default or options[0]))
+        return option
 
     def impact_velocities(self, *, before, after, prescribed, conserve):
         """Velocities after an impact that prescribes some rates and conserves some momenta.

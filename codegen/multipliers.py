@@ -23,6 +23,7 @@ import numpy as np
 from . import derive, graph, limits, units
 from .declarations import Declaration
 from .errors import ModelError
+from .outputs import Output
 
 MOST_CONTACTS = 16
 """Most contacts of a model: each two of them with friction have a discrete state, which says whether one holds the other."""
@@ -35,7 +36,15 @@ class Constraint:
     name: str
     expression: ca.SX
     location: str
+    is_rate: bool = False
+    """Whether the expression is a rate that is zero, not a place."""
     multiplier: object = None
+    force: str = ""
+    """Name of its multiplier, if it is that of a contact."""
+
+    def gradient(self, places, rates):
+        """How what it holds changes with coordinates, or with their rates."""
+        return ca.densify(ca.jacobian(self.expression, rates if self.is_rate else places))
 
 
 @dataclass
@@ -50,6 +59,8 @@ class Form:
     directions: list = field(default_factory=list)
     dropped: list = field(default_factory=list)
     joined: dict = field(default_factory=dict)
+    idle: list = field(default_factory=list)
+    """Multipliers that other choices use."""
 
     def discretes(self):
         """The discrete states that choose rows."""
@@ -66,7 +77,18 @@ def build(model):
     if model.modes:
         raise ModelError("the model has contacts or constraints and modes by hand; these make all modes: leave `model.mode(…)` out,"
                          " or write all of it by hand", model.modes[0].location)
-    contacts, constraints = model.contacts, model.constraints
+    for contact in model.contacts:
+        if contact.permanent:
+            contact.hold(model)
+    contacts = [contact for contact in model.contacts if not contact.permanent]
+    constraints = list(model.constraints)
+    for contact in model.contacts:
+        for constraint in list(contact.held):
+            # Of two that stick side by side the sum of the forces is determined: the first has it.
+            if constraint.is_rate and _rank(model, [*constraints, constraint]) == len(constraints):
+                contact.held.remove(constraint)
+            else:
+                constraints.append(constraint)
     if len(contacts) > MOST_CONTACTS:
         raise ModelError(f"the model has {len(contacts)} contacts; at most {MOST_CONTACTS} are: leave out contacts"
                          " that the model does not need", contacts[MOST_CONTACTS].location)
@@ -74,20 +96,28 @@ def build(model):
     form = Form(contacts, constraints)
     for contact in contacts:
         form.normals.append(None if contact.gap is None else _multiplier(
-            model, f"{contact.name}.normal", contact.gap_expression, False, f"impulse with which `{contact.name}` pushes", contact))
+            model, f"{contact.name}.normal", contact.gap_expression, False, f"impulse with which `{contact.name}` pushes", contact,
+            f"{contact.name}.normal_impulse"))
         form.tangents.append(None if contact.slip is None else _multiplier(
             model, f"{contact.name}.friction", contact.slip_expression, contact.slips_by_rate,
-            f"impulse of the friction of `{contact.name}`, along its slip", contact))
+            f"impulse of the friction of `{contact.name}`, along its slip", contact, f"{contact.name}.friction_impulse"))
     for constraint in constraints:
         constraint.multiplier = _multiplier(
-            model, f"{constraint.name}.force", constraint.expression, False, f"impulse of the constraint `{constraint.name}`", constraint)
+            model, constraint.force or f"{constraint.name}.force", constraint.expression, constraint.is_rate,
+            f"impulse of the constraint `{constraint.name}`", constraint,
+            f"{constraint.force}_impulse" if constraint.force else f"{constraint.name}.impulse")
     for contact in contacts:
         if contact.direction is not None:
             declared = next(d for d in model.discretes if d.symbol is contact.direction)
             declared.extra["values"] = [0.0, 1.0, -1.0]
             declared.meaning = f"sign of the slip rate of `{contact.name}` when it slides, else 0"
         form.directions.append(contact.direction)
-    one = lambda name, meaning: model.discrete(name, (0, 1), meaning)
+
+    def one(name, meaning):
+        symbol = model.discrete(name, (0, 1), meaning)
+        model.discretes[-1].extra.update(internal=True, of_contacts=True)
+        return symbol
+
     for contact in contacts:
         name = contact.name
         form.closed.append(None if contact.gap is None else one(f"{name}.closed", f"1 where `{name}` is closed"))
@@ -99,7 +129,7 @@ def build(model):
                 form.joined[i, j] = one(f"{first.name}.holds.{second.name}",
                                         f"1 where the friction of `{second.name}` is part of that of `{first.name}`")
     mode = model._mode("moves", "all sets of contact states, by multipliers", [], [])
-    mode.location = (contacts + constraints)[0].location
+    mode.location = (model.contacts + model.constraints)[0].location
     mode.form = form
     for contact in contacts:
         if contact.gap is None and not limits.is_of_parameters(model, contact.normal):
@@ -108,22 +138,29 @@ def build(model):
 
 def _check_independent(model, constraints):
     """Refuses constraints whose gradients depend on each other wherever coordinates and parameters are: their forces would not be
-    determined. They are looked at at several places, drawn at random, all numbers of the order of one."""
-    symbols = ca.vertcat(*[c.symbol for c in model.coordinates])
-    gradients = ca.densify(ca.jacobian(ca.vertcat(ca.SX(0, 1), *[c.expression for c in constraints]), symbols))
-    others = ca.symvar(gradients)
-    value, draw = ca.Function("gradients", others, [gradients]), random.Random(0)
-    places = [np.array(ca.densify(value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in others])[0])) for _ in range(4)]
+    determined."""
     for k, constraint in enumerate(constraints):
-        rank = max(np.linalg.matrix_rank(place[: k + 1]) for place in places)
+        rank = _rank(model, constraints[: k + 1])
         if rank < k + 1:
             before = ", ".join(f"`{c.name}`" for c in constraints[:k])
             raise ModelError(f"constraint `{constraint.name}`: it depends on those before it ({before}): of {k + 1} equations {rank}"
                              " are independent, so that it is redundant or contradicts them; leave it out", constraint.location)
 
 
-def _multiplier(model, name, expression, is_rate, meaning, declared):
-    """A coordinate whose acceleration is the force along an expression, or along what it is the rate of."""
+def _rank(model, constraints):
+    """How many constraints are independent: most of several places, drawn at random, all numbers of the order of one."""
+    places, rates = [ca.vertcat(*[of(c.symbol) for c in model.coordinates if "multiplier" not in c.extra])
+                     for of in (lambda q: q, lambda q: q.rate)]
+    gradients = ca.vertcat(ca.SX(0, places.numel()), *[c.gradient(places, rates) for c in constraints])
+    others = ca.symvar(gradients)
+    value, draw = ca.Function("gradients", others, [gradients]), random.Random(0)
+    drawn = [np.array(ca.densify(value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in others])[0])) for _ in range(4)]
+    return max(np.linalg.matrix_rank(place) for place in drawn) if constraints else 0
+
+
+def _multiplier(model, name, expression, is_rate, meaning, declared, impulse):
+    """A coordinate whose acceleration is the force along an expression, or along what it is the rate of. Its rate is an output of
+    the name `impulse`."""
     try:
         dimension = units.dimension_of(expression, model.dimensions)
     except units.UnitError as error:
@@ -134,9 +171,10 @@ def _multiplier(model, name, expression, is_rate, meaning, declared):
     unit = units.text(units.combine(force, units.parse("s^2")))
     symbol = model._declare_motion("coordinate", name, unit)
     symbol.jerk = ca.SX.sym(name + ".jerk")
-    known = next((text for text in ("N", "N m") if units.parse(text) == force), units.text(force))
+    of_impulse = units.named(units.combine(force, units.parse("s")), ("N s", "N m s"))
+    output = Output(impulse, of_impulse, meaning + " since the start", ca.SX(0), declared.location, "∫ λ dt", lambda equations: symbol.rate)
     model.coordinates.append(Declaration(name, unit, meaning + ", integrated over time", symbol, dict(
-        minimum=None, maximum=None, scale=1.0, rate_scale=1.0, multiplier=known)))
+        minimum=None, maximum=None, scale=1.0, rate_scale=1.0, multiplier=units.named(force, ("N", "N m")), impulse=output)))
     return symbol
 
 
@@ -168,7 +206,7 @@ class MultiplierEquations(derive.ModeEquations):
         self.form = form
         x = derive.configuration(model)
         self.terms = [self._terms(k, x) for k in range(len(form.contacts))]
-        self.held_terms = [self._rates(c.expression, x) for c in form.constraints]
+        self.held_terms = [self._held(c, x) for c in form.constraints]
         count = len(model.coordinates)
         self.own = [i for i, c in enumerate(model.coordinates) if "multiplier" not in c.extra]
         loaded, rates, powers = ca.SX(self.r), ca.vertcat(x.v), ca.SX(0)
@@ -186,10 +224,12 @@ class MultiplierEquations(derive.ModeEquations):
                 loaded = self._push(loaded, along, of.tangent)
                 powers += of.tangent * (ca.dot(along, rates) - of.slip_rate)
         for constraint, (_, _, acceleration) in zip(form.constraints, self.held_terms):
-            along = self._along(constraint.expression, x.q)
+            along = constraint.gradient(x.q, x.v).T
             force = constraint.multiplier.acceleration
             rows[name(constraint.multiplier)] = acceleration
             loaded, powers = self._push(loaded, along, force), powers + force * ca.dot(along, rates)
+        for symbol in form.idle:
+            rows[name(symbol)] = symbol.acceleration
         for i, row in rows.items():
             loaded[i] = row
         self.r = ca.densify(loaded)
@@ -212,6 +252,12 @@ class MultiplierEquations(derive.ModeEquations):
         """An expression, its rate and its acceleration."""
         rate = ca.jtimes(expression, x.q, x.v)
         return [self.freeze(e) for e in (expression, rate, derive.total_time_derivative(rate, x))]
+
+    def _held(self, constraint, x):
+        """What a constraint holds, its rate and its acceleration; of a rate there is no place."""
+        if not constraint.is_rate:
+            return self._rates(constraint.expression, x)
+        return [ca.SX(0), self.freeze(constraint.expression), self.freeze(derive.total_time_derivative(constraint.expression, x))]
 
     def _terms(self, k, x):
         form, contact = self.form, self.form.contacts[k]

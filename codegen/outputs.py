@@ -17,6 +17,10 @@ class Output:
     meaning: str
     expression: ca.SX
     location: str
+    text: str = ""
+    """What it is, where its expression does not say it."""
+    of: object = None
+    """Its value from the equations of a mode, of an output that contacts add; None: its expression, placed there."""
 
 
 def values(equations, check_smooth):
@@ -25,7 +29,7 @@ def values(equations, check_smooth):
     parameters = [p.symbol for p in model.parameters]
     for output in model.outputs:
         try:
-            value = equations.place(output.expression, output.location)
+            value = output.of(equations) if output.of else equations.place(output.expression, output.location)
         except ModelError as error:
             raise ModelError(f"output `{output.name}`: {error}; model.reaction(…) is that of whatever mode there is",
                              output.location) from None
@@ -37,5 +41,7 @@ def values(equations, check_smooth):
 def check_units(model, check):
     """Dimensions of all outputs, term by term; `check(expression, wanted, what, location)`."""
     for output in model.outputs:
+        if output.of is not None:
+            continue
         for term in graph.additive_terms(output.expression):
             check(term, units.parse(output.unit), f"output `{output.name}`", output.location)

@@ -65,6 +65,11 @@ def text(dimension):
     return f"{above or '1'}/{below}" if " " not in below else f"{above or '1'}/({below})"
 
 
+def named(dimension, names):
+    """A dimension as the one of some units that it is; in base units if it is none of them."""
+    return next((name for name in names if parse(name) == dimension), text(dimension))
+
+
 class _Free:
     """The dimension of an exact zero: it fits anywhere."""
 

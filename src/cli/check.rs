@@ -64,6 +64,7 @@ fn no_model(folder: &Path, message: &str) -> Value {
             "message": message, "help": help,
         }],
         "modes": [],
+        "contacts": [],
         "variants": [],
     })
 }
@@ -122,6 +123,15 @@ fn text(judgement: &Value) -> String {
             .collect();
         if !options.is_empty() {
             text += &format!("\n\n{}", options.join(", "));
+        }
+        for contact in list(&variant["contacts"]) {
+            let of = |key: &str| contact[key].as_str().unwrap_or_default();
+            text += &format!(
+                "\n  {} {}: {}",
+                of("kind"),
+                of("name"),
+                words(&contact["states"])
+            );
         }
         for mode in list(&variant["modes"]) {
             let counts = mode["operations"].as_object();

@@ -31,7 +31,8 @@ impl Names {
         let mut add = |name: &str, read: Read, unit: &str| {
             all.push((name.to_owned(), read, unit.to_owned()));
         };
-        for (i, c) in model.coordinates.iter().enumerate() {
+        let own = &model.coordinates[..model.own_coordinates()];
+        for (i, c) in own.iter().enumerate() {
             add(c.name, Read::Coordinate(i), c.unit);
             add(
                 &format!("{}.rate", c.name),
@@ -44,12 +45,13 @@ impl Names {
                 &format!("{}/s^2", c.unit),
             );
         }
-        let forces = model.coordinates.iter().map(|c| (c.name, c.reaction_unit));
+        let forces = own.iter().map(|c| (c.name, c.reaction_unit));
         let forces = forces.chain(model.motions.iter().map(|m| (m.name, m.reaction_unit)));
         for (i, (name, unit)) in forces.enumerate() {
-            add(&format!("reaction.{name}"), Read::Reaction(i), unit);
+            let reaction = Read::Reaction(model.reaction(i));
+            add(&format!("reaction.{name}"), reaction, unit);
         }
-        for (i, d) in model.discretes.iter().enumerate() {
+        for (i, d) in model.own_discretes().iter().enumerate() {
             add(d.name, Read::Discrete(i), "1");
         }
         for input in &model.inputs {

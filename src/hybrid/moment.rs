@@ -11,6 +11,7 @@ use super::simulation::Simulation;
 use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::Motion;
 use crate::kernel::{Context, Free, ModeKernel, with_kernel};
+use crate::model::name::intern;
 use crate::model::{Mode, Model};
 use crate::numerics::Size;
 use crate::numerics::Vector;
@@ -78,9 +79,12 @@ impl<'s> Moment<'s> {
         self.view.t
     }
 
-    /// Name of the mode.
+    /// Name of the mode; where contacts make it, of the set of their states: `left sticks, right open`.
     pub fn mode(&self) -> &'static str {
-        self.mode.name
+        match &self.mode.contacts {
+            Some(contacts) => intern(&contacts.name(contacts.set(self.discrete()))),
+            None => self.mode.name,
+        }
     }
 
     /// All coordinates, in their units.

@@ -96,6 +96,8 @@ impl Problem {
 pub(super) struct Outputs {
     /// Number of those of the model, which come first.
     of_model: usize,
+    /// Number of coordinates, and which of them are multipliers, that nobody looks at.
+    hidden: std::ops::Range<usize>,
     own: Box<[Formula]>,
     reads_reactions: bool,
     parameters: Box<[f64]>,
@@ -113,6 +115,7 @@ impl Outputs {
         let own: Box<[Formula]> = problem.outputs.iter().map(|o| o.formula.clone()).collect();
         Outputs {
             of_model: problem.variant().outputs.len(),
+            hidden: problem.model.own_coordinates()..n,
             reads_reactions: own.iter().any(Formula::reads_reactions),
             own,
             parameters: problem.parameters.clone().into(),
@@ -131,6 +134,23 @@ impl Outputs {
     /// Goes over to other parameters.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.parameters.copy_from_slice(parameters);
+    }
+
+    /// Evaluates the reactions that are recorded at a state of the present mode, for whose time the context is set.
+    pub fn reactions<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        context: &Context,
+        at: Free<F>,
+        out: &mut [f64],
+    ) {
+        if self.hidden.is_empty() {
+            return kernel.reactions(context, at, out);
+        }
+        kernel.reactions(context, at, &mut self.reactions);
+        let (own, motions) = out.split_at_mut(self.hidden.start);
+        own.copy_from_slice(&self.reactions[..self.hidden.start]);
+        motions.copy_from_slice(&self.reactions[self.hidden.end..]);
     }
 
     /// Evaluates all at a state of the present mode, for whose time the context is set.

@@ -22,6 +22,9 @@ pub struct Problem {
     pub signals: Signals,
     /// Where it starts.
     pub initial: Initial,
+    /// Whether an initial state that contacts and constraints by multipliers do not admit is moved to the nearest that they do,
+    /// in the metric of the masses; a run says by how much ([`crate::run::Subject::projected`]). Else it is refused.
+    pub project: bool,
     /// Coordinates frozen in addition: modes in which one of them is free are left out.
     pub freeze: Vec<usize>,
     /// Where it ends.
@@ -209,6 +212,7 @@ impl Problem {
                 discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
                 mode: None,
             },
+            project: false,
             freeze: Vec::new(),
             end: End {
                 time: 1.0,

@@ -49,15 +49,17 @@ fn go_on<'p>(
     let clock = WallClock::now();
     check_same(problem, &run)?;
     let wall = run.wall;
+    let projected = run.subject.projected.clone();
     let (replayed, observer) = match told {
         Some((replayed, observer)) => (Some(replayed), Some(observer)),
         None => (None, None),
     };
     let mut simulation = Simulation::observed(problem, observer)?;
-    simulation.restore(run, replayed);
+    simulation.restore(run, replayed)?;
     let outcome = simulation.run(progress);
     let subject = super::simulate::subject(problem);
     let mut run = simulation.finish(outcome.err(), subject, clock);
+    run.subject.projected = projected;
     run.wall += wall;
     Ok(run)
 }
@@ -220,7 +222,12 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
         ("freeze", content(&frozen.join(" "), |_| {})),
         (
             "initial",
-            content(mode, |put| put_lists(&initial_lists, put)),
+            content(mode, |put| {
+                put_lists(&initial_lists, put);
+                if problem.project {
+                    put(1.0);
+                }
+            }),
         ),
         ("inputs", content("", |put| problem.signals.content(put))),
         ("method", content(&method, |_| {})),
@@ -248,7 +255,7 @@ fn put_lists(lists: &[&Vec<f64>], put: &mut dyn FnMut(f64)) {
 
 impl Simulation<'_> {
     /// Goes to the end of a run, and takes over what it has recorded, or what of it was replayed to the observer.
-    fn restore(&mut self, run: Run, replayed: Option<Replay>) {
+    fn restore(&mut self, run: Run, replayed: Option<Replay>) -> Result<(), Reason> {
         let Run {
             mut trajectory,
             events,
@@ -269,11 +276,22 @@ impl Simulation<'_> {
             Some(_) => 0,
             None => end.mode,
         };
-        self.here.q.copy_from_slice(&end.state.q);
-        self.here.v.copy_from_slice(&end.state.v);
-        self.context
-            .discrete_mut()
+        self.here.q[..end.state.q.len()].copy_from_slice(&end.state.q);
+        self.here.v[..end.state.v.len()].copy_from_slice(&end.state.v);
+        // Multipliers are behind the coordinates. Nothing depends on them but the outputs that are their rates, the impulses:
+        // these go on where they are recorded.
+        let coordinates = self.problem.model.coordinates.iter();
+        for (coordinate, rate) in coordinates.zip(self.here.v.iter_mut()) {
+            let recorded = coordinate.impulse.and_then(|i| end.state.outputs.get(i));
+            if let Some(&impulse) = recorded {
+                *rate = impulse;
+            }
+        }
+        self.context.discrete_mut()[..end.state.discrete.len()]
             .copy_from_slice(&end.state.discrete);
+        if self.modes[0].contacts.is_some() {
+            self.resume_contacts(end.mode)?;
+        }
         self.observers.go_on(energy.as_ref(), &peaks);
         self.doubts.go_on(solver.steps, uncertain);
         self.solver = solver;
@@ -308,6 +326,7 @@ impl Simulation<'_> {
             }
         };
         self.observers.samples = Samples::from(every, rows);
+        Ok(())
     }
 }
 

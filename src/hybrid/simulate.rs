@@ -71,6 +71,7 @@ pub(super) fn subject(problem: &Problem) -> Subject {
             .map(|(p, &value)| (p.name.into(), value))
             .collect(),
         digests: super::resume::digests(problem),
+        projected: Vec::new(),
     }
 }
 
@@ -88,6 +89,22 @@ impl Simulation<'_> {
         self.solver.method = named;
     }
 
+    /// By how much a projection has changed the initial state.
+    fn projected(&self) -> Vec<(String, f64)> {
+        let (Some(begun), true) = (&self.begun, self.problem.project) else {
+            return Vec::new();
+        };
+        let (layout, n) = (&self.observers.layout, self.here.q.len());
+        let (q, v) = (&self.initial.q, &self.initial.v);
+        let places = layout.coordinates.iter().zip(begun.iter().zip(q));
+        let rates = layout.velocities.iter().zip(begun[n..].iter().zip(v));
+        places
+            .chain(rates)
+            .map(|(quantity, (now, then))| (quantity.name.clone(), now - then))
+            .filter(|(_, change)| *change != 0.0)
+            .collect()
+    }
+
     fn place(&mut self) -> Place {
         Place {
             t: self.here.now.seconds(),
@@ -98,7 +115,8 @@ impl Simulation<'_> {
     }
 
     /// Everything that was recorded, as far as it came.
-    pub fn finish(mut self, reason: Option<Reason>, subject: Subject, clock: WallClock) -> Run {
+    pub fn finish(mut self, reason: Option<Reason>, mut subject: Subject, clock: WallClock) -> Run {
+        subject.projected = self.projected();
         self.set_context();
         let last = self.observers.recording.last_row();
         if last.is_none_or(|t| t < self.here.now.seconds()) {

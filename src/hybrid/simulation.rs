@@ -439,17 +439,19 @@ impl<'p> Simulation<'p> {
                 let [q, v, a] = self.here.free(k.size(), &mode.free);
                 let at = Free { q: &q, v: &v, a: &a };
                 if !reactions.is_empty() {
-                    k.reactions(&self.context, at, &mut reactions);
+                    (self.observers.outputs).reactions(k, &self.context, at, &mut reactions);
                 }
                 if !outputs.is_empty() {
                     self.observers.outputs.evaluate(k, &self.context, mode, at, &mut outputs);
                 }
             });
         }
+        let layout = &self.observers.layout;
+        let (n, discretes) = (layout.coordinates.len(), layout.discretes.len());
         Snapshot {
-            q: self.here.q.to_vec(),
-            v: self.here.v.to_vec(),
-            discrete: self.context.discrete().to_vec(),
+            q: self.here.q[..n].to_vec(),
+            v: self.here.v[..n].to_vec(),
+            discrete: self.context.discrete()[..discretes].to_vec(),
             reactions,
             outputs,
         }

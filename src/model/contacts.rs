@@ -4,6 +4,28 @@
 //! Which rows the equations of the mode consist of is said by discrete states.
 
 use super::Tape;
+use super::name::intern;
+
+/// A contact, a friction element or one equation of a constraint as the model declares it, for people.
+#[derive(Debug, Clone)]
+pub struct DeclaredContact {
+    /// Name.
+    pub name: &'static str,
+    /// `contact`, `friction` or `constraint`.
+    pub kind: &'static str,
+    /// Its gap, or what a constraint holds at zero; none of friction.
+    pub gap: Option<&'static str>,
+    /// The place along which it slips, or its slip rate.
+    pub slip: Option<&'static str>,
+    /// The normal force of friction without a gap.
+    pub normal: Option<&'static str>,
+    /// The coefficients of friction.
+    pub friction: [Option<&'static str>; 2],
+    /// Restitution.
+    pub restitution: Option<&'static str>,
+    /// What it can do: `open`, `closed`, `sticks`, `slides`, `holds`.
+    pub states: Box<[&'static str]>,
+}
 
 /// The contacts and constraints of a mode.
 #[derive(Debug)]
@@ -77,6 +99,39 @@ impl Contacts {
             let words = contact.words().len();
             set * words + contact.state(discrete)
         })
+    }
+
+    /// Discrete states of a set of contact states, by its index; directions are what they are.
+    pub fn write_set(&self, mut set: usize, discrete: &mut [f64]) {
+        for contact in self.contacts.iter().rev() {
+            let words = contact.words();
+            let word = words[set % words.len()];
+            set /= words.len();
+            if let Some(i) = contact.closed {
+                discrete[i] = f64::from(u8::from(word != "open"));
+            }
+            if let (Some(i), true) = (contact.direction, word != "slides") {
+                discrete[i] = 0.0;
+            }
+        }
+    }
+
+    /// Names of all that can happen.
+    pub fn events(&self) -> Vec<&'static str> {
+        let of_contact = |contact: &Contact| {
+            let gap: &[_] = match contact.closed {
+                Some(_) => &["strikes", "closes", "opens"],
+                None => &[],
+            };
+            let slip: &[_] = match contact.tangent {
+                Some(_) => &["slips", "sticks", "reverses"],
+                None => &[],
+            };
+            let verbs = gap.iter().chain(slip).chain(&["stays"]);
+            let named = verbs.map(|verb| intern(&format!("{} {verb}", contact.name)));
+            named.collect::<Vec<_>>()
+        };
+        self.contacts.iter().flat_map(of_contact).collect()
     }
 
     /// Name of a set of contact states, by its index: `left sticks, right open`.

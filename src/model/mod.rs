@@ -16,7 +16,7 @@ mod tests;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
-pub use contacts::{Constraint, Contact, Contacts};
+pub use contacts::{Constraint, Contact, Contacts, DeclaredContact};
 pub use registry::{FolderRefused, FromFolder, Models, SameName, models};
 pub use tape::{Instruction, JET_ORDERS, Name, Pick, Tape};
 pub(crate) use tape::{Operands, Row};
@@ -73,6 +73,8 @@ pub struct Coordinate {
     pub reaction_unit: &'static str,
     /// Whether its acceleration is the force of a contact or a constraint, and its rate the impulse delivered so far.
     pub multiplier: bool,
+    /// Of a multiplier, the output that its rate is.
+    pub impulse: Option<usize>,
     /// Typical magnitude, in `unit`; the default absolute tolerance is relative tolerance × scale.
     pub scale: f64,
     /// Typical magnitude of the velocity, in `unit/s`.
@@ -163,6 +165,8 @@ pub struct Discrete {
     pub values: Box<[f64]>,
     /// Meaning.
     pub meaning: &'static str,
+    /// Whether it chooses rows of equations (`left.closed`) and says nothing that people do not see elsewhere.
+    pub internal: bool,
 }
 
 /// A modelling choice of a scene (a top-level key of the scene file).
@@ -192,6 +196,8 @@ pub struct Variant {
     pub modes: Box<[Mode]>,
     /// Where accumulations may come to rest, in the order of the file.
     pub rests: Box<[Rest]>,
+    /// Contacts, friction elements and constraints as they are declared.
+    pub contacts: Box<[DeclaredContact]>,
     /// Limit states.
     pub limits: Box<[Limit]>,
     /// Outputs; names and units are the same under all options.
@@ -392,6 +398,27 @@ impl Model {
     /// Whether it was loaded from a library, not linked into the program.
     pub fn is_loaded(&self) -> bool {
         self.library.is_some()
+    }
+
+    /// Number of coordinates that people see, which come first: those behind them are multipliers.
+    pub fn own_coordinates(&self) -> usize {
+        let multipliers = self.coordinates.iter().filter(|c| c.multiplier).count();
+        self.coordinates.len() - multipliers
+    }
+
+    /// The discrete states that people see, which come first.
+    pub fn own_discretes(&self) -> &[Discrete] {
+        let all = &self.discretes;
+        &all[..all.iter().filter(|d| !d.internal).count()]
+    }
+
+    /// Index of a reaction among those of all coordinates and motions of the ground, by its index among those that people see.
+    pub fn reaction(&self, seen: usize) -> usize {
+        let own = self.own_coordinates();
+        match seen < own {
+            true => seen,
+            false => seen + self.coordinates.len() - own,
+        }
     }
 
     /// Number of signals that the inputs fill.

@@ -43,6 +43,8 @@ struct Written {
     choices: BTreeMap<String, String>,
     parameters: BTreeMap<String, f64>,
     digests: BTreeMap<String, String>,
+    #[serde(default)]
+    projected: BTreeMap<String, f64>,
     end: End,
     peaks: BTreeMap<String, Peak>,
     impacts: BTreeMap<String, IgnoredAny>,
@@ -254,6 +256,9 @@ fn subject(written: &Written, model: &Model, variant: &Variant) -> Result<Subjec
         digests: (written.digests.iter())
             .map(|(part, digest)| (part.clone(), digest.clone()))
             .collect(),
+        projected: (written.projected.iter())
+            .map(|(name, change)| (name.clone(), *change))
+            .collect(),
     })
 }
 
@@ -303,7 +308,12 @@ fn transition(names: &[&'static str], name: &str) -> Result<&'static str, String
 fn transitions(variant: &Variant) -> Vec<&'static str> {
     let guards = variant.modes.iter().flat_map(|mode| &mode.guards);
     let names = guards.flat_map(|guard| &guard.transitions).map(|t| t.name);
-    names.chain(["rest"]).collect()
+    let contacts = variant
+        .modes
+        .iter()
+        .filter_map(|mode| mode.contacts.as_ref());
+    let of_contacts = contacts.flat_map(|contacts| contacts.events());
+    names.chain(of_contacts).chain(["rest"]).collect()
 }
 
 fn snapshot(layout: &Layout, row: &mut Row) -> Result<Snapshot, String> {

@@ -81,6 +81,18 @@ impl Display for Report {
         }
         writeln!(f, ", mode {}{}\n", end.mode, discrete(summary))?;
         table(f, &self.states())?;
+        if !summary.projected.0.is_empty() {
+            let moved = summary.projected.0.iter();
+            let moved = moved.map(|(name, change)| {
+                let unit = (summary.peaks.0.iter())
+                    .find(|(of, _)| of == name)
+                    .map_or("", |(_, peak)| &peak.unit);
+                let (change, unit) = self.shown(*change, unit, DIGITS);
+                format!("{name} by {change} {unit}").trim_end().to_owned()
+            });
+            let moved = moved.collect::<Vec<_>>().join(", ");
+            writeln!(f, "\ninitial     moved: {moved}")?;
+        }
         write!(f, "\ntransitions {}", summary.events.total)?;
         for (i, (name, count)) in summary.events.by_transition.iter().enumerate() {
             write!(f, "{} {count} {name}", if i == 0 { ":" } else { "," })?;

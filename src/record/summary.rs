@@ -29,6 +29,9 @@ pub struct Summary {
     pub parameters: Named<f64>,
     /// Digests of the model and of the parts of the scene that decide the motion: a run is continued with the same.
     pub digests: Named<String>,
+    /// By how much a projection has changed the initial state.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub projected: Named<f64>,
     /// Where the run ended.
     pub end: Point,
     /// Why and where the run stopped early; `null` when it reached its end.
@@ -170,6 +173,12 @@ pub struct Energy {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Named<T>(pub Vec<(String, T)>);
 
+impl<T> Named<T> {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
 impl<T: Serialize> Serialize for Named<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
@@ -211,6 +220,7 @@ impl Summary {
             choices: Named(run.subject.choices.clone()),
             parameters: Named(run.subject.parameters.clone()),
             digests: Named(run.subject.digests.clone()),
+            projected: Named(run.subject.projected.clone()),
             end: point(run, &run.end),
             failure: (run.failure.as_ref()).map(|f| Stopped {
                 reason: f.reason.clone(),

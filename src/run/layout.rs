@@ -78,17 +78,18 @@ impl Layout {
         recorded: Recorded,
         outputs: impl IntoIterator<Item = &'o Quantity>,
     ) -> Layout {
+        let own = &model.coordinates[..model.own_coordinates()];
         let mut layout = Layout {
-            coordinates: (model.coordinates.iter())
+            coordinates: (own.iter())
                 .map(|c| Quantity::new(c.name, c.unit, c.meaning))
                 .collect(),
-            velocities: (model.coordinates.iter())
+            velocities: (own.iter())
                 .map(|c| {
                     let meaning = format!("rate of {}", c.name);
                     Quantity::new(format!("{}.rate", c.name), rate_unit(c.unit), meaning)
                 })
                 .collect(),
-            discretes: (model.discretes.iter())
+            discretes: (model.own_discretes().iter())
                 .map(|d| Quantity::new(d.name, "1", d.meaning))
                 .collect(),
             modes: match &variant.modes[0].contacts {
@@ -163,7 +164,8 @@ impl Layout {
 }
 
 fn reactions(model: &Model) -> Vec<Quantity> {
-    let held = model.coordinates.iter().map(|c| {
+    let own = &model.coordinates[..model.own_coordinates()];
+    let held = own.iter().map(|c| {
         let meaning = format!("generalized force that holds {} still", c.name);
         Quantity::new(format!("reaction.{}", c.name), c.reaction_unit, meaning)
     });

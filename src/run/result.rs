@@ -76,6 +76,8 @@ pub struct Subject {
     pub parameters: Vec<(String, f64)>,
     /// Digests of the model and of the parts of the scene that decide the motion, as (part, digest).
     pub digests: Vec<(String, String)>,
+    /// By how much a projection has changed the initial state that was asked for: coordinates and rates, by name, in their units.
+    pub projected: Vec<(String, f64)>,
 }
 
 /// Samples of the columns over time.

@@ -2,6 +2,7 @@
 //!
 //! Reading a scene and `dalembert schema` both follow these tables.
 
+use super::check::Checked;
 use super::limits;
 use super::outputs;
 use super::record;
@@ -59,11 +60,24 @@ pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> 
             parameters(model),
         ),
     ];
+    let mut switches = Vec::new();
     for choice in model.map_or(&[][..], |m| &m.choices) {
         let options = Shape::Choice("choice", choice.options.to_vec());
-        keys.push(Key::new(choice.name, choice.meaning, options));
+        match choice.name.strip_prefix(SWITCHES) {
+            Some(contact) => switches.push(Key::new(contact, choice.meaning, options)),
+            None => keys.push(Key::new(choice.name, choice.meaning, options)),
+        }
     }
+    let switches = match model {
+        Some(_) => Object::new("contact that may be switched", switches),
+        None => Object::new("contact", Vec::new()).others(Shape::Text),
+    };
     keys.extend([
+        Key::new(
+            "contacts",
+            "contacts, friction and constraints that are left out (`off`) or held for good (`permanent`)",
+            switches,
+        ),
         Key::new(
             "inputs",
             "prescribed functions of time; zero if absent",
@@ -294,6 +308,17 @@ fn between_rows() -> [Key; 2] {
     ]
 }
 
+/// What names of choices begin with that are options of contacts; scenes have them as `contacts`.
+pub(crate) const SWITCHES: &str = "contacts.";
+
+/// What a checked scene says of a choice.
+pub(crate) fn chosen<'s>(scene: &'s Checked, choice: &str) -> Option<&'s Checked> {
+    match choice.strip_prefix(SWITCHES) {
+        Some(contact) => scene.get("contacts")?.get(contact),
+        None => scene.get(choice),
+    }
+}
+
 /// The key of a coordinate's velocity.
 pub(crate) fn rate_key(coordinate: &Coordinate) -> String {
     format!("{}.rate", coordinate.name)
@@ -311,18 +336,28 @@ fn initial(model: Option<&Model>) -> Object {
         let keys = vec![Key::new("mode", meaning, Shape::Text)];
         return Object::new("coordinate", keys).others(Quantity::any(""));
     };
-    let mut keys = vec![Key::new(
-        "mode",
-        meaning,
-        Shape::Choice("mode", mode_names(&model.variants)),
-    )];
-    for c in &model.coordinates {
+    let mut keys = Vec::new();
+    let modes = mode_names(&model.variants);
+    let by_multipliers = modes.is_empty();
+    match by_multipliers {
+        true => {
+            let meaning = "whether a state that contacts and constraints do not admit is moved to the nearest that they do";
+            keys.push(Key::new("project", meaning, Shape::Flag).default(false));
+        }
+        false => keys.push(Key::new("mode", meaning, Shape::Choice("mode", modes))),
+    }
+    for c in own(model) {
         let position = Quantity::within(c.bounds(), c.unit);
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
         keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
     }
-    for d in &model.discretes {
+    // Where all modes are sets of contact states, the state says in which way a contact slips.
+    let discretes = match by_multipliers {
+        true => &[],
+        false => model.own_discretes(),
+    };
+    for d in discretes {
         let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values.clone()));
         key.default = d.values.first().map(|&v| v.into());
         keys.push(key);
@@ -330,12 +365,14 @@ fn initial(model: Option<&Model>) -> Object {
     Object::new("coordinate", keys)
 }
 
+/// The coordinates of which scenes speak.
+fn own(model: &Model) -> &[Coordinate] {
+    &model.coordinates[..model.own_coordinates()]
+}
+
 fn freeze(model: Option<&Model>) -> Shape {
     let name = match model {
-        Some(model) => Shape::Choice(
-            "coordinate",
-            model.coordinates.iter().map(|c| c.name).collect(),
-        ),
+        Some(model) => Shape::Choice("coordinate", own(model).iter().map(|c| c.name).collect()),
         None => Shape::Text,
     };
     Shape::List(Box::new(name))
@@ -380,7 +417,7 @@ fn accuracy(model: Option<&Model>) -> Object {
     let each = match model {
         None => Object::new("coordinate", Vec::new()).others(Quantity::positive("")),
         Some(model) => {
-            let keys = model.coordinates.iter().flat_map(|c| {
+            let keys = own(model).iter().flat_map(|c| {
                 let rate = format!("of the velocity of {}", c.name);
                 [
                     Key::new(c.name, format!("of {}", c.name), Quantity::positive(c.unit)),
@@ -425,9 +462,10 @@ fn record() -> Object {
     )
 }
 
-/// The names of the modes of some variants, each once.
+/// The names of the modes of some variants, each once, but for one of all sets of contact states: it says nothing.
 pub(crate) fn mode_names(variants: &[Variant]) -> Vec<&'static str> {
-    unique(variants.iter().flat_map(|v| &v.modes).map(|m| m.name))
+    let modes = variants.iter().flat_map(|v| &v.modes);
+    unique(modes.filter(|m| m.contacts.is_none()).map(|m| m.name))
 }
 
 /// The names of the transitions of some variants, each once.
@@ -436,7 +474,11 @@ pub(crate) fn transition_names(variants: &[Variant]) -> Vec<&'static str> {
         .iter()
         .flat_map(|v| &v.modes)
         .flat_map(|m| &m.guards);
-    unique(guards.flat_map(|g| &g.transitions).map(|t| t.name))
+    let modes = variants.iter().flat_map(|v| &v.modes);
+    let contacts = modes.filter_map(|m| m.contacts.as_ref());
+    let of_contacts = contacts.flat_map(|contacts| contacts.events());
+    let of_guards = guards.flat_map(|g| &g.transitions).map(|t| t.name);
+    unique(of_guards.chain(of_contacts))
 }
 
 /// The limit states of some variants, those of one name once.

@@ -72,6 +72,9 @@ pub(super) fn scene_of(
         parameters,
         signals,
         initial,
+        project: (checked.get("initial"))
+            .and_then(|initial| initial.get("project"))
+            .is_some_and(Checked::flag),
         freeze,
         end,
         limits: Limits::default(),
@@ -136,16 +139,30 @@ fn texts(root: &Node) -> BTreeMap<String, String> {
     let Value::Object(entries) = &root.value else {
         return BTreeMap::new();
     };
-    let texts = entries.iter().filter_map(|entry| match &entry.node.value {
-        Value::Text(text) => Some((entry.key.clone(), text.clone())),
-        _ => None,
-    });
-    texts.collect()
+    let mut texts = BTreeMap::new();
+    for entry in entries {
+        match &entry.node.value {
+            Value::Text(text) => {
+                texts.insert(entry.key.clone(), text.clone());
+            }
+            Value::Object(switches) if entry.key == "contacts" => {
+                for switch in switches {
+                    if let Value::Text(text) = &switch.node.value {
+                        texts.insert(format!("{}{}", format::SWITCHES, switch.key), text.clone());
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    texts
 }
 
 /// The variant that has the options the scene names, and the defaults for the others.
 fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
-    let named: Vec<Option<&Checked>> = model.choices.iter().map(|c| scene.get(c.name)).collect();
+    let named: Vec<Option<&Checked>> = (model.choices.iter())
+        .map(|c| format::chosen(scene, c.name))
+        .collect();
     let fits = |variant: &Variant| {
         named.iter().enumerate().all(|(i, name)| match name {
             Some(name) => variant.options[i] == name.text(),

@@ -29,12 +29,12 @@ fn observables(model: &Model, variant: &Variant, own: &[(String, String)]) -> Ve
         .map(|(name, unit)| record::Quantity::new(name, unit, ""));
     let own: Vec<_> = own.collect();
     let layout = Layout::new(model, variant, recorded, &own);
-    type Place = fn(usize) -> Observed;
+    type Place<'p> = &'p dyn Fn(usize) -> Observed;
     let groups: [(_, Place); 4] = [
-        (layout.coordinates, Observed::Coordinate),
-        (layout.velocities, Observed::Rate),
-        (layout.reactions, Observed::Reaction),
-        (layout.outputs, Observed::Output),
+        (layout.coordinates, &Observed::Coordinate),
+        (layout.velocities, &Observed::Rate),
+        (layout.reactions, &|i| Observed::Reaction(model.reaction(i))),
+        (layout.outputs, &Observed::Output),
     ];
     let all = groups.into_iter().flat_map(|(quantities, place)| {
         let observable = move |(i, q): (usize, record::Quantity)| Observable {

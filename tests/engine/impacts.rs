@@ -56,6 +56,7 @@ fn impact(masses: &[f64], normals: &[Vec<f64>], before: &[f64]) -> Problem {
     }
     problem.end.time = 1e-9;
     problem.record.every = Some(1.0);
+    problem.record.columns.outputs = true;
     problem
 }
 
@@ -98,13 +99,13 @@ fn impacts_of_several_contacts_are_those_of_exact_maps() {
                 assert!((found - exact).abs() <= 1e-14, "{row}: {found} {exact}");
             }
             let event = &run.events[0];
-            for (key, of) in [("P_N", "normal"), ("P_T", "friction")] {
+            for (key, of) in [("P_N", "normal_impulse"), ("P_T", "friction_impulse")] {
                 for (k, exact) in solution[key].as_object().unwrap() {
                     let exact = fraction(exact.as_str().unwrap());
                     let name = format!("c_{k}.{of}");
-                    let i = (run.layout.coordinates.iter()).position(|c| c.name == name);
-                    let i = i.expect("a multiplier");
-                    let impulse = event.after.v[i] - event.before.v[i];
+                    let i = (run.layout.outputs.iter()).position(|o| o.name == name);
+                    let i = i.expect("an output");
+                    let impulse = event.after.outputs[i] - event.before.outputs[i];
                     assert!((impulse - exact).abs() <= 1e-14, "{row}: {key} {impulse}");
                 }
             }

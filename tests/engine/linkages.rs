@@ -14,13 +14,15 @@ fn a_pendulum_in_cartesian_coordinates_keeps_its_length() {
         pendulum.end.time = 10.0;
         pendulum.method = method;
         pendulum.record.every = Some(0.01);
-        pendulum.record.columns.reactions = true;
+        pendulum.record.columns.outputs = true;
         let run = run(&pendulum);
+        let column = |name: &str| run.trajectory.column(name).expect("a column");
+        let force = column("rod.force");
         for exact in reference["reference"].as_array().unwrap() {
             let t = number(&exact["t"]);
             let row = run.trajectory.row((t / 0.01).round() as usize);
-            let force = row[6 + 2];
-            for (value, key) in [(row[0], "x"), (row[1], "y"), (row[3], "vx"), (row[4], "vy")] {
+            let force = row[force];
+            for (value, key) in [(row[0], "x"), (row[1], "y"), (row[2], "vx"), (row[3], "vy")] {
                 let exact = number(&exact[key]);
                 assert!(
                     (value - exact).abs() <= 1e-12 * t.max(1.0),
@@ -36,7 +38,7 @@ fn a_pendulum_in_cartesian_coordinates_keeps_its_length() {
         for k in 0..run.trajectory.t.len() {
             let row = run.trajectory.row(k);
             let length = (row[0] * row[0] + row[1] * row[1]).sqrt();
-            let rate = (row[0] * row[3] + row[1] * row[4]) / length;
+            let rate = (row[0] * row[2] + row[1] * row[3]) / length;
             assert!(
                 (length - 1.0).abs() <= 1e-14 && rate.abs() <= 1e-14,
                 "{length} {rate}"
@@ -59,7 +61,7 @@ fn a_double_pendulum_strikes_a_wall_slides_along_it_and_leaves() {
             pendulum.set_tolerance(TIGHTEST);
             pendulum.end.time = number(&scene["t_end"]);
             pendulum.record.every = Some(0.1);
-            check(&scene, &run(&pendulum), 4, method);
+            check(&scene, &run(&pendulum), 2, method);
         }
     }
 }
@@ -95,7 +97,7 @@ fn a_slider_crank_of_nine_coordinates_turns_as_that_of_one() {
     problem.set_tolerance(TIGHTEST);
     problem.end.time = 5.0;
     problem.record.every = Some(0.1);
-    problem.record.columns.reactions = true;
+    problem.record.columns.outputs = true;
     problem.record.ledger = true;
     for method in [Method::Taylor, Method::Radau] {
         problem.method = method;
@@ -112,9 +114,10 @@ fn a_slider_crank_of_nine_coordinates_turns_as_that_of_one() {
             let error = row[2] - number(&exact["theta"]);
             assert!(error.abs() <= demand, "theta at {t}: {error:e}");
             if method == Method::Taylor {
-                let forces = &row[34 + 9..];
+                let forces = ["O.1", "O.2", "A.1", "A.2", "B.1", "B.2", "guide"];
                 let names = ["O_x", "O_y", "A_x", "A_y", "B_x", "B_y", "guide_N"];
-                for (force, name) in forces.iter().zip(names) {
+                for (force, name) in forces.into_iter().zip(names) {
+                    let force = row[run.trajectory.column(&format!("{force}.force")).unwrap()];
                     let exact = number(&exact["multipliers"][name]);
                     let off = (force - exact).abs() / exact.abs();
                     assert!(off <= 1e-10, "{name} at {t}: {force} {exact}");

@@ -43,7 +43,7 @@ fn a_block_on_a_block_on_a_shaking_table_sticks_and_slips() {
         for method in [Method::Taylor, Method::Radau] {
             let mut stack = stack(&scene);
             stack.method = method;
-            check(&scene, &run(&stack), 4, method);
+            check(&scene, &run(&stack), 2, method);
         }
     }
 }
@@ -64,26 +64,26 @@ fn eight_slabs_slip_one_after_the_other_as_their_friction_says() {
         stack.set_tolerance(1e-12);
         stack.end.time = 2.0;
         stack.record.every = Some(0.01);
-        stack.record.columns.reactions = true;
+        stack.record.columns.outputs = true;
         let run = run(&stack);
         // The first slip is above the least friction of those below all others: what is on it goes along.
         let least = order.iter().map(|&place| mus[place]).fold(1.0, f64::min);
         let first = (least * g / 6.0).asin() / 5.0;
         assert!((run.events[0].t - first).abs() <= 1e-14);
         assert!(run.events.len() > 5, "{}", run.events.len());
-        let columns = &run.layout;
-        let forces = (columns.coordinates.iter())
-            .position(|c| c.name == "below_1.friction")
-            .unwrap();
+        let forces: Vec<usize> = (1..=8)
+            .map(|k| run.trajectory.column(&format!("below_{k}.friction")))
+            .map(|column| column.expect("an output"))
+            .collect();
         for row in 0..run.trajectory.t.len() {
             let values = run.trajectory.row(row);
-            let n = columns.coordinates.len();
+            let n = run.layout.coordinates.len();
             let mut below = 0.0;
             for k in 0..8 {
                 let slip = values[n + k] - below;
                 below = values[n + k];
                 let bound = mus[order[k]] * (8 - k) as f64 * g;
-                let force = values[2 * n + forces + k];
+                let force = values[forces[k]];
                 assert!(force.abs() <= bound * (1.0 + 1e-13), "{k}: {force} {bound}");
                 if slip.abs() > 1e-12 {
                     assert!((force + slip.signum() * bound).abs() <= 1e-13 * bound);

@@ -104,6 +104,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         peaks: Vec::new(),
         tally: Tally::of(events.iter().map(Event::jump)),
         subject: Subject {
+            projected: Vec::new(),
             model: "bouncing_ball".into(),
             title: "A ball".into(),
             choices: vec![("rules".into(), "reactions".into())],
@@ -323,6 +324,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         peaks: Vec::new(),
         tally: Tally::of(events.iter().map(Event::jump)),
         subject: Subject {
+            projected: Vec::new(),
             model: "walking_tank".into(),
             title: "Something like a tank".into(),
             choices: vec![

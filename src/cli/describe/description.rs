@@ -19,6 +19,7 @@ pub struct Description {
     pub parameter_sets: Vec<ParameterSet>,
     pub reactions: Vec<Reaction>,
     pub outputs: Vec<Output>,
+    pub contacts: Vec<Contact>,
     pub modes: Vec<Mode>,
     pub limits: Vec<Limit>,
     pub validity: Vec<Validity>,
@@ -96,6 +97,24 @@ pub struct Reaction {
     pub name: String,
     pub unit: String,
     pub meaning: String,
+}
+
+/// A contact, a friction element or one equation of a constraint.
+#[derive(Debug, Serialize)]
+pub struct Contact {
+    pub name: &'static str,
+    pub kind: &'static str,
+    /// Its gap, or what a constraint holds at zero.
+    pub gap: Option<&'static str>,
+    pub slip: Option<&'static str>,
+    /// The normal force of friction without a gap.
+    pub normal: Option<&'static str>,
+    #[serde(rename = "static")]
+    pub static_friction: Option<&'static str>,
+    pub kinetic: Option<&'static str>,
+    pub restitution: Option<&'static str>,
+    /// What it can do.
+    pub states: Box<[&'static str]>,
 }
 
 /// An output.
@@ -199,7 +218,7 @@ pub struct Operations {
 impl Description {
     pub fn new(model: &Model, variant: &Variant) -> Description {
         let choices = model.choices.iter().zip(&variant.options);
-        let coordinates = model.coordinates.iter();
+        let coordinates = model.coordinates[..model.own_coordinates()].iter();
         let parameter_sets = model.parameter_sets.iter();
         Description {
             name: model.name,
@@ -232,7 +251,7 @@ impl Description {
                     meaning: c.meaning,
                 })
                 .collect(),
-            discrete: (model.discretes.iter())
+            discrete: (model.own_discretes().iter())
                 .map(|d| Discrete {
                     name: d.name,
                     values: d.values.clone(),
@@ -263,6 +282,19 @@ impl Description {
                     unit: o.unit,
                     expression: o.text,
                     meaning: o.meaning,
+                })
+                .collect(),
+            contacts: (variant.contacts.iter())
+                .map(|c| Contact {
+                    name: c.name,
+                    kind: c.kind,
+                    gap: c.gap,
+                    slip: c.slip,
+                    normal: c.normal,
+                    static_friction: c.friction[0],
+                    kinetic: c.friction[1],
+                    restitution: c.restitution,
+                    states: c.states.clone(),
                 })
                 .collect(),
             modes: variant
@@ -340,8 +372,11 @@ impl Mode {
         Mode {
             name: mode.name,
             meaning: mode.meaning,
-            free: mode.free.iter().copied().map(name).collect(),
-            held: (0..model.coordinates.len())
+            free: (mode.free.iter().copied())
+                .filter(|&i| i < model.own_coordinates())
+                .map(name)
+                .collect(),
+            held: (0..model.own_coordinates())
                 .filter(is_held)
                 .map(held)
                 .collect(),

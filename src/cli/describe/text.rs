@@ -100,6 +100,34 @@ impl Display for Text<'_> {
         }
         section(f, "Outputs", &outputs)?;
 
+        let heads = [
+            "contact",
+            "kind",
+            "gap, held at zero by a constraint",
+            "slip",
+            "friction",
+            "restitution",
+            "can be",
+        ];
+        let mut contacts = Table::new(heads);
+        for c in &d.contacts {
+            let under = c.normal.map(|n| format!(" under {n}"));
+            let friction = match (c.static_friction, c.kinetic) {
+                (Some(s), Some(k)) if s != k => format!("{s} static, {k} kinetic"),
+                (_, k) => k.unwrap_or_default().to_owned(),
+            };
+            contacts.row([
+                c.name,
+                c.kind,
+                c.gap.unwrap_or_default(),
+                c.slip.unwrap_or_default(),
+                &(friction + &under.unwrap_or_default()),
+                c.restitution.unwrap_or_default(),
+                &c.states.join(", "),
+            ]);
+        }
+        section(f, "Contacts and constraints", &contacts)?;
+
         for mode in &d.modes {
             self::mode(f, mode)?;
         }

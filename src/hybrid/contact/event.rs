@@ -160,7 +160,7 @@ impl<'p> Simulation<'p> {
 
     /// The contacts as they stand where none closes; `stops`: one whose slip rate has come to zero, and with it that of all
     /// whose slip depends on it.
-    fn standing<F: Size>(
+    pub(super) fn standing<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,

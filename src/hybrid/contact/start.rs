@@ -44,6 +44,9 @@ impl<'p> Simulation<'p> {
         let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
         let open = vec![State::Open; contacts.contacts.len()];
         write_states(contacts, &open, self.context.discrete_mut());
+        if self.problem.project {
+            self.project(kernel, contacts, [&mut q, &mut v]);
+        }
         let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
         let refused = |why: String| {
             let mode = self.mode().name;
@@ -114,12 +117,68 @@ impl<'p> Simulation<'p> {
             }
             settled => drop(settled?),
         }
+        self.take_next();
+        Ok(())
+    }
+
+    /// Moves a state to the nearest that constraints admit and no contact penetrates, in the metric of the masses, as far as
+    /// Newton's method comes closer. Contacts that penetrate are brought to a gap of zero, their rates stay.
+    fn project<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        [q, v]: [&mut F::Vector; 2],
+    ) {
+        let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
+        let constraints: Vec<Line> = constraints.collect();
+        let mut places = constraints.clone();
+        loop {
+            let rates = &constraints;
+            let state = [&mut *q, &mut *v];
+            hold_lines(kernel, &mut self.context, contacts, [&places, rates], state);
+            let at = Places::new(kernel, &self.context, contacts, [q, v]);
+            let penetrates = |k: usize| {
+                let (gap, rounding) = at.place(Line::Normal(k));
+                let known = places.contains(&Line::Normal(k));
+                contacts.contacts[k].normal.is_some() && !known && gap < -rounding
+            };
+            let Some(k) = (0..contacts.contacts.len()).find(|&k| penetrates(k)) else {
+                return;
+            };
+            places.push(Line::Normal(k));
+        }
+    }
+
+    /// Finds the set of contact states at the end of a run that goes on, whose coordinates, rates and directions are here: what
+    /// was closed stays so, and what is joined to what is decided anew.
+    pub(in crate::hybrid) fn resume_contacts(&mut self, shown: usize) -> Result<(), Reason> {
+        let mode = self.mode();
+        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
+        contacts.write_set(shown, self.context.discrete_mut());
+        self.set_context();
+        with_kernel!(&mode.kernels, k => self.resume_contacts_by(k, contacts)).map_err(|why| *why)
+    }
+
+    fn resume_contacts_by<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &'p Contacts,
+    ) -> Stoppable<()> {
+        let states = State::all(contacts, self.context.discrete());
+        write_states(contacts, &states, self.context.discrete_mut());
+        let mut standing = self.standing(kernel, contacts, (None, &states));
+        self.settle_contacts(kernel, contacts, &mut standing)?;
+        self.take_next();
+        Ok(())
+    }
+
+    /// What was decided is the state here.
+    fn take_next(&mut self) {
         let n = self.here.q.len();
         self.here.q.copy_from_slice(&self.next[..n]);
         self.here.v.copy_from_slice(&self.next[n..2 * n]);
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
         self.here.shown = self.shown();
         self.set_context();
-        Ok(())
     }
 }

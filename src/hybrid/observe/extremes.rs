@@ -7,7 +7,7 @@ use std::ops::Range;
 /// The extremes so far, one of each column that has one.
 #[derive(Debug)]
 pub struct Extremes {
-    coordinates: usize,
+    pub coordinates: usize,
     pub reactions: Range<usize>,
     pub outputs: Range<usize>,
     pub energies: Range<usize>,
@@ -54,7 +54,7 @@ impl Extremes {
 
     /// Coordinates and velocities have these values at time `t`, s.
     pub fn note_state(&mut self, t: f64, [q, v]: [&[f64]; 2]) {
-        for (i, (&q, &v)) in q.iter().zip(v).enumerate() {
+        for (i, (&q, &v)) in q.iter().zip(v).take(self.coordinates).enumerate() {
             self.note(i, t, q);
             self.note(self.coordinates + i, t, v);
         }

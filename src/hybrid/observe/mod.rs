@@ -96,7 +96,7 @@ struct Functions {
     /// Number of outputs.
     outputs: usize,
     stored: bool,
-    /// Number of free coordinates.
+    /// Number of free coordinates that are columns; multipliers, which come last, are none.
     free: usize,
     /// Room for all reactions.
     room: Box<[f64]>,
@@ -219,7 +219,7 @@ impl<'o> Observers<'o> {
         let Some(extremes) = &mut self.extremes else {
             return;
         };
-        let n = here.q.len();
+        let n = extremes.coordinates;
         let Functions {
             columns,
             reactions,
@@ -227,16 +227,15 @@ impl<'o> Observers<'o> {
             free,
             ..
         } = &mut self.functions;
-        *free = mode.free.len();
+        let own = &mode.free[..mode.free.iter().filter(|&&i| i < n).count()];
+        *free = own.len();
         columns.clear();
-        columns.extend(&mode.free);
-        columns.extend(mode.free.iter().map(|i| n + i));
+        columns.extend(own);
+        columns.extend(own.iter().map(|i| n + i));
         reactions.clear();
         // Of a free coordinate there is none.
         let all = 0..extremes.reactions.len();
-        let contacts = mode.contacts.as_ref();
-        let reacts = |i: usize| contacts.is_some_and(|contacts| contacts.is_multiplier(i));
-        reactions.extend(all.filter(|&i| !mode.free.contains(&i) || reacts(i)));
+        reactions.extend(all.filter(|i| !own.contains(i)));
         columns.extend(reactions.iter().map(|i| extremes.reactions.start + i));
         columns.extend(extremes.outputs.clone());
         *stored = !extremes.energies.is_empty();
@@ -245,7 +244,7 @@ impl<'o> Observers<'o> {
         let t = here.now.seconds();
         extremes.note_state(t, [&here.q, &here.v]);
         if !extremes.reactions.is_empty() {
-            for &i in mode.free.iter().filter(|&&i| !reacts(i)) {
+            for &i in own {
                 extremes.note(extremes.reactions.start + i, t, 0.0);
             }
         }

@@ -86,6 +86,7 @@ impl Observers<'_> {
             outputs,
             stored,
             room,
+            free,
             ..
         } = &mut self.functions;
         let accelerated = powers || columns > 0 && (!reactions.is_empty() || *outputs > 0);
@@ -97,12 +98,12 @@ impl Observers<'_> {
         };
         let (kernel, context) = (step.equations.kernel, &*step.equations.context);
         let row = self.interpolants.values_mut(node);
-        let n = kernel.size().get();
+        let n = *free;
         if columns > 0 {
-            row[..n].copy_from_slice(q.as_slice());
-            row[n..2 * n].copy_from_slice(v.as_slice());
+            row[..n].copy_from_slice(&q.as_slice()[..n]);
+            row[n..2 * n].copy_from_slice(&v.as_slice()[..n]);
             if !reactions.is_empty() {
-                kernel.reactions(context, at, room);
+                self.outputs.reactions(kernel, context, at, room);
                 for (value, &i) in row[2 * n..].iter_mut().zip(&*reactions) {
                     *value = room[i];
                 }

@@ -39,14 +39,17 @@ impl Row<'_> {
         at: Free<F>,
         row: &mut [f64],
     ) {
-        let n = self.q.len();
-        row[..n].copy_from_slice(self.q);
-        row[n..2 * n].copy_from_slice(self.v);
+        let n = self.layout.coordinates.len();
+        row[..n].copy_from_slice(&self.q[..n]);
+        row[n..2 * n].copy_from_slice(&self.v[..n]);
         let reactions = self.layout.range(Group::Reaction);
         if !reactions.is_empty() {
-            kernel.reactions(context, at, &mut row[reactions]);
+            self.outputs
+                .0
+                .reactions(kernel, context, at, &mut row[reactions]);
         }
-        row[self.layout.range(Group::Discrete)].copy_from_slice(context.discrete());
+        let discrete = self.layout.range(Group::Discrete);
+        row[discrete.clone()].copy_from_slice(&context.discrete()[..discrete.len()]);
         let outputs = self.layout.range(Group::Output);
         if !outputs.is_empty() {
             let (of, mode) = &mut self.outputs;

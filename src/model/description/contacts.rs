@@ -2,7 +2,7 @@
 
 use super::{Read, Reader};
 use crate::model::reader::{At, text};
-use crate::model::{Constraint, Contact, Contacts};
+use crate::model::{Constraint, Contact, Contacts, DeclaredContact};
 
 impl Reader<'_> {
     /// The contacts of a mode with so many guards, three of each.
@@ -37,4 +37,19 @@ impl Reader<'_> {
             decisions: at.get("decisions", |at| self.tape(at, Contacts::DECISIONS * count))?,
         })
     }
+}
+
+/// A contact as it is declared.
+pub(super) fn declared(at: &At) -> Read<DeclaredContact> {
+    let given = |key| at.get(key, |at| at.option(text));
+    Ok(DeclaredContact {
+        name: at.get("name", text)?,
+        kind: at.get("kind", text)?,
+        gap: given("gap")?,
+        slip: given("slip")?,
+        normal: given("normal")?,
+        friction: [given("static")?, given("kinetic")?],
+        restitution: given("restitution")?,
+        states: at.get("states", |at| at.list(text))?,
+    })
 }

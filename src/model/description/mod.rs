@@ -167,6 +167,7 @@ impl Reader<'_> {
                     })
                 })
             })?,
+            contacts: at.get("contacts", |at| at.list(contacts::declared))?,
             limits,
             outputs,
             valid_motion,
@@ -319,6 +320,7 @@ fn coordinate(at: &At) -> Read<Coordinate> {
         meaning: at.get("meaning", text)?,
         reaction_unit: at.get("reaction_unit", text)?,
         multiplier: at.get("multiplier", truth)?,
+        impulse: at.get("impulse", |at| at.option(count))?,
         scale: at.get("scale", number)?,
         rate_scale: at.get("rate_scale", number)?,
         minimum: at.get("minimum", |at| at.option(number))?,
@@ -382,6 +384,7 @@ fn discrete(at: &At) -> Read<Discrete> {
             values if values.is_empty() => Err(at.wrong("values")),
             values => Ok(values),
         })?,
+        internal: at.get("internal", truth)?,
         meaning: at.get("meaning", text)?,
     })
 }

@@ -1,0 +1,71 @@
+"""Contacts and constraints that only some choices have: coordinates, discrete states and outputs are those of all choices.
+
+A multiplier that a combination of choices does not use is idle: its acceleration is zero, or a mode of the reduced form holds it.
+An output of a contact that is not there is zero.
+"""
+
+import casadi as ca
+
+from .declarations import Declaration
+from .outputs import Output
+
+
+KINDS = {
+    "coordinates": lambda c: "multiplier" in c.extra,
+    "discretes": lambda d: "of_contacts" in d.extra,
+    "outputs": lambda o: o.of is not None,
+}
+"""What contacts and constraints add to a model: whether an entry of a list is theirs."""
+
+
+def own(model, kind):
+    """The entries of a list that the model file has declared."""
+    return [entry for entry in getattr(model, kind) if not (kind in KINDS and KINDS[kind](entry))]
+
+
+def align(models):
+    """Gives all combinations of choices of a model the multipliers, discrete states and outputs of each."""
+    if len(models) < 2:
+        return
+    for kind, make in (("coordinates", _idle_multiplier), ("discretes", _idle_discrete), ("outputs", _zero)):
+        is_of_contacts, union = KINDS[kind], {}
+        for model in models:
+            for entry in getattr(model, kind):
+                if is_of_contacts(entry):
+                    union.setdefault(entry.name, entry)
+        # Those that choose rows come last: people see a first part of all.
+        ordered = sorted(union.values(), key=lambda entry: "internal" in getattr(entry, "extra", {}))
+        for model in models:
+            known = {entry.name: entry for entry in getattr(model, kind)}
+            setattr(model, kind, own(model, kind) + [known.get(entry.name) or make(model, entry) for entry in ordered])
+    values = {}
+    for model in models:
+        for d in model.discretes:
+            if len(d.extra["values"]) > len(values.get(d.name, [])):
+                values[d.name] = d.extra["values"]
+    for model in models:
+        for d in model.discretes:
+            d.extra["values"] = values[d.name]
+
+
+def _idle_multiplier(model, of):
+    symbol = model._declare_motion("coordinate", of.name, of.unit)
+    symbol.jerk = ca.SX.sym(of.name + ".jerk")
+    for mode in model.modes:
+        if mode.form is None:
+            mode.held[of.name] = ca.SX(0)
+        else:
+            mode.form.idle.append(symbol)
+    return Declaration(of.name, of.unit, of.meaning, symbol, dict(of.extra))
+
+
+def _idle_discrete(model, of):
+    symbol = model.discrete(of.name, of.extra["values"], of.meaning)
+    declaration = model.discretes.pop()
+    declaration.extra.update(of.extra)
+    assert declaration.symbol is symbol
+    return declaration
+
+
+def _zero(model, of):
+    return Output(of.name, of.unit, of.meaning, ca.SX(0), of.location, of.text or "0", lambda equations: ca.SX(0))

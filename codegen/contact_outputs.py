@@ -1,0 +1,112 @@
+"""What people see of contacts and constraints: gaps, slip rates and forces as outputs of the model, and their laws as text.
+
+Of a contact `left` the outputs are `left.gap`, `left.slip` (the slip rate), `left.normal` (λ_N ≥ 0, pushes the gap open) and
+`left.friction` (λ_T, along the slip); of one equation of a constraint `pin` its force, `pin.force` (along what it holds at zero).
+They are the same for both forms of equations. With multipliers there are the impulses, too, `left.normal_impulse`,
+`left.friction_impulse`, `pin.impulse`: the forces integrated over time since the start, which jump at impacts.
+"""
+
+import casadi as ca
+
+from . import derive, units
+from .outputs import Output
+
+
+def add(model):
+    """Adds the outputs of all contacts and constraints of a model."""
+    for contact in model.contacts:
+        for entry in _of_contact(model, contact):
+            model.outputs.append(entry)
+    for constraint in model.constraints:
+        force = lambda equations, of=constraint: of.multiplier.acceleration
+        model.outputs.append(Output(
+            f"{constraint.name}.force", _force_unit(model, constraint.expression), f"force of the constraint `{constraint.name}`,"
+            " positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
+    model.outputs.extend(c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
+
+
+def _of_contact(model, contact):
+    name = contact.name
+    if contact.gap is not None:
+        unit = units.text(units.dimension_of(contact.gap_expression, model.dimensions))
+        yield Output(f"{name}.gap", unit, f"gap of `{name}`", contact.gap_expression, contact.location, "",
+                     lambda equations: equations.freeze(contact.gap_expression))
+    if contact.slip is not None:
+        rate = contact.slip_rate_of(derive.configuration(model))
+        unit = units.text(units.dimension_of(rate, model.dimensions))
+        yield Output(f"{name}.slip", unit, f"slip rate of `{name}`", rate, contact.location, "",
+                     lambda equations: equations.freeze(rate))
+    if contact.gap is not None:
+        yield Output(f"{name}.normal", _force_unit(model, contact.gap_expression), f"normal force of `{name}`, which pushes its gap open",
+                     ca.SX(0), contact.location, "λ_N", lambda equations: _normal(equations, contact))
+    if contact.slip is not None and not _shares_its_slip(model, contact):
+        place = units.dimension_of(contact.slip_expression, model.dimensions)
+        if contact.slips_by_rate:
+            place = units.combine(place, units.parse("s"))
+        yield Output(f"{name}.friction", _force_of(place), f"friction force of `{name}`, along its slip", ca.SX(0), contact.location,
+                     "λ_T", lambda equations: _friction(equations, contact))
+
+
+def _shares_its_slip(model, contact):
+    """Whether it slips along the gap of another contact in the reduced form, so that only a sum of forces is determined."""
+    return contact.slip is not None and model.modes[0].form is None and any(
+        other.gap is not None and other.gap.name == contact.slip.name for other in model.contacts)
+
+
+def _normal(equations, contact):
+    mode, form = equations.mode, equations.mode.form
+    if form is not None:
+        return contact.held[0].multiplier.acceleration if contact.held else equations.terms[form.contacts.index(contact)].normal
+    return ca.SX(0) if _state(mode, contact) == "open" else equations.place(contact.normal_force(mode))
+
+
+def _friction(equations, contact):
+    mode, form = equations.mode, equations.mode.form
+    if form is not None and contact.permanent:
+        slips = [constraint.multiplier.acceleration for constraint in contact.held if constraint.is_rate]
+        return slips[0] if slips else ca.SX(0)
+    if form is not None:
+        return equations.terms[form.contacts.index(contact)].tangent
+    state = _state(mode, contact)
+    if state == "open":
+        return ca.SX(0)
+    if state == "sticks":
+        return equations.place(contact.slip.sign * mode.reaction(contact.slip.coordinate))
+    return equations.place(-contact.kinetic * contact.direction * contact.normal_force(mode))
+
+
+def _state(mode, contact):
+    """What a contact does in a mode of the reduced form."""
+    return mode.contact_states[contact.name]
+
+
+def _force_unit(model, expression):
+    """Unit of the force along an expression."""
+    return _force_of(units.dimension_of(expression, model.dimensions))
+
+
+def _force_of(dimension):
+    return units.named(units.combine(units.parse("kg m^2/s^2"), dimension, -1), ("N", "N m"))
+
+
+# ---- what is declared, as text --------------------------------------------------------------------
+
+
+def described(model):
+    """Contacts, friction elements and constraints of a model as data, for people."""
+    text = lambda expression: None if expression is None else units.short(ca.SX(expression), 200)
+    found = []
+    for contact in model.contacts:
+        found.append({
+            "name": contact.name, "kind": "friction" if contact.gap is None else "contact", "gap": text(contact.gap_expression),
+            "slip": text(contact.slip_expression), "normal": text(contact.normal) if contact.gap is None else None,
+            "static": text(contact.static), "kinetic": text(contact.kinetic),
+            "restitution": None if contact.gap is None else text(contact.restitution), "states": contact.states()})
+    for constraint in model.constraints:
+        found.append({
+            "name": constraint.name, "kind": "constraint", "gap": text(constraint.expression), "slip": None, "normal": None,
+            "static": None, "kinetic": None, "restitution": None, "states": ["holds"]})
+    nothing = dict.fromkeys(("gap", "slip", "normal", "static", "kinetic", "restitution"))
+    for name, kind in model.switched_off:
+        found.append({"name": name, "kind": kind, **nothing, "states": ["switched off"]})
+    return found

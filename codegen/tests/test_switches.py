@@ -1,0 +1,48 @@
+"""Contacts that scenes switch, and contacts that only some choices have."""
+
+import os
+
+from codegen import generate
+from codegen.align import align
+from codegen.tests.scratch import HEAD, ScratchTest
+
+PLANE = HEAD + 'y = model.coordinate("y", "m", "height")\nmodel.point_mass(m, position=(x, y))\n'
+
+
+class Switches(ScratchTest):
+    def loaded(self, text):
+        with open(os.path.join(self.folder, "model.py"), "w", encoding="utf-8") as stream:
+            stream.write(text)
+        return generate.load(self.folder)
+
+    def test_a_contact_is_on_off_or_permanent(self):
+        on, off, permanent = self.loaded(PLANE + 'model.contact("floor", gap=y, slip=x, kinetic=0.2, switch=True)\n')
+        names = [[mode.name for mode in model.modes] for model in (on, off, permanent)]
+        self.assertEqual(names, [["floor open", "floor sticks", "floor slides"], ["moves"], ["floor sticks"]])
+        self.assertEqual(permanent.transitions, [])
+
+    def test_what_is_off_leaves_no_trace_where_it_alone_is_derived(self):
+        text = PLANE + 'model.contact("wall", gap=x + y, switch=True)\nmodel.contact("floor", gap=y - x)\n'
+        self.loaded(text)
+        files = generate.generate(self.folder, named={"contacts.wall": "off"})
+        self.assertNotIn("wall.normal", "".join(text for name, text in files.items() if name.endswith(".c")))
+        on = generate.generate(self.folder, named={"contacts.wall": "on"})
+        self.assertIn("wall.normal", "".join(text for name, text in on.items() if name.endswith(".c")))
+
+    def test_a_permanent_contact_by_multipliers_holds_gap_and_slip_by_constraints(self):
+        text = PLANE + 'model.contact("wall", gap=x + y, slip=x - y, kinetic=0.2, switch=True)\n'
+        *_, permanent = self.loaded(text)
+        self.assertEqual([c.name for c in permanent.modes[0].form.constraints], ["wall.gap", "wall.slip"])
+        self.assertEqual([o.name for o in permanent.outputs], ["wall.gap", "wall.slip", "wall.normal", "wall.friction"])
+
+    def test_choices_share_the_multipliers_of_all(self):
+        text = PLANE + ('joint = model.choice("joint", ["pin", "play"], "")\n'
+                        'if joint == "pin":\n    model.constraint("pin", (x + y, x - y))\n'
+                        'else:\n    model.contact("pin", gap=k - x - y, slip=x - y, kinetic=0.2)\n').replace("gap=k - x - y", "gap=-x - y")
+        models = self.loaded(text)
+        align(models)
+        for kind in ("coordinates", "discretes", "outputs"):
+            first, second = [[entry.name for entry in getattr(model, kind)] for model in models]
+            self.assertEqual(first, second)
+        self.assertEqual(len(models[0].modes[0].form.idle), 2)
+        generate.check_same_declarations(models)
