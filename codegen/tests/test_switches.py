@@ -33,7 +33,23 @@ class Switches(ScratchTest):
         text = PLANE + 'model.contact("wall", gap=x + y, slip=x - y, kinetic=0.2, switch=True)\n'
         *_, permanent = self.loaded(text)
         self.assertEqual([c.name for c in permanent.modes[0].form.constraints], ["wall.gap", "wall.slip"])
-        self.assertEqual([o.name for o in permanent.outputs], ["wall.gap", "wall.slip", "wall.normal", "wall.friction"])
+        names = ["wall.gap", "wall.slip", "wall.normal", "wall.friction", "wall.normal_impulse", "wall.friction_impulse"]
+        self.assertEqual([o.name for o in permanent.outputs], names)
+
+    def test_impulses_are_outputs_and_say_whose_rates_they_are(self):
+        text = PLANE + ('model.contact("wall", gap=x + y, slip=x - y, kinetic=0.2)\n'
+                        'model.constraint("rail", x - 2 * y)\n')
+        model, = self.loaded(text)
+        impulses = [(o.name, o.unit) for o in model.outputs if o.name.endswith("impulse")]
+        self.assertEqual(impulses, [("wall.normal_impulse", "N s"), ("wall.friction_impulse", "N s"), ("rail.impulse", "N s")])
+        multipliers = [c.extra["impulse"] for c in model.coordinates if "multiplier" in c.extra]
+        self.assertEqual([o.name for o in multipliers], [name for name, _ in impulses])
+
+    def test_a_law_of_impact_of_a_contact_that_is_off_or_permanent_is_none(self):
+        text = PLANE + 'model.contact("floor", gap=y, switch=True)\nmodel.impact("floor", [(y.rate, -y.rate / 2)])\n'
+        on, off, permanent = self.loaded(text)
+        self.assertEqual([[mode.name for mode in model.modes] for model in (on, off, permanent)],
+                         [["moves"], ["moves"], ["floor closed"]])
 
     def test_choices_share_the_multipliers_of_all(self):
         text = PLANE + ('joint = model.choice("joint", ["pin", "play"], "")\n'

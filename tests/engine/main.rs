@@ -14,6 +14,7 @@ mod extreme_damping;
 mod grazing;
 mod grips;
 mod impacts;
+mod impulses;
 mod invariants;
 mod knots;
 mod libraries;
