@@ -49,10 +49,13 @@ fn variation(problem: &Problem, method: Method, tolerance: f64) -> Problem {
     other
 }
 
-/// Typical sizes of coordinates and velocities: absolute ÷ relative tolerance.
+/// Typical sizes of the coordinates and velocities that runs record: absolute ÷ relative tolerance.
 fn scales(problem: &Problem) -> [Vec<f64>; 2] {
-    let accuracy = &problem.accuracy;
-    let scale = |absolute: &[f64]| absolute.iter().map(|a| a / accuracy.relative).collect();
+    let (accuracy, own) = (&problem.accuracy, problem.model.own_coordinates());
+    let scale = |absolute: &[f64]| {
+        let sizes = absolute[..own].iter();
+        sizes.map(|a| a / accuracy.relative).collect()
+    };
     [scale(&accuracy.q_absolute), scale(&accuracy.v_absolute)]
 }
 
