@@ -130,6 +130,36 @@ def rounding(expression):
     return count * size
 
 
+def running_error(expression):
+    """What, times the unit roundoff, bounds the rounding error of a scalar expression to first order, where each of its symbols is
+    known to its own rounding (running error, Higham 2002, §3.3). Unlike `rounding` it sees that a small difference stays small
+    in a product."""
+    known, stack = {}, [ca.SX(expression)]
+    while stack:
+        node = stack[-1]
+        parts = [] if node.is_constant() or node.is_symbolic() else [node.dep(k) for k in range(node.n_dep())]
+        unknown = [part for part in parts if part.element_hash() not in known]
+        if unknown:
+            stack += unknown
+            continue
+        inherited = [slope * known[part.element_hash()][1] for slope, part in zip(_slopes(node, parts), parts)]
+        own = 0 if node.is_constant() else ca.fabs(node)
+        # The node is kept, so that no other takes its hash.
+        known[node.element_hash()] = node, sum(inherited, ca.SX(own))
+        stack.pop()
+    return known[ca.SX(expression).element_hash()][1]
+
+
+def _slopes(node, parts):
+    """Absolute values of the derivatives of an operation by what it is given."""
+    op = node.op() if parts else None
+    if op in (ca.OP_ADD, ca.OP_SUB, ca.OP_NEG):
+        return [1] * len(parts)
+    symbols = [ca.SX.sym("part") for _ in parts]
+    own = ca.SX.unary(op, *symbols) if len(parts) == 1 else ca.SX.binary(op, *symbols) if parts else None
+    return [ca.substitute(ca.fabs(ca.jacobian(own, symbol)), ca.vertcat(*symbols), ca.vertcat(*parts)) for symbol in symbols]
+
+
 def _terms(expression):
     """Number of terms, and the sum of their absolute values. Terms of a product: those of its factors."""
     known, stack = {}, [expression]

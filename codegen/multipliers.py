@@ -308,9 +308,9 @@ class MultiplierEquations(derive.ModeEquations):
         columns = [ca.SX(0, 1)]
         for of in self.terms:
             three = [of.gap, of.gap_rate, of.slip_rate]
-            columns += [*three, of.static, of.kinetic, of.restitution, of.tangential_restitution, *[graph.rounding(ca.SX(e)) for e in three]]
+            columns += [*three, of.static, of.kinetic, of.restitution, of.tangential_restitution, *[graph.running_error(e) for e in three]]
         for value, rate, _ in self.held_terms:
-            columns += [value, rate, graph.rounding(ca.SX(value)), graph.rounding(ca.SX(rate))]
+            columns += [value, rate, graph.running_error(value), graph.running_error(rate)]
         columns += [self.freeze(value) for contact in self.form.contacts for _, value in contact.law]
         return ca.vertcat(*columns)
 

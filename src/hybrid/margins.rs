@@ -351,8 +351,12 @@ impl Margins<'_> {
                         }
                     },
                 };
-                let within = (window, Isolation::Bracket);
-                search_polynomial(coefficients, dense, within, (watch, &mut found));
+                let step = (dense.start(), dense.length());
+                search_polynomial(
+                    coefficients,
+                    (step, window, Isolation::Bracket),
+                    (watch, &mut found),
+                );
             }
             GuardShape::General { .. } => {
                 let value = |tau: f64| {

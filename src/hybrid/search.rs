@@ -31,17 +31,21 @@ pub(super) fn search<F: Size>(
         _ => {
             // A guard that acts together with conditions is judged by its own values where one of
             // them changes its sign; its series has its roots elsewhere, by the tolerance.
-            if !watched.conditional
-                && search_series(
+            let by_series = match watched.conditional {
+                true => BySeries::Nothing,
+                false => search_series(
                     equations,
                     dense,
                     (guard, watched),
                     (window, isolation),
                     (watch, &mut *found),
-                )
-            {
-                return;
-            }
+                ),
+            };
+            let (window, watch) = match by_series {
+                BySeries::All => return,
+                BySeries::PositiveUntil(from) => ((from, window.1), Watch::Armed),
+                BySeries::Nothing => (window, watch),
+            };
             let accelerations = !matches!(
                 guard.shape,
                 GuardShape::General {
@@ -146,7 +150,8 @@ fn search_linear<F: Size>(
             }
         },
     };
-    search_polynomial(coefficients, dense, (window, isolation), (watch, found));
+    let part = ((dense.start(), dense.length()), window, isolation);
+    search_polynomial(coefficients, part, (watch, found));
 }
 
 /// Powers of time.
@@ -160,10 +165,19 @@ const POWERS: [usize; ORDERS] = {
     powers
 };
 
+/// How much of a window was searched by the guard's own series.
+enum BySeries {
+    All,
+    /// Of a guard that rises from zero: there is no event up to here, and the rest was not searched.
+    PositiveUntil(f64),
+    Nothing,
+}
+
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
 ///
-/// False if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
-/// that the last terms are not small: two derivatives of the motion multiply its last term by order².
+/// It is not searched if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
+/// that the last terms are not small: two derivatives of the motion multiply its last term by order². A guard that begins at
+/// zero, whose values near it are roundings, is searched on as large a part of the step as its series takes.
 #[inline(always)]
 fn search_series<F: Size>(
     equations: &mut Equations<F>,
@@ -171,9 +185,9 @@ fn search_series<F: Size>(
     (guard, watched): (&Guard, Watched),
     (window, isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
-) -> bool {
+) -> BySeries {
     let Some((series, orders)) = dense.series() else {
-        return false;
+        return BySeries::Nothing;
     };
     let tau = dense.start();
     let expanded = match equations.kernel.guards_end(equations.context) {
@@ -181,7 +195,7 @@ fn search_series<F: Size>(
         false => orders,
     };
     if !equations.expand_guards(tau, expanded, series) {
-        return false;
+        return BySeries::Nothing;
     }
     let (kernel, context) = (equations.kernel, &*equations.context);
     let mut constant = kernel.guard_coefficient(context, watched.guard, 0);
@@ -221,26 +235,40 @@ fn search_series<F: Size>(
             let place = (tau + crossing.outside).min(window.1);
             (crossing.inside, crossing.outside) = (place, place);
         }
-        return true;
+        return BySeries::All;
     }
     let tolerance = equations.tolerance;
-    let mut falls_off = true;
-    let coefficients = Coefficients {
-        count,
-        constant,
-        rises: count > 1 && power(1) * dense.length() > 0.0,
-        write: |first, out: &mut [f64]| {
-            let scale = (1.0, dense.length(), first);
-            stretch(&POWERS[..count], |k| power(*k), scale, out);
-            if count + 2 > orders {
-                let size = |of: &[f64]| sum_of(of, f64::abs);
-                let all = (orders * orders) as f64 * size(&out[..count - first]);
-                falls_off = size(&out[orders - 2 - first..count - first]) <= tolerance * all;
-            }
-        },
-    };
-    search_polynomial(coefficients, dense, (window, isolation), (watch, found));
-    falls_off
+    let (mut length, mut to) = (dense.length(), window.1);
+    loop {
+        let mut falls_off = true;
+        let coefficients = Coefficients {
+            count,
+            constant,
+            rises: count > 1 && power(1) * length > 0.0,
+            write: |first, out: &mut [f64]| {
+                stretch(&POWERS[..count], |k| power(*k), (1.0, length, first), out);
+                if count + 2 > orders {
+                    let size = |of: &[f64]| sum_of(of, f64::abs);
+                    let all = (orders * orders) as f64 * size(&out[..count - first]);
+                    falls_off = size(&out[orders - 2 - first..count - first]) <= tolerance * all;
+                }
+            },
+        };
+        let part = ((tau, length), (window.0, to), isolation);
+        search_polynomial(coefficients, part, (watch, &mut *found));
+        if falls_off {
+            return match found.crossing.is_some() || to == window.1 {
+                true => BySeries::All,
+                false => BySeries::PositiveUntil(to),
+            };
+        }
+        // Also where it is not finite.
+        if !begins_at_zero || to <= window.0 {
+            return BySeries::Nothing;
+        }
+        length *= 0.5;
+        to = to.min(tau + length);
+    }
 }
 
 /// A polynomial in s.
@@ -255,20 +283,19 @@ pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
     pub write: W,
 }
 
-/// Searches a polynomial in s = (τ − start)/length of the step.
+/// Searches a polynomial in s = (τ − start)/length.
 #[inline]
-pub(super) fn search_polynomial<F: Size>(
+pub(super) fn search_polynomial(
     coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
-    dense: &impl Motion<F>,
-    ((from, to), isolation): ((f64, f64), Isolation),
+    ((start, length), (from, to), isolation): ((f64, f64), (f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {
-    let local = |tau: f64| ((tau - dense.start()) / dense.length()).clamp(0.0, 1.0);
+    let local = |tau: f64| ((tau - start) / length).clamp(0.0, 1.0);
     let window = (local(from), local(to));
     search_window(coefficients, (window, isolation), (watch, &mut *found));
     if let Some(crossing) = &mut found.crossing {
-        crossing.inside = dense.start() + crossing.inside * dense.length();
-        crossing.outside = (dense.start() + crossing.outside * dense.length()).min(to);
+        crossing.inside = start + crossing.inside * length;
+        crossing.outside = (start + crossing.outside * length).min(to);
     }
 }
 

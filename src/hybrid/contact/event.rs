@@ -390,8 +390,10 @@ impl<'p> Simulation<'p> {
         self.next[2 * n..].copy_from_slice(&decision.discrete);
         self.at_zero = (touching.iter().zip(&decision.states).enumerate())
             .filter_map(|(k, (tangent, state))| match (tangent, state) {
-                (Some(_), State::Open) => Some((GUARDS * k, 2)),
-                (Some(Tangent::Still), State::Slides(_)) => Some((GUARDS * k + 1, 1)),
+                (Some(_), State::Open) => Some((GUARDS * k, 2 + decision.vanishing_of_gap(k))),
+                (Some(Tangent::Still), State::Slides(_)) => {
+                    Some((GUARDS * k + 1, 1 + decision.vanishing_of_slip(k)))
+                }
                 // It leaves with a rate.
                 (None, _) if leaves[k] => Some((GUARDS * k, 1)),
                 _ => None,

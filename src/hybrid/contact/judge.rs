@@ -32,14 +32,40 @@ struct Candidate {
 /// A candidate that may go on, with the motion that it leads to.
 struct Admitted {
     candidate: Candidate,
+    motion: Motion,
+}
+
+/// How a candidate goes on.
+struct Motion {
     /// Coefficients of the accelerations of the coordinates that are no multipliers.
-    motion: Vec<Row>,
+    accelerations: Vec<Row>,
+    /// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
+    orders: Vec<(usize, usize)>,
 }
 
 /// What was found.
 pub(super) struct Decision {
     pub states: Vec<State>,
     pub discrete: Vec<f64>,
+    orders: Vec<(usize, usize)>,
+}
+
+impl Decision {
+    /// How many derivatives of the acceleration of a contact's gap vanish, itself among them, where it opens.
+    pub fn vanishing_of_gap(&self, k: usize) -> usize {
+        self.vanishing(k, GAP)
+    }
+
+    /// The same of the acceleration of its slip, where it begins to slip.
+    pub fn vanishing_of_slip(&self, k: usize) -> usize {
+        self.vanishing(k, SLIP)
+    }
+
+    fn vanishing(&self, k: usize, what: usize) -> usize {
+        let index = k * Contacts::DECISIONS + what;
+        let of = self.orders.iter().find(|(known, _)| *known == index);
+        of.map_or(0, |(_, order)| *order)
+    }
 }
 
 impl<'p> Simulation<'p> {
@@ -93,7 +119,9 @@ impl<'p> Simulation<'p> {
         let Some(first) = admitted.first() else {
             return Err(Reason::NoMotion { contacts: touch() });
         };
-        let differs = |other: &&Admitted| !are_equal(&first.motion, &other.motion);
+        let differs = |other: &&Admitted| {
+            !are_equal(&first.motion.accelerations, &other.motion.accelerations)
+        };
         if let Some(other) = admitted.iter().find(differs) {
             let motions = [first, other].map(|a| names(&a.candidate.states));
             return Err(Reason::SeveralMotions {
@@ -101,8 +129,12 @@ impl<'p> Simulation<'p> {
                 motions: format!("`{}` and `{}`", motions[0], motions[1]),
             });
         }
-        let Candidate { states, discrete } = admitted.swap_remove(0).candidate;
-        Ok(Decision { states, discrete })
+        let Admitted { candidate, motion } = admitted.swap_remove(0);
+        Ok(Decision {
+            states: candidate.states,
+            discrete: candidate.discrete,
+            orders: motion.orders,
+        })
     }
 
     /// What a pivoting method says that contacts do, on their accelerations.
@@ -256,7 +288,7 @@ impl<'p> Simulation<'p> {
         geometry: &Geometry,
         candidate: &Candidate,
         touching: &[Option<Tangent>],
-    ) -> Option<Vec<Row>> {
+    ) -> Option<Motion> {
         let mode: &Mode = self.mode();
         let asked = asked(contacts, candidate, touching);
         let n = self.here.q.len();
@@ -271,6 +303,7 @@ impl<'p> Simulation<'p> {
         expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
         expansion.expand(mode, tape, 0);
         let mut open = Vec::new();
+        let mut orders = Vec::new();
         for (index, sign) in asked {
             let value = expansion.result(tape, index)[0];
             // A force that is not known is none.
@@ -295,6 +328,7 @@ impl<'p> Simulation<'p> {
                 |&(index, sign)| match expansion.result(tape, index)[k].sign() {
                     Some(positive) => {
                         falls |= positive != (sign > 0.0);
+                        orders.push((index, k));
                         false
                     }
                     None => true,
@@ -305,7 +339,10 @@ impl<'p> Simulation<'p> {
             }
         }
         let own = geometry.own.iter();
-        Some(own.map(|&i| *expansion.acceleration(i)).collect())
+        Some(Motion {
+            accelerations: own.map(|&i| *expansion.acceleration(i)).collect(),
+            orders,
+        })
     }
 }
 
