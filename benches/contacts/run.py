@@ -1,4 +1,4 @@
-"""Runs the peers of this comparison, each in its own process, and writes results.csv.
+"""Runs the tools of this comparison, each in its own process, and writes results.csv.
 
     python3 benches/contacts/run.py SCRATCH
 
@@ -46,11 +46,24 @@ def siconos_rows(scratch):
     return rows
 
 
+def in_order(row):
+    """By problem and tool; of each the coarsest first: `step 0.002 s`, `Taylor tolerance 1e-06`."""
+    problem, tool, setting = row[:3]
+    words = setting.split()
+    return problem, tool, words[0], -max(float(w) for w in words if w[0].isdigit())
+
+
+def own_rows():
+    """Rows of this project."""
+    run = subprocess.run(["cargo", "bench", "--quiet", "--bench", "contacts"], check=True, stdout=subprocess.PIPE, text=True)
+    return list(csv.reader(run.stdout.splitlines()))
+
+
 def main():
     scratch = Path(sys.argv[1])
     scratch.mkdir(parents=True, exist_ok=True)
     known = list(csv.reader(TABLE.open()))[1:] if TABLE.exists() else []
-    for tool, rows_of in (("MuJoCo", lambda: python_rows(scratch, "mujoco", "mujoco_rows.py")),
+    for tool, rows_of in (("dalembert", own_rows), ("MuJoCo", lambda: python_rows(scratch, "mujoco", "mujoco_rows.py")),
                           ("Drake", lambda: python_rows(scratch, "drake", "drake_rows.py")),
                           ("Siconos", lambda: siconos_rows(scratch))):
         try:
@@ -60,7 +73,7 @@ def main():
             continue
         known = [row for row in known if row[1] != tool] + rows
         with TABLE.open("w", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows([HEADER, *sorted(known, key=lambda r: (r[0], r[1], -float(r[2].split()[1])))])
+            csv.writer(file, lineterminator="\n").writerows([HEADER, *sorted(known, key=in_order)])
     print(f"{len(known)} rows in {TABLE.name}")
 
 
