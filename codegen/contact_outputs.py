@@ -20,8 +20,8 @@ def add(model):
     for constraint in model.constraints:
         force = lambda equations, of=constraint: of.multiplier.acceleration
         model.outputs.append(Output(
-            f"{constraint.name}.force", _force_unit(model, constraint.expression), f"force of the constraint `{constraint.name}`,"
-            " positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
+            f"{constraint.name}.force", _force_unit(model, constraint.expression), 
+            "force of the constraint, positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
     model.outputs.extend(c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
 
 
@@ -29,21 +29,21 @@ def _of_contact(model, contact):
     name = contact.name
     if contact.gap is not None:
         unit = units.text(units.dimension_of(contact.gap_expression, model.dimensions))
-        yield Output(f"{name}.gap", unit, f"gap of `{name}`", contact.gap_expression, contact.location, "",
+        yield Output(f"{name}.gap", unit, "0 where it is closed", contact.gap_expression, contact.location, "",
                      lambda equations: equations.freeze(contact.gap_expression))
     if contact.slip is not None:
         rate = contact.slip_rate_of(derive.configuration(model))
         unit = units.text(units.dimension_of(rate, model.dimensions))
-        yield Output(f"{name}.slip", unit, f"slip rate of `{name}`", rate, contact.location, "",
+        yield Output(f"{name}.slip", unit, "slip rate", rate, contact.location, "",
                      lambda equations: equations.freeze(rate))
     if contact.gap is not None:
-        yield Output(f"{name}.normal", _force_unit(model, contact.gap_expression), f"normal force of `{name}`, which pushes its gap open",
+        yield Output(f"{name}.normal", _force_unit(model, contact.gap_expression), "normal force, pushes the gap open",
                      ca.SX(0), contact.location, "λ_N", lambda equations: _normal(equations, contact))
     if contact.slip is not None and not _shares_its_slip(model, contact):
         place = units.dimension_of(contact.slip_expression, model.dimensions)
         if contact.slips_by_rate:
             place = units.combine(place, units.parse("s"))
-        yield Output(f"{name}.friction", _force_of(place), f"friction force of `{name}`, along its slip", ca.SX(0), contact.location,
+        yield Output(f"{name}.friction", _force_of(place), "friction force, along the slip", ca.SX(0), contact.location,
                      "λ_T", lambda equations: _friction(equations, contact))
 
 

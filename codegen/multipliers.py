@@ -96,15 +96,15 @@ def build(model):
     form = Form(contacts, constraints)
     for contact in contacts:
         form.normals.append(None if contact.gap is None else _multiplier(
-            model, f"{contact.name}.normal", contact.gap_expression, False, f"impulse with which `{contact.name}` pushes", contact,
+            model, f"{contact.name}.normal", contact.gap_expression, False, "impulse of the normal force", contact,
             f"{contact.name}.normal_impulse"))
         form.tangents.append(None if contact.slip is None else _multiplier(
             model, f"{contact.name}.friction", contact.slip_expression, contact.slips_by_rate,
-            f"impulse of the friction of `{contact.name}`, along its slip", contact, f"{contact.name}.friction_impulse"))
+            "impulse of the friction force", contact, f"{contact.name}.friction_impulse"))
     for constraint in constraints:
         constraint.multiplier = _multiplier(
             model, constraint.force or f"{constraint.name}.force", constraint.expression, constraint.is_rate,
-            f"impulse of the constraint `{constraint.name}`", constraint,
+            "impulse of the force", constraint,
             f"{constraint.force}_impulse" if constraint.force else f"{constraint.name}.impulse")
     for contact in contacts:
         if contact.direction is not None:
@@ -113,16 +113,23 @@ def build(model):
             declared.meaning = f"sign of the slip rate of `{contact.name}` when it slides, else 0"
         form.directions.append(contact.direction)
 
+    # Those that people see come first.
+    slipping = [contact for contact in contacts if contact.slip is not None]
+    for contact in contacts:
+        shares = contact.slip is not None and len(slipping) > 1
+        form.dropped.append(model.discrete(
+            f"{contact.name}_shares", (0, 1), f"1 where only the sum of the frictions of `{contact.name}` and of another contact is"
+            " determined, and the other has it") if shares else None)
+        if shares:
+            model.discretes[-1].extra.update(of_contacts=True)
+
     def one(name, meaning):
         symbol = model.discrete(name, (0, 1), meaning)
         model.discretes[-1].extra.update(internal=True, of_contacts=True)
         return symbol
 
     for contact in contacts:
-        name = contact.name
-        form.closed.append(None if contact.gap is None else one(f"{name}.closed", f"1 where `{name}` is closed"))
-        form.dropped.append(None if contact.slip is None else one(
-            f"{name}.dropped", f"1 where the friction of `{name}` is part of that of another contact, which alone is determined"))
+        form.closed.append(None if contact.gap is None else one(f"{contact.name}.closed", f"1 where `{contact.name}` is closed"))
     for i, first in enumerate(contacts):
         for j, second in enumerate(contacts):
             if i != j and first.slip is not None and second.slip is not None:
@@ -271,7 +278,7 @@ class MultiplierEquations(derive.ModeEquations):
         normal = given(contact.normal) if contact.gap is None else form.normals[k].acceleration
         closed = one if contact.gap is None else form.closed[k]
         direction = zero if contact.slip is None else form.directions[k]
-        dropped = zero if contact.slip is None else form.dropped[k]
+        dropped = zero if form.dropped[k] is None else form.dropped[k]
         return Terms(
             *gap, *slip, normal, zero if contact.slip is None else form.tangents[k].acceleration, given(contact.static),
             given(contact.kinetic), given(contact.restitution), given(contact.tangential_restitution), closed, direction, closed * (1 - direction ** 2) * (1 - dropped))

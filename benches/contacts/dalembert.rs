@@ -28,6 +28,7 @@ fn measure(name: &str, method: Method, tolerance: f64) {
     problem.method = method;
     problem.set_tolerance(tolerance);
     problem.record.every = Some(1e-3);
+    problem.record.columns.outputs = true;
     let run = simulate(&problem, &mut Silent).expect("the initial state fits a mode");
     let setting = format!("{method:?} tolerance {tolerance:.0e}");
     if let Some(failure) = run.failure {
@@ -45,6 +46,7 @@ fn measure(name: &str, method: Method, tolerance: f64) {
     });
     assert!(name == "stack" || gaps.len() == 2, "{layout:?}");
     problem.record.every = None;
+    problem.record.columns.outputs = false;
     problem.record.ledger = false;
     problem.record.event_states = false;
     let mut simulator = Simulator::new(&problem).expect("it has run");

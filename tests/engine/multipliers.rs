@@ -223,3 +223,31 @@ fn a_standing_block_slips_or_lifts_as_sums_of_forces_say() {
         }
     }
 }
+
+/// Of two corners that stick only the sum of the frictions is determined: the record says where.
+#[test]
+fn what_is_not_determined_is_marked() {
+    let mut block = problem("rigid_block", &[("b", 0.2), ("h", 0.6)]);
+    // It stands, and rocks from the instant at which the ground's acceleration reaches g b/h.
+    let [amplitude, frequency] = [6.0_f64, 4.0];
+    let rocks = (9.81 * 0.2 / 0.6 / amplitude).asin() / frequency;
+    let ground = Sine::new(amplitude, frequency, 0.0);
+    block.set_input("a_h", ground.into()).unwrap();
+    block.set_initial("x", 0.2).unwrap();
+    block.set_initial("y", 0.6).unwrap();
+    block.end.time = 0.25;
+    block.record.every = Some(0.01);
+    block.record.columns.outputs = true;
+    let run = run(&block);
+    let column = |name: &str| run.trajectory.column(name).expect("a column");
+    let [shares, left, right] = ["right_shares", "left.friction", "right.friction"].map(column);
+    for (k, &t) in run.trajectory.t.iter().enumerate() {
+        let row = run.trajectory.row(k);
+        assert_eq!(row[shares], f64::from(t < rocks), "{t}");
+        if t < rocks {
+            let sum = amplitude * (frequency * t).sin();
+            assert!((row[left] + row[right] - sum).abs() <= 1e-13 && row[right] == 0.0);
+        }
+    }
+    assert!(run.events.len() == 1 && (run.events[0].t - rocks).abs() <= 1e-14);
+}
