@@ -37,11 +37,12 @@ const MODEL: &[&str] = &["dalembert check {}", "dalembert run {}/scene.json"];
 /// What to do with a paper.
 const PAPER: &[&str] = &["dalembert verify {}"];
 
-const TEMPLATES: [Template; 5] = [
+const TEMPLATES: [Template; 6] = [
     template!("energies"),
     template!("bodies"),
     template!("stick-slip"),
     template!("impact"),
+    template!("contacts"),
     template!("paper", PAPER, "paper.tex", "symbols.csv", "README.md"),
 ];
 

@@ -5,7 +5,7 @@ use std::fs;
 use super::{ends_with, json, names, stderr, stdout};
 
 /// The templates of models.
-pub const TEMPLATES: [&str; 4] = ["energies", "bodies", "stick-slip", "impact"];
+pub const TEMPLATES: [&str; 5] = ["energies", "bodies", "stick-slip", "impact", "contacts"];
 
 #[test]
 fn a_new_folder_is_a_model_without_errors() {
@@ -18,7 +18,8 @@ fn a_new_folder_is_a_model_without_errors() {
         assert_eq!(names(&made), ["README.md", "model.py", "scene.json"]);
         assert_eq!(json(&made.join("scene.json"))["model"], "./");
         let output = ends_with(0, folder.path(), &["check", &name]);
-        assert!(stdout(&output).starts_with(&format!("{name}: no errors\n  mode ")));
+        let said = stdout(&output);
+        assert!(said.starts_with(&format!("{name}: no errors\n")) && said.contains("\n  mode "));
     }
 }
 
