@@ -478,3 +478,27 @@ fn kinks_of_a_record_are_passed_in_lanes() {
         assert_eq!(together(&problems, level, 2), all, "level {level}");
     }
 }
+
+/// The velocity is that of the load over 1e15 to 1e17 N s/m, below any tolerance, and turns back where the force is its own
+/// rounding.
+#[test]
+fn a_motion_below_rounding_goes_through_in_lanes_as_alone() {
+    let frictionless = [("static_friction", 0.0), ("kinetic_friction", 0.0)];
+    let mut like = problem("coulomb_oscillator", &frictionless);
+    let sine = Function::from(Sine::new(1.0, 0.2, 0.0));
+    like.set_input("force", sine).unwrap();
+    like.end.time = 120.0;
+    for tolerance in [1e-7, 1e-10] {
+        like.set_tolerance(tolerance);
+        let problems = variations(&like, 24, |problem, part| {
+            let c = 10f64.powf(15.0 + 2.0 * part);
+            problem.set_parameter("c", c).unwrap();
+            problem.initial.v[0] = part;
+        });
+        let alone = alone(&problems);
+        for (i, end) in alone.iter().enumerate() {
+            assert_eq!(end.failure, None, "member {i} at {tolerance:e}");
+        }
+        assert_eq!(alone, together(&problems, processor_level(), 1));
+    }
+}

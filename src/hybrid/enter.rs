@@ -11,8 +11,11 @@ use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, GuardShape};
 use crate::numerics::{Lu, Matrix};
 
-/// Unit roundoff of a double.
-const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+/// An acceleration is evidence at once where it is more than this part of the sum of its terms, the square root of the unit
+/// roundoff: then no rounding decides, were it of a hundred million operations. Whatever is closer to zero is left to
+/// [`super::departure`], which knows each operation: two bounds that are not the same could each send a guard to
+/// the mode of the other.
+const CLEAR: f64 = 1.0 / (1u64 << 26) as f64;
 
 impl<'p> Simulation<'p> {
     /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.
@@ -46,6 +49,7 @@ impl<'p> Simulation<'p> {
             mass: &system.mass,
             scale: &scale,
             at: [&q, &v],
+            t: self.here.now.seconds(),
         };
 
         let is_explicit = self.is_explicit(kernel);
@@ -223,11 +227,13 @@ struct Start<'a, F: Size> {
     scale: &'a F::Vector,
     /// Free coordinates and velocities.
     at: [&'a F::Vector; 2],
+    /// When that is, s.
+    t: f64,
 }
 
 impl<F: Size> Start<'_, F> {
     /// How a guard that is exactly zero leaves zero, where that takes no expansion: a coordinate by its rate, and what is
-    /// linear by accelerations that are more than their rounding.
+    /// linear by accelerations that are far more than their rounding.
     ///
     /// Where the dense output shows a rise as it is, it need not be known how long that lasts: 0. It does where it begins
     /// with the rate, and on a step of the Taylor method (`is_explicit`), which begins with the acceleration, too.
@@ -258,12 +264,21 @@ impl<F: Size> Start<'_, F> {
         }
         let inverse = inverse(self.mass, self.scale);
         let size = self.kernel.magnitude(context, Free { q, v, a });
-        let noise: f64 = (0..size.size().get())
-            .map(|j| inverse[(index, j)].abs() * size[j] * ROUNDOFF)
+        let terms: f64 = (0..size.size().get())
+            .map(|j| inverse[(index, j)].abs() * size[j])
             .sum();
         let departure = leaves(a[index], if rate { 1 } else { 2 });
         let shows = is_explicit || matches!(departure, Departure::Down { .. });
-        (a[index].abs() > noise && factor != 0.0 && shows).then_some(departure)
+        let is_clear = a[index].abs() > CLEAR * terms && self.are_signals_clear(context);
+        (is_clear && factor != 0.0 && shows).then_some(departure)
+    }
+
+    /// Whether no signal is so close to zero that the rounding of the time makes it: then its value is no evidence of its sign.
+    fn are_signals_clear(&self, context: &Context) -> bool {
+        let values = context.signals().iter();
+        values
+            .zip(context.signal_rates())
+            .all(|(value, rate)| value.abs() >= CLEAR * (rate * self.t).abs())
     }
 }
 
