@@ -1,5 +1,6 @@
 //! Ctrl-C, and inputs that change under a run: a simulation ends at its next step or row and keeps what it has.
 
+use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,6 +20,9 @@ static LEFT: AtomicBool = AtomicBool::new(false);
 /// What a shell reports for a process that SIGINT ended: 128 + 2.
 const ENDED_BY_SIGNAL: i32 = 130;
 
+/// The answer to the first signal.
+const HEARD: &str = "interrupted: it ends with what was computed; Ctrl-C again ends it at once";
+
 /// From here on SIGINT (Ctrl-C), SIGTERM and SIGHUP end simulations early instead of the process.
 /// A second signal ends the process at once, and so does any after [`leave`].
 pub fn listen() -> Result<(), Failure> {
@@ -31,6 +35,9 @@ pub fn listen() -> Result<(), Failure> {
         if ASKED.swap(true, Ordering::Relaxed) || LEFT.load(Ordering::Relaxed) {
             process::exit(ENDED_BY_SIGNAL);
         }
+        // Files and pictures of what there is may take longer than one likes to wait for an answer. Where nobody reads it any
+        // more it ends all the same.
+        let _ = writeln!(io::stderr(), "{HEARD}");
     };
     ctrlc::set_handler(on_signal)
         .map_err(|error| Failure::system(format!("cannot listen to Ctrl-C: {error}")))

@@ -1,6 +1,8 @@
 //! `dalembert run`.
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 use std::time::Duration;
 
 use super::folders::{self, Needs};
@@ -13,7 +15,7 @@ use super::{print, room, warnings, watch};
 use crate::hybrid::{Invalid, Reason, Replay, check_same, resume_with, simulate_with};
 use crate::model::Models;
 use crate::page::{Told, run_page};
-use crate::precision::{COMPARED, estimate, unsettled};
+use crate::precision::{COMPARED, Ended, estimate, other, unsettled};
 use crate::record::plot::Look;
 use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Silent, Sketch, Stream};
 use crate::scene::{Disk, Files, Scene};
@@ -32,8 +34,9 @@ the last state, so the result is that of an uninterrupted run up to the accuracy
 have straight lines between the rows of what was there before; where nothing is left to run the folder stays \
 as it is.
 
-A run is followed by a second one at a tenth of its tolerance, of which events alone are kept: where another \
-event follows there, the report says so under `uncertain`.
+A second run at a tenth of its tolerance goes beside a run, on another core, of which the first 4000 events alone are kept: \
+where another event follows there, the report says so under `uncertain`. It ends with the run at the latest; \
+`wall_seconds` is the time of the run alone. Where there is one core it comes after the run and takes about as long.
 
 --error-estimate runs the scene a second time, by another method at a tolerance ten thousand \
 times tighter (1e-14 at most), and reports what the two differ by: coordinates and velocities at the end, \
@@ -98,7 +101,8 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
             let (model, variant) = (&problem.model, problem.variant());
             let earlier = Earlier::open(folder, model, variant, problem.layout());
             let earlier = earlier.map_err(Failure::wrong_input)?;
-            check_same(problem, &earlier.run).map_err(|reason| other_run(folder, &reason))?;
+            check_same(problem, &earlier.run)
+                .map_err(|reason| other_run(&scene, folder, &reason))?;
             Some((folder, earlier))
         }
         None => None,
@@ -135,7 +139,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
             let replayed = outputs.replay(&mut earlier, &mut replay);
             replayed.map_err(|error| match error {
                 NotReplayed::Unread(error) => Failure::wrong_input(error),
-                NotReplayed::Other(reason) => other_run(folder, &reason),
+                NotReplayed::Other(reason) => other_run(&scene, folder, &reason),
             })?;
             Some((earlier.run, replay))
         }
@@ -151,20 +155,33 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     let steps_before = (earlier.as_ref()).map(|(run, _)| run.solver.steps);
     interrupt::listen()?;
     let mut progress = Interruptible(ProgressLine::new(problem.end.time));
-    let run = match earlier {
-        None => simulate_with(problem, &mut outputs, &mut progress),
-        Some((run, replay)) => resume_with(problem, run, replay, &mut outputs, &mut progress),
-    };
+    let ended = Ended::default();
+    let other = || other(problem, &ended, &mut Interruptible(Silent));
+    // Of a run that goes on with an earlier one the first events are not at hand; what was in doubt there is told again.
+    let is_judged = arguments.resume.is_none();
+    // The other run takes nobody's time on a core of its own.
+    let at_once = is_judged && thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
+    let (run, other) = thread::scope(|scope| {
+        let beside = at_once.then(|| scope.spawn(other));
+        let run = match earlier {
+            None => simulate_with(problem, &mut outputs, &mut progress),
+            Some((run, replay)) => resume_with(problem, run, replay, &mut outputs, &mut progress),
+        };
+        let end = run.as_ref().map_or(f64::NEG_INFINITY, |run| run.end.t);
+        ended.at(end);
+        let other = match beside {
+            Some(beside) => beside.join().unwrap_or_else(|cause| resume_unwind(cause)),
+            None => is_judged.then(other).flatten(),
+        };
+        (run, other)
+    });
     drop(progress);
     let mut run = run.map_err(|reason| refusal(&scene, &reason))?;
     run.wall = run.wall.saturating_sub(spent(&outputs) - before);
-    // Of a run that goes on with an earlier one the first events are not at hand; what was in doubt there is told again.
-    if arguments.resume.is_none() {
-        let doubt = unsettled(problem, &run, &outputs.events(), &mut Interruptible(Silent));
-        doubt
-            .into_iter()
-            .for_each(|doubt| run.uncertain.add_earlier(doubt));
-    }
+    let doubt = other.and_then(|other| unsettled(problem, &run, &outputs.events(), &other));
+    doubt
+        .into_iter()
+        .for_each(|doubt| run.uncertain.add_earlier(doubt));
     let mut no_estimate = None;
     if arguments.error_estimate {
         let mut progress = Interruptible(ProgressLine::new(problem.end.time));
@@ -215,12 +232,15 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     }
 }
 
-/// Why a run cannot be continued with a scene.
-fn other_run(folder: &Path, reason: &Reason) -> Failure {
-    let folder = folder.display();
-    Failure::wrong_input(format!(
-        "{folder}: {reason}; continue it with the scene it was made with"
-    ))
+/// Why a run cannot be continued with a scene, pointing at the line of it that does not fit.
+fn other_run(scene: &Scene, folder: &Path, reason: &Reason) -> Failure {
+    let path = match reason {
+        Reason::OtherRun { path, .. } => path,
+        _ => "",
+    };
+    let help = Some("continue it with the scene it was made with");
+    let message = format!("{}: {reason}", folder.display());
+    scene.source.error_at(path, message, help).into()
 }
 
 /// Why a scene cannot even be started, pointing at the part of it that is to blame.

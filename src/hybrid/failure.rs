@@ -236,6 +236,8 @@ pub enum Reason {
     /// A run that is to be continued is not one of this problem.
     #[error("this is another run: {why}")]
     OtherRun {
+        /// The value of the scene that is different, as its keys: `parameters.m`.
+        path: String,
         /// What is different.
         why: String,
     },

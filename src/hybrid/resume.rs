@@ -137,7 +137,8 @@ fn check_row(every: Option<f64>, row: u64, t: f64) -> Result<(), Reason> {
     }
     let (now, row) = (sample_time(every, row), row + 1);
     let why = format!("row {row} of the trajectory would be at {now} s and is at {t} s");
-    Err(Reason::OtherRun { why })
+    let path = "record.every".into();
+    Err(Reason::OtherRun { path, why })
 }
 
 /// Compares what a run was simulated with with a problem: parameters, inputs, initial state, accuracy, method, and the
@@ -151,7 +152,8 @@ pub fn check_same(problem: &Problem, run: &Run) -> Result<(), Reason> {
         if now.to_bits() != then.to_bits() {
             let name = parameter.name;
             let why = format!("`{name}` is {now} now and was {then}");
-            return Err(Reason::OtherRun { why });
+            let path = format!("parameters.{name}");
+            return Err(Reason::OtherRun { path, why });
         }
     }
     let now = digests(problem);
@@ -162,7 +164,8 @@ pub fn check_same(problem: &Problem, run: &Run) -> Result<(), Reason> {
                 "model" => "the model, or what makes code of it, was changed since".into(),
                 part => format!("`{part}` is not what it was"),
             };
-            return Err(Reason::OtherRun { why });
+            let path = part.clone();
+            return Err(Reason::OtherRun { path, why });
         }
     }
     Ok(())

@@ -14,7 +14,7 @@ pub use difference::Difference;
 pub use estimate::{ESTIMATE_FACTOR, NoEstimate, TAYLOR_ESTIMATE_FACTOR, estimate};
 pub use matching::{Match, match_events};
 pub use reference::{Bound, Horizon, Reference};
-pub use settled::{COMPARED, unsettled};
+pub use settled::{COMPARED, Ended, Other, other, unsettled};
 pub use study::{Measured, Row, Study, TOLERANCES, Verdict};
 
 use crate::hybrid::{Method, Problem};

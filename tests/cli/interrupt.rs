@@ -154,18 +154,29 @@ fn a_run_is_not_continued_with_other_inputs_or_another_accuracy() {
     let tank = scene("tank_full_plate");
     let first = ["run", &tank, "--set", "end=0.1", "--out", "out"];
     ends_with(0, home.path(), &first);
-    for (setting, part) in [
+    for (setting, part, line) in [
         (
             "inputs.ground_acceleration.sine.amplitude=19",
             "`inputs` is not what it was",
+            "tank_full_plate.json:5:3",
         ),
-        ("accuracy.relative=1e-9", "`accuracy` is not what it was"),
-        ("initial.theta=0.01", "`initial` is not what it was"),
-        ("method=radau", "`method` is not what it was"),
+        (
+            "accuracy.relative=1e-9",
+            "`accuracy` is not what it was",
+            "tank_full_plate.json:7:3",
+        ),
+        (
+            "initial.theta=0.01",
+            "`initial` is not what it was",
+            "--set:1:1",
+        ),
+        ("method=radau", "`method` is not what it was", "--set:1:8"),
     ] {
         let arguments = ["run", &tank, "--resume", "out", "--set", setting];
         let output = ends_with(2, home.path(), &arguments);
-        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+        let said = stderr(&output);
+        // With the line to blame.
+        assert!(said.contains(part) && said.contains(line), "{said}");
     }
 }
 
@@ -198,6 +209,7 @@ fn a_run_is_not_continued_with_a_model_that_was_changed_since() {
 #[cfg(target_os = "linux")]
 mod signals {
     use super::*;
+    use std::io::{BufRead, BufReader};
     use std::process::{Child, Command, Stdio};
     use std::thread;
     use std::time::{Duration, Instant};
@@ -227,6 +239,14 @@ mod signals {
         tables.any(|table| fs::metadata(table).is_ok_and(|data| data.len() > 0))
     }
 
+    /// Sends SIGINT; gives when.
+    fn interrupt(child: &Child) -> Instant {
+        let id = child.id().to_string();
+        let sent = Command::new("kill").args(["-INT", &id]).status();
+        assert!(sent.unwrap().success());
+        Instant::now()
+    }
+
     fn interrupted(folder: &Path, arguments: &[&str]) -> Output {
         interrupted_when(folder, arguments, || true)
     }
@@ -243,15 +263,36 @@ mod signals {
         while !ready() {
             thread::sleep(Duration::from_millis(1));
         }
-        let id = child.id().to_string();
-        assert!(
-            Command::new("kill")
-                .args(["-INT", &id])
-                .status()
-                .unwrap()
-                .success()
-        );
+        interrupt(&child);
         child.wait_with_output().unwrap()
+    }
+
+    /// What there is takes some tenths of a second to be drawn as PNG.
+    #[test]
+    fn ctrl_c_is_answered_at_once_and_the_second_one_ends_the_drawing() {
+        let home = tempfile::tempdir().unwrap();
+        let scene = scene("tank_full_plate");
+        let long = ["run", &scene, "--set", "end=400", "--out", "out"];
+        let mut child = Command::new(env!("CARGO_BIN_EXE_dalembert"))
+            .args(long)
+            .args(["--plot-format", "png"])
+            .current_dir(home.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        wait_until_it_listens(&child);
+        let (mut said, mut line) = (BufReader::new(child.stderr.take().unwrap()), String::new());
+        let sent = interrupt(&child);
+        said.read_line(&mut line).unwrap();
+        let answered = sent.elapsed();
+        assert!(line.starts_with("interrupted: "), "{line}");
+        let sent = interrupt(&child);
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        for time in [answered, sent.elapsed()] {
+            assert!(time < Duration::from_millis(100), "{time:?}");
+        }
+        assert!(!home.path().join("out").exists(), "nothing is written");
     }
 
     #[test]

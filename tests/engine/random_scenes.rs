@@ -9,7 +9,7 @@ use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::model::HeldAt;
-use dalembert::precision::unsettled;
+use dalembert::precision::{Ended, other, unsettled};
 use dalembert::record::{Run, Silent};
 use std::f64::consts::TAU;
 
@@ -250,7 +250,8 @@ fn fault_of_both(problem: &Problem, runs: [&Run; 2]) -> Option<String> {
     let unsettled_at = |(run, method): (&Run, Method)| {
         let mut problem = problem.clone();
         problem.method = method;
-        let doubt = unsettled(&problem, run, &run.events, &mut Silent);
+        let other = other(&problem, &Ended::default(), &mut Silent);
+        let doubt = other.and_then(|other| unsettled(&problem, run, &run.events, &other));
         doubt.map_or(f64::INFINITY, |doubt| doubt.t)
     };
     let unsettled_at = runs.into_iter().zip(methods).map(unsettled_at);
