@@ -112,6 +112,74 @@ fn extremes_of_a_driven_motion_and_its_energies_are_those_of_the_formula() {
     });
 }
 
+/// A coordinate that rises when an event ends it has no zero of its rate there: a mass without a spring against a stop.
+#[test]
+fn a_rise_that_an_event_ends_is_highest_there() {
+    with_each_method(|| {
+        for every in INTERVALS {
+            let parameters = [
+                ("k", 0.0),
+                ("static_friction", 0.0),
+                ("kinetic_friction", 0.0),
+                ("stop", 0.7),
+                ("e", 0.5),
+            ];
+            let mut problem = problem("coulomb_oscillator", &parameters);
+            problem.set_initial("x.rate", 3.0).unwrap();
+            problem.end.time = 0.5;
+            record_all(&mut problem, every);
+            let run = run(&problem);
+            let x = peak(&run, "x");
+            close(x.max, 0.7, 1.0, "at the stop");
+            close(x.t_max, 0.7 / 3.0, 1.0, "its time");
+            let rate = peak(&run, "x.rate");
+            close(rate.max, 3.0, 3.0, "before the impact");
+            close(rate.min, -1.5, 3.0, "after the impact");
+            close(rate.t_min, 0.7 / 3.0, 1.0, "its time");
+        }
+    });
+}
+
+/// θ = sin t + 0.3 sin 3t + εt has two crests at a distance of 1.5 s, of which ε says which one is higher: by 1e-6 of its
+/// size.
+#[test]
+fn of_two_crests_between_rows_the_higher_one_is_found() {
+    with_each_method(|| {
+        for (drift, every) in [1e-6, -1e-6]
+            .into_iter()
+            .flat_map(|drift| INTERVALS.map(|every| (drift, every)))
+        {
+            let mut problem = problem("forced_pendulum", &[("g", 0.0)]);
+            problem.set_initial("theta.rate", 1.9 + drift).unwrap();
+            let sines = [Sine::new(-1.0, 1.0, 0.0), Sine::new(-2.7, 3.0, 0.0)];
+            let moment = Function::sum(sines.map(Function::from));
+            problem.set_input("moment", moment).unwrap();
+            problem.end.time = 2.5;
+            problem.set_tolerance(1e-13);
+            record_all(&mut problem, every);
+            let run = run(&problem);
+            let theta = |t: f64| t.sin() + 0.3 * (3.0 * t).sin() + drift * t;
+            // Its rate is cos t (3.6 cos² t - 1.7) + ε.
+            let mut t = match drift > 0.0 {
+                true => PI - (1.7 / 3.6_f64).sqrt().acos(),
+                false => (1.7 / 3.6_f64).sqrt().acos(),
+            };
+            for _ in 0..5 {
+                let rate = t.cos() + 0.9 * (3.0 * t).cos() + drift;
+                t += rate / (t.sin() + 2.7 * (3.0 * t).sin());
+            }
+            let found = peak(&run, "theta");
+            close(found.max, theta(t), 1.0, "the higher crest");
+            // The dense output of Radau has a lower order, which a place shows before a value does.
+            let at = match problem.method {
+                Method::Taylor => 1e-11,
+                _ => 1e-9,
+            };
+            within(at, found.t_max, t, 1.0, "its time");
+        }
+    });
+}
+
 #[test]
 fn the_reaction_of_a_shaken_table_has_its_peaks_between_rows() {
     with_each_method(|| {

@@ -6,12 +6,13 @@
 //! `DALEMBERT_RANDOM_SCENE=17` one of them and shows its events.
 
 use crate::common::*;
-use dalembert::hybrid::{Method, Problem, simulate};
+use dalembert::hybrid::{MadeStep, Method, Observer, Problem, simulate, simulate_with};
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::model::HeldAt;
 use dalembert::precision::{Ended, other, unsettled};
-use dalembert::record::{Run, Silent};
+use dalembert::record::{Jump, Run, Silent, Snapshot};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// Scenes in the suite.
 const SHARE: u64 = 200;
@@ -187,6 +188,66 @@ fn fault(problem: &Problem, run: &Run) -> Option<String> {
     None
 }
 
+/// Looks at the motion inside of each step: what a mode holds is held there to the bit, and no coordinate is below its minimum
+/// by more than the tolerance.
+struct Inside<'p> {
+    problem: &'p Problem,
+    state: [Vec<f64>; 2],
+    fault: Option<String>,
+}
+
+impl Observer for Inside<'_> {
+    fn row(&mut self, _: f64, _: usize, _: &[f64]) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
+
+    fn sees_steps(&self) -> bool {
+        true
+    }
+
+    fn step(&mut self, step: &mut MadeStep) {
+        let Problem {
+            model, accuracy, ..
+        } = self.problem;
+        let mode = &self.problem.variant().modes[step.mode];
+        let [q, v] = &mut self.state;
+        for k in 0..=INSIDE {
+            let t = step.from + (step.to - step.from) * f64::from(k) / f64::from(INSIDE);
+            step.state_at(t, q, v);
+            for (i, coordinate) in model.coordinates.iter().enumerate() {
+                let (name, q) = (coordinate.name, q[i]);
+                let held = !mode.free.contains(&i) && !mode.drifts[i];
+                let stays = mode.held_at[i].is_none_or(|at| HeldAt::Number(q) == at);
+                if held && (v[i] != 0.0 || !stays) {
+                    let name = format!("{name} is held in {} and moves at {t}", mode.name);
+                    self.fault.get_or_insert(name);
+                }
+                let error = accuracy.q_absolute[i] + accuracy.relative * q.abs();
+                if coordinate.minimum.is_some_and(|least| q < least - error) {
+                    self.fault.get_or_insert(format!("{name} = {q:e} at {t}"));
+                }
+            }
+        }
+    }
+}
+
+/// Places inside of a step.
+const INSIDE: u32 = 7;
+
+/// What is wrong with a motion inside of its steps, if anything.
+fn fault_inside(problem: &Problem) -> Option<String> {
+    let n = problem.model.coordinates.len();
+    let mut inside = Inside {
+        problem,
+        state: [vec![0.0; n], vec![0.0; n]],
+        fault: None,
+    };
+    simulate_with(problem, &mut inside, &mut Silent).expect("the problem can be started");
+    inside.fault
+}
+
 /// Events of a run by which it is compared with another one: all but the impacts of an accumulation before a rest, of
 /// which the tolerance says how many are recorded.
 fn plain(run: &Run) -> Vec<(f64, &'static str)> {
@@ -316,6 +377,8 @@ fn random_scenes_run_through_and_both_methods_agree() {
             }
             faults
                 .extend(fault(&problem, &run).map(|fault| format!("{number} {method:?}: {fault}")));
+            let inside = fault_inside(&problem);
+            faults.extend(inside.map(|fault| format!("{number} {method:?}: {fault}")));
             required += usize::from(run.failure.is_some());
             events += run.events.len();
             run
