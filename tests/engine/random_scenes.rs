@@ -395,3 +395,17 @@ fn random_scenes_run_through_and_both_methods_agree() {
         faults.join("\n")
     );
 }
+
+/// The step that leads to an event may end behind it: what the motion would be there is no part of the run. Found in three
+/// thousand of these scenes.
+#[test]
+fn extremes_know_nothing_of_what_is_behind_an_event() {
+    for number in [804, 991, 1020, 1434, 1668, 2033, 2877] {
+        for method in [Method::Taylor, Method::Radau] {
+            let mut problem = scene(number);
+            problem.method = method;
+            let run = simulate(&problem, &mut Silent).expect("the problem can be started");
+            assert_eq!(fault(&problem, &run), None, "{number} {method:?}");
+        }
+    }
+}

@@ -118,11 +118,20 @@ pub(super) struct Step<'s, 'e, F: Size, M> {
     pub here: &'s mut Here,
     /// End of the step in local time, s.
     pub end: f64,
-    /// How far beyond it the event is, s.
+    /// How far beyond it the event is, s; negative where it is before the end.
     pub beyond: f64,
     /// [dissipated, input] energy of the step, J, where the method has a quadrature that is more accurate than its
     /// dense output.
     pub work: Option<[f64; 2]>,
+}
+
+impl<F: Size, M> Step<'_, '_, F, M> {
+    /// Up to where it is looked at, in local time, s: its end, or the event where that is before the end. (An event that
+    /// rounding does not tell from `start` leaves the step as it was made.)
+    fn seen(&self, start: f64) -> f64 {
+        let event = self.end + self.beyond.min(0.0);
+        if event > start { event } else { self.end }
+    }
 }
 
 /// A sample at which the run ends.
@@ -391,7 +400,7 @@ impl<'o> Observers<'o> {
             None => 0,
         };
         let count = columns + if powers { 2 } else { 0 };
-        let end = step.end;
+        let end = step.seen(start);
         let mut part = Part {
             from: start,
             to: end,
@@ -471,7 +480,7 @@ impl<'o> Observers<'o> {
         }
         if let (Some(ledger), true) = (&mut self.ledger, powers) {
             ledger.add_work(whole);
-            if part.is_last && step.beyond != 0.0 && step.work.is_none() {
+            if part.is_last && step.beyond > 0.0 && step.work.is_none() {
                 let of = &self.interpolants;
                 ledger.add_work([0, 1].map(|i| of.value_at(MOST, columns + i) * step.beyond));
             }
