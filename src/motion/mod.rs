@@ -5,6 +5,7 @@
 //! here works on texts and numbers; files and scenes are others' business.
 
 mod at2;
+mod band_limited;
 mod cesmd;
 mod channel;
 mod cosmos;

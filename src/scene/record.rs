@@ -190,8 +190,8 @@ pub(crate) fn shape() -> Object {
             .default(0.0),
             Key::new(
                 "interpolation",
-                "straight lines, or a twice differentiable spline",
-                Shape::Choice("interpolation", vec!["linear", "cubic"]),
+                "straight lines, a twice differentiable spline, or the function without frequencies above half the rate of the samples",
+                Shape::Choice("interpolation", vec!["linear", "cubic", "band_limited"]),
             )
             .default("linear"),
             flag(
@@ -231,9 +231,14 @@ pub(crate) fn table(described: &Checked, unit: &str, reader: &Reader) -> Result<
     let samples = treatment(described)
         .apply(&channel.samples)
         .map_err(|refusal| refused(described, refusal))?;
-    let interpolation = match described.get("interpolation").map(Checked::text) {
-        Some("cubic") => Interpolation::Cubic,
-        _ => Interpolation::Linear,
+    let (samples, interpolation) = match described.get("interpolation").map(Checked::text) {
+        Some("band_limited") => {
+            let finer = samples.band_limited();
+            let finer = finer.map_err(|refusal| refused(described, refusal))?;
+            (finer, Interpolation::Cubic)
+        }
+        Some("cubic") => (samples, Interpolation::Cubic),
+        _ => (samples, Interpolation::Linear),
     };
     let values: Vec<f64> = samples.values.iter().map(|a| factor * a).collect();
     Table::new(&samples.all_times(), &values, interpolation, Outside::Zero).map_err(|error| {

@@ -1,5 +1,6 @@
 //! Records of every format, what is wrong with them, and what is made of them.
 
+mod band_limited;
 mod malformed;
 mod readers;
 mod spectra;

@@ -125,6 +125,15 @@ fn sizes_and_corrections_are_those_that_are_asked_for() {
     let (times, values) = (samples.all_times(), &samples.values);
     let spline = Table::new(&times, values, Interpolation::Cubic, Outside::Zero);
     assert_eq!(function(options, AT2), spline.expect("a table").into());
+    let options = r#", "interpolation": "band_limited""#;
+    let finer = samples.band_limited().expect("equal steps");
+    let spline = Table::new(
+        &finer.all_times(),
+        &finer.values,
+        Interpolation::Cubic,
+        Outside::Zero,
+    );
+    assert_eq!(function(options, AT2), spline.expect("a table").into());
 }
 
 /// A line has nothing left when a line is subtracted.
