@@ -1,7 +1,7 @@
 //! All cases of a study on all cores.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
@@ -14,7 +14,8 @@ use super::rows::Row;
 /// How often finished cases are kept: a program that is killed loses what it computed since.
 const KEEP: Duration = Duration::from_millis(500);
 
-/// How often it is asked whether to go on.
+/// How often it is asked whether to go on, and how long a thread holds what it has finished: to hand each case over by itself
+/// would wake the thread that keeps them as often as there are cases.
 const ASK: Duration = Duration::from_millis(20);
 
 /// A part of a study: the cases whose index leaves a rest after division.
@@ -50,8 +51,8 @@ pub(crate) trait Watch {
     fn progress(&mut self, finished: u64) -> ControlFlow<()>;
 }
 
-/// Runs the cases that are `pending` on the threads of the present pool of rayon, which steal work from each other, and keeps
-/// them in a folder as they come.
+/// Runs the cases that are `pending` on as many threads as the present pool of rayon has, and keeps them in a folder as they
+/// come.
 pub(crate) fn run(
     study: &Study,
     pending: &[u64],
@@ -59,28 +60,34 @@ pub(crate) fn run(
     watch: &mut dyn Watch,
 ) -> Result<Ended, StudyFolderError> {
     let stop = AtomicBool::new(false);
-    let (send, receive) = mpsc::channel::<(u64, Vec<Row>)>();
+    let next = AtomicUsize::new(0);
+    let (send, receive) = mpsc::channel::<Vec<(u64, Vec<Row>)>>();
     std::thread::scope(|scope| {
-        let stop = &stop;
+        let (stop, next) = (&stop, &next);
         let pool = rayon::current_num_threads();
         // Rayon's threads must not wait for the disk, so this thread keeps what they send.
         let spawned = std::thread::Builder::new()
             .name("study".into())
             .spawn_scoped(scope, move || {
                 let work = || {
-                    // One at a time, so that a thread without work finds some.
-                    pending
-                        .par_iter()
-                        .with_max_len(1)
-                        .for_each_with(send, |send, &case| {
+                    let threads = (0..pool).into_par_iter().with_max_len(1);
+                    threads.for_each_with(send, |send, _| {
+                        let mut finished = Vec::new();
+                        let mut sent = Instant::now();
+                        // Each takes the next case that nobody has begun, so none waits while there are any.
+                        while let Some(&case) = pending.get(next.fetch_add(1, Ordering::Relaxed)) {
                             if stop.load(Ordering::Relaxed) {
-                                return;
+                                break;
                             }
-                            if let Some(rows) = study.runs_of(case, stop) {
+                            finished.extend(study.runs_of(case, stop).map(|rows| (case, rows)));
+                            if sent.elapsed() >= ASK {
                                 // Nobody hears any more where the disk is full.
-                                let _ = send.send((case, rows));
+                                let _ = send.send(std::mem::take(&mut finished));
+                                sent = Instant::now();
                             }
-                        });
+                        }
+                        let _ = send.send(finished);
+                    });
                 };
                 match rayon::ThreadPoolBuilder::new().num_threads(pool).build() {
                     Ok(pool) => pool.install(work),
@@ -104,7 +111,7 @@ pub(crate) fn run(
 
 /// Keeps what comes until nobody sends any more.
 fn collect(
-    receive: mpsc::Receiver<(u64, Vec<Row>)>,
+    receive: mpsc::Receiver<Vec<(u64, Vec<Row>)>>,
     folder: &mut StudyFolder,
     watch: &mut dyn Watch,
     stop: &AtomicBool,
@@ -115,9 +122,9 @@ fn collect(
     loop {
         let came = receive.recv_timeout(ASK);
         let over = matches!(came, Err(mpsc::RecvTimeoutError::Disconnected));
-        if let Ok(case) = came {
-            finished += 1;
-            waiting.push(case);
+        if let Ok(cases) = came {
+            finished += cases.len() as u64;
+            waiting.extend(cases);
         }
         if !waiting.is_empty() && (over || kept.elapsed() >= KEEP) {
             folder.keep(&waiting)?;

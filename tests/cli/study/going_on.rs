@@ -189,6 +189,48 @@ fn a_study_may_be_killed_at_any_instant() {
     same(&folder.path().join("whole"), &out);
 }
 
+/// A program that may write no more than some blocks of 512 bytes into a file: as on a full disk a part of a file is written,
+/// and then no more.
+#[cfg(unix)]
+fn with_room(folder: &Path, blocks: u32, more: &[&str]) -> std::process::Output {
+    // POSIX counts in blocks of 512 bytes. A signal that is ignored leaves the error of the write.
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+    Command::new("sh")
+        .current_dir(folder)
+        .args(["-c", &script, "sh", env!("CARGO_BIN_EXE_dalembert")])
+        .args(["study", "study.json", "--csv", "--out"])
+        .args(more)
+        .output()
+        .unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_is_full_loses_nothing_that_was_kept() {
+    let folder = folder();
+    write(folder.path(), "study.json", &sweep());
+    ends_with(
+        0,
+        folder.path(),
+        &["study", "study.json", "--csv", "--out", "whole"],
+    );
+    // No room for the first finished cases; for some of them; for all of them, but not for the page.
+    for blocks in [1, 2, 40] {
+        let out = blocks.to_string();
+        let output = with_room(folder.path(), blocks, &[&out]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{blocks}: {said}");
+        assert!(said.contains("cannot write"), "{blocks}: {said}");
+        let path = folder.path().join(&out);
+        assert!(!path.join("summary.json").exists(), "{blocks}");
+        let again = with_room(folder.path(), blocks, &[&out, "--resume"]);
+        assert_eq!(again.status.code(), Some(1), "{blocks}");
+        let resume = ["study", "study.json", "--csv", "--out", &out, "--resume"];
+        ends_with(0, folder.path(), &resume);
+        same(&folder.path().join("whole"), &path);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_what_is_finished_and_two_writers_are_refused() {

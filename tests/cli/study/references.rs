@@ -9,6 +9,29 @@ use serde_json::{Value, json};
 use super::super::{ends_with, json as read_json, project};
 use super::{table, write};
 
+/// A folder with a scene.
+fn folder_of(scene: &Value) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "scene.json", scene);
+    folder
+}
+
+/// Runs a study in the folder `out` beside its scene.
+fn run(folder: &tempfile::TempDir, study: &Value) {
+    write(folder.path(), "study.json", study);
+    let arguments = ["study", "study.json", "--out", "out", "--csv"];
+    ends_with(0, folder.path(), &arguments);
+}
+
+/// Blocks under one wave of a sine.
+fn block_under_a_wave() -> Value {
+    json!({
+        "model": "rocking_block",
+        "inputs": { "ground_acceleration": { "sine": { "amplitude": 4.0, "frequency": 1.0, "cycles": 1 } } },
+        "end": 8.0
+    })
+}
+
 /// A row of the reference study.
 fn rocking_study() -> Vec<BTreeMap<String, String>> {
     table(&project().join("tests/data/24_rocking_study.csv"))
@@ -46,12 +69,7 @@ fn blocks_under_a_record_overturn_as_in_the_reference_study() {
         "failure": { "measure": "peak.theta", "above": 0.7 },
         "second_runs": "all"
     });
-    write(folder.path(), "study.json", &study);
-    ends_with(
-        0,
-        folder.path(),
-        &["study", "study.json", "--out", "out", "--csv"],
-    );
+    run(&folder, &study);
     let rows = table(&folder.path().join("out/runs.csv"));
     assert_eq!(rows.len(), reference.len());
     let mut times = 0;
@@ -94,7 +112,6 @@ fn blocks_under_a_record_overturn_as_in_the_reference_study() {
 
 /// The least amplitude of one sine that overturns a block, as a multiple of α g.
 fn critical(alpha: f64, frequency: f64, near: f64) -> Value {
-    let folder = tempfile::tempdir().unwrap();
     // With R = 3/4 m and g = 1 m/s² the block has p = 1/s. It rests until the pulse lifts it.
     let scene = json!({
         "model": "rocking_block",
@@ -106,7 +123,7 @@ fn critical(alpha: f64, frequency: f64, near: f64) -> Value {
         "end": { "time": 100.0, "after": { "landing": 1 } },
         "accuracy": { "relative": 1e-13 }
     });
-    write(folder.path(), "scene.json", &scene);
+    let folder = folder_of(&scene);
     let study = json!({
         "scene": "scene.json",
         "critical": {
@@ -116,12 +133,7 @@ fn critical(alpha: f64, frequency: f64, near: f64) -> Value {
         "measure": ["peak.theta"],
         "failure": { "measure": "peak.theta", "above": 0.7 }
     });
-    write(folder.path(), "study.json", &study);
-    ends_with(
-        0,
-        folder.path(),
-        &["study", "study.json", "--out", "out", "--csv"],
-    );
+    run(&folder, &study);
     let rows = table(&folder.path().join("out/capacities.csv"));
     assert_eq!(rows.len(), 1);
     assert_eq!(rows[0]["censored"], "0");
@@ -149,13 +161,7 @@ fn the_least_overturning_pulse_is_that_of_the_spectrum_to_nine_digits() {
 
 #[test]
 fn capacities_of_an_ida_are_those_of_fine_bisection_and_fitted_as_the_command_fits_them() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = json!({
-        "model": "rocking_block",
-        "inputs": { "ground_acceleration": { "sine": { "amplitude": 4.0, "frequency": 1.0, "cycles": 1 } } },
-        "end": 8.0
-    });
-    write(folder.path(), "scene.json", &scene);
+    let folder = folder_of(&block_under_a_wave());
     let path = "inputs.ground_acceleration.sine.amplitude";
     let failure = json!({ "measure": "peak.theta", "above": 0.7 });
     let random = json!({
@@ -231,13 +237,7 @@ fn capacities_of_an_ida_are_those_of_fine_bisection_and_fitted_as_the_command_fi
 
 #[test]
 fn stripes_are_counted_and_fitted_as_the_command_fits_them() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = json!({
-        "model": "rocking_block",
-        "inputs": { "ground_acceleration": { "sine": { "amplitude": 4.0, "frequency": 1.0, "cycles": 1 } } },
-        "end": 8.0
-    });
-    write(folder.path(), "scene.json", &scene);
+    let folder = folder_of(&block_under_a_wave());
     let study = json!({
         "scene": "scene.json",
         "random": {
@@ -253,12 +253,7 @@ fn stripes_are_counted_and_fitted_as_the_command_fits_them() {
         "measure": ["peak.theta"],
         "group": "parameters.e"
     });
-    write(folder.path(), "study.json", &study);
-    ends_with(
-        0,
-        folder.path(),
-        &["study", "study.json", "--out", "out", "--csv"],
-    );
+    run(&folder, &study);
     let rows = table(&folder.path().join("out/runs.csv"));
     assert_eq!(rows.len(), 2 * 16 * 6);
     let summary = read_json(&folder.path().join("out/summary.json"));
@@ -301,14 +296,13 @@ fn stripes_are_counted_and_fitted_as_the_command_fits_them() {
 
 #[test]
 fn capacities_beyond_the_last_run_are_censored() {
-    let folder = tempfile::tempdir().unwrap();
     let scene = json!({
         "model": "rocking_block",
         "parameters": { "alpha": 0.25 },
         "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
         "end": 0.01
     });
-    write(folder.path(), "scene.json", &scene);
+    let folder = folder_of(&scene);
     // The centre is highest in the beginning: the level is reached from α − acos(cos α + level/R) on.
     let study = |level: f64| {
         json!({
