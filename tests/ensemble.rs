@@ -4,7 +4,7 @@ mod common;
 
 use common::{lifted_slider, numbers, problem, reference};
 use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
-use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
+use dalembert::input::{Function, Interpolation, Outside, Side, Sine, Table};
 use dalembert::kernel::processor_level;
 use dalembert::record::{Jump, Silent};
 
@@ -200,6 +200,37 @@ fn accumulations_and_rest_are_those_of_single_runs() {
     );
     // The limit of a series is known to the tolerance.
     assert!(difference(&alone(&blocks), &ends) < 1e-8);
+}
+
+/// Oscillators with dry friction, which come to rest or turn back where they stop: a condition decides which transition the fall
+/// of one guard is.
+fn dry_oscillators(tolerance: f64) -> Vec<Problem> {
+    let friction = [("static_friction", 0.5), ("kinetic_friction", 0.3)];
+    let mut oscillator = problem("coulomb_oscillator", &friction);
+    oscillator.end.time = 40.0;
+    set_size(&mut oscillator, tolerance, 1.0, 1.0);
+    variations(&oscillator, 29, |p, x| {
+        let force = Sine::new(0.9 + 0.4 * x, 0.45 + 0.2 * x, 0.0);
+        p.set_input("force", Function::from(force)).unwrap();
+    })
+}
+
+#[test]
+fn falls_whose_transition_depends_on_conditions_are_those_of_single_runs() {
+    for tolerance in [1e-6, 1e-10] {
+        let oscillators = dry_oscillators(tolerance);
+        let single = alone(&oscillators);
+        for name in ["stick", "slip", "reversal"] {
+            let happens = |end: &End| end.events.iter().any(|e| e.0 == name);
+            assert!(single.iter().any(happens), "{name}");
+        }
+        let all = together(&oscillators, 0, 1);
+        let found = difference(&single, &all);
+        assert!(found < 1e-10, "{tolerance:e}: {found:e}");
+        for level in 0..=processor_level() {
+            assert_eq!(together(&oscillators, level, 2), all, "level {level}");
+        }
+    }
 }
 
 #[test]
@@ -501,4 +532,61 @@ fn a_motion_below_rounding_goes_through_in_lanes_as_alone() {
         }
         assert_eq!(alone, together(&problems, processor_level(), 1));
     }
+}
+
+/// Blocks that are shaken by sines of their own, by records of their own, and some like the scene: what a member gives depends on
+/// its own input alone.
+#[test]
+fn members_have_inputs_of_their_own() {
+    let mut problems = shaken_blocks(1e-10, 21);
+    for (i, problem) in problems.iter_mut().enumerate() {
+        let x = i as f64 / 21.0;
+        let shake = Sine::new(-3.4 - x, (3.0 - 0.5 * x) * std::f64::consts::PI, 0.3);
+        let input: Function = match i % 3 {
+            0 => continue,
+            1 => shake.into(),
+            _ => {
+                let times: Vec<f64> = (0..900).map(|i| (0.01 + 1e-3 * x) * f64::from(i)).collect();
+                let value = |t: &f64| Function::from(shake.clone()).at(*t, Side::Right).value;
+                let values: Vec<f64> = times.iter().map(value).collect();
+                let table = Table::new(&times, &values, Interpolation::Linear, Outside::Zero);
+                table.unwrap().into()
+            }
+        };
+        problem.set_input("ground_acceleration", input).unwrap();
+    }
+    let single = alone(&problems);
+    assert!(single.iter().all(|end| end.failure.is_none()));
+    let all = together(&problems, 0, 1);
+    let found = difference(&all, &single);
+    assert!(found < 1e-9, "{found:e}");
+    for level in 0..=processor_level() {
+        for threads in [1, 2] {
+            assert_eq!(together(&problems, level, threads), all, "level {level}");
+        }
+    }
+    let mut reversed = problems.clone();
+    reversed[1..].reverse(); // the first one is the scene itself
+    let mut ends = together(&reversed, processor_level(), 1);
+    ends[1..].reverse();
+    assert_eq!(ends, all);
+}
+
+#[test]
+fn a_scene_that_is_never_shaken_has_no_members_that_are() {
+    let shaken = &shaken_blocks(1e-9, 1)[0];
+    let mut still = shaken.clone();
+    let input = "ground_acceleration";
+    still.set_input(input, Function::zero()).unwrap();
+    let ends = together(&[still.clone(), shaken.clone()], processor_level(), 1);
+    assert_eq!(ends[0].failure, None);
+    let why = ends[1].failure.as_deref().unwrap();
+    assert!(
+        why.contains("acts in a member of the ensemble and not in its scene"),
+        "{why}"
+    );
+    // The other way round the input of the member is zero.
+    let ends = together(&[shaken.clone(), still.clone()], processor_level(), 1);
+    // It comes to rest, at the limit of a series, which is known to the tolerance.
+    assert!(difference(&ends[1..], &alone(&[still])) < 1e-8);
 }

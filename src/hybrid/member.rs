@@ -1,21 +1,25 @@
 //! What trajectories of a scene may differ in.
 
 use super::problem::{Initial, Problem};
+use crate::input::Signals;
 
 /// One trajectory of an ensemble: what is its own.
 #[derive(Debug, Clone, Copy)]
 pub struct Member<'a> {
     /// Parameters in the order and the units of the model.
     pub parameters: &'a [f64],
+    /// The inputs of the model: scaled, of other frequencies, other records. One that is zero in the scene is zero in all members.
+    pub signals: &'a Signals,
     /// Where it starts.
     pub initial: &'a Initial,
 }
 
 impl<'a> From<&'a Problem> for Member<'a> {
-    /// Parameters and initial state of a problem.
+    /// Parameters, inputs and initial state of a problem.
     fn from(problem: &'a Problem) -> Self {
         Member {
             parameters: &problem.parameters,
+            signals: &problem.signals,
             initial: &problem.initial,
         }
     }

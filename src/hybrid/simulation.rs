@@ -14,7 +14,7 @@ use super::plan::Plan;
 use super::problem::{Initial, Problem};
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
-use super::validate::{check_initial, check_parameters};
+use super::validate::{Invalid, check_initial, check_parameters};
 use super::visited::Visited;
 use crate::input::{Side, Signals};
 use crate::jets::Expansion;
@@ -84,7 +84,9 @@ pub(super) struct Simulation<'p> {
     pub problem: &'p Problem,
     /// Its initial state, or that of the member of an ensemble.
     pub initial: &'p Initial,
-    /// The inputs: those of the problem, until the caller commands one.
+    /// The inputs of the problem, or those of the member of an ensemble.
+    pub given_signals: &'p Signals,
+    /// The same, until the caller commands one.
     pub signals: Cow<'p, Signals>,
     /// The modes of the problem's variant.
     pub modes: &'p [Mode],
@@ -171,6 +173,7 @@ impl<'p> Simulation<'p> {
         Ok(Simulation {
             problem,
             initial: &problem.initial,
+            given_signals: &problem.signals,
             signals: Cow::Borrowed(&problem.signals),
             modes,
             plan,
@@ -236,6 +239,7 @@ impl<'p> Simulation<'p> {
         let model = &self.problem.model;
         check_parameters(model, member.parameters)?;
         check_initial(model, member.initial)?;
+        self.become_shaken(member.signals)?;
         self.initial = member.initial;
         self.context.set_parameters(model, member.parameters);
         self.expansion.set_parameters(member.parameters);
@@ -245,6 +249,27 @@ impl<'p> Simulation<'p> {
         self.begun = None;
         self.rewind(0);
         self.find_start(member.parameters)
+    }
+
+    /// Takes the inputs of a member. Those that never act are left out of the equations of a scene, for all its members.
+    fn become_shaken(&mut self, signals: &'p Signals) -> Result<(), Reason> {
+        let scene = &self.problem.signals;
+        if signals == scene {
+            // So that members with the same inputs are known by it.
+            self.given_signals = scene;
+        } else {
+            for (i, input) in self.problem.model.inputs.iter().enumerate() {
+                if scene.input_is_zero(i) && !signals.input_is_zero(i) {
+                    let input = input.name;
+                    return Err(Invalid::NotInScene { input }.into());
+                }
+            }
+            self.given_signals = signals;
+        }
+        self.signals = Cow::Borrowed(self.given_signals);
+        self.context.forget_signals();
+        self.piece = Piece::UNKNOWN;
+        Ok(())
     }
 
     /// Finds the mode of the initial state.

@@ -44,6 +44,14 @@ pub enum Invalid {
         /// The input.
         input: &'static str,
     },
+    /// A member of an ensemble has an input that never acts in the scene.
+    #[error(
+        "input `{input}` acts in a member of the ensemble and not in its scene, which is prepared without it; give the scene the input of a member"
+    )]
+    NotInScene {
+        /// The input.
+        input: &'static str,
+    },
     /// An input is commanded whose function is given for all times.
     #[error(
         "input `{input}` cannot be commanded: its function was given for all times; give it `Function::commanded`, or a sum with that, before the run"

@@ -49,15 +49,10 @@ impl Context {
     }
 
     /// Sets signals and their rates to those of a lane, as they are right after its time.
-    pub(crate) fn set_signals_of_lane<const W: usize>(
-        &mut self,
-        of: &LaneSignals<W>,
-        lane: usize,
-        signals: &Signals,
-    ) {
+    pub(crate) fn set_signals_of_lane<const W: usize>(&mut self, of: &LaneSignals<W>, lane: usize) {
         let room = self.signal_rooms();
         let [values, rates] = room.now;
-        of.of_lane(lane, signals, values, rates);
+        of.of_lane(lane, values, rates);
         *room.at = (of.time(lane), Side::Right);
     }
 

@@ -5,7 +5,7 @@ use super::lanes::LaneJet;
 use super::sine::{self, Sine};
 use super::{Signals, Table};
 use crate::kernel::LaneLevel;
-use crate::numerics::{Lanes, Side};
+use crate::numerics::{LaneMask, Lanes, Side};
 use crate::numerics::{Memory, Persist};
 
 /// A function of time and what is needed of it at one instant. Units: those of the function f,
@@ -190,37 +190,59 @@ impl Function {
         out.zip(room).for_each(|(out, c)| *out = *c);
     }
 
-    /// [`Function::at`] on the right of each of several times.
+    /// [`Function::at`] on the right of each of several times, for some lanes.
     #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
-        level: LaneLevel<W>,
+        (level, lanes): (LaneLevel<W>, LaneMask),
         t: &Lanes<W>,
         jet: &mut LaneJet<W>,
     ) {
         match &self.terms[..] {
-            [Term::Sine(sine)] => sine.at_lanes(level, t, jet),
-            _ => *jet = LaneJet::from_jets(t.0.map(|t| self.at(t, Side::Right))),
+            [Term::Sine(sine)] if lanes == LaneMask::ALL => sine.at_lanes(level, t, jet),
+            [Term::Sine(sine)] => {
+                let mut of_all = *jet;
+                sine.at_lanes(level, t, &mut of_all);
+                for lane in lanes.lanes() {
+                    jet.set(lane, of_all.get(lane));
+                }
+            }
+            _ => {
+                for lane in (0..W).filter(|&lane| lanes.is(lane)) {
+                    jet.set(lane, self.at(t.0[lane], Side::Right));
+                }
+            }
         }
     }
 
-    /// [`Function::series`] for each of several times, into every `stride`-th of `rows`.
+    /// [`Function::series`] for each of several times, into every `stride`-th of `rows`, for some lanes.
     #[inline]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,
-        level: LaneLevel<W>,
+        (level, lanes): (LaneLevel<W>, LaneMask),
         t: &Lanes<W>,
         jet: &LaneJet<W>,
         stride: usize,
         rows: &mut [Lanes<W>],
     ) {
         if let [Term::Sine(sine)] = &self.terms[..] {
-            return sine.fill_series_of_lanes(level, jet, stride, rows);
+            if lanes == LaneMask::ALL {
+                return sine.fill_series_of_lanes(level, jet, stride, rows);
+            }
+            let mut of_all = [Lanes::of(0.0); Signals::MOST_ORDERS];
+            let of_all = &mut of_all[..rows.len().div_ceil(stride)];
+            sine.fill_series_of_lanes(level, jet, 1, of_all);
+            for (row, of_all) in rows.iter_mut().step_by(stride).zip(&*of_all) {
+                for lane in lanes.lanes() {
+                    row.0[lane] = of_all.0[lane];
+                }
+            }
+            return;
         }
         let mut room = [0.0; Signals::MOST_ORDERS];
         let room = &mut room[..rows.len().div_ceil(stride)];
         let [rate, value, ..] = jet.0;
-        for lane in 0..W {
+        for lane in (0..W).filter(|&lane| lanes.is(lane)) {
             let known = [value, rate].map(|x| x.0[lane]);
             self.series(t.0[lane], Side::Right, known, 1, room);
             for (row, value) in rows.iter_mut().step_by(stride).zip(&*room) {
@@ -237,6 +259,18 @@ impl Function {
             .iter()
             .map(|term| term.next_knot(t))
             .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The last time at which the function is not analytic, s; 0 if there is none after the start.
+    pub(super) fn last_knot(&self) -> f64 {
+        let last = |term: &Term| match term {
+            Term::Table(table) => table.end().max(0.0),
+            _ => {
+                let next = |t: &f64| Some(term.next_knot(*t)).filter(|knot| knot.is_finite());
+                std::iter::successors(Some(0.0), next).fold(0.0, f64::max)
+            }
+        };
+        self.terms.iter().map(last).fold(0.0, f64::max)
     }
 
     /// The first time after `t` at which the function breaks, in s; infinite if there is

@@ -159,6 +159,11 @@ impl Signals {
         (self.channels.iter()).any(|c| c.function != Function::zero() && wants(c))
     }
 
+    /// The last time at which some input is not analytic, s; 0 if there is none after the start.
+    pub(crate) fn last_knot(&self) -> f64 {
+        (self.functions().map(Function::last_knot)).fold(0.0, f64::max)
+    }
+
     /// The first time after `t` at which some input breaks (a jump, the start or
     /// the end of a pulse or a table), in s; infinite if there is none. The motion starts anew there.
     pub fn next_breakpoint(&self, t: f64) -> f64 {

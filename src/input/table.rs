@@ -184,6 +184,11 @@ impl Table {
         self.pieces[self.piece_index(t, side)].add_series(t, out);
     }
 
+    /// Time of the last row, s.
+    pub(super) fn end(&self) -> f64 {
+        self.knots[self.knots.len() - 1]
+    }
+
     /// The first row after `t`.
     pub(super) fn next_knot(&self, t: f64) -> f64 {
         let next = self.piece_index(t, Side::Right);

@@ -7,7 +7,7 @@ use super::super::instant::Instant;
 use super::super::roots::Watch;
 use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
-use crate::input::{LaneSignals, Signals};
+use crate::input::LaneSignals;
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
 use crate::kernel::{
     Free, LaneContext, LaneGuard, LaneLevel, LanePast, LanePoint, LaneRows, LaneSystem, ModeKernel,
@@ -103,7 +103,7 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     pub quiet: bool,
     pub taylor: LaneTaylor<F, W>,
     pub context: LaneContext<W>,
-    pub signals: LaneSignals<W>,
+    pub signals: LaneSignals<'p, W>,
     pub guards: Vec<WatchedGuard<W>>,
     /// Where the trajectories are. Accelerations are given where a segment starts.
     pub here: LanePoint<F, W>,
@@ -118,8 +118,8 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     pub left: LaneRows<W>,
     /// Where inputs are not smooth, or the end, s.
     pub last: Lanes<W>,
-    /// Time after which the inputs are analytic, s.
-    pub analytic_from: f64,
+    /// Times after which the inputs are analytic, s.
+    pub analytic_from: Lanes<W>,
     /// Lower bounds, in the last step, of what the mode requires to be positive, and of margins.
     pub bounds: LaneRows<W>,
     /// Of each margin, the lanes in which it has been reached before.
@@ -211,7 +211,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             },
             left: LaneRows::zeros(discretes),
             last: Lanes::of(f64::INFINITY),
-            analytic_from: analytic_from(&problem.signals),
+            analytic_from: Lanes::of(problem.signals.last_knot()),
             bounds: LaneRows::zeros(mode.requirements.len() + mode.margins.len()),
             passed: vec![LaneMask::NONE; mode.margins.len()],
             unclear: LaneMask::NONE,
@@ -232,16 +232,19 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     }
 
     /// Puts a trajectory, which has just entered the mode, into a lane.
-    pub fn load(&mut self, lane: usize, from: &Simulation) {
+    pub fn load(&mut self, lane: usize, from: &Simulation<'p>) {
         self.context.load(lane, &from.context);
         self.set(lane, from);
         for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
             let dormant = *watch == Watch::Dormant;
             guard.linear.starts_at_zero.set(lane, dormant);
         }
-        let problem = from.problem;
-        let breakpoint = problem.signals.next_breakpoint(from.here.now.seconds());
-        self.last.0[lane] = breakpoint.min(problem.end.time);
+        if !std::ptr::eq(self.signals.of(lane), from.given_signals) {
+            self.signals.load(lane, from.given_signals);
+            self.analytic_from.0[lane] = from.given_signals.last_knot();
+        }
+        let breakpoint = from.signals.next_breakpoint(from.here.now.seconds());
+        self.last.0[lane] = breakpoint.min(from.problem.end.time);
         self.at_start.set(lane, true);
         self.missed[lane] = self.steps;
         self.occupied.set(lane, true);
@@ -349,8 +352,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
         };
         let t = into.here.now.seconds();
         if !self.quiet && outcome != Outcome::Until && t == self.signals.time(lane) {
-            let signals = &into.problem.signals;
-            (into.context).set_signals_of_lane(&self.signals, lane, signals);
+            into.context.set_signals_of_lane(&self.signals, lane);
         }
         let steps = self.steps - self.missed[lane];
         into.solver.steps += steps;
@@ -364,24 +366,14 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     }
 }
 
-/// The transition that a guard of the present mode takes, if lanes can take it side by side.
+/// The transition that a guard of the present mode takes under any conditions, if lanes can take it side by side.
 fn transition_in_lanes(of: &Simulation, guard: usize) -> Option<usize> {
     let transitions = &of.mode().guards[guard].transitions;
     let first = transitions.iter().position(|t| of.plan.allowed[t.target])?;
     // Where it ends the run its number is counted.
     let ends = |(name, _)| name == transitions[first].name;
-    let stays =
-        !of.problem.end.after.is_some_and(ends) && transitions[first].kernel.stays_in_lanes();
+    let stays = !of.problem.end.after.is_some_and(ends)
+        && !transitions[first].conditional
+        && transitions[first].kernel.stays_in_lanes();
     stays.then_some(first)
-}
-
-/// The last time at which some input is not analytic, s.
-fn analytic_from(signals: &Signals) -> f64 {
-    let mut last = 0.0;
-    loop {
-        match signals.next_knot(last) {
-            f64::INFINITY => return last,
-            knot => last = knot,
-        }
-    }
 }

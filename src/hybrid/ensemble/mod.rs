@@ -1,4 +1,4 @@
-//! Many trajectories of one scene, with parameters and initial states of their own.
+//! Many trajectories of one scene, with parameters, inputs and initial states of their own.
 //!
 //! Trajectories in the same mode go side by side, one in each lane of a vector register: each at its
 //! own time, with steps and events of its own (`group`, `step`), and takes the transitions that most events
@@ -23,6 +23,7 @@ use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
 use crate::run::{Jump, Reached, Recorded, Silent};
 use rayon::prelude::*;
+use std::sync::atomic::AtomicUsize;
 use worker::Worker;
 
 /// A scene made ready for many runs.
@@ -75,10 +76,15 @@ impl Ensemble {
         let orders = (0..modes.len())
             .map(|mode| pilot.solvers.order_between_knots(mode))
             .collect();
+        // Where what the scene freezes leaves conditional transitions alone, the fall of a guard may be no event.
+        let watched = pilot.plan.watched.iter();
+        let always = watched.map(|of_mode| of_mode.iter().all(|watched| !watched.conditional));
+        let always: Vec<bool> = always.collect();
         drop(pilot);
-        let in_lanes = (modes.iter().zip(stiff))
-            .map(|(mode, stiff)| {
+        let in_lanes = (modes.iter().zip(stiff).zip(always))
+            .map(|((mode, stiff), always)| {
                 !stiff
+                    && always
                     && problem.limits.own.is_empty()
                     && with_kernel!(&mode.kernels, k => k.goes_in_lanes())
             })
@@ -109,20 +115,28 @@ impl Ensemble {
         members: &[Member],
         extract: impl Fn(usize, Finished) -> T + Sync,
     ) -> Vec<T> {
-        let share = members.len().div_ceil(rayon::current_num_threads()).max(1);
+        let workers = rayon::current_num_threads().clamp(1, members.len().max(1));
+        let next = AtomicUsize::new(0);
+        let run = |_| {
+            let mut results = Vec::new();
+            let mut take = |member: usize, finished: Finished| {
+                results.push((member, extract(member, finished)));
+            };
+            let share = (&next, workers);
+            match LANES_OF_LEVELS[self.level] {
+                8 => Worker::<8>::new(self, members, share).run(&mut take),
+                4 => Worker::<4>::new(self, members, share).run(&mut take),
+                _ => Worker::<2>::new(self, members, share).run(&mut take),
+            }
+            results
+        };
+        // Each takes the next member when it has room for one, so none waits while there are any.
+        let parts = (0..workers).into_par_iter().with_max_len(1).map(run);
+        let parts: Vec<Vec<(usize, T)>> = parts.collect();
         let mut results: Vec<Option<T>> = members.iter().map(|_| None).collect();
-        (results.par_chunks_mut(share).zip(members.par_chunks(share)))
-            .enumerate()
-            .for_each(|(chunk, (results, members))| {
-                let mut take = |member: usize, finished: Finished| {
-                    results[member] = Some(extract(chunk * share + member, finished));
-                };
-                match LANES_OF_LEVELS[self.level] {
-                    8 => Worker::<8>::new(self, members).run(&mut take),
-                    4 => Worker::<4>::new(self, members).run(&mut take),
-                    _ => Worker::<2>::new(self, members).run(&mut take),
-                }
-            });
+        for (member, result) in parts.into_iter().flatten() {
+            results[member] = Some(result);
+        }
         let results = results.into_iter();
         results
             .map(|result| result.expect("every member comes to its end"))

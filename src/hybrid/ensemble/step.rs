@@ -15,9 +15,9 @@ const FARTHEST: f64 = 3.8e-6;
 
 impl<const F: usize, const W: usize> Group<'_, F, W> {
     /// Makes a step in each occupied lane; gives the lanes that do not simply go on.
-    pub fn step(&mut self, signals: &Signals) -> LaneMask {
-        let in_pieces = self.find_pieces(signals);
-        let mut unclear = self.expand(signals, in_pieces);
+    pub fn step(&mut self) -> LaneMask {
+        let in_pieces = self.find_pieces();
+        let mut unclear = self.expand(in_pieces);
         let horizon = match in_pieces {
             true => &self.way.pieces[1],
             false => &self.way.unlimited,
@@ -49,20 +49,20 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
     /// Sets the absolute times of the analytic pieces of the inputs that act just after the present instants,
     /// and their durations; false where all lanes are in the last one. As in
     /// [`super::super::equations::Clock`].
-    fn find_pieces(&mut self, signals: &Signals) -> bool {
+    fn find_pieces(&mut self) -> bool {
         let [high, _] = &self.here.t;
-        let from = self.analytic_from;
-        let in_pieces = high.0.iter().fold(false, |any, &t| any | (t < from));
+        let from = self.analytic_from.0.iter();
+        let in_pieces = (high.0.iter().zip(from)).fold(false, |any, (t, from)| any | (t < from));
         for lane in (0..W).filter(|_| in_pieces) {
             let now = self.now(lane);
             let [t, durations] = &mut self.way.pieces;
-            (t.0[lane], durations.0[lane]) = piece(signals, now);
+            (t.0[lane], durations.0[lane]) = piece(self.signals.of(lane), now);
         }
         in_pieces
     }
 
     /// Expands the motion as a series; gives the lanes in which that is not as usual.
-    fn expand(&mut self, signals: &Signals, in_pieces: bool) -> LaneMask {
+    fn expand(&mut self, in_pieces: bool) -> LaneMask {
         let order = self.taylor.order();
         let context = &mut self.context;
         if !self.quiet {
@@ -71,9 +71,9 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
                 false => &self.here.t[0],
             };
             let (expanded, [values, rows]) = context.signals_mut();
-            self.signals.set(signals, t, values);
+            self.signals.set(t, values);
             let rows = &mut rows[..(order + 1) * expanded.len()];
-            self.signals.series(signals, expanded, rows);
+            self.signals.series(expanded, rows);
         }
         let which = (self.level, self.quiet);
         let (system, inverse) = (&mut self.way.system, &mut self.way.inverse);

@@ -5,18 +5,18 @@ use super::super::member::Member;
 use super::super::simulation::{Simulation, Stop};
 use super::group::{Group, Outcome};
 use super::{Ensemble, Finished};
-use crate::input::Signals;
 use crate::integrate::LaneMask;
 use crate::kernel::{LaneLevel, with_kernel};
 use crate::run::Silent;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A group, whatever its number of free coordinates.
-trait AnyGroup<const W: usize> {
-    fn load(&mut self, lane: usize, from: &Simulation);
+trait AnyGroup<'p, const W: usize> {
+    fn load(&mut self, lane: usize, from: &Simulation<'p>);
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool;
     fn vacate(&mut self, lane: usize);
     fn unload(&mut self, lane: usize, into: &mut Simulation);
-    fn step(&mut self, signals: &Signals) -> [LaneMask; 3];
+    fn step(&mut self) -> [LaneMask; 3];
     /// Records the transitions that lanes have just taken, whose slots are told; gives the lanes among
     /// `may_rest` in which events accumulate.
     fn record(
@@ -29,8 +29,8 @@ trait AnyGroup<const W: usize> {
     fn outcome(&self, lane: usize) -> Outcome;
 }
 
-impl<const F: usize, const W: usize> AnyGroup<W> for Group<'_, F, W> {
-    fn load(&mut self, lane: usize, from: &Simulation) {
+impl<'p, const F: usize, const W: usize> AnyGroup<'p, W> for Group<'p, F, W> {
+    fn load(&mut self, lane: usize, from: &Simulation<'p>) {
         Group::load(self, lane, from)
     }
     fn go_on(&mut self, lane: usize, from: &Simulation) -> bool {
@@ -42,8 +42,8 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<'_, F, W> {
     fn unload(&mut self, lane: usize, into: &mut Simulation) {
         Group::unload(self, lane, into)
     }
-    fn step(&mut self, signals: &Signals) -> [LaneMask; 3] {
-        let ended = Group::step(self, signals);
+    fn step(&mut self) -> [LaneMask; 3] {
+        let ended = Group::step(self);
         let [gone, may_rest] = self.transit();
         [gone, may_rest, ended & !gone]
     }
@@ -74,7 +74,7 @@ impl<const F: usize, const W: usize> AnyGroup<W> for Group<'_, F, W> {
 
 /// The lanes of a mode.
 struct Lanes<'a, const W: usize> {
-    group: Box<dyn AnyGroup<W> + 'a>,
+    group: Box<dyn AnyGroup<'a, W> + 'a>,
     /// The slot in each lane.
     slots: [Option<usize>; W],
     /// Number of lanes with a slot.
@@ -101,8 +101,8 @@ enum State {
 pub(super) struct Worker<'a, const W: usize> {
     ensemble: &'a Ensemble,
     members: &'a [Member<'a>],
-    /// The first member that has not started.
-    next: usize,
+    /// The first member that no worker has started.
+    next: &'a AtomicUsize,
     slots: Vec<Slot<'a>>,
     /// The lanes of each mode, made when they are first needed.
     lanes: Vec<Option<Lanes<'a, W>>>,
@@ -113,12 +113,16 @@ pub(super) struct Worker<'a, const W: usize> {
 }
 
 impl<'a, const W: usize> Worker<'a, W> {
-    /// Ready to run some of the members of an ensemble.
-    pub fn new(ensemble: &'a Ensemble, members: &'a [Member<'a>]) -> Self {
+    /// Ready to run members of an ensemble, from the `next` on that no other of so many `workers` has started.
+    pub fn new(
+        ensemble: &'a Ensemble,
+        members: &'a [Member<'a>],
+        (next, workers): (&'a AtomicUsize, usize),
+    ) -> Self {
         let modes = ensemble.problem.variant().modes.len();
         let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
         // The fewest of which, however they are spread over the modes, some mode has as many as lanes.
-        let count = (going * (W - 1) + 1).min(members.len());
+        let count = (going * (W - 1) + 1).min(members.len().div_ceil(workers));
         let slot = |_| Slot {
             simulation: Simulation::new(&ensemble.problem).expect("the scene was prepared"),
             member: 0,
@@ -127,7 +131,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         Worker {
             ensemble,
             members,
-            next: 0,
+            next,
             slots: (0..count).map(slot).collect(),
             lanes: (0..modes).map(|_| None).collect(),
             vacancies: true,
@@ -153,9 +157,11 @@ impl<'a, const W: usize> Worker<'a, W> {
 
     /// Starts members in a slot until one waits for a lane, and looks for one.
     fn fill(&mut self, slot: usize, take: &mut impl FnMut(usize, Finished)) {
-        while self.slots[slot].state == State::Free && self.next < self.members.len() {
-            let (member, next) = (self.next, &self.members[self.next]);
-            self.next += 1;
+        while self.slots[slot].state == State::Free {
+            let member = self.next.fetch_add(1, Ordering::Relaxed);
+            let Some(next) = self.members.get(member) else {
+                return;
+            };
             self.slots[slot].member = member;
             let begun = self.slots[slot].simulation.become_member(next);
             self.go_on(slot, begun.map(|()| true).map_err(Box::new), false, take);
@@ -173,7 +179,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         let order = self.ensemble.orders[mode];
         let lanes = self.lanes[mode].get_or_insert_with(|| {
             let kernels = &simulation.mode().kernels;
-            let group: Box<dyn AnyGroup<W> + 'a> =
+            let group: Box<dyn AnyGroup<'a, W> + 'a> =
                 with_kernel!(kernels,
                     k => Box::new(Group::new(k, level, quiet, order, simulation)),
                     _any => unreachable!("a mode of so many free coordinates does not go in lanes"));
@@ -194,7 +200,7 @@ impl<'a, const W: usize> Worker<'a, W> {
     /// A step of a group, and what follows from it.
     fn step(&mut self, mode: usize, take: &mut impl FnMut(usize, Finished)) {
         let lanes = self.lanes[mode].as_mut().expect("it is occupied");
-        let [gone, may_rest, ended] = lanes.group.step(&self.ensemble.problem.signals);
+        let [gone, may_rest, ended] = lanes.group.step();
         let at_rest = (lanes.group).record(gone, may_rest, &lanes.slots, &mut self.slots);
         for lane in at_rest.lanes() {
             let lanes = self.lanes[mode].as_mut().expect("it is occupied");
