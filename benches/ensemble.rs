@@ -2,6 +2,7 @@
 //!
 //! * `blocks`: the rocking block on shaken ground of `benches/peers` (P2: 28 impacts in 10 s), each
 //!   member with a half diagonal of its own.
+//! * `oscillators`: the oscillator with dry friction, each member with a force of its own amplitude: 16 stops and slips or so.
 //! * `pendulums`: driven pendulums, each with an initial state of its own; no event. Their errors are
 //!   against the solutions in `tests/data/forced_pendulum.json`.
 //!
@@ -30,7 +31,7 @@ const REPEATS: usize = 100;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let is_wanted = |name: &str| {
-        let names = ["blocks", "pendulums"];
+        let names = ["blocks", "oscillators", "pendulums"];
         let named = arguments.iter().any(|a| names.contains(&a.as_str()));
         !named || arguments.iter().any(|a| a == name)
     };
@@ -52,7 +53,7 @@ fn main() {
     // On the thread of the single runs: another has to be woken, on another core.
     let pool = (rayon::ThreadPoolBuilder::new().num_threads(1)).use_current_thread();
     let pool = pool.build().expect("the thread is in no other pool");
-    for name in ["blocks", "pendulums"]
+    for name in ["blocks", "oscillators", "pendulums"]
         .into_iter()
         .filter(|name| is_wanted(name))
     {
@@ -60,6 +61,7 @@ fn main() {
             let tolerance = 10f64.powi(-digits);
             let problems = match name {
                 "blocks" => blocks(tolerance),
+                "oscillators" => oscillators(tolerance),
                 _ => pendulums(tolerance),
             };
             compare(&pool, name, tolerance, &problems, rows);
@@ -159,6 +161,23 @@ fn blocks(tolerance: f64) -> Vec<Problem> {
             own.set_parameter(name, value).expect(known);
         }
         own.set_initial("theta", 0.075).expect(known);
+        own
+    };
+    (0..MEMBERS).map(member).collect()
+}
+
+fn oscillators(tolerance: f64) -> Vec<Problem> {
+    let mut problem = model("coulomb_oscillator");
+    let known = "the model has it";
+    for (name, value) in [("static_friction", 0.5), ("kinetic_friction", 0.3)] {
+        problem.set_parameter(name, value).expect(known);
+    }
+    problem.end.time = 60.0;
+    problem.set_tolerance(tolerance);
+    let member = |i: usize| {
+        let mut own = problem.clone();
+        let force = Sine::new(0.9 + 0.4 * i as f64 / MEMBERS as f64, 0.5, 0.0);
+        own.set_input("force", Function::from(force)).expect(known);
         own
     };
     (0..MEMBERS).map(member).collect()

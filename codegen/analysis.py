@@ -16,12 +16,12 @@ MOST_IN_LANES = 6
 
 def goes_in_lanes(variant, i):
     """Whether trajectories in a mode can go side by side: it is analytic, nothing drifts, and its guards
-    are coordinates or rates that fall without further conditions; and few coordinates are free."""
+    are coordinates or rates whose fall is an event under any conditions; and few coordinates are free."""
     equations = variant.modes[i]
     analytic = all(variant.functions[i, what].symbol for what in ("series", "quiet_series"))
     guards = [
         linear_shape(variant.model, equations, equations.place(expression)) is not None
-        and all(t.condition is None for t in transitions)
+        and any(t.condition is None for t in transitions)
         for expression, transitions in equations.guards]
     return 0 < len(equations.free) <= MOST_IN_LANES and analytic and not equations.mode.drift and all(guards)
 
