@@ -107,35 +107,76 @@ fn problem(samples: &[f64], tolerance: f64) -> Problem {
     problem
 }
 
+/// Order of the accelerations in the bare loop.
+const ORDER: usize = 8;
+
+/// 1/k.
+const INVERSES: [f64; ORDER + 3] = {
+    let mut inverses = [0.0; ORDER + 3];
+    let mut k = 1;
+    while k < inverses.len() {
+        inverses[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    inverses
+};
+
+/// The series of φ = α − θ in a piece of the record.
+struct Piece {
+    /// Acceleration of the ground and its rate.
+    ground: [f64; 2],
+    phi: [f64; ORDER + 3],
+    /// k φₖ.
+    rates: [f64; ORDER + 3],
+    sin: [f64; ORDER + 1],
+    cos: [f64; ORDER + 1],
+}
+
+impl Piece {
+    /// The next order: the compiler knows which, so its sums are written out.
+    #[inline(always)]
+    fn order<const K: usize>(&mut self) {
+        if K > 0 {
+            let (mut sin, mut cos) = (0.0, 0.0);
+            for j in 1..=K {
+                sin += self.rates[j] * self.cos[K - j];
+                cos -= self.rates[j] * self.sin[K - j];
+            }
+            (self.sin[K], self.cos[K]) = (sin * INVERSES[K], cos * INVERSES[K]);
+        }
+        let later = if K > 0 { self.cos[K - 1] } else { 0.0 };
+        let shaken = self.ground[0] * self.cos[K] + self.ground[1] * later;
+        let a = 0.75 / R * (G * self.sin[K] - shaken);
+        self.rates[K + 2] = a * INVERSES[K + 1];
+        self.phi[K + 2] = self.rates[K + 2] * INVERSES[K + 2];
+    }
+}
+
 /// θ and its rate at the end: θ'' = −(3/4R) (g sin(α − θ) − a cos(α − θ)), by the recurrences of sine and cosine, to
 /// order 8 in every piece.
 fn bare_loop(samples: &[f64]) -> [f64; 2] {
-    const ORDER: usize = 8;
     let (mut theta, mut rate) = (START, 0.0);
     for pair in samples.windows(2) {
-        let ground = [pair[0], (pair[1] - pair[0]) / STEP];
-        let mut phi = [0.0; ORDER + 3];
-        let (mut sin, mut cos) = ([0.0; ORDER + 1], [0.0; ORDER + 1]);
-        (phi[0], phi[1]) = (ALPHA - theta, -rate);
-        (sin[0], cos[0]) = phi[0].sin_cos();
-        for k in 0..=ORDER {
-            if k > 0 {
-                let (mut s, mut c) = (0.0, 0.0);
-                for j in 1..=k {
-                    s += j as f64 * phi[j] * cos[k - j];
-                    c -= j as f64 * phi[j] * sin[k - j];
-                }
-                (sin[k], cos[k]) = (s / k as f64, c / k as f64);
-            }
-            let shaken = ground[0] * cos[k] + if k > 0 { ground[1] * cos[k - 1] } else { 0.0 };
-            let a = 0.75 / R * (G * sin[k] - shaken);
-            phi[k + 2] = a / ((k + 1) * (k + 2)) as f64;
-        }
-        let value = phi.iter().rev().fold(0.0, |sum, c| sum * STEP + c);
-        let slope = (1..phi.len())
-            .rev()
-            .fold(0.0, |sum, k| sum * STEP + k as f64 * phi[k]);
-        (theta, rate) = (ALPHA - value, -slope);
+        let mut piece = Piece {
+            ground: [pair[0], (pair[1] - pair[0]) / STEP],
+            phi: [0.0; ORDER + 3],
+            rates: [0.0; ORDER + 3],
+            sin: [0.0; ORDER + 1],
+            cos: [0.0; ORDER + 1],
+        };
+        (piece.phi[0], piece.phi[1], piece.rates[1]) = (ALPHA - theta, -rate, -rate);
+        (piece.sin[0], piece.cos[0]) = piece.phi[0].sin_cos();
+        piece.order::<0>();
+        piece.order::<1>();
+        piece.order::<2>();
+        piece.order::<3>();
+        piece.order::<4>();
+        piece.order::<5>();
+        piece.order::<6>();
+        piece.order::<7>();
+        piece.order::<8>();
+        let value = |of: &[f64]| of.iter().rev().fold(0.0, |sum, c| sum * STEP + c);
+        (theta, rate) = (ALPHA - value(&piece.phi), -value(&piece.rates[1..]));
     }
     [theta, rate]
 }
