@@ -1,6 +1,10 @@
 """What is said while one waits, and early."""
 
 import io
+import signal
+import subprocess
+import sys
+import time
 import unittest
 
 from codegen.verify.progress import Progress
@@ -31,6 +35,17 @@ class Waiting(unittest.TestCase):
         self.assertEqual(lines[1], "verify: boxes, 0 of at most 40")
         self.assertEqual(lines[40], "verify: boxes, 39 of at most 40")
         self.assertEqual((lines[41].strip(), lines[42]), ("", ""))
+
+    @unittest.skipUnless(hasattr(signal, "SIGKILL"), "signals of POSIX")
+    def test_ctrl_c_ends_it_at_once_and_without_a_traceback(self):
+        # The walking tank takes many seconds. Where the interpreter is still on its way to the command, it is its own answer.
+        judged = subprocess.Popen([sys.executable, *sys.orig_argv[1:sys.orig_argv.index("-m")], "-m", "codegen", "verify", "walking_tank"],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(1)
+        judged.send_signal(signal.SIGINT)
+        _, said = judged.communicate(timeout=10)
+        self.assertEqual(judged.returncode, -signal.SIGINT)
+        self.assertNotIn("Traceback", said)
 
 
 if __name__ == "__main__":
