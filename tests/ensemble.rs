@@ -236,7 +236,7 @@ fn falls_whose_transition_depends_on_conditions_are_those_of_single_runs() {
 #[test]
 fn modes_that_do_not_go_in_lanes_are_run_alone() {
     // Stick and slip: sticking is left when a force exceeds friction, which is no coordinate.
-    let mut slider = problem("sliding_oscillator", &[("k", 1.05e6), ("c", 642.0)]);
+    let mut slider = problem("hand_slider", &[("k", 1.05e6), ("c", 642.0)]);
     let shake = Sine::new(20.0, 14.0 * std::f64::consts::PI, 0.0);
     slider
         .set_input("ground_acceleration", Function::from(shake))

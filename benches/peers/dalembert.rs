@@ -135,10 +135,7 @@ pub fn problem(name: &str, tolerance: f64) -> Problem {
             accuracy(p, tolerance, &[0.2], &[0.5])
         }
         "P3b" => {
-            let mut p = model(
-                "belt_oscillator",
-                &[("k", 400.0), ("c", 0.1), ("belt", 0.2)],
-            );
+            let mut p = model("hand_belt", &[("k", 400.0), ("c", 0.1), ("belt", 0.2)]);
             start(&mut p, "x", 0.05);
             p.end.time = 20.0;
             accuracy(p, tolerance, &[0.05], &[0.9])
@@ -147,7 +144,7 @@ pub fn problem(name: &str, tolerance: f64) -> Problem {
             let stiff = name == "P4S";
             let factor = if stiff { 1e4 } else { 1.0 };
             let spring = [("k", 1.05e6 * factor), ("c", 642.0 * factor)];
-            let mut p = model("sliding_oscillator", &spring);
+            let mut p = model("hand_slider", &spring);
             shake(&mut p, Sine::new(20.0, TAU * 7.0, 0.0));
             p.end.time = 2.0;
             let (d, rate) = if stiff { (8e-8, 3.5e-6) } else { (1e-3, 0.1) };

@@ -164,10 +164,10 @@ fn initial_state_that_only_the_functions_of_the_model_can_judge() {
     // The rate of the belt is a parameter.
     let marked = r#"{
   "model": "belt_oscillator",
-  ¶"initial": { "mode": "sticks", "x.rate": 0.5 },
+  ¶"initial": { "mode": "belt sticks", "x.rate": 0.5 },
   "end": 1
 }"#;
-    let words = ["mode `sticks`", "`x.rate` at 0.1 m/s"];
+    let words = ["mode `belt sticks`", "`x.rate` at 0.1 m/s"];
     check("scene.json", marked, &[("scene.json", marked)], &words);
 }
 

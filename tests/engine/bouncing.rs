@@ -39,7 +39,7 @@ fn a_dropped_ball_comes_to_rest_at_the_limit_of_its_bounces() {
 /// A table with displacement sin t in the units of the reference: 1/g = Γ. The ground's motion of
 /// a run starts from rest at 0, which only adds a constant velocity: y = gap, relative to the table.
 fn table(gamma: f64, e: f64, start: f64) -> dalembert::hybrid::Problem {
-    let mut problem = problem("vibrating_table_ball", &[("e", e), ("g", 1.0 / gamma)]);
+    let mut problem = problem("hand_table_ball", &[("e", e), ("g", 1.0 / gamma)]);
     let acceleration = Sine::new(1.0, 1.0, start + std::f64::consts::PI);
     problem
         .set_input("table_acceleration", Function::from(acceleration))

@@ -83,14 +83,14 @@ fn a_belt_by_its_friction_sticks_and_slips_as_the_one_by_hand() {
     for [static_friction, kinetic, belt] in
         [[0.04, 0.025, 0.1], [0.1, 0.05, 0.5], [0.05, 0.05, 0.2]]
     {
-        for runs in pair(["contact_belt", "belt_oscillator"], |mass| {
+        for runs in pair(["belt_oscillator", "hand_belt"], |mass| {
             mass.set_parameter("mu_s", static_friction).unwrap();
             mass.set_parameter("mu_k", kinetic).unwrap();
             mass.set_parameter("belt", belt).unwrap();
             mass.set_input("force", Sine::new(0.7, 1.3, 0.2).into())
                 .unwrap();
             let direction = match mass.model.name {
-                "contact_belt" => "belt_direction",
+                "belt_oscillator" => "belt_direction",
                 _ => "slip",
             };
             mass.set_initial(direction, -1.0).unwrap();
@@ -101,6 +101,39 @@ fn a_belt_by_its_friction_sticks_and_slips_as_the_one_by_hand() {
             assert!(runs[0].events.len() > 5);
             assert_same_motion(&runs, &words, 1e-10);
         }
+    }
+}
+
+#[test]
+fn a_ball_on_a_table_and_a_base_that_slips_move_as_those_by_hand() {
+    let words = [
+        ("table strikes", "impact"),
+        ("table opens", "take_off"),
+        ("rest", "rest"),
+    ];
+    for runs in pair(["vibrating_table_ball", "hand_table_ball"], |ball| {
+        let shaken = Sine::new(1.2 * 9.81, 20.0 * PI, 0.0);
+        ball.set_input("table_acceleration", shaken.into()).unwrap();
+        ball.set_tolerance(1e-12);
+        ball.end.time = 2.0;
+    }) {
+        assert!(runs[0].events.len() > 50);
+        assert_same_motion(&runs, &words, 1e-10);
+    }
+    let words = [
+        ("base sticks", "stick"),
+        ("base reverses", "reversal"),
+        ("base slips", "slip"),
+    ];
+    for runs in pair(["sliding_oscillator", "hand_slider"], |base| {
+        let shaken = Sine::new(20.0, 14.0 * PI, 0.0);
+        base.set_input("ground_acceleration", shaken.into())
+            .unwrap();
+        base.set_tolerance(1e-12);
+        base.end.time = 2.0;
+    }) {
+        assert!(runs[0].events.len() > 20);
+        assert_same_motion(&runs, &words, 1e-10);
     }
 }
 

@@ -226,7 +226,7 @@ proptest! {
         let k = 10f64.powf(exponent);
         let parameters = [("mu_s", mu), ("mu_k", mu * ratio), ("k", k), ("c", 2.0 * damping * (40.0 * k).sqrt())];
         let initial = [("u.rate", speed), ("slip", 1f64.copysign(speed))];
-        check(&scene("sliding_oscillator", &parameters, &initial, [amplitude, frequency, phase]), Some("u"));
+        check(&scene("hand_slider", &parameters, &initial, [amplitude, frequency, phase]), Some("u"));
     }
 }
 

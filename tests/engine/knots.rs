@@ -40,7 +40,7 @@ fn a_flight_over_knots_is_as_accurate_as_the_tolerance() {
         .flat_map(|method| INTERPOLATIONS.map(|interpolation| (method, interpolation)))
     {
         for relative in [1e-4, 1e-8, 1e-11, 1e-13] {
-            let mut ball = problem("vibrating_table_ball", &[]);
+            let mut ball = problem("hand_table_ball", &[]);
             ball.set_initial("gap", 20.0).unwrap();
             let input = ("table_acceleration", rows(interpolation));
             let problem = over_the_knots(ball, input, method, relative);
@@ -61,7 +61,7 @@ fn errors_of_an_oscillator_follow_the_tolerance_across_knots() {
     for interpolation in INTERPOLATIONS {
         let oscillator = |method, relative| {
             let parameters = [("mu_s", 10.0), ("k", 100.0), ("c", 5.0)];
-            let problem = problem("sliding_oscillator", &parameters);
+            let problem = problem("hand_slider", &parameters);
             let input = ("ground_acceleration", rows(interpolation));
             over_the_knots(problem, input, method, relative)
         };
@@ -91,7 +91,7 @@ fn implicit_steps(interpolation: Interpolation) {
     let times: Vec<_> = (0..=1000).map(|i| i as f64 * 1e-2).collect();
     let values: Vec<_> = times.iter().map(|t| (t * 0.7).sin()).collect();
     let table = Table::new(&times, &values, interpolation, Outside::Hold);
-    let mut problem = problem("vibrating_table_ball", &[]);
+    let mut problem = problem("hand_table_ball", &[]);
     problem
         .set_input("table_acceleration", table.unwrap().into())
         .unwrap();

@@ -31,7 +31,7 @@ fn chosen(problem: &Problem, allowed: f64) -> String {
 /// An oscillator that slips on shaken ground; `factor` stiffens spring and damper.
 fn sliding_oscillator(factor: f64, relative: f64) -> Problem {
     let parameters = [("k", 1.05e6 * factor), ("c", 642.0 * factor)];
-    let mut problem = problem("sliding_oscillator", &parameters);
+    let mut problem = problem("hand_slider", &parameters);
     let sine = Sine::new(20.0, 2.0 * PI * 7.0, 0.0);
     problem
         .set_input("ground_acceleration", Function::from(sine))
@@ -98,7 +98,7 @@ fn a_fast_decay_that_is_over_calls_for_the_implicit_method() {
 fn all_steps_are_counted() {
     for method in [Method::Auto, Method::Taylor, Method::Radau] {
         let parameters = [("belt", 0.1), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
-        let mut problem = problem("belt_oscillator", &parameters);
+        let mut problem = problem("hand_belt", &parameters);
         problem.end.time = 60.0;
         problem.method = method;
         problem.record.every = None;

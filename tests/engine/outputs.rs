@@ -108,7 +108,7 @@ fn the_edges_of_a_block_rise_as_high_as_its_energy_takes_them() {
 #[test]
 fn a_belt_pulls_with_the_kinetic_friction_while_it_slips() {
     with_each_method(|| {
-        let mut belt = problem("belt_oscillator", &[("belt", 1.0)]);
+        let mut belt = problem("hand_belt", &[("belt", 1.0)]);
         belt.set_initial("x", 3.9).unwrap();
         belt.end.time = 30.0;
         record_outputs(&mut belt);
@@ -140,7 +140,7 @@ fn a_belt_pulls_with_the_kinetic_friction_while_it_slips() {
 fn the_height_of_a_ball_on_a_table_is_that_of_the_table() {
     with_each_method(|| {
         let omega = 5.0;
-        let mut ball = problem("vibrating_table_ball", &[]);
+        let mut ball = problem("hand_table_ball", &[]);
         // −A ω² sin ωt, of a table that rises by A (sin ωt − ωt).
         ball.set_input(
             "table_acceleration",

@@ -184,7 +184,7 @@ fn of_two_crests_between_rows_the_higher_one_is_found() {
 fn the_reaction_of_a_shaken_table_has_its_peaks_between_rows() {
     with_each_method(|| {
         for every in INTERVALS {
-            let mut problem = problem("vibrating_table_ball", &[("m", 2.0)]);
+            let mut problem = problem("hand_table_ball", &[("m", 2.0)]);
             let shake = Sine::new(7.0, 11.0, 0.4);
             problem
                 .set_input("table_acceleration", Function::from(shake))

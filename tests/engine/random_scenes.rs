@@ -86,7 +86,7 @@ fn scene(number: u64) -> Problem {
         "walking_tank",
         "walking_tank",
         "rocking_block",
-        "sliding_oscillator",
+        "hand_slider",
     ]);
     let (mut problem, end, strongest) = match model {
         "walking_tank" => {

@@ -189,7 +189,7 @@ fn a_long_stick_neither_creeps_nor_misses_its_release() {
     with_each_method(|| {
         let item = item("10k_long_stick");
         let parameters = [("mu_s", 0.3), ("mu_k", 0.3), ("k", 0.0), ("belt", 0.0)];
-        let mut problem = problem("belt_oscillator", &parameters);
+        let mut problem = problem("hand_belt", &parameters);
         problem.set_input("force", ramp(1e-6, 4e6)).unwrap();
         problem.initial.mode = Some(mode(&problem, "sticks"));
         let release = number(&item["t_release"]);
@@ -209,7 +209,7 @@ fn stick_and_slip_on_a_belt_repeat() {
     with_each_method(|| {
         let item = item("10l_belt_stick_slip");
         let parameters = [("belt", 0.1), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
-        let mut problem = problem("belt_oscillator", &parameters);
+        let mut problem = problem("hand_belt", &parameters);
         problem.initial.mode = Some(mode(&problem, "sticks"));
         problem.end.time = 60.0;
         problem.set_tolerance(TIGHTEST);
@@ -241,7 +241,7 @@ fn sticks_down_to_a_picosecond_are_kept() {
             let meets: f64 = limit - belt * duration;
             let start = ((meets + kinetic).powi(2) + belt * belt - kinetic * kinetic).sqrt();
             let parameters = [("belt", belt), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
-            let mut problem = problem("belt_oscillator", &parameters);
+            let mut problem = problem("hand_belt", &parameters);
             problem.set_initial("x.rate", start).unwrap();
             problem.set_initial("slip", 1.0).unwrap();
             problem.set_tolerance(TIGHTEST);

@@ -94,7 +94,7 @@ fn a_stiff_spring_is_pressed_and_left_fifty_times() {
 fn stick_and_slip_repeat() {
     let parameters = [("belt", 0.1), ("mu_s", 0.1), ("mu_k", 0.06), ("g", 10.0)];
     let make = |tolerance| {
-        let mut belt = start("belt_oscillator", &parameters, &[], [1.0, 0.1], tolerance);
+        let mut belt = start("hand_belt", &parameters, &[], [1.0, 0.1], tolerance);
         belt.initial.mode = Some(mode(&belt, "sticks"));
         // From 10 s on a period of 11.6 s.
         belt.end.time = 100.0;
@@ -114,7 +114,7 @@ fn stick_and_slip_repeat() {
 fn stick_phases_below_a_microsecond_need_no_tolerances_of_their_own() {
     let make = |tolerance| {
         let parameters = [("k", 1.05e10), ("c", 6.42e6)];
-        let mut problem = problem("sliding_oscillator", &parameters);
+        let mut problem = problem("hand_slider", &parameters);
         let shaking = Sine::new(20.0, 7.0 * TAU, 0.0);
         problem
             .set_input("ground_acceleration", shaking.into())
@@ -213,7 +213,7 @@ fn pulling(excess: f64, tolerance: f64) -> Problem {
     let omega = (k / upper).sqrt();
     let parameters = [("k", k), ("c", 0.0), ("m_i", upper), ("m_s", lower)];
     let sizes = [elongation, omega * elongation];
-    let mut problem = start("sliding_oscillator", &parameters, &[], sizes, tolerance);
+    let mut problem = start("hand_slider", &parameters, &[], sizes, tolerance);
     let speed = omega * elongation * (1.0 + excess);
     problem.set_initial("d.rate", speed).unwrap();
     problem.initial.mode = Some(mode(&problem, "sticks"));

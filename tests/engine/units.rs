@@ -107,7 +107,7 @@ fn scene(name: &str, method: Method, relative: f64, units: Units) -> Run {
         "rocking_block" => (&[("e", 0.7)], &[("theta", 0.1)], 0.0, 4.0),
         "bouncing_ball" => (&[("e", 0.7)], &[("h", 1.0)], 0.0, 4.0),
         // Sticks and slips, with a stiff spring.
-        "sliding_oscillator" => (&[("k", 1.05e10), ("c", 6.42e6)], &[], 20.0, 0.5),
+        "hand_slider" => (&[("k", 1.05e10), ("c", 6.42e6)], &[], 20.0, 0.5),
         _ => unreachable!("a scene of SCENES"),
     };
     let mut problem = problem(name, parameters);
@@ -133,7 +133,7 @@ const SCENES: [&str; 4] = [
     "walking_tank",
     "rocking_block",
     "bouncing_ball",
-    "sliding_oscillator",
+    "hand_slider",
 ];
 
 /// Powers of two that make up a metre, a kilogram and a second. Taylor coefficients of order 30 leave

@@ -1,4 +1,4 @@
-"""The mass of `contact_belt`, its friction held by multipliers."""
+"""The mass of `belt_oscillator`, its friction held by multipliers."""
 
 from codegen.model import *
 
