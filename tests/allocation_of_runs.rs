@@ -110,7 +110,7 @@ fn samples_are_allocated_up_front() {
 
 #[test]
 fn a_control_loop_allocates_nothing_once_it_runs() {
-    let mut slider = problem("coulomb_oscillator", &[]);
+    let mut slider = problem("hand_coulomb", &[]);
     slider.set_input("force", Function::commanded(0.0)).unwrap();
     slider.end.time = 100.0;
     slider.record.event_states = false;

@@ -306,7 +306,7 @@ fn transitions_in_lanes_are_those_of_the_engine_to_the_bit() {
         })
     });
     let balls = sizes.map(|(tolerance, size)| {
-        let mut ball = problem("bouncing_ball", &[]);
+        let mut ball = problem("hand_ball", &[]);
         ball.end.time = 40.0;
         set_size(&mut ball, tolerance, size, 4.4 * size);
         variations(&ball, 21, |p, x| {
@@ -461,7 +461,7 @@ fn members_start_where_their_initial_state_says() {
         discrete: vec![],
         mode: None,
     };
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     ball.initial = initial(1.0);
     ball.end.time = 1.0;
     set_size(&mut ball, 1e-9, 1.0, 4.4);

@@ -151,7 +151,7 @@ pub fn problem(name: &str, tolerance: f64) -> Problem {
             accuracy(p, tolerance, &[0.02, d], &[0.9, rate])
         }
         "P5" => {
-            let mut p = model("bouncing_ball", &[]);
+            let mut p = model("hand_ball", &[]);
             start(&mut p, "h", 1.0);
             p.end = End {
                 time: 100.0,

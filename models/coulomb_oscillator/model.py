@@ -12,8 +12,7 @@ kinetic = model.parameter("kinetic_friction", "N", 0.1, "kinetic friction force"
 stop = model.parameter("stop", "m", 1e3, "distance of the two stops from the position of rest", above=0)
 e = model.parameter("e", "1", 1.0, "restitution at the stops", minimum=0, maximum=1)
 
-x = model.coordinate("x", "m", "displacement from the position of rest", minimum=-stop, maximum=stop)
-slip = model.discrete("slip", (+1, -1), "direction of slip")
+x = model.coordinate("x", "m", "displacement from the position of rest")
 force = model.input("force", "N", "force on the mass")
 
 model.point_mass(m, position=(x, 0))
@@ -21,31 +20,14 @@ model.potential(k * x**2 / 2)
 model.dissipation(c * x.rate**2 / 2)
 model.force(x, force)
 
-slides = model.mode("slides", "in motion")
-sticks = model.mode("sticks", "held by friction", freeze=[x])
-at_stops = {
-    +1: model.mode("rests_right", "pressed against the stop on the right", freeze=[(x, stop)]),
-    -1: model.mode("rests_left", "pressed against the stop on the left", freeze=[(x, -stop)]),
-}
-slides.force(x, -kinetic * slip)
-
-stops = falls(slip * x.rate)
-model.transition("stick", slides, sticks, when=stops, provided=[static + sticks.reaction(x), static - sticks.reaction(x)])
-model.transition("reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)])
-for direction in (+1, -1):
-    model.transition("slip", sticks, slides, when=falls(static + direction * sticks.reaction(x)), reset=[(slip, direction)])
-    model.transition(
-        "impact", slides, slides, when=falls(stop - direction * x), impact=True,
-        reset=[(x, direction * stop), (x.rate, -e * x.rate), (slip, -direction)])
-
-# A stop pushes the mass away from it; friction alone can hold it back there.
-for direction, rests in at_stops.items():
-    model.rest(slides, rests)
-    model.transition("leave", rests, slides, when=falls(static - direction * rests.reaction(x)), reset=[(slip, -direction)])
+model.friction("base", slip=x, normal=1, static=static, kinetic=kinetic)
+model.contact("right", gap=stop - x, restitution=e)
+model.contact("left", gap=x + stop, restitution=e)
 
 model.draw("ground", [(-3, -0.1), (3, -0.1)], kind="fixed")
 model.draw("wall", [(-3, -0.1), (-3, 0.4)], kind="fixed")
 model.draw("spring", [(-3, 0), (x - 0.1, 0)], kind="spring")
 model.draw("mass", [(x - 0.1, -0.1), (x + 0.1, -0.1), (x + 0.1, 0.1), (x - 0.1, 0.1)])
-model.draw("base", [(x, -0.1)], kind="contact", force=(x, None),
-           states=[(slides, "slides"), (sticks, "sticks")] + [(rests, "sticks") for rests in at_stops.values()])
+model.draw("base", [(x, -0.1)], kind="contact")
+for name, side in (("right", 0.1), ("left", -0.1)):
+    model.draw(name, [(x + side, 0)], kind="contact")

@@ -331,7 +331,7 @@ mod tests {
     /// A ball at height y with velocity v, just after an event in flight: whether it flies on, and the sign
     /// remembered of its height.
     fn flies_on(y: f64, v: f64) -> Option<Watch> {
-        let model = models().find("bouncing_ball").unwrap();
+        let model = models().find("hand_ball").unwrap();
         let problem = Problem::new(&model);
         let mut simulation = Simulation::new(&problem).unwrap();
         simulation.here.mode = 0;

@@ -340,7 +340,7 @@ mod tests {
     use crate::model::models;
 
     fn problem() -> Problem {
-        let model = models().iter().find(|m| m.name == "coulomb_oscillator");
+        let model = models().iter().find(|m| m.name == "hand_coulomb");
         let mut problem = Problem::new(&model.unwrap());
         let table = Table::new(
             &[0.0, 1.0, 3.0],

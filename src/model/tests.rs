@@ -20,7 +20,7 @@ fn parts(name: &str) -> Parts {
 
 /// A model as it is, but for its first fields.
 fn changed(change: impl FnOnce(&mut RawModel)) -> ContractError {
-    let mut model = *raw("bouncing_ball");
+    let mut model = *raw("hand_ball");
     change(&mut model);
     linked(Box::leak(Box::new(model)), false).expect_err("it was changed")
 }
@@ -65,7 +65,7 @@ fn the_head_is_compared() {
 fn with(value: &Value) -> Result<(), ContractError> {
     let parts = Parts {
         description: value.to_string(),
-        ..parts("bouncing_ball")
+        ..parts("hand_ball")
     };
     description::model(&parts, None, false).map(|_| ())
 }
@@ -102,7 +102,7 @@ fn written(pointer: &str) -> String {
 
 #[test]
 fn every_field_is_checked() {
-    let whole: Value = serde_json::from_str(&parts("bouncing_ball").description).unwrap();
+    let whole: Value = serde_json::from_str(&parts("hand_ball").description).unwrap();
     assert_eq!(with(&whole), Ok(()));
     let mut all = Vec::new();
     places(&whole, "", &mut all);
@@ -132,7 +132,7 @@ fn every_field_is_checked() {
 
 #[test]
 fn every_index_is_checked() {
-    let whole: Value = serde_json::from_str(&parts("bouncing_ball").description).unwrap();
+    let whole: Value = serde_json::from_str(&parts("hand_ball").description).unwrap();
     let mut all = Vec::new();
     places(&whole, "", &mut all);
     let mut seen = 0;
@@ -174,7 +174,7 @@ fn every_index_is_checked() {
 fn what_is_no_json_is_refused_with_its_place() {
     let parts = Parts {
         description: "{\n  \"name\": }".to_owned(),
-        ..parts("bouncing_ball")
+        ..parts("hand_ball")
     };
     let error = description::model(&parts, None, false)
         .unwrap_err()

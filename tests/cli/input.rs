@@ -235,7 +235,7 @@ fn an_initial_state_beyond_a_stop() {
 "#;
     let words = [
         "the initial state is beyond a stop",
-        "impact",
+        "right strikes",
         "admissible side",
     ];
     check("scene.json", scene, &[("scene.json", scene)], &words);

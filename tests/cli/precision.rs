@@ -196,7 +196,7 @@ fn a_method_that_is_hopeless_is_given_up_and_a_failing_scene_says_so() {
     );
     // So many that the method refuses them.
     let text = stiff("end=0.05");
-    assert!(text.contains("mode `sticks` is stiff"), "{text}");
+    assert!(text.contains("mode `base sticks` is stiff"), "{text}");
 }
 
 #[test]

@@ -51,7 +51,7 @@ fn every_scene_that_ships_runs() {
 fn without_a_folder_nothing_is_written() {
     let home = tempfile::tempdir().unwrap();
     let output = ends_with(0, home.path(), &["run", &scene("bouncing_ball")]);
-    assert!(stdout(&output).contains("reached t = 5 s, mode rests"));
+    assert!(stdout(&output).contains("reached t = 5 s, mode floor closed"));
     assert!(names(home.path()).is_empty());
 }
 
@@ -170,7 +170,7 @@ fn grazing(missing: f64) -> String {
     format!(
         r#"{{"model": "coulomb_oscillator",
             "parameters": {{"c": 0.2, "static_friction": 0, "kinetic_friction": 0, "stop": 1}},
-            "initial": {{"x.rate": {}, "slip": -1}},
+            "initial": {{"mode": "base slides, right open, left open", "x.rate": {}, "base_direction": -1}},
             "inputs": {{"force": {{"sine": {{"amplitude": {amplitude}, "frequency": {}, "phase": {phase}}}}}}},
             "end": 3, "accuracy": {{"relative": 1e-8}}}}"#,
         -omega * (1.0 - missing),
@@ -192,7 +192,7 @@ fn what_hangs_on_the_tolerance_is_said() {
         assert_eq!(line.is_some(), total > 0);
         let Some(line) = line else { continue };
         assert!(
-            line.contains("impact turns back at") && line.contains("tighten"),
+            line.contains("left strikes turns back at") && line.contains("tighten"),
             "{line}"
         );
         let first = &uncertain["first"][0];

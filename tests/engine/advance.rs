@@ -192,7 +192,7 @@ fn commanded(of: &Problem, input: &str, size: f64, ramps: bool) {
 
 #[test]
 fn a_commanded_input_moves_as_the_table_that_says_the_same() {
-    let slider = problem("coulomb_oscillator", &[]);
+    let slider = problem("hand_coulomb", &[]);
     let mut block = problem("rocking_block", &[]);
     block.set_initial("theta", 0.01).unwrap();
     for ramps in [false, true] {
@@ -203,7 +203,7 @@ fn a_commanded_input_moves_as_the_table_that_says_the_same() {
 
 #[test]
 fn an_advance_says_why_it_stops() {
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     ball.set_initial("h", 1.0).unwrap();
     ball.end.time = 10.0;
     let mut simulator = Simulator::new(&ball).unwrap();
@@ -229,7 +229,7 @@ fn an_advance_says_why_it_stops() {
 
 #[test]
 fn an_advance_ends_at_a_limit_state_and_stays_there() {
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     ball.set_initial("h", 1.0).unwrap();
     ball.limits.own.push(OwnLimit {
         name: "low".into(),
@@ -283,7 +283,7 @@ fn a_run_that_cannot_go_on_says_so_each_time_and_keeps_its_state() {
 
 #[test]
 fn commands_that_are_none_are_refused() {
-    let mut slider = problem("coulomb_oscillator", &[]);
+    let mut slider = problem("hand_coulomb", &[]);
     let refused = |problem: &Problem, input: &str, command| {
         let mut simulator = Simulator::new(problem).unwrap();
         simulator.advance_to(0.5).unwrap();
@@ -384,7 +384,7 @@ fn a_run_that_was_saved_and_restored_anywhere_gives_the_same_bits() {
 
 #[test]
 fn a_run_is_restored_inside_of_an_accumulation_and_between_commands() {
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     ball.set_initial("h", 1.0).unwrap();
     ball.end.time = 10.0;
     for method in METHODS {
@@ -403,7 +403,7 @@ fn a_run_is_restored_inside_of_an_accumulation_and_between_commands() {
         assert_eq!(stopped, Stopped::Rest);
         assert_eq!(events, whole.events());
     }
-    let mut slider = problem("coulomb_oscillator", &[]);
+    let mut slider = problem("hand_coulomb", &[]);
     slider.set_input("force", Function::commanded(0.5)).unwrap();
     slider.end.time = 5.0;
     let drive = |restores: bool| {
@@ -430,7 +430,7 @@ fn a_run_is_restored_inside_of_an_accumulation_and_between_commands() {
 
 #[test]
 fn a_checkpoint_of_another_run_is_refused_with_what_differs() {
-    let mut slider = problem("coulomb_oscillator", &[]);
+    let mut slider = problem("hand_coulomb", &[]);
     slider.set_initial("x.rate", 1.0).unwrap();
     let mut simulator = Simulator::new(&slider).unwrap();
     simulator.advance_to(0.3).unwrap();
@@ -461,7 +461,7 @@ fn a_checkpoint_of_another_run_is_refused_with_what_differs() {
     );
     let said = refused(&|problem| problem.end.after = Some(("stick", 3)));
     assert!(said.contains("is stick now and was none"), "{said}");
-    let ball = problem("bouncing_ball", &[]);
+    let ball = problem("hand_ball", &[]);
     let why = Simulator::new(&ball)
         .unwrap()
         .restore(&checkpoint)

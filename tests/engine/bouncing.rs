@@ -10,7 +10,7 @@ fn a_dropped_ball_comes_to_rest_at_the_limit_of_its_bounces() {
         let reference = reference("05_bouncing_ball");
         for case in reference["reference"]["zeno_drop"].as_array().unwrap() {
             let e = number(&case["e"]);
-            let mut problem = problem("bouncing_ball", &[("e", e)]);
+            let mut problem = problem("hand_ball", &[("e", e)]);
             problem.set_initial("h", 1.0).unwrap();
             problem.set_tolerance(1e-13);
             problem.end.time = 100.0;

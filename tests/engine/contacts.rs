@@ -58,7 +58,7 @@ fn assert_same_motion([contacts, hand]: &[Run; 2], words: &[(&str, &str)], error
 
 #[test]
 fn a_ball_by_its_contact_bounces_and_rests_as_the_one_by_hand() {
-    for runs in pair(["contact_ball", "bouncing_ball"], |ball| {
+    for runs in pair(["bouncing_ball", "hand_ball"], |ball| {
         ball.set_initial("h", 1.0).unwrap();
         ball.set_tolerance(1e-12);
         ball.end.time = 5.0;
@@ -140,9 +140,9 @@ fn a_ball_on_a_table_and_a_base_that_slips_move_as_those_by_hand() {
 #[test]
 fn stops_and_friction_on_one_coordinate_act_as_the_ones_by_hand() {
     let words = [
-        ("ground sticks", "stick"),
-        ("ground reverses", "reversal"),
-        ("ground slips", "slip"),
+        ("base sticks", "stick"),
+        ("base reverses", "reversal"),
+        ("base slips", "slip"),
         ("left strikes", "impact"),
         ("right strikes", "impact"),
         ("left opens", "leave"),
@@ -150,7 +150,7 @@ fn stops_and_friction_on_one_coordinate_act_as_the_ones_by_hand() {
         ("rest", "rest"),
     ];
     for e in [0.0, 0.5, 1.0] {
-        for mut runs in pair(["contact_stops", "coulomb_oscillator"], |mass| {
+        for mut runs in pair(["coulomb_oscillator", "hand_coulomb"], |mass| {
             for (name, value) in [("static_friction", 0.15), ("stop", 0.8), ("e", e)] {
                 mass.set_parameter(name, value).unwrap();
             }

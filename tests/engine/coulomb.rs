@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// m = k = 1, friction `f`, force cos(βt + φ); at `x` with the given direction of slip.
 fn oscillator(f: f64, force: Option<(f64, f64)>, x: f64, slip: f64) -> Problem {
     let friction = [("static_friction", f), ("kinetic_friction", f)];
-    let mut problem = problem("coulomb_oscillator", &friction);
+    let mut problem = problem("hand_coulomb", &friction);
     if let Some((beta, phase)) = force {
         let cosine = Sine::new(1.0, beta, phase + FRAC_PI_2);
         problem.set_input("force", Function::from(cosine)).unwrap();
@@ -218,7 +218,7 @@ fn pressed(direction: f64, e: f64) -> Problem {
         ("stop", 0.5),
         ("e", e),
     ];
-    let mut problem = problem("coulomb_oscillator", &parameters);
+    let mut problem = problem("hand_coulomb", &parameters);
     let (times, forces) = (
         [0.0, 5.0, 10.0],
         [1.0, 1.0, -1.0].map(|f: f64| direction * f),

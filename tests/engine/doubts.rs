@@ -12,7 +12,7 @@ const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12];
 /// x″ + x = A sin 0.2t from rest: x′ is in proportion to cos 0.2t − cos t = 2 sin 0.6t sin 0.4t.
 fn without_friction(method: Method, relative: f64) -> Problem {
     let mut problem = problem(
-        "coulomb_oscillator",
+        "hand_coulomb",
         &[("static_friction", 0.0), ("kinetic_friction", 0.0)],
     );
     let sine = Function::from(Sine::new(0.7, 0.2, 0.0));
@@ -43,7 +43,7 @@ fn a_guard_that_begins_at_zero_and_touches_it_again_is_in_doubt() {
 /// Den Hartog's free decay: from x0 = (7 + excess) f the mass turns at 5 f, 3 f, f: friction holds it there, or not quite.
 fn decay(method: Method, relative: f64, excess: f64) -> Run {
     let friction = [("static_friction", 0.1), ("kinetic_friction", 0.1)];
-    let mut problem = problem("coulomb_oscillator", &friction);
+    let mut problem = problem("hand_coulomb", &friction);
     problem.set_initial("x", 0.1 * (7.0 + excess)).unwrap();
     problem.set_initial("slip", -1.0).unwrap();
     problem.initial.mode = Some(mode(&problem, "slides"));

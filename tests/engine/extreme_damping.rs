@@ -13,7 +13,7 @@ fn oscillator(method: Method, c: f64, friction: f64, relative: f64) -> Problem {
         ("static_friction", friction),
         ("kinetic_friction", friction),
     ];
-    let mut problem = problem("coulomb_oscillator", &friction);
+    let mut problem = problem("hand_coulomb", &friction);
     let sine = Function::from(Sine::new(1.0, 0.2, 0.0));
     problem.set_input("force", sine).unwrap();
     problem.set_tolerance(relative);

@@ -14,7 +14,7 @@ fn impacts(case: &serde_json::Value, excess: f64) -> usize {
         ("kinetic_friction", 0.0),
         ("stop", number(&case["sigma"])),
     ];
-    let mut problem = problem("coulomb_oscillator", &parameters);
+    let mut problem = problem("hand_coulomb", &parameters);
     // F cos(ωt + φ) gives x = x₀ cos(ωt + φ − lag): φ = lag + π/2 starts at x = 0, moving down.
     let phase = number(&case["phase_lag"]) + FRAC_PI_2;
     let force = Sine::new(grazing * (1.0 + excess), omega, phase + FRAC_PI_2);

@@ -206,7 +206,7 @@ proptest! {
 
     #[test]
     fn a_ball_bounces(e in 0.0..1.0_f64, g in 0.1..100.0_f64, h in 0.0..2.0_f64, v in -5.0..5.0_f64) {
-        check(&scene("bouncing_ball", &[("e", e), ("g", g)], &[("h", h), ("h.rate", v)], [0.0; 3]), None);
+        check(&scene("hand_ball", &[("e", e), ("g", g)], &[("h", h), ("h.rate", v)], [0.0; 3]), None);
     }
 
     #[test]

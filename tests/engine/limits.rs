@@ -157,7 +157,7 @@ fn limit(of: Observed, above: bool, level: f64) -> OwnLimit {
 #[test]
 fn limits_of_coordinates_rates_and_reactions_are_found_at_their_roots() {
     let ball = |of, above, level: f64| {
-        let mut ball = problem("bouncing_ball", &[("e", 0.5)]);
+        let mut ball = problem("hand_ball", &[("e", 0.5)]);
         ball.set_initial("h", 1.0).unwrap();
         ball.limits.own = vec![limit(of, above, level)];
         ball
@@ -199,7 +199,7 @@ fn limits_of_coordinates_rates_and_reactions_are_found_at_their_roots() {
 
 #[test]
 fn a_limit_that_holds_at_the_start_is_reached_there_and_its_level_is_not_beyond() {
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     ball.set_initial("h", 1.0).unwrap();
     ball.limits.own = vec![limit(Observed::Coordinate(0), true, 0.5)];
     let above = run(&ball);

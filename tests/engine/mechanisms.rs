@@ -16,6 +16,11 @@ const DECLARED: [&str; 7] = [
     "slider_chain",
     "slider_crank",
     "woodpecker",
+    "bouncing_ball",
+    "vibrating_table_ball",
+    "belt_oscillator",
+    "coulomb_oscillator",
+    "sliding_oscillator",
 ];
 
 #[test]

@@ -54,7 +54,7 @@ fn creeping(friction: f64, c: f64) -> Problem {
         ("static_friction", friction),
         ("kinetic_friction", friction),
     ];
-    let mut problem = problem("coulomb_oscillator", &[&friction[..], &[("c", c)]].concat());
+    let mut problem = problem("hand_coulomb", &[&friction[..], &[("c", c)]].concat());
     problem.set_tolerance(1e-10);
     problem
 }

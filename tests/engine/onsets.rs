@@ -167,7 +167,7 @@ fn at_an_exact_graze_no_contact_collides_while_it_opens() {
                     ("kinetic_friction", 0.0),
                     ("stop", stop),
                 ];
-                let mut oscillator = problem("coulomb_oscillator", &parameters);
+                let mut oscillator = problem("hand_coulomb", &parameters);
                 oscillator.method = method;
                 // F cos(ωt + φ) gives x = x₀ cos(ωt + φ − lag).
                 let phase = lag + FRAC_PI_2 + place;

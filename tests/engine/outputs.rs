@@ -28,7 +28,7 @@ fn close(found: f64, exact: f64, what: &str) {
 #[test]
 fn the_head_of_a_ball_is_what_its_impacts_leave_of_it() {
     with_each_method(|| {
-        let mut ball = problem("bouncing_ball", &[("e", 0.8)]);
+        let mut ball = problem("hand_ball", &[("e", 0.8)]);
         ball.set_initial("h", 1.0).unwrap();
         ball.end.time = 1.8;
         ball.record.every = Some(0.1);
@@ -255,7 +255,7 @@ fn the_motion_does_not_depend_on_what_is_recorded_of_it() {
 #[test]
 fn a_limit_over_an_output_is_reached_at_its_root() {
     with_each_method(|| {
-        let mut ball = problem("bouncing_ball", &[]);
+        let mut ball = problem("hand_ball", &[]);
         ball.set_initial("h", 2.0).unwrap();
         ball.add_output("fallen", "cm", "h.rate^2 / (2 * g)", "")
             .unwrap();
@@ -280,7 +280,7 @@ fn a_limit_over_an_output_is_reached_at_its_root() {
 
 #[test]
 fn a_run_in_parts_has_outputs_at_every_instant() {
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     ball.set_initial("h", 1.0).unwrap();
     ball.add_output("fallen", "m", "h.rate^2 / (2 * g)", "")
         .unwrap();

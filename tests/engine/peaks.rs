@@ -40,7 +40,7 @@ fn within(tolerance: f64, found: f64, exact: f64, size: f64, what: &str) {
 fn the_top_of_a_flight_is_found_between_rows() {
     with_each_method(|| {
         for every in INTERVALS {
-            let mut problem = problem("bouncing_ball", &[("e", 0.8)]);
+            let mut problem = problem("hand_ball", &[("e", 0.8)]);
             problem.set_initial("h.rate", 5.0).unwrap();
             problem.end.time = 2.0;
             record_all(&mut problem, every);

@@ -83,7 +83,7 @@ fn numbers_that_leave_the_range_of_doubles_stop_the_run() {
             (1.0, 1e300, -1e308),
             (1e10, 1e308, 1e305),
         ] {
-            let mut problem = problem("bouncing_ball", &[("e", 1.0)]);
+            let mut problem = problem("hand_ball", &[("e", 1.0)]);
             problem.method = method;
             problem.end.time = end;
             problem.end.after = Some(("impact", 3));

@@ -20,7 +20,7 @@ fn slot(stop: f64, e: f64, x: f64, speed: f64) -> Problem {
         ("static_friction", 0.0),
         ("kinetic_friction", 0.0),
     ];
-    let mut problem = problem("coulomb_oscillator", &none);
+    let mut problem = problem("hand_coulomb", &none);
     for (name, value) in [("stop", stop), ("e", e)] {
         problem.set_parameter(name, value).unwrap();
     }
@@ -108,7 +108,7 @@ fn a_pole_is_no_crossing() {
 
 /// A ball at h = 0 with the given velocity.
 fn ball_at_the_floor(velocity: f64) -> Run {
-    let mut problem = problem("bouncing_ball", &[("e", 0.5)]);
+    let mut problem = problem("hand_ball", &[("e", 0.5)]);
     problem.set_initial("h.rate", velocity).unwrap();
     problem.initial.mode = Some(mode(&problem, "flies"));
     problem.set_tolerance(TIGHTEST);
@@ -141,7 +141,7 @@ fn short_flights_are_flown() {
             ("10i_short_flight_e_1e-8", 1e-8),
         ] {
             let item = item(name);
-            let mut problem = problem("bouncing_ball", &[("e", e)]);
+            let mut problem = problem("hand_ball", &[("e", e)]);
             problem.set_initial("h", 1.0).unwrap();
             problem.set_tolerance(TIGHTEST);
             let run = run(&problem);
@@ -263,7 +263,7 @@ fn sticks_down_to_a_picosecond_are_kept() {
 fn flights_down_to_a_picosecond_are_flown() {
     with_each_method(|| {
         for e in [1e-9, 1e-12] {
-            let mut problem = problem("bouncing_ball", &[("e", e)]);
+            let mut problem = problem("hand_ball", &[("e", e)]);
             problem.set_initial("h", 1.0).unwrap();
             problem.set_tolerance(TIGHTEST);
             let run = run(&problem);

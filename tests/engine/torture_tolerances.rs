@@ -53,13 +53,7 @@ fn a_thousand_impacts_in_a_slot_of_a_micrometre() {
     ];
     let make = |tolerance| {
         let initial = [("x", -5e-7), ("x.rate", 1.0)];
-        let mut slot = start(
-            "coulomb_oscillator",
-            &none,
-            &initial,
-            [1e-6, 1.0],
-            tolerance,
-        );
+        let mut slot = start("hand_coulomb", &none, &initial, [1e-6, 1.0], tolerance);
         slot.end.time = 1000.5e-6;
         slot
     };
@@ -177,13 +171,7 @@ fn grazing(case: &serde_json::Value, phase: f64, excess: f64, tolerance: f64) ->
         ("slip", -1.0),
     ];
     let sizes = [stop, omega * stop];
-    let mut problem = start(
-        "coulomb_oscillator",
-        &parameters,
-        &initial,
-        sizes,
-        tolerance,
-    );
+    let mut problem = start("hand_coulomb", &parameters, &initial, sizes, tolerance);
     let shaking = Sine::new(force * (1.0 + excess), omega, lag + phase + FRAC_PI_2);
     problem.set_input("force", shaking.into()).unwrap();
     problem.end.time = TAU / omega;

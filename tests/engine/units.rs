@@ -105,7 +105,7 @@ fn scene(name: &str, method: Method, relative: f64, units: Units) -> Run {
         "walking_tank" => (&[("mu_s", 1.4), ("mu_k", 1.33)], &[], 20.0, 0.7),
         // Lands until it rests.
         "rocking_block" => (&[("e", 0.7)], &[("theta", 0.1)], 0.0, 4.0),
-        "bouncing_ball" => (&[("e", 0.7)], &[("h", 1.0)], 0.0, 4.0),
+        "hand_ball" => (&[("e", 0.7)], &[("h", 1.0)], 0.0, 4.0),
         // Sticks and slips, with a stiff spring.
         "hand_slider" => (&[("k", 1.05e10), ("c", 6.42e6)], &[], 20.0, 0.5),
         _ => unreachable!("a scene of SCENES"),
@@ -129,12 +129,7 @@ fn scene(name: &str, method: Method, relative: f64, units: Units) -> Run {
     run(&in_units(&problem, units, &inputs))
 }
 
-const SCENES: [&str; 4] = [
-    "walking_tank",
-    "rocking_block",
-    "bouncing_ball",
-    "hand_slider",
-];
+const SCENES: [&str; 4] = ["walking_tank", "rocking_block", "hand_ball", "hand_slider"];
 
 /// Powers of two that make up a metre, a kilogram and a second. Taylor coefficients of order 30 leave
 /// the range of doubles where a second is 2^±30 units of time.

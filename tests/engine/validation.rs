@@ -15,7 +15,7 @@ fn refused(problem: &Problem) -> Reason {
 
 #[test]
 fn parameters_outside_their_bounds_are_refused() {
-    let mut ball = problem("bouncing_ball", &[]);
+    let mut ball = problem("hand_ball", &[]);
     for (name, value) in [
         ("e", 2.0),
         ("e", f64::NAN),
@@ -41,7 +41,7 @@ fn parameters_outside_their_bounds_are_refused() {
 
 #[test]
 fn a_parameter_that_another_limits_is_refused() {
-    let problem = problem("coulomb_oscillator", &[("kinetic_friction", 0.2)]);
+    let problem = problem("hand_coulomb", &[("kinetic_friction", 0.2)]);
     let reason = refused(&problem);
     assert_eq!(
         reason.to_string(),
@@ -82,7 +82,7 @@ fn initial_states_outside_their_bounds_are_refused() {
 
 #[test]
 fn ends_tolerances_and_samples_that_are_no_lengths_are_refused() {
-    let ball = problem("bouncing_ball", &[]);
+    let ball = problem("hand_ball", &[]);
     type Change = fn(&mut Problem);
     let changes: [(&str, Change); 5] = [
         ("the end", |p| p.end.time = f64::NAN),
@@ -106,7 +106,7 @@ fn beyond_the_stop() -> Problem {
         ("static_friction", 0.0),
         ("stop", 1.0),
     ];
-    let mut oscillator = problem("coulomb_oscillator", &parameters);
+    let mut oscillator = problem("hand_coulomb", &parameters);
     oscillator.set_initial("x", 2.0).unwrap();
     oscillator
 }
@@ -155,7 +155,7 @@ fn a_mode_that_cannot_hold_the_initial_state_gives_way() {
 /// x' < 0 while the friction acts against a slip to the right.
 #[test]
 fn a_slip_against_its_direction_is_refused_and_not_stopped() {
-    let mut oscillator = problem("coulomb_oscillator", &[]);
+    let mut oscillator = problem("hand_coulomb", &[]);
     oscillator.set_initial("x.rate", -0.5).unwrap();
     oscillator.initial.mode = Some(mode(&oscillator, "slides"));
     let reason = refused(&oscillator);

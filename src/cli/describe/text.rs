@@ -212,7 +212,9 @@ fn mode(f: &mut Formatter, mode: &Mode) -> fmt::Result {
         _ => mode.free.join(", "),
     };
     let held: Vec<String> = mode.held.iter().map(held).collect();
-    writeln!(f, "\nMode {}: {}\n", mode.name, mode.meaning)?;
+    // Modes that follow from contacts have no meaning beside their names.
+    let colon = if mode.meaning.is_empty() { "" } else { ": " };
+    writeln!(f, "\nMode {}{colon}{}\n", mode.name, mode.meaning)?;
     writeln!(f, "  free  {free}")?;
     if !held.is_empty() {
         writeln!(f, "  held  {}", held.join(", "))?;
