@@ -26,7 +26,7 @@ NOTE = re.compile(rf"%[ \t]*(?P<role>{'|'.join(ROLES)})\b[ \t]*(?P<of>[^\n%]*?)[
 
 
 class Displayed:
-    """A displayed equation: its number, its LaTeX with its place, what the comment beside it says, and its tree."""
+    """A displayed equation: its number or None, its LaTeX with its place, what the comment beside it says, and its tree."""
 
     def __init__(self, latex, number, note):
         self.latex, self.number = latex, number
@@ -106,7 +106,7 @@ def displayed(text, shown, file, known):
             notes = list(NOTE.finditer(above + "\n" + latex))
             if len(notes) > 1:
                 raise error_at(latex, 0, "two comments say what this equation is")
-            found.append(Displayed(latex, number or f"unnumbered {len(found) + 1}", notes[0] if notes else None))
+            found.append(Displayed(latex, number, notes[0] if notes else None))
             above = ""
         before = match.end()
     if not found:

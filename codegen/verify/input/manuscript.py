@@ -169,6 +169,7 @@ def _sort(equation, paper, rows, printed):
         raise equation.error(f"{named} is not in {SYMBOLS}" if named else "it is not clear what this equation is of: say it in a comment line "
                              f"above it, such as % {next(k for k, v in ROLES.items() if v == role)} \\theta")
     name = row["name"]
+    number = number or _unnumbered(f"{role} of {name}", paper)
     if role in ("definition", "reading", "force"):
         if equation.shape() != ["sum", "=", "sum"]:
             raise equation.error(f"a {role} is written as a symbol = terms")
@@ -212,6 +213,12 @@ def _sort(equation, paper, rows, printed):
             if result not in (1, -1):
                 raise equation.error("a rule is written as \\lambda = 1 \\quad \\text{if} \\quad ... > 0")
             paper.rule(number, of=name, result=int(result), relation=relation, latex=latex)
+
+
+def _unnumbered(name, paper):
+    """The name of an equation without number: what it is, counted where the paper has several of it."""
+    names = [name] + [f"{name}, {k}" for k in range(2, len(paper.equations) + 2)]
+    return next(x for x in names if x not in paper.equations)
 
 
 def _role(equation, rows):

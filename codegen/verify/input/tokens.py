@@ -47,21 +47,29 @@ FRAMES = "aligned|alignedat|align|gather|gathered|split|equation|multline|displa
 TOKEN = re.compile(
     r"(?:\s|~|%[^\n]*(?:\n|$))+|&|(?P<break>\\\\\*?(?:\[[^\]]*\])?)|(?P<skip>\\[,;:!> ]|\\/)"
     rf"|(?P<frame>\\(?:begin|end)\{{(?:{FRAMES})\*?\}}|\\\[|\\\]|\$\$?)"
-    r"|(?P<place>\\(?:label|tag\*?|hspace\*?|vspace\*?)\{[^{}]*\})"
-    r"|(?P<roman>\\(?:text|textrm|textnormal|mathrm|mathit|mathnormal|mathcal|mathscr|mathsf|operatorname\*?|mbox)\s*\{(?P<word>[^{}]*)\})"
-    r"|(?P<time>\(t\s*\^\s*\{?[+-]\}?\))|(?P<of_time>\(t\))"
+    r"|(?P<place>\\(?:label|tag\*?|[hvm]space\*?|[hv]?phantom|color)\{[^{}]*\}|\\(?:hskip|kern|mkern|mskip)\s*-?[\d.]+\s*[a-z]{2}(?![a-z]))"
+    r"|(?P<shown>\\(?:boxed|ensuremath|smash|mathop|textcolor\{[^{}]*\})\s*(?=\{))"
+    r"|(?P<roman>\\(?:text|textrm|textnormal|mathrm|mathit|mathnormal|mathcal|mathscr|mathsf|operatorname\*?|mbox)"
+    r"(?:\s*\{(?P<word>[^{}]*)\}|\s+(?P<letter>[A-Za-z])))"
+    r"|(?P<time>\(t\s*\^\s*\{?[+-]\}?\))|(?P<of_time>\(t\)|\\left\s*\(\s*t\s*\\right\s*\))"
     r"|(?P<command>\\(?:[A-Za-z]+|[|{}]))|(?P<symbol>[A-Za-z]|[α-ωΑ-Ωϕϑϵℓ])|(?P<number>\d+(?:\.\d+)?|\.\d+)|(?P<open>[(\[])|(?P<close>[)\]])"
     r"|(?P<bar>\|)|(?P<relation>:=|[=<>≤≥])|(?P<sign>[+−-])|(?P<power>\^)|(?P<index>_)|(?P<brace>[{}])|(?P<slash>/)|(?P<times>[*·×])"
     r"|(?P<end>[.,;:])|(?P<prime>['’])")
 
+# braces that change nothing that shows: around a sign, around nothing before an index or power, around one upright word
+LONE = re.compile(r"\{(?P<inner>\s*(?:[+−=-]\s*\}|\}(?=\s*[\^_])|\\rm\s+(?P<upright>[A-Za-z]+)\s*\}))")
+
+# what takes braces as its argument
+TAKES_BRACES = ("frac", "dots", "accent", "power", "index", "function")
+
 # what a command is; any other is a symbol, which must be declared
 COMMANDS = {
     "quad": "skip", "qquad": "skip", "displaystyle": "skip", "textstyle": "skip", "nonumber": "skip", "notag": "skip",
-    "mathstrut": "skip", "rm": "skip", "it": "skip", "centering": "skip", "thinspace": "skip", "limits": "skip", "left": "size", "right": "size", "middle": "size",
+    "mathstrut": "skip", "strut": "skip", "enspace": "skip", "allowbreak": "skip", "hfill": "skip", "scriptstyle": "skip", "rm": "skip", "it": "skip", "centering": "skip", "thinspace": "skip", "limits": "skip", "left": "size", "right": "size", "middle": "size",
     "sin": "function", "cos": "function", "tan": "function", "cot": "function", "sec": "function", "csc": "function",
     "sign": "function", "sgn": "function",
     "dot": "dots", "ddot": "dots", "dddot": "dots", "frac": "frac", "dfrac": "frac", "tfrac": "frac", "cfrac": "frac",
-    "cdot": "times", "times": "times", "ast": "times", "lvert": "bar", "rvert": "bar", "vert": "bar",
+    "nicefrac": "frac", "sfrac": "frac", "cdot": "times", "cdotp": "times", "times": "times", "ast": "times", "lvert": "bar", "rvert": "bar", "vert": "bar",
     "bar": "accent", "hat": "accent", "tilde": "accent", "overline": "accent", "widetilde": "accent", "widehat": "accent",
     "lt": "relation", "gt": "relation", "le": "relation", "leq": "relation", "ge": "relation", "geq": "relation",
     "leqslant": "relation", "geqslant": "relation", "equiv": "relation", "triangleq": "relation", "coloneqq": "relation",
@@ -98,7 +106,7 @@ REFUSED = {
     "langle": "write ( or |", "rangle": "write ) or |", "ldots": "write all terms", "dots": "write all terms", "cdots": "write all terms",
     "max": "write one condition for each case", "min": "write one condition for each case", "ddddot": "equations of motion have two dots "
     "at most", "div": "write \\frac{...}{...}", "circ": "write angles in radians", "underbrace": "write what is above the brace alone",
-    "phantom": "leave it out: it does not show", "begin": "write each case or component as an equation of its own", "end": "an end "
+    "begin": "write each case or component as an equation of its own", "end": "an end "
     "without its beginning",
 }
 
@@ -120,19 +128,24 @@ def tokens(latex):
             raise error_at(latex, place, f"{latex[place]!r} cannot be read here")
         kind, text, at = match.lastgroup, match.group(), place
         place = match.end()
-        if kind == "word":  # the last group of a roman word
-            kind = "roman"
+        if text == "{" and (lone := LONE.match(latex, at)) and not _argument(found, lone):
+            unseen.add(lone.end() - 1)
+            place = lone.start("inner")
+            if lone.group("upright"):
+                found.append(Token(*_roman("", lone.group("upright")), at))
+                place = lone.end()
+            continue
         if kind == "command" and text[1:] in macros:
             made, place = _macro(latex, text, at, place, macros)
             found += made
             continue
-        if text == "\\boxed" and latex[place:place + 1] == "{" and (inner := braced(latex, place)) is not None:
+        if kind == "shown" and (inner := braced(latex, place)) is not None:
             unseen |= {place, place + 1 + len(inner)}
             continue
         if kind == "command":
             kind, text = _command(latex, text, at)
         elif kind == "roman":
-            kind, text = _roman(text, match.group("word").strip())
+            kind, text = _roman(text, (match.group("word") or match.group("letter") or "").strip())
         elif kind == "symbol" and not text.isascii():
             text = "\\" + next(name for name, letter in GREEK.items() if letter == text) if text in GREEK.values() else text
         elif kind == "sign":
@@ -147,6 +160,11 @@ def tokens(latex):
         if kind not in (None, "skip", "frame", "place"):
             found.append(Token(kind, text, at))
     return found
+
+
+def _argument(found, lone):
+    """Whether braces after these tokens may be an argument; a sign, or nothing, is none that could stand after another argument."""
+    return bool(found) and (found[-1].kind in TAKES_BRACES or found[-1].text == "}" and lone.group("upright") is not None)
 
 
 def _macro(latex, text, at, place, macros):
@@ -176,6 +194,8 @@ def _command(latex, text, at):
 
 def _roman(text, word):
     """Upright words: a function, a name, or words between equations."""
+    if word in tuple(".,;:"):
+        return "end", word
     if not text.startswith((r"\text", r"\mbox")) or word in FUNCTIONS or word == "d":
         return ("function", "\\" + FUNCTIONS[word]) if word in FUNCTIONS else ("upright", word)
     return "text", rf"\text{{{word}}}"

@@ -2,6 +2,7 @@
 wrong on it: the word must not come."""
 
 import json
+import re
 import unittest
 import xml.etree.ElementTree as xml
 from dataclasses import replace
@@ -442,6 +443,16 @@ class Findings(unittest.TestCase):
                     self.assertIn(f"{finding.key}: equation", plain)
                     self.assertEqual(written["consistent"] is None, words.consistent_parts(finding) == ["not known"])
                     self.assertEqual(written["proved"], finding.proved)
+
+    def test_the_guide_lists_attacks_that_exist(self):
+        tests = Path(__file__).resolve().parent
+        guide = (tests.parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
+        listed = guide.split("## What was tried against the good words")[1].split("\n## ")[0]
+        written = {(name, file.name) for file in tests.glob("test_*.py") for name in re.findall(r"def (test_\w+)", file.read_text(encoding="utf-8"))}
+        named = re.findall(r"`(test_\w+)`(?: in `(test_\w+\.py)`)?", listed)
+        self.assertGreater(len(named), 30)
+        for name, file in named:
+            self.assertIn((name, file or Path(__file__).name), written)
 
 
 if __name__ == "__main__":

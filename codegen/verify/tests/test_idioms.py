@@ -53,6 +53,13 @@ READ = [
     (r"\frac{m\ell g}{2}(1-\cos\theta)", S.m * S.ell * S.g * (1 - cos(S.theta)) / 2), (r"\sin{\left(2\,\theta\right)}", sin(2 * S.theta)),
     (r"\Big(m + k\Big)\ddot{\theta}_{1}", (S.m + S.k) * S.ddtheta_1), (r"\tfrac{1}{2}\,m\left[\dot{x}^{2}+\left(l\dot{\theta}\right)^{2}\right]",
                                                                   S.m * (S.dx**2 + S.l**2 * S.dtheta**2) / 2),
+    # spaces, boxes, colours and braces that do not change what shows
+    (r"m\mspace{2mu}l", S.m * S.l), (r"m\hskip 1em l\kern1pt k", S.m * S.l * S.k), (r"m\vphantom{\frac12}l\phantom{m}", S.m * S.l), (r"{\color{red} m}", S.m),
+    (r"\textcolor{red}{m + k} l", S.m + S.k * S.l), (r"\ensuremath{m} \smash{l}", S.m * S.l), (r"\mathop{\mathrm{sgn}}\dot x", sympy.sign(S.dx)),
+    (r"m\ddot{x} {+} k x", S.m * S.ddx + S.k * S.x), (r"\dot\theta_1{}^2", S.dtheta_1**2), (r"\dot{\theta} {}^2", S.dtheta**2), (r"\frac{l}{\rm m}", S.l / S.m),
+    (r"\frac{\rm d}{{\rm d}t}(m\dot{x})", S.m * S.ddx), (r"\frac{\mathrm d^2\theta}{\mathrm dt^2}", S.ddtheta), (r"{\rm sgn}(\dot x)", sympy.sign(S.dx)),
+    (r"x\left(t\right) m", S.x * S.m), (r"\nicefrac{1}{2} m \cdotp l", S.m * S.l / 2), (r"\scriptstyle m \enspace l \allowbreak g", S.m * S.l * S.g),
+    (r"m l \text{,}", S.m * S.l),
     # functions
     (r"\sin\theta", sin(S.theta)), (r"\sin{\theta}", sin(S.theta)), (r"\sin(\theta)", sin(S.theta)), (r"\sin\left(\theta\right)", sin(S.theta)),
     (r"\sin^2\theta", sin(S.theta)**2), (r"\sin^{2}\theta", sin(S.theta)**2), (r"\sin^2(\alpha-\theta)", sin(S.alpha - S.theta)**2),
@@ -92,7 +99,8 @@ REFUSED = [
     (r"\frac{d^2}{dt}(m x)", r"\frac", "carry other derivatives out"),
     (r"m \Rightarrow l", r"\Rightarrow", "a display"), (r"m \stackrel{!}{=} l", r"\stackrel", "alone"),
     (r"\begin{array}{l} m \end{array}", r"\begin", "equation of its own"), (r"m \sin(\omega t)", "t)", "as an input or a force"),
-    (r"F_y^f", "f", "not a whole number"),
+    (r"F_y^f", "f", "not a whole number"), (r"{}^2 m", "^2", "term is missing"), (r"\frac{m}{} k", "} k", "term is missing"), (r"\frac{m}{}^2", "^2", "braces around the arguments"),
+    (r"\sin\theta{}^2", "^2", "can be read in two ways"), (r"\smash{m + k}^2 + {+} l", "+}", "term is missing"),
     (r"\frac{d}{dx}(m x)", r"\frac", "carry other derivatives out"), (r"\frac{\partial m}{\partial x}", r"\partial", "derivative"),
     (r"\frac{d^2 x}{dt}", r"\frac", r"d\^2 over dt\^1"), (r"\dot{m x}", r"\dot", "one symbol"), (r"\dot{\dot{x}}", r"\dot", "another"),
     (r"x'", "'", "prime"), (r"x_1_2", "_2", "second index"), (r"\vec{x}", r"\vec", "components"), (r"\int m", r"\int", "integral"),
@@ -105,7 +113,7 @@ REFUSED = [
 
 def value(text):
     """The expression that a text is read as, by the way that equations take."""
-    tree = Parser(text + " = 0" if "end" not in text and text[-1:] not in ("]", "$", ".", ",") else text).equation()
+    tree = Parser(text + " = 0" if "end" not in text and not text.endswith(("]", "$", ".", ",", "{,}")) else text).equation()
     transcription._collect(tree.children[0], 1, [0])
     return sum(transcription.terms(tree, PAPER, S, M, text))
 

@@ -260,8 +260,12 @@ m l^2 \ddot{\theta} + m l \cos\theta \, \ddot{x} &+ m g l \sin\theta \\ &= 0
         self.change(("\ng,  ", "\nR, force, N, normal force, ,\n\\mu, parameter, 1, friction, , 0.1\ns, sign, 1, side, -1,\n"
                      "e, parameter, 1, restitution, , 0.5\ng,  "), file="symbols.csv")
         self.assertEqual([(e.number, e.kind, e.of) for e in self.judged().case.paper.equations.values()],
-                         [("unnumbered 5", "value", "R"), ("8", "condition", "x"), ("9", "rule", "s"), ("10", "reset", "x"), ("5", "motion", "x"),
+                         [("value of R", "value", "R"), ("8", "condition", "x"), ("9", "rule", "s"), ("10", "reset", "x"), ("5", "motion", "x"),
                           ("6", "motion", "theta")])
+
+    def test_equations_without_number_have_the_name_of_what_they_are(self):
+        self.change(("% motion of x\n\\begin{equation}", "% motion of x\n\\begin{equation*}"), ("= F,\n\\end{equation}", "= F,\n\\end{equation*}"))
+        self.assertEqual([e.number for e in self.judged().case.paper.equations.values()], ["motion of x", "5"])
 
 
 class Command(Folder):
