@@ -23,8 +23,7 @@ pub(super) fn shared(
         (from..to).all(|i| (heights[a][i] - heights[b][i]).abs() < CLOSE)
     };
     let is_drawn = |curve: usize, piece: usize| {
-        let others = (0..curves.len()).filter(|&i| i == curve || on_each_other(curve, i, piece));
-        let group: Vec<usize> = others.collect();
+        let group = connected(curves.len(), curve, |a, b| on_each_other(a, b, piece));
         let rank = group.iter().position(|&i| i == curve);
         rank == Some(piece % group.len())
     };
@@ -36,6 +35,23 @@ pub(super) fn shared(
         }
     };
     curves.iter().enumerate().map(of).collect()
+}
+
+/// Those of `count` curves that lie on this one, on one of those, and so on, in order: so that all of them agree on who is
+/// drawn, also where the first does not lie on the last.
+fn connected(count: usize, of: usize, on_each_other: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let mut group = vec![of];
+    let mut next = 0;
+    while let Some(&a) = group.get(next) {
+        for b in 0..count {
+            if !group.contains(&b) && on_each_other(a, b) {
+                group.push(b);
+            }
+        }
+        next += 1;
+    }
+    group.sort_unstable();
+    group
 }
 
 /// The height of a curve at each column of pixels; NaN where it is not.
@@ -97,6 +113,20 @@ mod tests {
                 .iter()
                 .all(|a| parts[1].iter().all(|b| a[0].0 != b[0].0))
         );
+    }
+
+    #[test]
+    fn no_piece_is_empty_where_the_first_curve_lies_on_the_second_and_that_on_the_third() {
+        let line = |height: f64| vec![(0.0, height), (120.0, height)];
+        let parts = shared(&[line(5.0), line(5.7), line(6.4)], 0.0, 120.0);
+        let starts = |parts: &Vec<Vec<(f64, f64)>>| parts.iter().map(|p| p[0].0).collect();
+        let mut starts: Vec<f64> = parts
+            .iter()
+            .flat_map(|p| -> Vec<f64> { starts(p) })
+            .collect();
+        starts.sort_by(f64::total_cmp);
+        let pieces: Vec<f64> = (0..10).map(|piece| f64::from(piece) * PIECE).collect();
+        assert_eq!(starts, pieces);
     }
 
     #[test]
