@@ -16,6 +16,8 @@ mod new;
 mod output;
 mod outputs;
 mod page;
+#[cfg(feature = "png-pdf")]
+mod pictures;
 mod precision;
 mod run;
 mod study;
