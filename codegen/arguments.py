@@ -1,6 +1,7 @@
 """What a model file passes: each argument is what it should be, or the file is refused with what would be right."""
 
 import keyword
+import unicodedata
 
 import casadi as ca
 
@@ -40,6 +41,17 @@ def name(model, what, text):
         raise model.error(f"a {what} cannot be named `{text}`, a word of {_KEYWORDS[text]}: choose another name")
     if what == "discrete state" and keyword.iskeyword(text):
         raise model.error(f"a {what} cannot be named `{text}`, a word of Python: choose another name")
+
+
+def text(model, what, value):
+    """One line of printable characters, as terminals, pages and pictures hold it."""
+    if not isinstance(value, str):
+        raise model.error(f"{what} is a text, not {shown(value)}")
+    for character in value:
+        # Controls, halves of surrogate pairs, code points for private use, and those that are no characters.
+        if unicodedata.category(character) in ("Cc", "Cs", "Co") or ord(character) & 0xFFFE == 0xFFFE:
+            raise model.error(f"{what} holds U+{ord(character):04X}: write one line of printable characters")
+    return value
 
 
 def shown(value):

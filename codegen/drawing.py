@@ -5,7 +5,7 @@ generated C. X to the right, Y up, in metres, in the frame of the ground.
 """
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -41,14 +41,24 @@ class Shape:
     """Of a contact the names of the reactions that act at it along X and Y."""
     states: dict
     """Of a contact its state by the name of the mode, where it is not open."""
+    of: object = None
+    """Name of the declared contact, friction or constraint that it shows, if any."""
+    pushes: list = field(default_factory=list)
+    """Its forces: name of the column, and direction (X, Y)."""
+
+    def values(self):
+        """All expressions of it, as the program gives them."""
+        directions = [value for _, direction in self.pushes for value in direction]
+        return [value for pair in self.points for value in pair] + ([] if self.radius is None else [self.radius]) + directions
 
 
 STATES = ("closed", "sticks", "slides")
 """States of contacts, besides `open`."""
 
 
-def shape(model, name, points, kind, radius, location, force=None, states=None):
+def shape(model, name, points, kind, radius, location, force=None, states=None, of=None, along=None):
     """A checked shape."""
+    arguments.text(model, "the name of what is drawn", name)
     what = f"drawing of `{name}`"
     if kind not in POINTS:
         raise ModelError(f"{what}: there is no kind `{kind}`; write one of {', '.join(POINTS)}", location)
@@ -63,24 +73,69 @@ def shape(model, name, points, kind, radius, location, force=None, states=None):
     if radius is not None and kind != "point":
         raise ModelError(f"{what}: only a `point` has a radius", location)
     lengths = [value for pair in pairs for value in pair] + ([] if radius is None else [ca.SX(radius)])
+    # A number is metres: how large a picture is drawn is not physics.
+    _of_motion(model, what, lengths, "m", "m (numbers alone are metres)", location)
+    made = Shape(name, kind, pairs, None if radius is None else ca.SX(radius), location,
+                 *_contact(model, what, kind, force, states, location))
+    if of is not None:
+        if kind != "contact" or force is not None or states is not None:
+            raise ModelError(f"{what}: `of` is for a `contact`, which then has no `force` and no `states` of its own", location)
+        made.of, made.pushes = of, _pushes(model, what, of, along, location)
+    elif along is not None:
+        raise ModelError(f"{what}: `along` belongs to `of`, which names a contact, a friction or a constraint", location)
+    return made
+
+
+def _pushes(model, what, of, along, location):
+    """The forces of a declared contact, friction or constraint, with their directions, checked."""
+    contact = next((c for c in model.contacts if c.name == of), None)
+    held = [c.name for c in model.constraints if c.name == of or isinstance(of, str) and c.name.startswith(f"{of}.")]
+    if contact is not None:
+        forces = {f"{of}.normal": (0, 1)} if contact.gap is not None else {}
+        forces |= {f"{of}.friction": (1, 0)} if contact.slip is not None else {}
+    elif any(of == name for name, _ in model.switched_off):
+        return []
+    elif held:
+        forces = dict.fromkeys((f"{name}.force" for name in held), None)
+        if len(held) == 2:
+            forces = dict(zip(forces, ((1, 0), (0, 1))))
+        elif along is None:
+            raise ModelError(f"{what}: say by `along` in which directions the forces of `{of}` act, a list of {len(held)} pairs (X, Y)",
+                             location)
+    else:
+        known = ", ".join(f"`{c.name}`" for c in [*model.contacts, *model.constraints]) or "none"
+        raise ModelError(f"{what}: there is no contact, friction or constraint {arguments.shown(of)} above (there are: {known})",
+                         location)
+    given = list(forces.values()) if along is None else along
+    try:
+        directions = [(ca.SX(x), ca.SX(y)) for x, y in given]
+    except (TypeError, ValueError, NotImplementedError):
+        raise ModelError(f"{what}: `along` is a list of pairs (X, Y)", location) from None
+    if len(directions) != len(forces):
+        names = ", ".join(f"`{name}`" for name in forces)
+        raise ModelError(f"{what}: `along` has {len(directions)} directions, but the forces of `{of}` are {names}", location)
+    _of_motion(model, what, [value for pair in directions for value in pair], "1", "1, as a direction has it", location)
+    return list(zip(forces, directions))
+
+
+def _of_motion(model, what, values, unit, expected, location):
+    """Checks that values depend on what pages know, and have this dimension."""
     known = {s.element_hash() for s in symbols(model)[1]}
-    for value in lengths:
+    for value in values:
         for symbol in ca.symvar(value):
             if symbol.element_hash() not in known:
                 raise ModelError(
                     f"{what}: `{symbol.name()}` is no coordinate, parameter or discrete state", location)
         for term in graph.additive_terms(value):
             if ca.SX(term).is_constant():
-                continue  # A number is metres: how large a picture is drawn is not physics.
+                continue
             try:
                 found = units.dimension_of(ca.SX(term), model.dimensions)
             except units.UnitError as error:
                 raise ModelError(f"{what}: {error}", location) from None
-            if found != units.parse("m") and not ca.SX(term).is_zero():
+            if found != units.parse(unit) and not ca.SX(term).is_zero():
                 raise ModelError(
-                    f"{what}: the term `{units.short(term)}` has the dimension {units.text(found)}, expected m (numbers alone are metres)", location)
-    return Shape(name, kind, pairs, None if radius is None else ca.SX(radius), location,
-                 *_contact(model, what, kind, force, states, location))
+                    f"{what}: the term `{units.short(term)}` has the dimension {units.text(found)}, expected {expected}", location)
 
 
 def _contact(model, what, kind, force, states, location):
@@ -116,7 +171,7 @@ def program(model):
     outputs, shapes = [], []
     for s in model.shapes:
         start = len(outputs)
-        outputs += [value for pair in s.points for value in pair] + ([] if s.radius is None else [s.radius])
+        outputs += s.values()
         shapes.append((s, start))
     used = {symbol.element_hash() for symbol in ca.symvar(ca.vertcat(*outputs))}
     chosen = [(n, s) for n, s in zip(names, all_symbols) if s.element_hash() in used]
@@ -142,6 +197,7 @@ def program(model):
         "symbols": [name for name, _ in chosen],
         "registers": function.sz_w(), "outputs": len(outputs), "program": instructions,
         "shapes": [dict(name=s.name, kind=s.kind, start=start, points=len(s.points), radius=s.radius is not None,
-                        **({"force": s.force} if s.force else {}), **({"states": s.states} if s.states else {}))
+                        **({"force": s.force} if s.force else {}), **({"states": s.states} if s.states else {}),
+                        **({"of": s.of, "pushes": [name for name, _ in s.pushes]} if s.of else {}))
                    for s, start in shapes],
     }, separators=(",", ":"))

@@ -37,7 +37,10 @@ class Validity:
 
 def comparison(condition, what, location):
     """The margin by which a comparison such as `theta < alpha` holds, and the comparison as text."""
-    condition = ca.SX(condition)
+    try:
+        condition = ca.SX(condition)
+    except (NotImplementedError, TypeError):
+        raise ModelError(f"{what}: {condition!r} is no comparison; write one such as `theta < alpha / 2`", location) from None
     if condition.numel() != 1 or condition.op() not in (ca.OP_LT, ca.OP_LE):
         raise ModelError(
             f"{what}: `{units.short(condition)}` is no comparison; write one of two expressions that move or depend on"

@@ -88,7 +88,8 @@ class Model:
         if context.model is not None:
             raise self.error("a model file makes one Model(…), and has made one above")
         self.location_of_model = caller_location(self.file)
-        self.title, self.source = title, source
+        self.title, self.source = (arguments.text(self, f"the {what} of the model", given)
+                                   for what, given in (("title", title), ("source", source)))
         self.parameters, self.parameter_sets = [], []
         self.coordinates, self.motions, self.inputs = [], [], []
         self.discretes, self.choices = [], []
@@ -110,6 +111,7 @@ class Model:
     def parameter(self, name, unit, default, meaning, *, above=None, minimum=None, maximum=None, at_most=None):
         """A parameter; `above` is an exclusive lower bound, `at_most` another parameter."""
         symbol = self._declare("parameter", name, unit)
+        self._text("parameter", name, meaning)
         limits = dict(above=above, minimum=minimum, maximum=maximum)
         for limit, value in dict(default=default, **limits).items():
             if isinstance(value, str) or isinstance(value, ca.SX) or value is None and limit == "default":
@@ -130,6 +132,7 @@ class Model:
 
     def parameter_set(self, name, meaning, **values):
         """Named values for some of the parameters, which a scene can choose by `set`."""
+        self._text("parameter set", name, meaning)
         known = {p.name for p in self.parameters}
         for key in values:
             if key not in known:
@@ -145,6 +148,7 @@ class Model:
         absolute tolerance gets relative tolerance × scale.
         """
         symbol = self._declare_motion("coordinate", name, unit)
+        self._text("coordinate", name, meaning)
         symbol.jerk = ca.SX.sym(name + ".jerk")
         minimum, maximum = (limits.bound(self, name, b, caller_location(self.file)) for b in (minimum, maximum))
         self.coordinates.append(Declaration(name, unit, meaning, symbol, dict(
@@ -155,6 +159,7 @@ class Model:
     def discrete(self, name, values, meaning):
         """A discrete state with its admissible values, the first of which is the default."""
         symbol = Discrete(self._declare("discrete state", name, "1"))
+        self._text("discrete state", name, meaning)
         if isinstance(values, (str, ca.SX)) or not values:
             raise self.error(f"discrete state `{name}`: its values are {arguments.shown(values)}, not a list of numbers")
         self.discretes.append(Declaration(name, "1", meaning, symbol, dict(values=[float(v) for v in values])))
@@ -163,6 +168,7 @@ class Model:
     def input(self, name, unit, meaning):
         """A prescribed function of time, such as a force."""
         symbol = self._declare("input", name, unit)
+        self._text("input", name, meaning)
         self.inputs.append(Declaration(name, unit, meaning, symbol, dict(signals=[symbol], motion=None)))
         return symbol
 
@@ -176,6 +182,7 @@ class Model:
         is not `available` under the choices made so far may not be given.
         """
         symbol = self._declare_motion("ground motion", name, unit)
+        self._text("ground motion", name, meaning)
         self._declare("input", input, unit + "/s^2")
         if axis not in ("x", "y"):
             raise self.error(f"ground `{name}`: there is no axis {axis!r}, but 'x' (to the right) and 'y' (upwards)")
@@ -192,6 +199,7 @@ class Model:
         depend on the choices made before; the first run must see all options.
         """
         arguments.name(self, "choice", name)
+        self._text("choice", name, meaning)
         return self._choose(name, list(options), meaning, default)
 
     # ---- energies -----------------------------------------------------------------------------
@@ -289,6 +297,7 @@ class Model:
         parameters; without a value (or with HELD) they are held wherever they were. `drift` lists frozen coordinates with
         a constant rate (a belt) instead of rest."""
         arguments.name(self, "mode", name)
+        self._text("mode", name, meaning)
         return self._mode(name, meaning, freeze, drift)
 
     def _mode(self, name, meaning, freeze, drift):
@@ -357,8 +366,7 @@ class Model:
     def requires(self, mode, positive, failure):
         """Stops the run with the reason `failure` where `positive` is not > 0."""
         arguments.mode(self, "what a requirement is of", mode)
-        if not isinstance(failure, str):
-            raise self.error(f"requirement: what its failure means is a text, not {arguments.shown(failure)}")
+        arguments.text(self, "requirement: what its failure means", failure)
         mode.requirements.append((self._expression("requirement", positive), failure, caller_location(self.file)))
 
     def limit(self, name, message, *, when, ends=True, modes=None):
@@ -368,6 +376,8 @@ class Model:
         unless the scene lets it end. Reactions are those of one mode: `modes` says in which it is watched.
         """
         location = caller_location(self.file)
+        arguments.text(self, "the name of a limit", name)
+        arguments.text(self, f"limit `{name}`: its message", message)
         if any(known.name == name for known in self.limits):
             raise self.error(f"limit `{name}` is declared twice")
         margin, text = limits.comparison(when, f"limit `{name}`", location)
@@ -377,6 +387,7 @@ class Model:
         """A condition under which the model is meant, a comparison of parameters or of the motion, and a sentence
         that says what it assumes. A run that leaves it goes on, and says so."""
         location = caller_location(self.file)
+        arguments.text(self, "valid: its sentence", sentence)
         margin, text = limits.comparison(condition, "valid", location)
         self.validity.append(limits.Validity(sentence, margin, text, modes, location))
 
@@ -390,8 +401,7 @@ class Model:
         """
         arguments.name(self, "output", name)
         what = f"output `{name}`"
-        if not isinstance(meaning, str):
-            raise self.error(f"{what}: its meaning is a text, not {arguments.shown(meaning)}")
+        self._text("output", name, meaning)
         self._declare("output", name, unit)
         value = arguments.expression(self, what, expression)
         self.outputs.append(outputs.Output(name, unit, meaning, value, caller_location(self.file)))
@@ -405,15 +415,20 @@ class Model:
 
     # ---- drawing ------------------------------------------------------------------------------
 
-    def draw(self, name, points, *, kind="body", radius=None, force=None, states=None):
+    def draw(self, name, points, *, kind="body", radius=None, force=None, states=None, of=None, along=None):
         """A shape of the drawing that pages animate; `points` are (X, Y) in m, in the frame of the ground.
 
         Kinds: `body` and `liquid` (closed outlines), `line`, `spring`, `fixed` (ground or wall, hatched to the right of
         the way along it), `point` (a disc; `radius` in m), `contact` (where a body touches the ground). Of a contact
         `force` is a pair of coordinates or motions of the ground, whose reactions act at it along X and Y (or None),
         and `states` lists (mode, `closed`, `sticks` or `slides`); in other modes it is open.
+
+        Instead, `of` names a contact, friction or constraint declared above, which has a state and forces of its own. `along`
+        lists the directions (X, Y) in which its forces act on what is drawn: normal force and friction, upwards and to the
+        right where nothing is said; the forces of a constraint of two expressions, to the right and upwards.
         """
-        self.shapes.append(drawing.shape(self, name, points, kind, radius, caller_location(self.file), force, states))
+        self.shapes.append(drawing.shape(
+            self, name, points, kind, radius, caller_location(self.file), force, states, of, along))
 
     # ---- helpers ------------------------------------------------------------------------------
 
@@ -447,6 +462,9 @@ class Model:
     def error(self, message):
         """A ModelError that points at the line of the model file being run."""
         return ModelError(message, caller_location(self.file))
+
+    def _text(self, what, name, meaning):
+        arguments.text(self, f"{what} `{name}`: its meaning", meaning)
 
     def _declare(self, what, name, unit, of=""):
         if not of:

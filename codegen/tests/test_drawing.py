@@ -43,7 +43,7 @@ class Programs(unittest.TestCase):
             values = {name: 0.1 + 0.07 * k for k, name in enumerate(known)}
             lengths = []
             for shape in model.shapes:
-                lengths += [x for pair in shape.points for x in pair] + ([] if shape.radius is None else [shape.radius])
+                lengths += shape.values()
             function = ca.Function("points", symbols, [ca.densify(ca.vertcat(*lengths))])
             wanted = [float(x) for x in function(*(values[n] for n in known)).full().ravel()]
             self.assertEqual(len(wanted), program["outputs"])
@@ -59,6 +59,29 @@ class Contacts(unittest.TestCase):
         self.assertEqual(pivot["force"], ["reaction.z_h", "reaction.y"])
         self.assertEqual(pivot["states"], dict(
             stands_sticks="sticks", rocks_sticks="sticks", stands_slides="slides", rocks_slides="slides"))
+
+
+    def test_a_declared_contact_brings_its_forces_with_their_directions(self):
+        model = generate.load(os.path.join(ROOT, "models", "rigid_block"))[0]
+        shapes = json.loads(drawing.program(model))["shapes"]
+        left = next(shape for shape in shapes if shape["name"] == "left")
+        self.assertEqual((left["of"], left["pushes"]), ("left", ["left.normal", "left.friction"]))
+        out = run(json.loads(drawing.program(model)), dict.fromkeys(drawing.symbols(model)[0], 0.5))
+        self.assertEqual(out[left["start"] + 2:left["start"] + 6], [0, 1, 1, 0])
+
+    def test_forces_of_constraints_act_along_what_they_hold(self):
+        """The work of the forces that are drawn is that of the multipliers: J'(Q) d = grad of the expression, by differences."""
+        model = generate.load(os.path.join(ROOT, "models", "four_bar"))[0]
+        shape = next(s for s in model.shapes if s.of == "coupler_bar")
+        symbols = drawing.symbols(model)[1]
+        held = next(c.expression for c in model.constraints if c.name == "coupler_bar")
+        at_B = [s for s in symbols if s.name() in ("x_B", "y_B")]
+        point = {"x_A": 0.0, "y_A": 0.4, "x_B": 0.8, "y_B": 1.0, "coupler": 1.0}
+        values = [point.get(s.name(), 0.5) for s in symbols]
+        both = ca.Function("both", symbols, [ca.vertcat(*shape.pushes[0][1]), ca.jacobian(held, ca.vertcat(*at_B)).T])
+        drawn, gradient = (x.full().ravel() for x in both(*values))
+        for given, want in zip(drawn, gradient):
+            self.assertAlmostEqual(given, want, places=14)
 
 
 class Refusals(ScratchTest):
@@ -78,6 +101,14 @@ class Refusals(ScratchTest):
         self.refused('model.draw("b", [(x, 0)], kind="contact", force=(k, None))', "not a coordinate or a motion of the ground")
         self.refused('model.draw("b", [(x, 0)], kind="contact", states=[(model.modes[0], "shut")])', "there is no state 'shut'")
         self.refused('model.draw("b", [(x, 0)], kind="contact", states=[("m", "closed")])', "not a mode")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", of="wall")', "there is no contact, friction or constraint the text 'wall'")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", along=[(1, 0)])', "`along` belongs to `of`")
+        self.refused('model.contact("w", gap=x); model.draw("b", [(x, 0)], kind="contact", of="w", along=[(1, 0), (0, 1)])',
+                     "`along` has 2 directions, but the forces of `w` are `w.normal`")
+        self.refused('model.contact("w", gap=x); model.draw("b", [(x, 0)], kind="contact", of="w", along=[(x, 0)])', "has the dimension m")
+        self.refused('model.contact("w", gap=x); model.draw("b", [(x, 0)], kind="point", of="w")', "`of` is for a `contact`")
+        self.refused('model.draw(7, [(x, 0)], kind="point")', "the name of what is drawn is a text, not 7")
+        self.refused('model.draw("b\\x07", [(x, 0)], kind="point")', "holds U+0007: write one line of printable characters")
 
 
 if __name__ == "__main__":

@@ -26,8 +26,13 @@ def bar(name, length, P, Q):
     model.potential(density * length * g * (P[1] + Q[1]) / 2)
     model.constraint(name, sqrt((Q[0] - P[0]) ** 2 + (Q[1] - P[1]) ** 2) - length)
     model.draw(name, [P, Q], kind="line")
+    # Its force pushes the pins apart: what it does at Q.
+    model.draw(name, [Q], kind="contact", of=name, along=[((Q[0] - P[0]) / length, (Q[1] - P[1]) / length)])
 
 
+for at in (0, ground):
+    model.draw("ground", [(at - 0.08, -0.02), (at + 0.08, -0.02)], kind="fixed")
+    model.draw("fixed pin", [(at, 0)], kind="point")
 bar("crank_bar", crank, (0, 0), A)
 bar("coupler_bar", coupler, A, B)
 bar("rocker_bar", rocker, (ground, 0), B)

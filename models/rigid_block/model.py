@@ -36,4 +36,4 @@ model.limit("overturned", "a side of the block reaches the ground", when=theta**
 model.draw("ground", [(-3 * b, 0), (3 * b, 0)], kind="fixed")
 model.draw("block", [corner(-b, -h), corner(b, -h), corner(b, h), corner(-b, h)])
 for name, across in (("left", -b), ("right", b)):
-    model.draw(name, [corner(across, -h)], kind="contact")
+    model.draw(name, [corner(across, -h)], kind="contact", of=name)

@@ -23,3 +23,5 @@ for name, (place, height) in ends.items():
 
 model.draw("ground", [(-3 * l, 0), (3 * l, 0)], kind="fixed")
 model.draw("rod", list(ends.values()), kind="line")
+for name, end in ends.items():
+    model.draw(name, [end], kind="contact", of=name)

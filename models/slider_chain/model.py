@@ -24,4 +24,5 @@ for k in range(BLOCKS):
     model.point_mass(m, position=(place, height))
     model.friction(f"block_{k + 1}", slip=s, normal=(BLOCKS - k) * m * g, static=grading**k * mu_s, kinetic=grading**k * mu_k)
     model.draw(f"block {k + 1}", [(place + x * w / 2, height + y * w / 2) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    model.draw(f"under block {k + 1}", [(place, k * w)], kind="contact", of=f"block_{k + 1}")
 model.draw("table", [(-5 * w, 0), (5 * w, 0)], kind="fixed")

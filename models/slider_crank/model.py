@@ -56,6 +56,13 @@ model.constraint("guide", slider[1])
 model.constraint("guide_angle", slider[2])
 
 model.draw("guide", [(-0.2, -0.05), (1.4, -0.05)], kind="fixed")
+model.draw("slider", [(slider[0] + across, slider[1] + up) for across, up in ((-0.08, -0.05), (0.08, -0.05), (0.08, 0.05), (-0.08, 0.05))])
 model.draw("crank", [along(crank, -r / 2)[0], along(crank, r / 2)[0]], kind="line")
 model.draw("rod", [along(rod, -l / 2)[0], end], kind="line")
-model.draw("slider", [(slider[0] + across, slider[1] + up) for across, up in ((-0.08, -0.05), (0.08, -0.05), (0.08, 0.05), (-0.08, 0.05))])
+# The forces on the first of the two bodies that a joint connects.
+for name, place in (("O", (0, 0)), ("A", along(crank, r / 2)[0]), *([("B", end)] if joint == "ideal" else [])):
+    model.draw(name, [place], kind="contact", of=name)
+if joint == "clearance":
+    # The bearing on the pin: towards the middle of the bearing, and across, as the pin slips.
+    model.draw("pin", [end], kind="contact", of="pin", along=[(dx / clearance, dy / clearance), (dy / clearance, -dx / clearance)])
+model.draw("guide", [slider[:2]], kind="contact", of="guide", along=[(0, 1)])

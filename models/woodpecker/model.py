@@ -43,3 +43,7 @@ model.draw("sleeve", [(across - up * phi_M, y + up + across * phi_M) for across,
            kind="line")
 model.draw("spring", [(r_M, y + r_M * phi_M), hinge], kind="spring")
 model.draw("woodpecker", [hinge, centre, beak])
+# The pole pushes to the right, and rubs along it.
+sleeve = {name: (r_M - up * phi_M, y + up + r_M * phi_M) for name, up in (("bottom", -h_M), ("top", h_M))}
+for name, place in {"beak": beak, **sleeve}.items():
+    model.draw(name, [place], kind="contact", of=name, along=[(1, 0), (0, 1)])

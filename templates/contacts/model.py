@@ -38,4 +38,4 @@ model.limit("overturned", "a side of the box reaches the ground, whose corners a
 model.draw("ground", [(-4 * b, 0), (6 * b, 0)], kind="fixed")
 model.draw("box", [point(-b, -h), point(b, -h), point(b, h), point(-b, h)])
 for name, corner in (("left", (-b, -h)), ("right", (b, -h))):
-    model.draw(name, [point(*corner)], kind="contact")
+    model.draw(name, [point(*corner)], kind="contact", of=name)
