@@ -54,6 +54,9 @@ impl Outputs {
         earlier: &mut Earlier,
         replay: &mut Replay,
     ) -> Result<(), NotReplayed> {
+        if let Some(sketch) = &mut self.sketch {
+            sketch.lacks_points();
+        }
         let mut other = None;
         let rows = earlier.rows(|t, mode, values| {
             replay.row((t, mode, values), self).map_err(|reason| {

@@ -206,6 +206,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     if let Some(page) = &arguments.html {
         let told = Told {
             drawing: problem.variant().drawing,
+            parameters: &problem.model.parameters,
             scene: &scene.source.json(),
             command: &command_line(),
             units: &look.units,

@@ -1,6 +1,6 @@
 //! Text and data in a page, such that nothing in them is markup.
 
-use crate::record::plot::marked::{DOTS, END_SUB, SUB, is_tall};
+use crate::record::plot::marked::{DOTS, END_SUB, SUB, is_printable, is_tall};
 use serde::Serialize;
 
 /// A text with marks of subscripts and dots ([`crate::record::plot::marked`]) as HTML.
@@ -48,9 +48,8 @@ pub(super) fn text(raw: &str) -> String {
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            // No control character but the end of a line and a tab is text.
-            c if c.is_control() && c != '\n' && c != '\t' => out.push('\u{fffd}'),
-            c => out.push(c),
+            '\n' | '\t' => out.push(c),
+            c => out.push(if is_printable(c) { c } else { '\u{fffd}' }),
         }
     }
     out

@@ -28,7 +28,7 @@ pub(super) struct Motion {
     /// Names of the coordinates.
     coordinates: Vec<String>,
     parameters: BTreeMap<String, f64>,
-    /// Reactions that never change, which have no curve, with their units.
+    /// Reactions and outputs that never change, which have no curve, with their units.
     held: BTreeMap<String, (f64, String)>,
     /// What is left out.
     #[serde(skip)]
@@ -65,7 +65,9 @@ impl Motion {
                 .map(|c| c.name.clone())
                 .collect(),
             parameters: run.subject.parameters.iter().cloned().collect(),
-            held: (run.layout.range(Group::Reaction))
+            held: [Group::Reaction, Group::Output]
+                .into_iter()
+                .flat_map(|group| run.layout.range(group))
                 .filter(|i| !drawn.contains(i))
                 .filter_map(|i| {
                     let (column, first) = (&sketch.columns()[i], sketch.curve(i).next()?);

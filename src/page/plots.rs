@@ -20,6 +20,8 @@ pub(super) struct Plot {
     time: bool,
     /// Whether the curves are a motion in the plane: its start and its direction are shown.
     path: bool,
+    /// Whether all that a run told of these columns is kept, so that between two points lies a part of one step.
+    whole: bool,
     /// Abscissas, which curves may share.
     xs: Vec<Vec<f64>>,
     curves: Vec<Line>,
@@ -104,6 +106,7 @@ impl Plot {
             marks: chart.marks,
             time: false,
             path: false,
+            whole: false,
             xs: Vec::new(),
             curves: Vec::new(),
             title: symbols(&chart.title),
@@ -185,14 +188,15 @@ impl Plot {
         })
     }
 
-    /// Columns of a run over the same times.
-    pub fn of_columns(unit: &str, t: &[f64], columns: Vec<Column>) -> Plot {
+    /// Columns of a run over the same times; `whole` where all that it told of them is in them.
+    pub fn of_columns(unit: &str, t: &[f64], columns: Vec<Column>, whole: bool) -> Plot {
         let mut plot = Plot {
             x: Axis::new(&Dimension::linear("time t", "s")),
             y: Axis::new(&Dimension::linear("", unit)),
             marks: false,
             time: true,
             path: false,
+            whole,
             xs: Vec::new(),
             curves: Vec::new(),
             title: String::new(),
@@ -216,6 +220,7 @@ impl Plot {
         let values: Vec<&[f64]> = drawn.iter().map(|column| &column.y[..]).collect();
         let kept = thin(&values, t.len(), MOST_POINTS);
         plot.thinned = (kept.len() < t.len()).then_some([kept.len(), t.len()]);
+        plot.whole = whole && plot.thinned.is_none();
         let pick = |of: &[f64]| -> Vec<f64> { kept.iter().map(|&i| of[i]).collect() };
         plot.xs.push(pick(t));
         for column in &drawn {
@@ -264,11 +269,14 @@ impl Plot {
             let _ = write!(out, "<b>{heading}</b> ");
         }
         for (i, curve) in self.curves.iter().enumerate() {
+            // A lone curve without a name is what the heading names.
+            let swatch = match self.curves.len() == 1 && curve.html.is_empty() {
+                true => String::new(),
+                false => format!("<i class=\"s{}\"></i>{} ", curve.colour(i), curve.html),
+            };
             let _ = write!(
                 out,
-                "<span class=\"key\" data-curve=\"{i}\"><i class=\"s{}\"></i>{} <output></output></span>",
-                curve.colour(i),
-                curve.html
+                "<span class=\"key\" data-curve=\"{i}\">{swatch}<output></output></span>"
             );
         }
         let unit = text(&self.y.unit);

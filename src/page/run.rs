@@ -4,6 +4,7 @@ use super::frames::Motion;
 use super::plots::{Column, Plot};
 use super::table::number;
 use super::{Cell, Page, Table};
+use crate::model::Parameter;
 use crate::record::plot::{Grouped, Look, grouped, portraits, symbol};
 use crate::record::{Group, Run, Sketch, Summary, Units};
 
@@ -12,6 +13,8 @@ use crate::record::{Group, Run, Sketch, Summary, Units};
 pub struct Told<'a> {
     /// What the model draws ([`crate::model::Variant::drawing`]); empty for nothing.
     pub drawing: &'a str,
+    /// The parameters of the model ([`crate::model::Model::parameters`]): their units and meanings.
+    pub parameters: &'a [Parameter],
     /// The scene as it was run.
     pub scene: &'a str,
     /// The command that made the run.
@@ -37,10 +40,10 @@ pub fn run_page(run: &Run, sketch: &Sketch, told: Told) -> String {
     page.body.push_str(CONTROLS);
     page.heading("Over time");
     page.body.push_str(
-        "<p class=\"faint\">Drag to zoom all plots, double-click for the whole run, click to go to a time. Modes: \
-         <span id=\"modes\"></span></p>\n",
+        "<p class=\"faint\"><span class=\"hint\">Drag to zoom all plots, double-click for the whole run, click to go to a time; \
+         transitions are the marks at the top of each plot. </span>Modes: <span id=\"modes\"></span></p>\n",
     );
-    let mut thinned = None;
+    let (mut thinned, mut is_any_drawn) = (None, false);
     for group in &groups {
         let plot = columns(sketch, group);
         thinned = thinned.or(plot.thinned());
@@ -49,13 +52,25 @@ pub fn run_page(run: &Run, sketch: &Sketch, told: Told) -> String {
         }
         if !plot.is_empty() {
             page.plot(plot);
+            is_any_drawn = true;
+        }
+    }
+    if is_any_drawn {
+        page.body.push_str(
+            "<div class=\"plot\"><div class=\"below\">time t <span data-unit=\"s\"></span></div></div>\n",
+        );
+        match (thinned, sketch.is_whole()) {
+            (None, true) => page.note(BETWEEN),
+            (None, false) => page.note(LINES),
+            (Some(_), _) => {}
         }
     }
     if let Some([kept, all]) = thinned {
         let all = all.max(sketch.taken());
         page.note(&format!(
             "Curves keep {kept} of {all} points: of each part of the run the first and those with the least and the largest \
-             value, so that no extreme is lost. What lies between them is in trajectory.csv."
+             value, so that no extreme is lost; zoomed in until they lie apart they are marked by dots. What lies between them is in \
+             trajectory.csv."
         ));
     }
     if groups.is_empty() {
@@ -74,7 +89,8 @@ pub fn run_page(run: &Run, sketch: &Sketch, told: Told) -> String {
             .for_each(|chart| page.plot(Plot::of_path(chart)));
         page.body.push_str("</div>\n");
     }
-    tables(&mut page, &summary);
+    tables(&mut page, &summary, sketch);
+    parameters(&mut page, &summary, told.parameters);
     page.source("The scene", told.command, told.scene);
     page.data.motion = Some(motion);
     page.finish()
@@ -88,15 +104,24 @@ aria-label=\"the mechanism in motion\"></canvas><div id=\"readout\"></div><div i
 <label>speed <select id=\"speed\" title=\"+ and −\"></select></label>
 <label title=\"c\"><input type=\"checkbox\" id=\"with-forces\"> contacts and forces</label></div>
 <div class=\"bar\" id=\"magnify\"><button id=\"magnify-small\">magnify small motions</button></div>
-<p class=\"faint\">Keys: space plays, ← and → go from frame to frame, Home and End, + and − change the speed, i and o \
+<p class=\"faint hint\">Keys: space plays, ← and → go from frame to frame, Home and End, + and − change the speed, i and o \
 zoom in and out about the time shown, 0 shows the whole run, c contacts and forces.</p>
 ";
+
+/// What curves are between the points that a page has of them.
+const BETWEEN: &str = "Curves are those of the run at its rows, at up to 32 points of each step and on both sides of each \
+transition. Zoom in until these lie apart and dots mark them: between them coordinates follow the cubic through values and \
+rates, rates its derivative, and all else straight lines.";
+
+/// The same where not everything is kept, as of a run that goes on with the files of an earlier one.
+const LINES: &str = "Of a part of this run there are rows or extremes alone, so curves are straight lines between what is kept: zoom \
+in until dots mark it.";
 
 /// The curves of a group.
 fn columns(sketch: &Sketch, group: &Grouped) -> Plot {
     let column = |&i: &usize| &sketch.columns()[i];
     let Some(first) = group.columns.first() else {
-        return Plot::of_columns("1", &[], Vec::new());
+        return Plot::of_columns("1", &[], Vec::new(), false);
     };
     let t: Vec<f64> = sketch.curve(*first).map(|(t, _)| t).collect();
     let columns = group.columns.iter().map(|i| Column {
@@ -109,7 +134,8 @@ fn columns(sketch: &Sketch, group: &Grouped) -> Plot {
         },
         y: sketch.curve(*i).map(|(_, x)| x).collect(),
     });
-    Plot::of_columns(&column(first).unit, &t, columns.collect())
+    let whole = sketch.is_whole();
+    Plot::of_columns(&column(first).unit, &t, columns.collect(), whole)
 }
 
 /// Model, choices, and how the run ended.
@@ -143,12 +169,17 @@ fn head(page: &mut Page, summary: &Summary) {
     }
 }
 
-/// Extremes, transitions, energies, parameters, work.
-fn tables(page: &mut Page, summary: &Summary) {
+/// Extremes, transitions, energies.
+fn tables(page: &mut Page, summary: &Summary, sketch: &Sketch) {
     let end = &summary.end;
     let at_end = |name: &str| end.state().find(|(n, _)| n == name).map(|(_, x)| *x);
+    let meaning = |name: &str| match sketch.column(name) {
+        Some(i) => sketch.columns()[i].meaning.clone(),
+        None => String::new(),
+    };
     page.heading("Extremes");
-    let mut table = Table::new(["", "unit", "end", "min", "at t", "max", "at t"]);
+    let heads = ["", "unit", "end", "min", "at t", "max", "at t", "meaning"];
+    let mut table = Table::new(heads);
     table = table.unit(4, "s").unit(6, "s");
     for (name, p) in &summary.peaks.0 {
         let number = |x: f64, unit: &str| Cell::Number(x, unit.to_owned());
@@ -160,12 +191,14 @@ fn tables(page: &mut Page, summary: &Summary) {
             number(p.t_min, "s"),
             number(p.max, &p.unit),
             number(p.t_max, "s"),
+            Cell::from(meaning(name)),
         ]);
     }
     page.table(&table);
     if summary.events.total > 0 {
         page.heading("Transitions");
-        let mut table = Table::new(["", "count", "energy lost", "gained energy"]).unit(2, "J");
+        let mut table =
+            Table::new(["", "count", "energy lost", "of them with a gain"]).unit(2, "J");
         for (name, count) in summary.events.by_transition.iter() {
             let impacts = &summary.impacts.by_transition.0;
             let lost = impacts.iter().find(|(n, _)| n == name).map(|(_, i)| i);
@@ -194,10 +227,21 @@ fn tables(page: &mut Page, summary: &Summary) {
         page.table(&table);
         page.note(&format!("Frame: {}.", energy.frame));
     }
+}
+
+/// The parameters with their units and meanings, and how much work the run was.
+fn parameters(page: &mut Page, summary: &Summary, of_model: &[Parameter]) {
     page.heading("Parameters");
-    let mut table = Table::new(["", "value"]);
+    let mut table = Table::new(["", "value", "unit", "meaning"]);
     for (name, x) in &summary.parameters.0 {
-        table.row([Cell::from(name.clone()), Cell::plain(*x)]);
+        let known = of_model.iter().find(|p| p.name == name);
+        let (unit, meaning) = known.map_or(("1", ""), |p| (p.unit, p.meaning));
+        table.row([
+            Cell::from(name.clone()),
+            Cell::Number(*x, unit.to_owned()),
+            Cell::Unit(unit.to_owned()),
+            Cell::from(meaning),
+        ]);
     }
     page.table(&table);
     let solver = &summary.solver;

@@ -26,6 +26,8 @@ pub struct Sketch {
     marks: Marks,
     /// Number of rows and points that it was given.
     taken: usize,
+    /// Whether what it was given includes the points between rows.
+    has_points: bool,
 }
 
 /// Values of columns over time.
@@ -82,12 +84,14 @@ impl Sketch {
                 thinned: [0; 2],
             },
             taken: 0,
+            has_points: true,
         }
     }
 
     /// That of a run that is in memory.
     pub fn of(run: &Run) -> Sketch {
         let mut sketch = Sketch::new(&run.layout);
+        sketch.lacks_points();
         for (i, &t) in run.trajectory.t.iter().enumerate() {
             sketch.row(t, run.trajectory.row(i));
         }
@@ -139,6 +143,18 @@ impl Sketch {
     /// Number of rows and points that it was given.
     pub(crate) fn taken(&self) -> usize {
         self.taken
+    }
+
+    /// Says that of a part of the run there are rows alone, as of one that goes on with files.
+    pub fn lacks_points(&mut self) {
+        self.has_points = false;
+    }
+
+    /// Whether between two neighbours in time there is nothing but a part of a step: points between rows, both sides of every
+    /// transition, and none of them left out.
+    pub(crate) fn is_whole(&self) -> bool {
+        let whole = self.rows.thinned + self.sides.thinned == 0;
+        whole && self.has_points && self.sides.t.len() == 2 * self.marks.total()
     }
 
     /// From when on every row and every transition is kept, s; −∞ where nothing was left out.

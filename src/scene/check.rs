@@ -227,13 +227,18 @@ pub(crate) fn unknown_name(what: &str, name: &str, known: &[&str], at: &Span) ->
     SceneError::new(kind, at).help(help)
 }
 
-/// A text without control characters: they would act on a terminal, and no picture may hold them.
+/// A text without control characters, which would act on a terminal, without code points for private use, and without those
+/// that are no characters: no picture may hold them.
 fn line(node: &Node, text: &str) -> Result<Datum, SceneError> {
-    match text.chars().find(|c| c.is_control()) {
+    let has_no_print = |c: &char| {
+        let is_private = matches!(u32::from(*c), 0xe000..=0xf8ff | 0xf0000..);
+        c.is_control() || is_private || u32::from(*c) & 0xfffe == 0xfffe
+    };
+    match text.chars().find(has_no_print) {
         None => Ok(Datum::Text(text.to_owned())),
         Some(found) => {
             let found = format!("U+{:04X}", u32::from(found));
-            let kind = SceneErrorKind::ControlCharacter { found };
+            let kind = SceneErrorKind::NotPrintable { found };
             Err(SceneError::new(kind, &node.place()).help("write one line of printable characters"))
         }
     }

@@ -139,8 +139,8 @@ pub enum SceneErrorKind {
         coordinate: &'static str,
     },
     /// A text with a character that is none.
-    #[error("this text holds the control character {found}")]
-    ControlCharacter {
+    #[error("this text holds {found}, which cannot be printed")]
+    NotPrintable {
         /// Its code point, `U+001B`.
         found: String,
     },

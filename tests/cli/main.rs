@@ -8,6 +8,7 @@ mod compare;
 mod describe;
 mod folders;
 mod fragility;
+mod hostile;
 mod input;
 mod interrupt;
 mod limits;

@@ -187,6 +187,7 @@ fn a_page_is_used_by_keys_in_the_dark_and_on_paper() {
         document.querySelector('#tools button').click();
         is('dark', dark_on && paper() !== light); is('ink', ink() !== 'rgb(27, 27, 27)');
         dispatchEvent(new Event('beforeprint')); is('paper', paper() === light);
+        is('fits', plots.every((plot) => plot.u.width <= 700));
         dispatchEvent(new Event('afterprint')); is('dark again', paper() !== light);
         const printed = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules]).filter((rule) => rule.media?.mediaText === 'print');
         is('print', printed.some((rule) => rule.cssText.includes('.bar')));
@@ -200,7 +201,102 @@ fn a_page_is_used_by_keys_in_the_dark_and_on_paper() {
             seen[0].iter().all(|line| line.ends_with(" true")),
             "{seen:#?}"
         );
-        assert_eq!(seen[0].len(), 14, "{seen:#?}");
+        assert_eq!(seen[0].len(), 15, "{seen:#?}");
+    }
+}
+
+#[test]
+fn a_deep_zoom_shows_the_motion_its_points_and_the_names_of_transitions() {
+    let home = tempfile::tempdir().unwrap();
+    let pendulum = scene("forced_pendulum");
+    let coarse = page(0, home.path(), &pendulum, &["--set", "end=2"]);
+    // Rows between those of the page.
+    let fine = ["--set", "end=2", "--set", "record.every=0.0007"];
+    ends_with(
+        0,
+        home.path(),
+        &[&["run", &pendulum, "--out", "fine"][..], &fine].concat(),
+    );
+    let mut rows = csv::Reader::from_path(home.path().join("fine/trajectory.csv")).unwrap();
+    let rows: Vec<[f64; 3]> = rows
+        .deserialize::<std::collections::HashMap<String, String>>()
+        .map(|row| {
+            let row = row.unwrap();
+            ["t", "theta", "theta.rate"].map(|name| row[name].parse().unwrap())
+        })
+        .collect();
+    let rows = serde_json::to_string(&rows).unwrap();
+    let script = format!(
+        "const rows = {rows}, {{ plots }} = dalembert, seen = [];
+        for (const k of [0, 1]) {{
+            const {{ x, y }} = plots[k].curves[0], errors = [0, 0];
+            let i = 0;
+            for (const [t, ...values] of rows) {{
+                while (i + 2 < x.length && x[i + 1] <= t) i++;
+                const line = y[i] + (y[i + 1] - y[i]) * (t - x[i]) / (x[i + 1] - x[i]);
+                [plots[k].valueAt(0, t), line].forEach((value, of) => errors[of] = Math.max(errors[of], Math.abs(value - values[k])));
+            }}
+            seen.push(...errors.map(String));
+        }}
+        done(seen);"
+    );
+    let knock = page(0, home.path(), &scene("bouncing_ball"), &["--set", "end=1"]);
+    let tags = "
+        const { plots, motion, zoomGroup } = dalembert, [plot] = plots, [t, name] = motion.events[0];
+        zoomGroup(plot, [t - 1e-3, t + 1e-3], null);
+        setTimeout(() => {
+            const over = plot.u.over, box = over.getBoundingClientRect(), clientX = box.left + plot.u.valToPos(t, 'x') + 2;
+            over.dispatchEvent(new MouseEvent('mousemove', { clientX, clientY: box.top + 30, bubbles: true }));
+            setTimeout(() => done([`tag ${!plot.tag.hidden && plot.tag.textContent.startsWith(name + ', t = ')}`]), 100);
+        }, 200);";
+    let Some(seen) = in_browser(home.path(), &[coarse], &script) else {
+        return;
+    };
+    let [theta, line, rate, rate_line] = [0, 1, 2, 3].map(|i| seen[0][i].parse::<f64>().unwrap());
+    // Cubics are wrong by h^4/384 of the fourth derivative, which is below 100 rad/s^4 here, their derivatives by h^3/(72 √3) of
+    // it; lines are by h^2/8 of the second and third.
+    let (h, fourth) = (0.01_f64, 100.0);
+    assert!(theta < h.powi(4) / 384.0 * fourth, "{theta:e}");
+    assert!(
+        rate < h.powi(3) / (72.0 * 3_f64.sqrt()) * fourth,
+        "{rate:e}"
+    );
+    assert!(line > 1e-5 && rate_line > 1e-5, "{line:e} {rate_line:e}");
+    let seen = in_browser(home.path(), &[knock], tags).unwrap();
+    assert_eq!(seen[0], ["tag true"]);
+}
+
+#[test]
+fn forces_at_declared_contacts_are_those_of_the_ground() {
+    let home = tempfile::tempdir().unwrap();
+    let page = page(0, home.path(), &scene("rigid_block"), &["--set", "end=1.5"]);
+    let script = "
+        const { show, plots, motion, contacts } = dalembert, seen = new Set();
+        document.getElementById('with-forces').click();
+        const forces = plots.find(({ curves }) => curves.some(({ name }) => name === 'reaction.y_g'));
+        const along = ['reaction.x_g', 'reaction.y_g'].map((name) => forces.curves.findIndex((curve) => curve.name === name));
+        let worst = 0;
+        for (const t of forces.curves[0].x) {
+            show(t);
+            const told = contacts();
+            told.forEach(({ name, state }) => seen.add(`${name} ${state}`));
+            along.forEach((i, axis) => {
+                const sum = told.reduce((sum, { force }) => sum + force[axis], 0);
+                worst = Math.max(worst, Math.abs(sum - forces.valueAt(i, t)));
+            });
+        }
+        const told = document.getElementById('forces').textContent;
+        done([`worst ${worst < 1e-10}`, `listed ${told.includes('left.normal') && told.includes('right.friction')}`, ...[...seen].sort()]);";
+    if let Some(seen) = in_browser(home.path(), &[page], script) {
+        let expected = [
+            "worst true",
+            "listed true",
+            "left open",
+            "left sticks",
+            "right open",
+            "right sticks",
+        ];
+        assert_eq!(seen[0], expected);
     }
 }
 

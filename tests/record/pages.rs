@@ -14,6 +14,7 @@ const DRAWING: &str = r#"{"symbols":["y"],"registers":2,"outputs":4,
 fn page(run: &Run, sketch: &Sketch, drawing: &str) -> String {
     let told = Told {
         drawing,
+        parameters: &[],
         scene: "{}",
         command: "dalembert run",
         units: &Units::default(),

@@ -29,6 +29,19 @@ plots.under = (u, plot) => {
   for (const [t] of motion.events) u.ctx.fillRect(x(t), top, 1, 5 * devicePixelRatio);
   u.ctx.restore();
 };
+// The names of transitions under the cursor, or within so many pixels of it, beside it.
+const NEAR = 4;
+plots.named = (plot, left, top) => {
+  const tag = plot.tag ??= plot.u.over.appendChild(element("div", { className: "tag", hidden: true }));
+  const x = (t) => plot.u.valToPos(inUnit(t, "s"), "x");
+  const near = left < 0 || top < 0 ? [] : motion.events.filter(([t]) => Math.abs(x(t) - left) <= NEAR);
+  tag.hidden = !near.length;
+  if (tag.hidden) return;
+  const [t, name] = near.reduce((best, event) => Math.abs(x(event[0]) - left) < Math.abs(x(best[0]) - left) ? event : best);
+  tag.textContent = `${name}, t = ${digits(inUnit(t, "s"), 8)} ${printedUnit("s")}` + (near.length > 1 ? `, one of ${near.length}` : "");
+  const onRight = x(t) < plot.u.over.clientWidth / 2;
+  Object.assign(tag.style, { left: onRight ? `${x(t) + 6}px` : "", right: onRight ? "" : `${plot.u.over.clientWidth - x(t) + 6}px` });
+};
 
 // ---- drawing -------------------------------------------------------------------------------
 const picture = byId("picture");
@@ -94,25 +107,45 @@ const measure = () => {
   const size = Math.max(box[2] - box[0], box[3] - box[1]) || 1;
   box = [box[0] - 0.12 * size, box[1] - 0.12 * size, box[2] + 0.12 * size, box[3] + 0.12 * size];
 };
-// ---- reactions and contacts ----------------------------------------------------------------
+// ---- forces and contacts -------------------------------------------------------------------
 const modeAt = (t) => motion.visits.findLast(([from]) => from <= t)?.[2] ?? motion.visits[0][2];
-const reactions = {};
-for (const { spec, curves } of plots) for (const { name, x, y } of curves)
-  if (spec.time && name.startsWith("reaction.")) reactions[name] = { unit: spec.y.unit, at: (t) => valueAt(x, y, t) ?? y[y.length - 1] };
-for (const [name, [value, unit]] of Object.entries(motion.held)) reactions[name] = { unit, at: () => value };
-const forceOf = (shape, t) => (shape.force ?? []).map((name) => reactions[name]?.at(t) ?? 0);
+// Columns that are forces: all reactions, and what pushes at declared contacts.
+const pushing = new Set(motion.drawing?.shapes.flatMap(({ pushes }) => pushes ?? []));
+const forces = {};
+for (const { spec, curves } of plots) for (const curve of curves)
+  if (spec.time && (curve.name.startsWith("reaction.") || pushing.has(curve.name)))
+    forces[curve.name] = { unit: spec.y.unit, at: (t) => valueAt(curve, t) ?? curve.y[curve.y.length - 1] };
+for (const [name, [value, unit]] of Object.entries(motion.held))
+  if (name.startsWith("reaction.") || pushing.has(name)) forces[name] = { unit, at: () => value };
+const valueOfForce = (name, t) => forces[name]?.at(t) ?? 0;
+// The force at a contact on the body, to the right and upwards: of a declared one the sum along its directions, which
+// stand behind the point.
+const forceOf = (shape, t) => {
+  if (!shape.pushes) return (shape.force ?? []).map((name) => valueOfForce(name, t));
+  const out = points(t), along = (k, axis) => out[shape.start + 2 + 2 * k + axis];
+  return [0, 1].map((axis) => shape.pushes.reduce((sum, name, k) => sum + valueOfForce(name, t) * along(k, axis), 0));
+};
+// The state of a contact in a mode; null where it has none to tell. Modes of declared contacts are named by all their states.
+const stateOf = (shape, mode) => {
+  if (shape.states) return shape.states[mode] ?? "open";
+  return mode.split(", ").find((part) => part.startsWith(`${shape.of} `))?.slice(shape.of.length + 1) ?? null;
+};
 let largest = 0;
 const measureForces = () => {
   for (const { curves, spec } of plots) for (const { name, y } of curves)
-    if (spec.time && drawing.shapes.some((shape) => shape.force?.includes(name)))
+    if (spec.time && drawing.shapes.some(({ force, pushes }) => force?.includes(name) || pushes?.includes(name)))
       largest = Math.max(largest, ...extent(y).map(Math.abs).filter(Number.isFinite));
   for (const shape of drawing.shapes) largest = Math.max(largest, ...forceOf(shape, first).map(Math.abs));
 };
+// What is told of the contacts now: their names, states and forces.
+const contacts = () => drawing.shapes.filter(({ kind }) => kind === "contact").map((shape) => ({
+  name: shape.name, state: stateOf(shape, motion.modes[modeAt(now)]), force: forceOf(shape, now),
+}));
 const LINE = 15; // height of a line of words, px
 // A contact: a ring where it is open, a disc where it is closed, with its state in words and the force on the body, whose
 // arrow ends at the contact.
 const contact = (c, shape, [x, y], room, labels) => {
-  const state = shape.states?.[motion.modes[modeAt(now)]] ?? (shape.states ? "open" : null);
+  const state = stateOf(shape, motion.modes[modeAt(now)]);
   const colour = style(state === "slides" ? "--s1" : "--s0");
   c.beginPath();
   c.arc(x, y, 5, 0, 2 * Math.PI);
@@ -211,11 +244,11 @@ const hatch = (c, at) => {
 const read = () => {
   const places = clamp(4 - Math.floor(Math.log10(Math.max(inUnit(last - first, "s"), 1e-12))), 0, 12);
   byId("readout").textContent = `t = ${inUnit(now, "s").toFixed(places)} ${printedUnit("s")}\n${motion.modes[modeAt(now)]}`;
-  const forces = byId("forces");
-  forces.textContent = "";
+  const list = byId("forces");
+  list.textContent = "";
   if (!byId("with-forces").checked) return;
-  for (const [name, { unit, at }] of Object.entries(reactions))
-    forces.append(`${name} = ${digits(inUnit(at(now), unit), 5)} ${printedUnit(unit)}\n`);
+  for (const [name, { unit, at }] of Object.entries(forces))
+    list.append(`${name} = ${digits(inUnit(at(now), unit), 5)} ${printedUnit(unit)}\n`);
 };
 const show = (t) => {
   now = clamp(t, first, last);

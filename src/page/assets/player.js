@@ -100,4 +100,4 @@ listeners.theme.push(() => show(now));
 listeners.units.push(() => show(now));
 redraw();
 show(first);
-Object.assign(window.dalembert, { show, picture, motion });
+Object.assign(window.dalembert, { show, picture, motion, contacts });

@@ -1,6 +1,9 @@
 // Plots: curves over a pair of axes. uPlot draws the axes and selects what to zoom to; curves are drawn here, of each
 // column of pixels the first, last, lowest and highest point, so that no extreme is lost however many points there are.
 const plots = [];
+const BENT = 64; // places at which a bend between points is looked at in a window
+const APART = 12; // distance from which on points of a curve have dots of their own, px
+const SMOOTH = 2; // distance of what is drawn of a bend between two points, px
 const PIECE = 12; // length of the pieces of one colour where curves lie on each other, px
 const isSorted = (x) => x.every((v, i) => i === 0 || !(v < x[i - 1]));
 const lastAtMost = (x, value) => {
@@ -11,13 +14,32 @@ const lastAtMost = (x, value) => {
   }
   return low;
 };
-// A curve at an abscissa, on the straight line between its points; null where it is not.
-const valueAt = (x, y, at) => {
+// Whether a curve bends between two neighbours: of a coordinate the rate is known, of a rate what it is the rate of.
+const bends = ({ rate, of }) => Boolean(rate || of);
+// A curve between its points i and i + 1, at the part s of the way: a coordinate on the cubic through values and rates, a rate
+// on its derivative, where that tells more than the rounding of the values, all else on the straight line.
+const onPiece = ({ x, y, rate, of }, i, s) => {
+  const h = x[i + 1] - x[i], r = 1 - s, line = y[i] + (y[i + 1] - y[i]) * s;
+  if (rate) {
+    const cubic = (1 + 2 * s) * r * r * y[i] + s * r * r * h * rate[i] + s * s * (3 - 2 * s) * y[i + 1] - s * s * r * h * rate[i + 1];
+    return Number.isFinite(cubic) ? cubic : line;
+  }
+  if (!of) return line;
+  const bend = 3 * ((of[i + 1] - of[i]) / h - (y[i] + y[i + 1]) / 2);
+  const rounding = 3 * Number.EPSILON * (Math.abs(of[i]) + Math.abs(of[i + 1])) / h;
+  return Math.abs(bend) > rounding && Number.isFinite(bend) ? line + 2 * s * r * bend : line;
+};
+// A curve at an abscissa; null where it is not.
+const valueAt = (curve, at) => {
+  const { x, y } = curve;
   if (!x.length || at < x[0] || at > x[x.length - 1]) return null;
   const i = lastAtMost(x, at), j = Math.min(i + 1, x.length - 1);
-  if (y[i] == null || x[j] <= x[i]) return y[i];
-  return y[j] == null ? y[i] : y[i] + (y[j] - y[i]) * ((at - x[i]) / (x[j] - x[i]));
+  if (y[i] == null || y[j] == null || x[j] <= x[i]) return y[i];
+  return onPiece(curve, i, (at - x[i]) / (x[j] - x[i]));
 };
+// The values of a column of the run, where all of them are here and there are as many as of another.
+const wholeColumns = new Map(data.plots.filter((spec) => spec.whole).flatMap((spec) => spec.curves.map((curve) => [curve.name, curve.y])));
+const beside = (name, y) => wholeColumns.get(name)?.length === y.length ? wholeColumns.get(name) : null;
 const VARIES = 1e-12; // what varies by less than this part of its size varies by rounding alone, as in src/record/plot/overview.rs
 const widened = ([low, high], log, margin) => {
   if (!(low <= high)) return log ? [1, 10] : [0, 1];
@@ -35,7 +57,11 @@ const extent = (values) => values.reduce(([low, high], v) => v == null ? [low, h
 data.plots.forEach((spec, index) => {
   const place = byId(`plot-${index}`);
   if (!place || !spec.curves.length) return;
-  const curves = spec.curves.map((curve, i) => ({ ...curve, x: spec.xs[curve.x], colour: `--s${curve.style === "background" ? 7 : i % 8}` }));
+  const curves = spec.curves.map((curve, i) => ({
+    ...curve, x: spec.xs[curve.x], colour: `--s${curve.style === "background" ? 7 : i % 8}`,
+    rate: spec.whole ? beside(`${curve.name}.rate`, curve.y) : null,
+    of: spec.whole && curve.name.endsWith(".rate") ? beside(curve.name.slice(0, -5), curve.y) : null,
+  }));
   const sorted = curves.every((curve) => isSorted(curve.x));
   // Plots of one group zoom together, and are read at the same abscissa.
   const group = sorted && !spec.x.log ? `${spec.x.label} ${spec.x.unit}` : null;
@@ -48,11 +74,15 @@ data.plots.forEach((spec, index) => {
 
   // What is shown, in units of the model.
   const fitted = (window) => {
-    const y = curves.flatMap(({ x, y }) => {
+    const y = curves.flatMap((curve) => {
+      const { x, y } = curve;
       if (!sorted || !window) return extent(y);
-      const inside = [];
+      const inside = [valueAt(curve, window[0]), valueAt(curve, window[1])];
       for (let i = lastAtMost(x, window[0]); i < x.length && x[i] <= window[1]; i++) if (x[i] >= window[0]) inside.push(y[i]);
-      return [...extent(inside), valueAt(x, y, window[0]), valueAt(x, y, window[1])];
+      // Where few points are in it, a bend between them counts.
+      const count = bends(curve) && inside.length < BENT ? BENT : 0;
+      for (let k = 1; k < count; k++) inside.push(valueAt(curve, window[0] + (window[1] - window[0]) * k / count));
+      return extent(inside);
     });
     return widened(extent(y.filter((v) => v != null && Number.isFinite(v))), spec.y.log, 0.06);
   };
@@ -85,15 +115,16 @@ data.plots.forEach((spec, index) => {
       : (v) => top + height - (of(v) - low) / (high - low) * height;
   };
   plot.pixel = (axis, v) => placed(plot.u, axis)(v);
-  // The pieces of a curve in pixels; of sorted ones what is in the window and the next points beside it.
-  const pieces = (u, { x, y }) => {
-    const px = placed(u, "x"), py = placed(u, "y"), out = [];
-    let from = 0, to = x.length - 1;
-    if (sorted) {
-      from = Math.max(0, lastAtMost(x, plot.view.x[0]) - 1);
-      while (from > 0 && x[from] >= plot.view.x[0]) from--;
-      to = Math.min(to, lastAtMost(x, plot.view.x[1]) + 1);
-    }
+  // From which point of a sorted curve to which: what is in the window and the next ones beside it.
+  const inWindow = (x) => {
+    let from = Math.max(0, lastAtMost(x, plot.view.x[0]) - 1);
+    while (from > 0 && x[from] >= plot.view.x[0]) from--;
+    return [from, Math.min(x.length - 1, lastAtMost(x, plot.view.x[1]) + 1)];
+  };
+  // The pieces of a curve in pixels.
+  const pieces = (u, curve) => {
+    const { x, y } = curve, px = placed(u, "x"), py = placed(u, "y"), out = [];
+    const [from, to] = sorted ? inWindow(x) : [0, x.length - 1];
     let piece = null, column = null;
     const flush = () => {
       if (!column) return;
@@ -107,6 +138,17 @@ data.plots.forEach((spec, index) => {
       if (!piece) out.push(piece = []);
       const p = [px(x[i]), py(y[i]), i];
       if (!sorted) { piece.push(p); continue; }
+      const before = column?.last;
+      if (before && bends(curve) && p[0] - before[0] > 2 * SMOOTH * devicePixelRatio) {
+        flush();
+        const h = x[i] - x[i - 1], part = (at) => clamp((at - x[i - 1]) / h, 0, 1);
+        const [a, b] = [part(plot.view.x[0]), part(plot.view.x[1])];
+        const count = Math.ceil((b - a) * (p[0] - before[0]) / (SMOOTH * devicePixelRatio));
+        for (let k = 0; k <= count && count; k++) {
+          const s = a + (b - a) * k / count;
+          if (s > 0 && s < 1) piece.push([px(x[i - 1] + s * h), py(onPiece(curve, i - 1, s)), i - 1 + s]);
+        }
+      }
       if (!column || Math.floor(p[0]) !== column.at) {
         flush();
         column = { at: Math.floor(p[0]), first: p, low: p, high: p, last: p };
@@ -138,9 +180,15 @@ data.plots.forEach((spec, index) => {
         if (!(Math.abs(heights[a][i] - heights[b][i]) < devicePixelRatio)) return false;
       return true;
     };
+    // Those that lie on a curve, on one of those, and so on.
+    const connected = (of, piece) => {
+      const group = new Set([of]);
+      for (const a of group) for (let b = 0; b < lines.length; b++) if (!group.has(b) && same(a, b, piece)) group.add(b);
+      return [...group].sort((a, b) => a - b);
+    };
     return lines.map((_, a) => Array.from({ length: count }, (_, piece) => {
-      const shared = lines.map((_, b) => b).filter((b) => a === b || same(a, b, piece));
-      return shared[piece % shared.length] === a;
+      const group = connected(a, piece);
+      return group[piece % group.length] === a;
     }));
   };
   const draw = (u) => {
@@ -172,10 +220,22 @@ data.plots.forEach((spec, index) => {
         c.arc(x, y, (marked ? 3 : 2) * ratio, 0, 2 * Math.PI);
         c.fill();
       }
+      if (spec.time) dots(u, c, curves[i], ratio);
       if (spec.path) way(c, line, ratio);
       c.restore();
     });
     c.restore();
+  };
+  // The points of a curve, where they lie apart.
+  const dots = (u, c, { x, y }, ratio) => {
+    const [from, to] = inWindow(x), px = placed(u, "x"), py = placed(u, "y");
+    if (u.bbox.width < APART * ratio * (to - from)) return;
+    for (let i = from; i <= to; i++) {
+      if (y[i] == null) continue;
+      c.beginPath();
+      c.arc(px(x[i]), py(y[i]), 2 * ratio, 0, 2 * Math.PI);
+      c.fill();
+    }
   };
   // Direction of a path, and a ring where it starts.
   const way = (c, line, ratio) => {
@@ -205,8 +265,9 @@ data.plots.forEach((spec, index) => {
   };
 
   // ---- reading out ------------------------------------------------------------------------
-  plot.read = (at) => curves.forEach(({ x, y, style }, i) => {
-    outputs[i].textContent = at == null || style === "points" ? "" : digits(inUnit(valueAt(x, y, at), spec.y.unit));
+  plot.valueAt = (i, at) => valueAt(curves[i], at);
+  plot.read = (at) => curves.forEach((curve, i) => {
+    outputs[i].textContent = at == null || curve.style === "points" ? "" : digits(inUnit(valueAt(curve, at), spec.y.unit));
   });
   const note = place.querySelector(".note");
   const nearest = (left, top) => {
@@ -233,6 +294,7 @@ data.plots.forEach((spec, index) => {
   const grouped = () => plots.filter((other) => other === plot || group && other.group === group);
   const hover = (u) => {
     const { left, top } = u.cursor;
+    if (spec.time) plots.named?.(plot, left, top);
     if (left < 0 || top < 0) {
       if (byPoint) readNearest(null);
       if (group) grouped().forEach((other) => other.read(plots.now && other.spec.time ? plots.now() : null));
@@ -308,7 +370,8 @@ data.plots.forEach((spec, index) => {
       note.textContent = found ? curves[found.i].notes?.[found.k] ?? "" : "";
     } else if (spec.time) plots.go?.(plot.u.posToVal(left, "x") / shownUnit(spec.x.unit).factor);
   });
-  new ResizeObserver(() => { plot.u.setSize(size()); plots.moved?.(); }).observe(axes);
+  plot.fit = () => plot.u.setSize(size());
+  new ResizeObserver(() => { plot.fit(); plots.moved?.(); }).observe(axes);
   plots.push(plot);
 });
 const zoomGroup = (plot, x, y) => {
@@ -328,4 +391,11 @@ const redraw = () => plots.forEach((plot) => plot.u.redraw(false, true));
 listeners.theme.push(redraw);
 listeners.units.push(() => plots.forEach((plot) => plot.apply()));
 showUnits();
+// On paper a page is as wide as A4 less the margins of browsers; what is drawn on the screen's width would be cut there.
+const PAPER = "700px";
+for (const [event, width] of [["beforeprint", PAPER], ["afterprint", ""]]) addEventListener(event, () => {
+  document.body.style.width = width;
+  plots.forEach((plot) => plot.fit());
+  plots.moved?.();
+});
 window.dalembert = { plots, data, zoomGroup, setTheme };

@@ -1,6 +1,6 @@
 //! Drawing in pixels: a picture is a list of marks, which each format writes in its way.
 
-use super::marked::{DOTS, END_SUB, SUB, is_tall};
+use super::marked::{DOTS, END_SUB, SUB, is_tall, printable};
 use super::palette::PAPER;
 use plotters::style::RGBColor;
 
@@ -203,7 +203,7 @@ impl Canvas {
     /// A text without dots.
     fn plain(&mut self, text: &str, at: (f64, f64), anchor: Anchor, font: Font) {
         self.marks.push(Mark::Text {
-            text: text.to_owned(),
+            text: printable(text),
             at: point(at),
             anchor,
             font,

@@ -380,7 +380,7 @@ fn columns_count_characters() {
 #[test]
 fn a_title_is_of_printable_characters() {
     let error = tank(r#""end": 2,"#, r#""end": 2, "title": "two\u001b[31m red","#);
-    let message = "this text holds the control character U+001B";
+    let message = "this text holds U+001B, which cannot be printed";
     expect(&error, message, "7:22", "one line of printable characters");
     let scene = parse(r#"{ "model": "bouncing_ball", "title": "Größe µ — 30 °", "end": 1 }"#);
     assert_eq!(
