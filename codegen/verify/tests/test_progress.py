@@ -4,10 +4,23 @@ import io
 import signal
 import subprocess
 import sys
-import time
 import unittest
 
 from codegen.verify.progress import Progress
+
+
+# The command line of the package, which says when it has begun.
+BEGUN = """
+import runpy, sys
+from codegen.verify import cli
+judge = cli.main
+def main(arguments):
+    print("begun", flush=True)
+    return judge(arguments)
+cli.main = main
+sys.argv = ["codegen", "verify", "walking_tank"]
+runpy.run_module("codegen", run_name="__main__", alter_sys=True)
+"""
 
 
 class Terminal(io.StringIO):
@@ -38,12 +51,12 @@ class Waiting(unittest.TestCase):
 
     @unittest.skipUnless(hasattr(signal, "SIGKILL"), "signals of POSIX")
     def test_ctrl_c_ends_it_at_once_and_without_a_traceback(self):
-        # The walking tank takes many seconds. Where the interpreter is still on its way to the command, it is its own answer.
-        judged = subprocess.Popen([sys.executable, *sys.orig_argv[1:sys.orig_argv.index("-m")], "-m", "codegen", "verify", "walking_tank"],
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        time.sleep(1)
+        # The walking tank takes many seconds; what it is told comes where the command has begun.
+        judged = subprocess.Popen([sys.executable, *sys.orig_argv[1:sys.orig_argv.index("-m")], "-c", BEGUN],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(judged.stdout.readline(), "begun\n")
         judged.send_signal(signal.SIGINT)
-        _, said = judged.communicate(timeout=10)
+        _, said = judged.communicate(timeout=60)
         self.assertEqual(judged.returncode, -signal.SIGINT)
         self.assertNotIn("Traceback", said)
 
