@@ -132,8 +132,9 @@ def printed(number, moduli=(), slipped_unit=1):
 
 def difference(some, others):
     """Sum of some terms less that of others, without the terms that both have."""
-    shared = {structure(term) for term in some} & {structure(term) for term in others}
-    rest = lambda terms: sum((term for term in terms if structure(term) not in shared), 0)
+    some, others = ([(structure(term), term) for term in terms] for terms in (some, others))
+    shared = {key for key, _ in some} & {key for key, _ in others}
+    rest = lambda terms: sum((term for key, term in terms if key not in shared), 0)
     return rest(some) - rest(others)
 
 

@@ -7,27 +7,11 @@ recomputed interval is unbounded (a divisor may be zero), nothing is decided.
 
 from dataclasses import dataclass
 from decimal import Decimal
-from typing import Callable, Optional
+from typing import Optional
 
 from ..errors import PaperError
 from ..input import units
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number: as printed (None if the paper does not print it), its unit as printed and as it must
-    be, where it stands, and `formula(n, m)` from the numbers before it, by name (`n.M_0`) with the
-    functions sqrt, sin, cos, tan, atan, asin and the constant pi of `m`. `exact` marks a number that
-    is a statement (a ratio, a dimension), not a rounded result."""
-
-    name: str
-    printed: Optional[str]
-    unit: str
-    meaning: str
-    formula: Optional[Callable] = None
-    unit_printed: Optional[str] = None
-    exact: bool = False
-    note: str = ""
+from ..input.number import Number
 
 
 @dataclass

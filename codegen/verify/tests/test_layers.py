@@ -1,6 +1,8 @@
 """How the package holds together, by its imports: no circles of modules, and nothing knows the report but what writes it."""
 
 import ast
+import subprocess
+import sys
 import unittest
 from pathlib import Path
 
@@ -29,6 +31,12 @@ def modules():
 
 
 class Layers(unittest.TestCase):
+    def test_what_files_of_a_model_folder_need_is_imported_without_sympy(self):
+        names = "Correction, Effects, Number, Paper, apply, group, without"
+        code = f"import sys\nfrom codegen.verify import {names}\nsys.exit('sympy' in sys.modules)"
+        done = subprocess.run([sys.executable, "-B", "-c", code], cwd=PACKAGE.parents[1], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_no_modules_import_one_another_in_a_circle(self):
         left = {name: {x for x in imported if x} for name, imported in modules().items() if name}
         while left:
