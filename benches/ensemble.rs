@@ -2,9 +2,10 @@
 //!
 //! * `blocks`: the rocking block on shaken ground of `benches/peers` (P2: 28 impacts in 10 s), each
 //!   member with a half diagonal of its own.
-//! * `oscillators`: the oscillator with dry friction, each member with a force of its own amplitude: 16 stops and slips or so.
+//! * `oscillators`: the oscillator with dry friction, each member with a damping of its own: 16 stops and slips or so.
 //! * `pendulums`: driven pendulums, each with an initial state of its own; no event. Their errors are
 //!   against the solutions in `tests/data/forced_pendulum.json`.
+//! * `sweep`: oscillators in the order of their friction on one thread and on two.
 //!
 //! Single runs of some members, prepared before, and the ensemble are timed in turns, so that a clock that
 //! changes within seconds is the same for both; the least of all turns counts. With the name of an ensemble
@@ -31,7 +32,7 @@ const REPEATS: usize = 100;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let is_wanted = |name: &str| {
-        let names = ["blocks", "oscillators", "pendulums"];
+        let names = ["blocks", "oscillators", "pendulums", "sweep"];
         let named = arguments.iter().any(|a| names.contains(&a.as_str()));
         !named || arguments.iter().any(|a| a == name)
     };
@@ -49,6 +50,9 @@ fn main() {
             "difference",
             "error"
         );
+    }
+    if is_wanted("sweep") && !rows {
+        sweep();
     }
     // On the thread of the single runs: another has to be woken, on another core.
     let pool = (rayon::ThreadPoolBuilder::new().num_threads(1)).use_current_thread();
@@ -135,6 +139,37 @@ fn compare(pool: &rayon::ThreadPool, name: &str, tolerance: f64, problems: &[Pro
     }
 }
 
+/// A sweep in the order of the friction: the first oscillators slide, the last are held, so that its halves last unequally.
+fn sweep() {
+    let mut problems = oscillators(1e-8);
+    for (i, problem) in problems.iter_mut().enumerate() {
+        let friction = 1.5 * i as f64 / MEMBERS as f64;
+        for name in ["kinetic_friction", "static_friction"] {
+            problem
+                .set_parameter(name, friction)
+                .expect("the model has it");
+        }
+    }
+    let members: Vec<_> = problems.iter().map(Member::from).collect();
+    let ensemble = Ensemble::new(&problems[0]).expect("it can be started");
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pools = [1, 2].map(|threads| pool(threads).expect("threads can be started"));
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..REPEATS {
+        for (pool, least) in pools.iter().zip(&mut least) {
+            let run = || ensemble.run(&members, |_, end| end.q()[0]);
+            *least = least.min(time(|| {
+                pool.install(run);
+            }));
+        }
+    }
+    let [one, two] = least.map(|seconds| seconds * 1e3);
+    println!(
+        "sweep over friction, 512 members: {one:.2} ms on one thread, {two:.2} ms on two, {:.2} times as fast",
+        one / two
+    );
+}
+
 fn model(name: &str) -> Problem {
     let model = models().find(name);
     let mut problem = Problem::new(&model.expect("the model is there"));
@@ -174,10 +209,13 @@ fn oscillators(tolerance: f64) -> Vec<Problem> {
     }
     problem.end.time = 60.0;
     problem.set_tolerance(tolerance);
+    let force = Sine::new(1.1, 0.5, 0.0);
+    let force = Function::from(force);
+    problem.set_input("force", force).expect(known);
     let member = |i: usize| {
         let mut own = problem.clone();
-        let force = Sine::new(0.9 + 0.4 * i as f64 / MEMBERS as f64, 0.5, 0.0);
-        own.set_input("force", Function::from(force)).expect(known);
+        let damping = 0.1 * i as f64 / MEMBERS as f64;
+        own.set_parameter("c", damping).expect(known);
         own
     };
     (0..MEMBERS).map(member).collect()
