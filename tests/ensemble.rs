@@ -206,7 +206,7 @@ fn accumulations_and_rest_are_those_of_single_runs() {
 /// of one guard is.
 fn dry_oscillators(tolerance: f64) -> Vec<Problem> {
     let friction = [("static_friction", 0.5), ("kinetic_friction", 0.3)];
-    let mut oscillator = problem("coulomb_oscillator", &friction);
+    let mut oscillator = problem("hand_coulomb", &friction);
     oscillator.end.time = 40.0;
     set_size(&mut oscillator, tolerance, 1.0, 1.0);
     variations(&oscillator, 29, |p, x| {
