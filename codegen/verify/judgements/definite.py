@@ -92,10 +92,12 @@ def prove_matrix(matrix, fixed, box, limit=BISECTIONS, tell=None) -> Verdict:
         verdict = prove_matrix(constant, fixed, box, limit, tell)
         if verdict.status == "proved":
             return verdict
-    if len(matrix) <= MULTIPLIED_OUT:
-        return prove(minors(matrix), fixed, box, limit, tell=tell)
-    known(intervals({**fixed, **box}), [form for row in matrix for form in row])
     still = intervals({n: value for n, value in fixed.items() if n not in box})
+    if len(matrix) <= MULTIPLIED_OUT:
+        forms = minors(matrix)
+        known(intervals({**fixed, **box}), forms)
+        return prove([_collected(form, still) for form in forms], fixed, box, limit, judge=_signs, tell=tell)
+    known(intervals({**fixed, **box}), [form for row in matrix for form in row])
     return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, limit, judge=pivots, tell=tell)
 
 
@@ -112,14 +114,32 @@ def _collected(form, still):
     return [(constant, rest) for rest, constant in found.items()]
 
 
+def _signs(forms, values):
+    """The signs of forms as `_collected` gives them over intervals by name: +1, -1 or 0 (not decided)."""
+    from mpmath import iv
+
+    found = []
+    for form in forms:
+        if _opaque(form):
+            found.append(0)
+            continue
+        value = sum((constant * rest.evaluate(values, iv.sin, iv.cos, iv.mpf(0)) for constant, rest in form), iv.mpf(0))
+        found.append(1 if value.a > 0 else -1 if value.b < 0 else 0)
+    return found
+
+
+def _opaque(form):
+    """Whether a form as `_collected` gives it has a factor that has no value."""
+    return any(isinstance(name, Opaque) for _, rest in form for monomial, _ in rest.terms for name, _ in monomial)
+
+
 def pivots(matrix, values):
     """The signs of the pivots of a symmetric matrix (entries as `_collected` gives them) over intervals by name: +1, -1 or 0 (not decided, as are all after one
     that is not positive). All are positive only where the matrix is positive definite, and the first that
     is not positive has the sign of its leading minor."""
     from mpmath import iv
 
-    if any(isinstance(name, Opaque) for row in matrix for entry in row for _, form in entry for monomial, _ in form.terms
-           for name, _ in monomial):
+    if any(_opaque(entry) for row in matrix for entry in row):
         return [0] * len(matrix)
     rows = [[sum((constant * form.evaluate(values, iv.sin, iv.cos, iv.mpf(0)) for constant, form in entry), iv.mpf(0))
              for entry in row[:i + 1]] for i, row in enumerate(matrix)]

@@ -303,14 +303,16 @@ class Form:
         """The value for numbers (or intervals) by name; not for opaque factors."""
         total = zero
         for (monomial, (kind, angle)), value in self.terms.items():
+            # what changes nothing is left out: an operation on intervals takes as long with 1 as with others
             product = zero + value.numerator
-            product = product / value.denominator
+            if value.denominator != 1:
+                product = product / value.denominator
             for name, exponent in monomial:
-                product = product * values[name] ** exponent
+                product = product * (values[name] ** exponent if exponent != 1 else values[name])
             if angle:
                 argument = zero
                 for name, slope in angle:
-                    argument = argument + values[name] * slope.numerator / slope.denominator
+                    argument = argument + (values[name] * slope.numerator / slope.denominator if slope != 1 else values[name])
                 product = product * (sin if kind == "sin" else cos)(argument)
             total = total + product
         for divisor, power in self.over:

@@ -152,6 +152,15 @@ class Definiteness(unittest.TestCase):
         with self.assertRaisesRegex(PaperError, "no value for m"):
             prove_matrix(chain(2), {}, box)
 
+    def test_constants_of_one_function_are_one_interval(self):
+        """(a - b) cos q with a - b = 1/10: term by term the bounds of a cos q and b cos q say nothing over the whole box."""
+        form = self.ring.read((A - B) * sympy.cos(Q))
+        fixed, box = {"a": "3", "b": "2.9"}, {"q": (-1.0, 1.0)}
+        self.assertGreater(prove([form], fixed, box).boxes, 1)
+        self.assertEqual(prove_matrix([[form]], fixed, box), Verdict("proved", 1))
+        self.assertEqual(prove_matrix([[form * -1]], fixed, box).status, "refuted")
+        self.assertEqual(prove_matrix([[form + self.ring.read(sympy.Abs(M))]], {**fixed, "m": "1"}, box).status, "undecided")
+
     def test_angles_that_enter_as_differences_are_taken_out(self):
         """Links of any number hang on a cart: definite at all angles, which boxes of eight angles do not show."""
         angles = sympy.symbols("q_1:9", real=True)
