@@ -77,7 +77,7 @@ def _show(text):
 def _judge(arguments):
     """Judge one model and write the report."""
     from .report import certificate, html, machine, tex, text
-    from .input.load import load
+    from .load import load
 
     folder = Path(arguments.model) if Path(arguments.model).is_dir() else Path(arguments.models) / arguments.model
     if not folder.is_dir():

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Callable, List
 
-from .input.load import load
+from .input.rates import Rate
 from .input.units import parse
-from .normal.algebra import expression
-from .normal.rates import Rate
 from .judgements import JUDGEMENTS
-from .normal.subject import Subject
+from .judgements.subject import Subject
+from .load import load
+from .normal.algebra import expression
 from .readings.lagrange import Motion
 from .report.findings import detected, repaired
 

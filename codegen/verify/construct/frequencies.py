@@ -9,7 +9,8 @@ from typing import Dict, List
 
 from mpmath import eig, matrix, mpc, mpf
 
-from ..judgements.definite import determinant, rest, states
+from ..judgements.definite import rest, states
+from ..normal.matrices import determinant
 from .lagrangian import motion_rows
 from .small import small_motion
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Dict, Optional
 
-from ..judgements.definite import minors, rest, states
+from ..judgements.definite import rest, states
 from ..normal.intervals import intervals, signs
+from ..normal.matrices import minors
 
 HALF = Fraction(1, 2)
 

@@ -6,8 +6,8 @@ from fractions import Fraction
 from sympy import sympify
 
 from ..errors import LatexError, NotInClass, PaperError
-from ..readings.lagrange import sympy_namespace
 from .latex import Parser
+from .namespace import sympy_namespace
 from .printed import plain_latex
 from .tokens import error_at
 

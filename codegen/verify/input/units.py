@@ -61,7 +61,7 @@ def measure(expression, known):
     """The dimension of a SymPy expression; UnitError where a sum or a function does not fit."""
     import sympy
 
-    from ..normal.rates import Rate
+    from .rates import Rate
 
     if expression.is_Symbol:
         return known[expression.name]

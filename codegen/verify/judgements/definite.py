@@ -12,6 +12,7 @@ from typing import Dict, List, Optional, Tuple
 
 from ..normal.algebra import ONE, Opaque
 from ..normal.intervals import intervals, known, signs
+from ..normal.matrices import minors
 from .angles import without_angles
 from .violation import Violation
 
@@ -24,29 +25,6 @@ BISECTIONS = 400
 MULTIPLIED_OUT = 4
 
 HALF = Fraction(1, 2)
-
-
-def determinant(matrix):
-    """Determinant of a square matrix of forms, by expansion; each minor of the last rows is made once."""
-    known = {}
-
-    def minor(row, columns):
-        if not columns:
-            return 1
-        if columns not in known:
-            total = matrix[0][0] * 0
-            for k, column in enumerate(columns):
-                if entry := matrix[row][column]:
-                    total += entry * minor(row + 1, columns[:k] + columns[k + 1:]) * (-1) ** k
-            known[columns] = total
-        return known[columns]
-
-    return minor(0, tuple(range(len(matrix))))
-
-
-def minors(matrix):
-    """Leading principal minors; all are positive exactly where the matrix is positive definite."""
-    return [determinant([row[:k] for row in matrix[:k]]) for k in range(1, len(matrix) + 1)]
 
 
 def printed_mass(subject, symmetric=False):

@@ -4,7 +4,7 @@ from sympy import Add, sympify
 
 from ..errors import UnitError
 from ..input import units
-from ..readings.lagrange import Mathematics, sympy_namespace
+from ..input.namespace import Mathematics, sympy_namespace
 
 UNITS = {"kinetic": "J", "potential": "J", "dissipation": "W"}
 

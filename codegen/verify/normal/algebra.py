@@ -19,8 +19,8 @@ The square of a sign is 1, but where its argument is zero: identities with signs
 from fractions import Fraction
 
 from ..errors import NotInClass
+from ..input.rates import Rate
 from .form import ONE, Form, Opaque, expression
-from .rates import Rate
 
 __all__ = ["ONE", "Form", "Opaque", "Ring", "expression"]
 
@@ -164,3 +164,10 @@ class Ring:
             return self.opaque(expression.func.__name__, self.read(expression.args[0]))
         raise NotInClass(f"{expression} is not a quotient of trigonometric polynomials: write it with +, -, *, /, integer "
                          "powers, sin, cos, tan, sign and Abs, and with exact numbers")
+
+
+def ring_of(paper):
+    """The ring of a paper's symbols."""
+    symbols = paper.symbols.values()
+    return Ring([x.name for x in symbols if x.role == "discrete"], [x.name for x in symbols if x.role == "parameter"],
+                [x.name for x in symbols if x.role in ("coordinate", "input")])

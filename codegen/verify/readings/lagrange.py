@@ -1,88 +1,11 @@
 """Equations of motion and reactions from energies, by Lagrange's equations, in normal form."""
 
-from dataclasses import dataclass, field
-from typing import Callable, Dict, List, Optional
-
 from ..errors import NotInClass, PaperError
-from ..input.printed import Symbol, latex_name
-from ..normal.algebra import Ring
+from ..input.namespace import Mathematics, sympy_namespace
+from ..normal.algebra import ring_of
 from ..normal.intervals import intervals, signs
-from ..normal.rates import Rate
-from .quasi import Quasi
-from .solved import solved
-
-
-@dataclass
-class Energies:
-    """Energies in the symbols of a paper; functions of the same namespaces `s`, `m`.
-
-    `kinetic`, `potential` and `dissipation` (Rayleigh) are energies in J (W for the last);
-    `forces` gives further generalized forces by coordinate. `squares`, where known, lists pairs
-    (coefficient, velocity) with T = 1/2 sum coefficient velocity^2 while the further coordinates
-    are held: a certificate that T >= 0 where no coefficient is negative. `references` says,
-    by equation number, what a printed value, condition or rule must equal (of a rule: what is
-    positive where the state is +1): a function of `s`, `m` and the derived `Motion`. Coordinates that the paper does not have (the height whose reaction
-    is the normal force) are declared with `coordinate` and are held at zero.
-    """
-
-    name: str
-    description: str
-    kinetic: Callable
-    potential: Callable
-    dissipation: Optional[Callable] = None
-    forces: Dict[str, Callable] = field(default_factory=dict)
-    squares: Optional[Callable] = None
-    references: Dict[str, Callable] = field(default_factory=dict)
-    scales: Dict[str, Callable] = field(default_factory=dict)
-    extra: Dict[str, Symbol] = field(default_factory=dict)
-    pushes: List[str] = field(default_factory=list)
-
-    def coordinate(self, name, unit, meaning, mirror=1, pushes=False):
-        """Declare a coordinate that is held at zero in all equations; `pushes` where what holds it cannot pull (the ground),
-        so that its reaction must be positive."""
-        if pushes:
-            self.pushes.append(name)
-        self.extra[name] = Symbol(name, unit, meaning, "coordinate", latex_name(name), mirror)
-
-    def reference(self, number, scale=None):
-        """Register the decorated function as what equation `number` must say, once the printed
-        terms are multiplied by the positive factor `scale` (of a sign rule)."""
-
-        def register(function):
-            self.references[number] = function
-            if scale:
-                self.scales[number] = scale
-            return function
-
-        return register
-
-
-class Mathematics:
-    """The namespace `m` for SymPy expressions."""
-
-    def __init__(self):
-        import sympy
-
-        self.sin, self.cos, self.tan, self.sign, self.Abs = sympy.sin, sympy.cos, sympy.tan, sympy.sign, sympy.Abs
-        self.rate = Rate
-
-
-def ring_of(paper):
-    """The ring of a paper's symbols."""
-    symbols = paper.symbols.values()
-    return Ring([x.name for x in symbols if x.role == "discrete"], [x.name for x in symbols if x.role == "parameter"],
-                [x.name for x in symbols if x.role in ("coordinate", "input")])
-
-
-def sympy_namespace(paper, extra=(), defined=True):
-    """SymPy symbols for every name of a paper and of `extra` coordinates. What the paper leaves
-    undefined is put in by its reading, or (not `defined`) is a symbol of its own."""
-    import sympy
-
-    names = [n for n in paper.names() if not (defined and n in paper.definitions)]
-    for symbol in extra:
-        names += [symbol, "d" + symbol, "dd" + symbol]
-    return paper.namespace({n: sympy.Symbol(n, real=True) for n in names}, Mathematics())
+from ..normal.quasi import Quasi
+from ..normal.solved import solved
 
 
 class Motion:

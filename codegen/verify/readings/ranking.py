@@ -11,12 +11,13 @@ from itertools import product
 from typing import Dict, List, Optional
 
 from ..judgements.comparison import compare
-from ..judgements.definite import BISECTIONS, determinant, prove_matrix, rest, states
+from ..judgements.definite import BISECTIONS, prove_matrix, rest, states
 from ..judgements.galilei import galilei
 from ..judgements.mirror import mirror
+from ..judgements.subject import Subject
 from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
-from ..normal.subject import Subject
+from ..normal.matrices import determinant
 from ..progress import silent
 from .lagrange import Motion
 

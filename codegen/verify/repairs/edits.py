@@ -3,8 +3,8 @@
 import sympy
 
 from ..input.printed import rates
+from ..input.rates import Rate
 from ..input.units import parse
-from ..normal.rates import Rate
 
 # kinds of slips in the order in which they are preferred where several explain the same
 SLIPS = {
@@ -143,3 +143,10 @@ class Editor:
 
 def _symbol(name):
     return sympy.Symbol(name, real=True)
+
+
+def editor(subject):
+    """The editor of a subject's paper; subjects that share equations share it."""
+    if "editor" not in subject.shared:
+        subject.shared["editor"] = Editor(subject.paper)
+    return subject.shared["editor"]

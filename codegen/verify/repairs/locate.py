@@ -7,9 +7,10 @@ from typing import List
 
 from ..errors import NotInClass
 from ..judgements import JUDGEMENTS
+from ..judgements.subject import Subject
 from ..normal.algebra import expression
-from ..normal.subject import Subject
 from ..progress import silent
+from .edits import editor
 from .search import Repair, apply
 
 # in the order of what they cost
@@ -92,7 +93,7 @@ def _trials(subject, numbers, before):
             printed = [subject.forms[number][k]]
             if blamed and all(v.terms for v in before.values()) and k not in blamed:
                 continue  # every objection names its terms, and this is none of them
-            for slip, written in [*subject.editor.edits(term), ("number", term / 2), ("number", term * 2)]:
+            for slip, written in [*editor(subject).edits(term), ("number", term / 2), ("number", term * 2)]:
                 try:
                     form = subject.read(written)
                 except (NotInClass, ZeroDivisionError):

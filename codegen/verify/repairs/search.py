@@ -8,10 +8,11 @@ from typing import List, Tuple
 from sympy import Add, Derivative, Mul, Symbol, expand, sympify
 
 from ..errors import NotInClass
+from ..input.rates import Rate
 from ..judgements.comparison import compare
 from ..normal.algebra import ONE, expression
 from ..normal.points import vanishes
-from ..normal.rates import Rate
+from .edits import editor
 
 # Two edits in one term are looked for where one does not explain it; three are not a misprint but
 # another term.
@@ -115,7 +116,7 @@ def _divisor(subject, forms, terms, difference, clear):
     for divisor in divisors:
         chosen = [k for k, term in enumerate(terms) if divisor in [f.base for f in Mul.make_args(term) if _divides(f)]]
         for part in divisor.args:
-            for slip, written in [*subject.editor.edits(part), ("number", 2 * part), ("number", part / 2), ("surplus term", sympify(0))]:
+            for slip, written in [*editor(subject).edits(part), ("number", 2 * part), ("number", part / 2), ("surplus term", sympify(0))]:
                 other = divisor - part + written
                 changed = [terms[k].xreplace({divisor: other}) for k in chosen]
                 if other == 0 or not vanishes([wanted, *changed, *(-terms[k] for k in chosen)], subject.ring.involutions):
@@ -154,10 +155,10 @@ def _candidates(subject, form, term, cleared, difference, depth):
     """(slip, form, expression) of the edits of a term; of what it is divided by, _divisor has the edits."""
     divisors = [factor for factor in Mul.make_args(term) if _divides(factor)]
     below = Mul(*divisors)
-    singles = [(slip, above * below) for slip, above in subject.editor.edits(term / below)] if divisors else subject.editor.edits(term)
+    singles = [(slip, above * below) for slip, above in editor(subject).edits(term / below)] if divisors else editor(subject).edits(term)
     if divisors:
         # a wrong symbol may have cancelled with what the terms are divided by
-        singles += [("symbol", term * other / symbol) for symbol, other in subject.editor.exchanges()
+        singles += [("symbol", term * other / symbol) for symbol, other in editor(subject).exchanges()
                     if symbol not in (term / below).free_symbols]
     if depth == SINGLE:
         for slip, written in singles:
@@ -169,7 +170,7 @@ def _candidates(subject, form, term, cleared, difference, depth):
                 yield "number", form * ratio, term * sympify(ratio)
         return
     for first, between in singles:
-        for second, above in subject.editor.edits(between / below):
+        for second, above in editor(subject).edits(between / below):
             if (changed := _read(subject, above * below)) is not None:
                 yield f"{first} + {second}", changed, above * below
 

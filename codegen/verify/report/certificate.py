@@ -6,10 +6,10 @@ import re
 from itertools import permutations, product
 
 from ..input import units
+from ..input.namespace import sympy_namespace
 from ..judgements.comparison import compare
 from ..judgements.definite import rest
 from ..normal.algebra import expression
-from ..readings.lagrange import sympy_namespace
 
 # raised when a claim changes its meaning
 VERSION = 1

@@ -4,12 +4,12 @@ it is, and where it makes no difference."""
 from dataclasses import dataclass, field
 from typing import List, Optional, Tuple
 
-from ..errors import NotInClass
 from ..construct.small import special_cases as cases
+from ..errors import NotInClass
 from ..input.corrections import apply, without
 from ..judgements import JUDGEMENTS, TITLES
 from ..judgements.comparison import compare
-from ..normal.subject import Subject
+from ..judgements.subject import Subject
 from ..repairs import search as repairs
 from ..repairs.locate import locate
 

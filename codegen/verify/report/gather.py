@@ -7,16 +7,17 @@ from typing import Dict, List, Optional
 
 from ..construct.balance import energy_balance, momentum_balances
 from ..construct.conserved import conserved
-from ..construct.lagrangian import construct, motion_rows
 from ..construct.frequencies import frequencies
+from ..construct.lagrangian import construct, motion_rows
 from ..construct.small import small_motion
 from ..input import transcription
 from ..input.corrections import apply
 from ..judgements import unjudged, unreferenced
 from ..judgements.comparison import compare
-from ..judgements.definite import critical, determinant, printed_mass, rest
+from ..judgements.definite import critical, printed_mass, rest
 from ..judgements.numbers import check
-from ..normal.subject import Subject
+from ..judgements.subject import Subject
+from ..normal.matrices import determinant
 from ..progress import silent
 from ..readings.ranking import Reading, ranked
 from . import principles

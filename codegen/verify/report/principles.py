@@ -2,13 +2,13 @@
 not be neglected."""
 
 from ..construct.impacts import impact
+from ..input.namespace import sympy_namespace
 from ..judgements.definite import rest, states
 from ..judgements.energies import wrong_terms
 from ..judgements.galilei import split
+from ..judgements.subject import Subject
 from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
-from ..normal.subject import Subject
-from ..readings.lagrange import sympy_namespace
 from .closed import closed
 from .findings import Finding
 from .show import Quantity

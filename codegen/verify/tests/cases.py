@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from codegen.verify.input.load import load
+from codegen.verify.load import load
 from codegen.verify.report import gather
 
 ROOT = Path(__file__).resolve().parents[3]

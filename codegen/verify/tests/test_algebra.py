@@ -9,10 +9,11 @@ from fractions import Fraction
 import sympy
 
 from codegen.verify.errors import NotInClass, PaperError
-from codegen.verify.input.load import load
 from codegen.verify.judgements.angles import without_angles
-from codegen.verify.judgements.definite import Verdict, determinant, prove, prove_matrix
+from codegen.verify.judgements.definite import Verdict, prove, prove_matrix
+from codegen.verify.load import load
 from codegen.verify.normal.algebra import Ring, expression
+from codegen.verify.normal.matrices import determinant
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.seeded import EXAMPLES
 

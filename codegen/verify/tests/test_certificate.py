@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 from codegen.verify import Paper, check_certificate as script, seeded
-from codegen.verify.input.load import Case, load
+from codegen.verify.load import Case, load
 from codegen.verify.report import certificate, gather
 from codegen.verify.tests.cases import ROOT, TANK, report_of
 from codegen.verify.tests.mutations import mutated

@@ -5,16 +5,16 @@ import unittest
 from fractions import Fraction
 
 from codegen.verify import Paper, seeded
+from codegen.verify.construct.antiderivative import antiderivative
 from codegen.verify.construct.balance import energy_balance, momentum_balances
 from codegen.verify.construct.conserved import conserved
 from codegen.verify.construct.impacts import impact
 from codegen.verify.construct.lagrangian import construct, equations_of
 from codegen.verify.construct.small import small_motion, special_cases
 from codegen.verify.errors import NotInClass
-from codegen.verify.construct.antiderivative import antiderivative
-from codegen.verify.input.load import load
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import load
 from codegen.verify.normal.algebra import Ring
-from codegen.verify.normal.subject import Subject
 from codegen.verify.readings.lagrange import Motion
 
 UNITS = {"x": "m", "y": "m", "r": "m", "phi": "rad", "theta": "rad", "m": "kg", "M": "kg", "k": "N/m", "l": "m", "g": "m/s^2", "B": "N*s/m", "c": "N*s/m"}

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from codegen.verify import Paper, check_certificate as script, seeded
-from codegen.verify.input.load import Case, load
+from codegen.verify.load import Case, load
 from codegen.verify.report import certificate, gather, html, machine, tex, text
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from codegen.verify import Energies, Paper
 from codegen.verify.construct.frequencies import frequencies
-from codegen.verify.input.load import Case, load
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import Case, load
 from codegen.verify.report import gather as report, text
 from codegen.verify.seeded import PUBLISHED
 

@@ -11,17 +11,17 @@ from pathlib import Path
 
 import sympy
 
-from codegen.verify import seeded
-from codegen.verify import Paper
+from codegen.verify import seeded, Paper
 from codegen.verify.errors import PaperError
 from codegen.verify.input import transcription
-from codegen.verify.input.load import Case, load
+from codegen.verify.input.energies import Energies
 from codegen.verify.judgements import unjudged
 from codegen.verify.judgements.comparison import compare
 from codegen.verify.judgements.definite import prove
 from codegen.verify.judgements.numbers import Number, check
-from codegen.verify.normal.subject import Subject
-from codegen.verify.readings.lagrange import Energies, Motion
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import Case, load
+from codegen.verify.readings.lagrange import Motion
 from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.effects import quantity
 from codegen.verify.report.findings import judge

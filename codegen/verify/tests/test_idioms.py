@@ -8,8 +8,9 @@ from codegen.verify import Paper
 from codegen.verify.errors import LatexError, PaperError
 from codegen.verify.input import transcription
 from codegen.verify.input.latex import Parser
-from codegen.verify.normal.subject import Subject
-from codegen.verify.readings.lagrange import Mathematics, ring_of, sympy_namespace
+from codegen.verify.input.namespace import Mathematics, sympy_namespace
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.normal.algebra import ring_of
 from codegen.verify.report import mathml
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from codegen.verify.errors import PaperError
 from codegen.verify.input import transcription
-from codegen.verify.input.load import load
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import load
 from codegen.verify.report import mathml, show
 
 WALKING_TANK = Path(__file__).resolve().parents[3] / "models" / "walking_tank"

@@ -1,4 +1,4 @@
-"""How the package holds together, by its imports: no circles of modules, and nothing knows the report but what writes it."""
+"""How the package holds together, by its imports: no circles of modules, and folders in layers."""
 
 import ast
 import subprocess
@@ -7,12 +7,15 @@ import unittest
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
-# what may import the report, and no folder else
-WRITERS = {"cli", "seeded"}
+# the folders and files from the ground up: each imports of those before it, and of itself, alone
+LAYERS = ("errors", "progress", "input", "normal", "judgements", "repairs", "readings", "construct", "report", "load", "seeded", "cli")
+# a script that nothing of the package is needed for
+ALONE = {"check_certificate"}
 
 
-def modules():
-    """{module: the modules of the package that it imports when it is imported}; names without the package's."""
+def modules(walk=ast.walk):
+    """{module: the modules of the package that it imports}; names without the package's. An import inside a function counts, but where
+    `walk` gives the statements of a module alone."""
     found = {}
     for file in sorted(PACKAGE.rglob("*.py")):
         parts = file.relative_to(PACKAGE).with_suffix("").parts
@@ -21,7 +24,7 @@ def modules():
         tree, at = ast.parse(file.read_text(encoding="utf-8")), parts[:-1]
         name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
         imported = set()
-        for node in tree.body:
+        for node in walk(tree):
             if isinstance(node, ast.ImportFrom) and 0 < node.level <= len(at) + 1:
                 base = [*at[:len(at) - node.level + 1], *(node.module.split(".") if node.module else [])]
                 imported.add(".".join(base))
@@ -38,7 +41,7 @@ class Layers(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_no_modules_import_one_another_in_a_circle(self):
-        left = {name: {x for x in imported if x} for name, imported in modules().items() if name}
+        left = {name: {x for x in imported if x} for name, imported in modules(lambda tree: tree.body).items() if name}
         while left:
             # a folder is imported before its modules, which is no dependence of theirs
             free = [name for name, imported in left.items() if not any(x in left and not name.startswith(x + ".") for x in imported)]
@@ -46,10 +49,14 @@ class Layers(unittest.TestCase):
             for name in free:
                 del left[name]
 
-    def test_nothing_but_the_command_knows_the_report(self):
+    def test_folders_import_what_stands_before_them_alone(self):
         for name, imported in modules().items():
-            if name.partition(".")[0] not in {"report", *WRITERS}:
-                self.assertEqual([x for x in imported if x.partition(".")[0] == "report"], [], name)
+            layer = name.partition(".")[0]
+            if not name or layer in ALONE:  # the package itself offers names of its folders
+                continue
+            self.assertIn(layer, LAYERS)
+            above = LAYERS[LAYERS.index(layer) + 1:]
+            self.assertEqual([x for x in imported if x.partition(".")[0] in above], [], name)
 
     def test_errors_know_nothing_and_are_of_one_kind(self):
         self.assertEqual(modules()["errors"], set())

@@ -5,8 +5,8 @@ import unittest
 from dataclasses import replace
 
 from codegen.verify import seeded
-from codegen.verify.input.load import load
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import load
 from codegen.verify.repairs.locate import _with, locate
 from codegen.verify.report import gather as report, html, machine, text
 from codegen.verify.report.findings import judge

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from codegen.verify import cli
 from codegen.verify.errors import LatexError, PaperError
-from codegen.verify.input.load import load
+from codegen.verify.load import load
 from codegen.verify.report import gather as report, text, words
 
 TEMPLATE = Path(__file__).resolve().parents[3] / "templates" / "paper"

@@ -3,8 +3,8 @@
 import unittest
 
 from codegen.verify import seeded
-from codegen.verify.input.load import load
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import load
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.report import gather as report
 from codegen.verify.report.closed import closed

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from codegen.verify import Energies, Paper, seeded
 from codegen.verify.errors import PaperError
-from codegen.verify.input.load import Case, load
 from codegen.verify.judgements.helmholtz import lagrangian
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import Case, load
 from codegen.verify.report import certificate, gather as report, html, machine, text
 
 VEHICLE = r"""\title{Single-track vehicle in the axes of its body}

@@ -8,10 +8,10 @@ from pathlib import Path
 import sympy
 
 from codegen.verify import Energies, Paper, group, seeded
-from codegen.verify.input.load import Case, load
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import Case, load
 from codegen.verify.normal.algebra import Ring, expression
 from codegen.verify.normal.division import quotient
-from codegen.verify.normal.subject import Subject
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.findings import detected, repaired

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from codegen.verify.errors import PaperError
 from codegen.verify.input.corrections import apply
-from codegen.verify.input.load import load
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import load
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.readings.ranking import ranked
 from codegen.verify.report import gather

@@ -11,7 +11,7 @@ from unittest import mock
 from codegen import VERSION
 from codegen.verify import seeded
 from codegen.verify.input.latex import Parser
-from codegen.verify.input.load import load
+from codegen.verify.load import load
 from codegen.verify.report import gather, html, tex, texmath
 from codegen.verify.report.aligned import aligned
 from codegen.verify.report.document import ROWS, document

@@ -6,12 +6,11 @@ import unittest
 from dataclasses import replace
 from pathlib import Path
 
-from codegen.verify import seeded
-from codegen.verify import Paper
+from codegen.verify import seeded, Paper
 from codegen.verify.input import transcription
-from codegen.verify.input.load import Case, load
-from codegen.verify.normal.subject import Subject
-from codegen.verify.readings.lagrange import Energies
+from codegen.verify.input.energies import Energies
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import Case, load
 from codegen.verify.readings.lagrange import Motion
 from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.findings import judge

@@ -13,9 +13,9 @@ from types import SimpleNamespace
 from codegen.verify import cli
 from codegen.verify.errors import PaperError
 from codegen.verify.input.corrections import apply, closure, without
-from codegen.verify.input.load import load
 from codegen.verify.judgements import JUDGEMENTS
-from codegen.verify.normal.subject import Subject
+from codegen.verify.judgements.subject import Subject
+from codegen.verify.load import load
 from codegen.verify.report import gather as report, html, machine, text, words
 from codegen.verify.report.closed import closed
 from codegen.verify.report.effects import Simulated, attach, changes

@@ -6,7 +6,7 @@ To each quasi-velocity belongs a coordinate that has no values, only a rate, whi
 """
 
 from ..errors import PaperError
-from ..judgements.definite import determinant
+from .matrices import determinant
 
 
 class Quasi:

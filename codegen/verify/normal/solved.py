@@ -2,7 +2,7 @@
 
 from itertools import combinations
 
-from ..judgements.definite import determinant
+from .matrices import determinant
 
 
 def solved(mass, loads, row, accelerations):

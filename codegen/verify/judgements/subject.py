@@ -7,11 +7,11 @@ from sympy import Expr, Mul, cos, sin, sympify
 
 from ..errors import NotInClass, PaperError
 from ..input import units
-from ..judgements.helmholtz import lagrangian
-from ..readings.lagrange import Mathematics, ring_of, sympy_namespace
-from ..readings.quasi import Quasi
-from ..repairs.edits import Editor
-from .scales import scales
+from ..input.namespace import Mathematics, sympy_namespace
+from ..normal.algebra import ring_of
+from ..normal.quasi import Quasi
+from ..normal.scales import scales
+from .helmholtz import lagrangian
 
 
 class Subject:
@@ -26,8 +26,8 @@ class Subject:
         self.s = base.s if base else sympy_namespace(paper)
         self.m = base.m if base else Mathematics()
         self.dimension = base.dimension if base else units.table(paper.symbols.values())
-        self.editor = base.editor if base else Editor(paper)
         self.known = base.known if base else {}
+        self.shared = base.shared if base else {}  # what is made once for a paper, by name
         self.quasi = base.quasi if base else Quasi(paper, self.ring, self.s, self.m) if paper.quasi else None
         self.expressions, self.forms, self.memo = {}, {}, {}
         kept = set()

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, List, Optional
 
-from ...errors import error_location
-from ..errors import PaperError
-from .effects import Effects
-from .manuscript import TEX, is_manuscript, read
-from .printed import Paper
+from ..errors import error_location
+from .errors import PaperError
+from .input.effects import Effects
+from .input.manuscript import TEX, is_manuscript, read
+from .input.printed import Paper
 
 
 @dataclass
@@ -40,7 +40,12 @@ def load(folder, name: Optional[str] = None) -> Case:
         raise PaperError(f"the model '{name}' has no hand-written equations: neither {folder / 'paper.py'} nor {folder / TEX} exists")
     if written and is_manuscript(folder):
         raise PaperError(f"{folder} has both paper.py and {TEX}: one of them says what is printed")
-    printed, derived = (None, []) if written else read(folder)
+    printed, derived = None, []
+    if not written:
+        from .readings.written import written as energies_of
+
+        printed, given = read(folder)
+        derived = energies_of(printed, given, folder)
     package = "printed_" + name
     for module in [m for m in sys.modules if m == package or m.startswith(package + ".")]:
         del sys.modules[module]
