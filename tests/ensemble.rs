@@ -220,7 +220,7 @@ fn falls_whose_transition_depends_on_conditions_are_those_of_single_runs() {
     for tolerance in [1e-6, 1e-10] {
         let oscillators = dry_oscillators(tolerance);
         let single = alone(&oscillators);
-        for name in ["base sticks", "base slips", "base reverses"] {
+        for name in ["stick", "slip", "reversal"] {
             let happens = |end: &End| end.events.iter().any(|e| e.0 == name);
             assert!(single.iter().any(happens), "{name}");
         }
