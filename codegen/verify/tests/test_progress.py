@@ -51,9 +51,11 @@ class Waiting(unittest.TestCase):
 
     @unittest.skipUnless(hasattr(signal, "SIGKILL"), "signals of POSIX")
     def test_ctrl_c_ends_it_at_once_and_without_a_traceback(self):
-        # The walking tank takes many seconds; what it is told comes where the command has begun.
+        # The walking tank takes many seconds; what it is told comes where the command has begun. A shell's background jobs, which
+        # ignore Ctrl-C, hand that down to what they start: here it is heard.
         judged = subprocess.Popen([sys.executable, *sys.orig_argv[1:sys.orig_argv.index("-m")], "-c", BEGUN],
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                  preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         self.assertEqual(judged.stdout.readline(), "begun\n")
         judged.send_signal(signal.SIGINT)
         _, said = judged.communicate(timeout=60)
