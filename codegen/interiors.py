@@ -47,7 +47,8 @@ class Interiors:
         """The same where the right factor of order k is not known at order k: it is stored at the
         beginning of the next, when its text gives it."""
         inner = self.add(left, name)
-        self.late[len(self.indices) - 1] = right
+        # Two rows of a mass matrix may have the same element: then the interior is not the one added last.
+        self.late[self.indices[left, name]] = right
         return inner
 
     @property

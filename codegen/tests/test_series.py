@@ -6,6 +6,7 @@ import unittest
 import casadi as ca
 
 from codegen.emit_series import Outputs
+from codegen.interiors import Interiors
 
 
 def order(expression):
@@ -42,6 +43,17 @@ class Order(unittest.TestCase):
         last = next(line for line in reversed(lines) if line.startswith("const"))
         self.assertNotIn(stored, last)
         self.assertEqual(last.count("w["), 2, last)
+
+
+class Late(unittest.TestCase):
+    def test_an_element_that_two_rows_share_leaves_others_their_accelerations(self):
+        interiors = Interiors()
+        accelerations = [f"a[2 * (k - 1) + {j}]" for j in range(2)]
+        for row in (("same", "m"), ("same", "n")):
+            for j, mass in enumerate(row):
+                interiors.add_late(mass, f"acceleration {j}", accelerations[j])
+        for (_, name), index in interiors.indices.items():
+            self.assertEqual(interiors.late[index], accelerations[int(name.split()[1])], name)
 
 
 if __name__ == "__main__":
