@@ -4,6 +4,9 @@ use super::multipliers::{check, scenes};
 use crate::common::*;
 use dalembert::hybrid::Method;
 
+/// The demand of the IVP test set at a tolerance of 1e-13, of relative errors: two digits less.
+const DEMAND: f64 = 1e-11;
+
 #[test]
 fn a_pendulum_in_cartesian_coordinates_keeps_its_length() {
     let reference = reference("14a_pendulum_cartesian");
@@ -127,5 +130,67 @@ fn a_slider_crank_of_nine_coordinates_turns_as_that_of_one() {
         let energy = run.energy.expect("a ledger");
         let imbalance = energy.final_ - energy.initial - energy.input_work + energy.dissipated;
         assert!(imbalance.abs() <= 1e-12 * 6.6, "{imbalance:e}");
+    }
+}
+
+#[test]
+fn andrews_squeezing_mechanism_ends_where_quadruple_precision_does() {
+    let squeezer = &reference("08_ivp_testset")["reference"]["andrews"];
+    let exact = numbers(&squeezer["own"]);
+    let mut problem = problem("squeezer", &[]);
+    // Consistent to the last of the digits that Hairer and Wanner (1996), section VII.7, give.
+    for (name, angle) in [
+        ("beta", -0.061_713_890_014_276_45),
+        ("gamma", 0.455_279_819_163_070_4),
+        ("Phi", 0.222_668_390_165_885_9),
+        ("delta", 0.487_364_979_543_842_55),
+        ("Omega", -0.222_668_390_165_885_9),
+        ("epsilon", 1.230_547_444_549_821_2),
+    ] {
+        problem.set_initial(name, angle).unwrap();
+    }
+    problem.end.time = number(&squeezer["t_end"]);
+    problem.record.every = Some(problem.end.time);
+    problem.record.columns.outputs = true;
+    problem.record.ledger = true;
+    problem.set_tolerance(1e-13);
+    for method in [Method::Taylor, Method::Radau] {
+        problem.method = method;
+        let run = run(&problem);
+        let (q, v) = (&run.end.state.q, &run.end.state.v);
+        let off = |value: f64, i: usize| (value - exact[i]).abs() / exact[i].abs();
+        for i in 0..7 {
+            assert!(
+                off(q[i], i) <= DEMAND,
+                "{method:?}: q {i} {:e}",
+                off(q[i], i)
+            );
+            assert!(
+                off(v[i], 7 + i) <= DEMAND,
+                "{method:?}: v {i} {:e}",
+                off(v[i], 7 + i)
+            );
+        }
+        let end = run.trajectory.row(run.trajectory.t.len() - 1);
+        // The reference states M q'' = f - G^T lambda: a multiplier is less the force.
+        for (i, name) in [
+            "third.1", "third.2", "fourth.1", "fourth.2", "sixth.1", "sixth.2",
+        ]
+        .iter()
+        .enumerate()
+        {
+            let force = end[run.trajectory.column(&format!("{name}.force")).unwrap()];
+            assert!(
+                off(-force, 21 + i) <= DEMAND,
+                "{method:?}: {name} {:e}",
+                off(-force, 21 + i)
+            );
+        }
+        let energy = run.energy.expect("a ledger");
+        let imbalance = energy.final_ - energy.initial - energy.input_work + energy.dissipated;
+        assert!(
+            imbalance.abs() <= 1e-13 * energy.final_,
+            "{method:?}: {imbalance:e}"
+        );
     }
 }

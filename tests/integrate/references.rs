@@ -2,7 +2,8 @@
 //! The numbers and their sources are in `tests/data`.
 //!
 //! Of the IVP test set, Andrews' mechanism and the car axis are left out: they are differential-algebraic
-//! of index 3, with constraints between coordinates, which a [`System`] does not have.
+//! of index 3, with constraints between coordinates, which a [`System`] does not have. Andrews' mechanism as a model:
+//! `tests/engine/linkages.rs`.
 
 use crate::problems::{DoublePendulum, Hires, Orego, Pleiades, Rober, VanDerPol};
 use crate::{run, tolerances};
