@@ -20,7 +20,8 @@ RESERVED = {
     "parameter": {"set": "the key that chooses a parameter set", "t": "the time"},
     "coordinate": {**_COLUMNS, "project": "a key of initial states"}, "discrete state": _COLUMNS, "output": _COLUMNS, "input": _COLUMNS, "ground motion": _COLUMNS,
     "choice": dict.fromkeys(
-        ("model", "title", "parameters", "inputs", "initial", "contacts", "freeze", "end", "limits", "outputs", "accuracy", "method", "record"), "a key of scenes"),
+        ("model", "title", "set", "parameters", "contacts", "inputs", "initial", "freeze", "end", "limits", "outputs", "accuracy", "method",
+         "impacts", "record"), "a key of scenes"),
     "transition": {"rest": "the event at the limit of an accumulation", "start": "the start", "end": "the end"},
 }
 """Names that stand for something else in scenes and results, by what is named."""

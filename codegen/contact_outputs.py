@@ -20,7 +20,7 @@ def add(model):
     for constraint in model.constraints:
         force = lambda equations, of=constraint: of.multiplier.acceleration
         model.outputs.append(Output(
-            f"{constraint.name}.force", _force_unit(model, constraint.expression), 
+            f"{constraint.name}.force", _force_unit(model, constraint.expression),
             "force of the constraint, positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
     model.outputs.extend(c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
 

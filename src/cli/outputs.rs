@@ -12,6 +12,8 @@ use crate::record::{
 pub struct Outputs {
     pub stream: Option<Stream>,
     pub sketch: Option<Sketch>,
+    /// The window of time that pictures show, s.
+    window: Option<(f64, f64)>,
     jumps: Vec<Jump>,
     /// So many transitions are kept.
     kept: usize,
@@ -26,17 +28,18 @@ pub enum NotReplayed {
 }
 
 impl Outputs {
-    /// Outputs to a folder, where there is one; a sketch for that or for a `page`; the first transitions, as many as are
-    /// `compared`.
+    /// Outputs to a folder, where there is one; a sketch for that, of which pictures show a `window` of time (s), or for a
+    /// `page`; the first transitions, as many as are `compared`.
     pub fn new(
         layout: &Layout,
         folder: Option<&OutputFolder>,
-        page: bool,
+        (page, window): (bool, Option<(f64, f64)>),
         compared: usize,
     ) -> Outputs {
         Outputs {
             stream: folder.map(|folder| Stream::new(folder, layout)),
             sketch: (folder.is_some() || page).then(|| Sketch::new(layout)),
+            window,
             jumps: Vec::new(),
             kept: compared,
         }
@@ -91,6 +94,10 @@ impl Observer for Outputs {
 
     fn sees_points(&self) -> bool {
         self.sketch.is_some()
+    }
+
+    fn window(&self) -> Option<[f64; 2]> {
+        self.window.map(<[f64; 2]>::from)
     }
 
     fn point(&mut self, t: f64, _mode: usize, values: &[f64]) {

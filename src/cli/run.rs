@@ -132,7 +132,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         true => usize::MAX,
         false => COMPARED,
     };
-    let mut outputs = Outputs::new(&layout, folder.as_ref(), page, compared);
+    let mut outputs = Outputs::new(&layout, folder.as_ref(), (page, look.window), compared);
     let earlier = match earlier {
         Some((folder, mut earlier)) => {
             let mut replay = Replay::new(problem);

@@ -31,7 +31,7 @@ impl Names {
         let mut add = |name: &str, read: Read, unit: &str| {
             all.push((name.to_owned(), read, unit.to_owned()));
         };
-        let own = &model.coordinates[..model.own_coordinates()];
+        let own = model.own_coordinates();
         for (i, c) in own.iter().enumerate() {
             add(c.name, Read::Coordinate(i), c.unit);
             add(

@@ -115,7 +115,7 @@ impl Outputs {
         let own: Box<[Formula]> = problem.outputs.iter().map(|o| o.formula.clone()).collect();
         Outputs {
             of_model: problem.variant().outputs.len(),
-            hidden: problem.model.own_coordinates()..n,
+            hidden: problem.model.own_coordinates().len()..n,
             reads_reactions: own.iter().any(Formula::reads_reactions),
             own,
             parameters: problem.parameters.clone().into(),

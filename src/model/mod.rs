@@ -400,10 +400,10 @@ impl Model {
         self.library.is_some()
     }
 
-    /// Number of coordinates that people see, which come first: those behind them are multipliers.
-    pub fn own_coordinates(&self) -> usize {
-        let multipliers = self.coordinates.iter().filter(|c| c.multiplier).count();
-        self.coordinates.len() - multipliers
+    /// The coordinates that people see, which come first: those behind them are multipliers.
+    pub fn own_coordinates(&self) -> &[Coordinate] {
+        let all = &self.coordinates;
+        &all[..all.iter().filter(|c| !c.multiplier).count()]
     }
 
     /// The discrete states that people see, which come first.
@@ -414,7 +414,7 @@ impl Model {
 
     /// Index of a reaction among those of all coordinates and motions of the ground, by its index among those that people see.
     pub fn reaction(&self, seen: usize) -> usize {
-        let own = self.own_coordinates();
+        let own = self.own_coordinates().len();
         match seen < own {
             true => seen,
             false => seen + self.coordinates.len() - own,

@@ -51,7 +51,7 @@ fn variation(problem: &Problem, method: Method, tolerance: f64) -> Problem {
 
 /// Typical sizes of the coordinates and velocities that runs record: absolute ÷ relative tolerance.
 fn scales(problem: &Problem) -> [Vec<f64>; 2] {
-    let (accuracy, own) = (&problem.accuracy, problem.model.own_coordinates());
+    let (accuracy, own) = (&problem.accuracy, problem.model.own_coordinates().len());
     let scale = |absolute: &[f64]| {
         let sizes = absolute[..own].iter();
         sizes.map(|a| a / accuracy.relative).collect()

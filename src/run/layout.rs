@@ -78,7 +78,7 @@ impl Layout {
         recorded: Recorded,
         outputs: impl IntoIterator<Item = &'o Quantity>,
     ) -> Layout {
-        let own = &model.coordinates[..model.own_coordinates()];
+        let own = model.own_coordinates();
         let mut layout = Layout {
             coordinates: (own.iter())
                 .map(|c| Quantity::new(c.name, c.unit, c.meaning))
@@ -164,7 +164,7 @@ impl Layout {
 }
 
 fn reactions(model: &Model) -> Vec<Quantity> {
-    let own = &model.coordinates[..model.own_coordinates()];
+    let own = model.own_coordinates();
     let held = own.iter().map(|c| {
         let meaning = format!("generalized force that holds {} still", c.name);
         Quantity::new(format!("reaction.{}", c.name), c.reaction_unit, meaning)

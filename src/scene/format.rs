@@ -346,7 +346,7 @@ fn initial(model: Option<&Model>) -> Object {
         }
         false => keys.push(Key::new("mode", meaning, Shape::Choice("mode", modes))),
     }
-    for c in own(model) {
+    for c in model.own_coordinates() {
         let position = Quantity::within(c.bounds(), c.unit);
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
@@ -365,14 +365,12 @@ fn initial(model: Option<&Model>) -> Object {
     Object::new("coordinate", keys)
 }
 
-/// The coordinates of which scenes speak.
-fn own(model: &Model) -> &[Coordinate] {
-    &model.coordinates[..model.own_coordinates()]
-}
-
 fn freeze(model: Option<&Model>) -> Shape {
     let name = match model {
-        Some(model) => Shape::Choice("coordinate", own(model).iter().map(|c| c.name).collect()),
+        Some(model) => Shape::Choice(
+            "coordinate",
+            model.own_coordinates().iter().map(|c| c.name).collect(),
+        ),
         None => Shape::Text,
     };
     Shape::List(Box::new(name))
@@ -417,7 +415,7 @@ fn accuracy(model: Option<&Model>) -> Object {
     let each = match model {
         None => Object::new("coordinate", Vec::new()).others(Quantity::positive("")),
         Some(model) => {
-            let keys = own(model).iter().flat_map(|c| {
+            let keys = model.own_coordinates().iter().flat_map(|c| {
                 let rate = format!("of the velocity of {}", c.name);
                 [
                     Key::new(c.name, format!("of {}", c.name), Quantity::positive(c.unit)),

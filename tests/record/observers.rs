@@ -28,6 +28,7 @@ struct Told {
     /// Rows and points, in the order in which they came.
     curve: Vec<(f64, Vec<f64>)>,
     sees_points: bool,
+    window: Option<[f64; 2]>,
     events: Vec<(Jump, Option<[Snapshot; 2]>)>,
     /// Times at which steps begin and end, and the states at these.
     steps: Vec<[At; 2]>,
@@ -50,6 +51,9 @@ impl Observer for Told {
     }
     fn sees_points(&self) -> bool {
         self.sees_points
+    }
+    fn window(&self) -> Option<[f64; 2]> {
+        self.window
     }
     fn point(&mut self, t: f64, _mode: usize, values: &[f64]) {
         self.curve.push((t, values.to_vec()));
@@ -180,6 +184,43 @@ fn points_between_rows_are_those_of_the_motion() {
     };
     simulate_with(&scene.problem, &mut told, &mut Silent).unwrap();
     assert_eq!(told.curve.len(), told.rows.len());
+}
+
+/// A picture of a window far shorter than a step has curves in it.
+#[test]
+fn a_window_that_is_looked_at_closely_has_points_of_its_own() {
+    let scene = scene("forced_pendulum", &["end=10", "record.every=0.5"]);
+    let curve = |window| {
+        let mut told = Told {
+            sees_points: true,
+            window,
+            ..Told::default()
+        };
+        simulate_with(&scene.problem, &mut told, &mut Silent).unwrap();
+        told.curve
+    };
+    let all = curve(None);
+    for window in [[4.2001, 4.2003], [0.0, 1e-6], [9.4, 12.0]] {
+        let closely = curve(Some(window));
+        let is_shown = |point: &&(f64, Vec<f64>)| window[0] <= point.0 && point.0 <= window[1];
+        let [inside, before] = [&closely, &all].map(|curve| curve.iter().filter(is_shown).count());
+        assert!(inside > 30 && inside > before, "{inside} {before}");
+        assert!(inside < 5000 + 20);
+        assert!(closely.is_sorted_by(|a, b| a.0 < b.0));
+        // A line between neighbours is one of the motion, as on a page of the whole run.
+        let longest = window[1].min(10.0) - window[0];
+        let within: Vec<_> = closely.iter().filter(is_shown).collect();
+        assert!(
+            within
+                .windows(2)
+                .all(|ends| ends[1].0 - ends[0].0 <= longest / 25.0)
+        );
+        let early =
+            |curve: &[(f64, Vec<f64>)]| curve.iter().filter(|point| point.0 < window[0]).count();
+        // Of the step in which it opens the part before it has as many as else the step.
+        let [with, without] = [&closely, &all].map(|curve| early(curve));
+        assert!((without..without + 32).contains(&with), "{with} {without}");
+    }
 }
 
 /// Problems of which steps hold many samples: a flight, and a motion with energies in its rows.

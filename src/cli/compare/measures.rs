@@ -27,7 +27,7 @@ impl Comparison<'_> {
             let mut peaks = self.runs().filter_map(|(_, run)| extremes(run, i));
             peaks.any(|(min, max)| min != 0.0 || max != 0.0)
         };
-        (0..self.model.own_coordinates())
+        (0..self.model.own_coordinates().len())
             .filter(|&i| moves(i))
             .collect()
     }

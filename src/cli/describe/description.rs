@@ -218,7 +218,7 @@ pub struct Operations {
 impl Description {
     pub fn new(model: &Model, variant: &Variant) -> Description {
         let choices = model.choices.iter().zip(&variant.options);
-        let coordinates = model.coordinates[..model.own_coordinates()].iter();
+        let coordinates = model.own_coordinates().iter();
         let parameter_sets = model.parameter_sets.iter();
         Description {
             name: model.name,
@@ -345,6 +345,7 @@ impl Parameter {
 
 impl Mode {
     fn new(model: &Model, variant: &Variant, (index, mode): (usize, &model::Mode)) -> Mode {
+        let own = model.own_coordinates().len();
         let name = |i: usize| model.coordinates[i].name;
         let is_held = |i: &usize| !mode.free.contains(i);
         let to = |target: usize| variant.modes[target].name;
@@ -373,13 +374,10 @@ impl Mode {
             name: mode.name,
             meaning: mode.meaning,
             free: (mode.free.iter().copied())
-                .filter(|&i| i < model.own_coordinates())
+                .filter(|&i| i < own)
                 .map(name)
                 .collect(),
-            held: (0..model.own_coordinates())
-                .filter(is_held)
-                .map(held)
-                .collect(),
+            held: (0..own).filter(is_held).map(held).collect(),
             guards: mode.guards.iter().map(guard).collect(),
             requirements: (mode.requirements.iter())
                 .map(|r| Requirement {

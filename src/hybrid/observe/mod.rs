@@ -173,9 +173,9 @@ impl<'o> Observers<'o> {
         let extremes = record.extremes.then(|| Extremes::new(&layout));
         let most = 2 * n + layout.reactions.len() + layout.outputs.len() + 3;
         Observers {
+            points: Points::new(recording.window),
             recording,
             samples: Samples::from(record.every, 0),
-            points: Points::new(),
             end: problem.end.time,
             outputs: Outputs::new(problem),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
@@ -293,7 +293,7 @@ impl<'o> Observers<'o> {
     pub fn rewind(&mut self) {
         self.recording.rewind();
         self.samples.rewind();
-        self.points = Points::new();
+        self.points = Points::new(self.recording.window);
         if let Some(extremes) = &mut self.extremes {
             *extremes = Extremes::new(&self.layout);
         }

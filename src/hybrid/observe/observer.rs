@@ -20,6 +20,11 @@ pub trait Observer {
         false
     }
 
+    /// The window of time, s, in which curves are looked at: it has as many points as else a whole run; asked once, before the run.
+    fn window(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// A point of the dense output between rows, laid out as a row: as many a step as a curve needs to look like one,
     /// where rows are further apart than that.
     fn point(&mut self, _t: f64, _mode: usize, _values: &[f64]) {}
@@ -63,6 +68,9 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
     fn sees_points(&self) -> bool {
         (**self).sees_points()
+    }
+    fn window(&self) -> Option<[f64; 2]> {
+        (**self).window()
     }
     fn point(&mut self, t: f64, mode: usize, values: &[f64]) {
         (**self).point(t, mode, values);

@@ -22,6 +22,8 @@ pub(in crate::hybrid) struct Recording<'o> {
     /// Whether the observer sees steps, and points between rows.
     pub sees_steps: bool,
     pub sees_points: bool,
+    /// The window of time that it looks at closely, s.
+    pub window: Option<[f64; 2]>,
     /// Room for a row.
     row: Box<[f64]>,
     /// Time of the last one, s.
@@ -56,10 +58,10 @@ impl<'o> Recording<'o> {
 
     /// To an observer.
     pub fn told(observer: &'o mut dyn Observer, layout: &Layout) -> Self {
-        let (sees_steps, sees_points) = (observer.sees_steps(), observer.sees_points());
         Recording {
-            sees_steps,
-            sees_points,
+            sees_steps: observer.sees_steps(),
+            sees_points: observer.sees_points(),
+            window: observer.window(),
             ..Self::new(To::Observer(Box::new(observer)), layout)
         }
     }
@@ -69,6 +71,7 @@ impl<'o> Recording<'o> {
             to,
             sees_steps: false,
             sees_points: false,
+            window: None,
             row: vec![0.0; layout.columns().len()].into(),
             last: None,
             tally: Tally::default(),

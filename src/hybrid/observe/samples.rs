@@ -91,21 +91,34 @@ const POINTS_OF_A_RUN: f64 = 5000.0;
 /// Points of curves, between the rows.
 #[derive(Debug)]
 pub(super) struct Points {
-    /// The next one and the end of the step, in local time, and from one to the next, s.
+    /// The window of time that is looked at closely, s.
+    window: Option<[f64; 2]>,
+    /// Those of a step before, in and after the window.
+    grids: [Grid; 3],
+    /// The next one in local time, s.
     next: f64,
-    end: f64,
-    spacing: f64,
     /// When the last one was, s.
     last: f64,
 }
 
+/// Evenly spaced points in a part of a step, in local time, s.
+#[derive(Debug, Clone, Copy, Default)]
+struct Grid {
+    /// The first one, and the end, at which there is none: the next grid or step begins there, or it is an event, which has rows of
+    /// its own.
+    first: f64,
+    end: f64,
+    /// From one point to the next.
+    spacing: f64,
+}
+
 impl Points {
-    /// None yet.
-    pub fn new() -> Self {
+    /// None yet; in the window, if there is one, there are as many as else in the time of a run.
+    pub fn new(window: Option<[f64; 2]>) -> Self {
         Points {
+            window,
+            grids: Default::default(),
             next: f64::INFINITY,
-            end: f64::NEG_INFINITY,
-            spacing: 0.0,
             last: f64::NEG_INFINITY,
         }
     }
@@ -113,35 +126,48 @@ impl Points {
     /// Those of a step between two local times that begins at time `t`, with rows at these intervals: none where rows are
     /// as close. The run ends at time `end`, if not before. All in s.
     pub fn enter(&mut self, [from, to]: [f64; 2], t: f64, every: Option<f64>, end: f64) {
-        let (of_step, least) = ((to - from) / POINTS, end / POINTS_OF_A_RUN);
-        let spacing = of_step.max(least);
-        *self = match every {
-            Some(every) if every <= spacing => Points {
-                last: self.last,
-                ..Points::new()
-            },
-            _ => Points {
-                next: from + of_step.max(self.last + least - t),
-                end: to,
+        let [opens, closes] = self.window.unwrap_or([f64::INFINITY; 2]);
+        let local = |time: f64| (from + (time - t)).clamp(from, to);
+        let borders = [from, local(opens), local(closes), to];
+        for (k, grid) in self.grids.iter_mut().enumerate() {
+            let [begins, ends] = [borders[k], borders[k + 1]];
+            let shown = if k == 1 { closes - opens } else { end };
+            let (of_part, least) = ((ends - begins) / POINTS, shown / POINTS_OF_A_RUN);
+            let spacing = of_part.max(least);
+            let is_by_rows = every.is_some_and(|every| every <= spacing);
+            // The border of the window is a point, too.
+            let first = match begins == from {
+                true => from + of_part.max(self.last + least - t),
+                false => begins,
+            };
+            *grid = Grid {
+                first: if is_by_rows { f64::INFINITY } else { first },
+                end: ends,
                 spacing,
-                last: self.last,
-            },
-        };
+            };
+        }
+        self.next = self.after(f64::NEG_INFINITY);
     }
 
-    /// Local time of the next one, s; infinite where there is none. The end of a step is the start of the next one, or an
-    /// event, which has rows of its own.
+    /// The point that follows one at a local time, s; infinite where there is none.
+    fn after(&self, point: f64) -> f64 {
+        let next = self
+            .grids
+            .iter()
+            .map(|grid| (grid.first.max(point + grid.spacing), grid.end));
+        let mut within = next.filter(|(next, end)| next < end);
+        within.next().map_or(f64::INFINITY, |(next, _)| next)
+    }
+
+    /// Local time of the next one, s; infinite where there is none.
     fn next(&self) -> f64 {
-        match self.next < self.end {
-            true => self.next,
-            false => f64::INFINITY,
-        }
+        self.next
     }
 
     /// The next one was told, for this time, s.
     fn pass(&mut self, t: f64) {
         self.last = t;
-        self.next += self.spacing;
+        self.next = self.after(self.next);
     }
 }
 

@@ -204,6 +204,19 @@ fn tables_may_have_comments_quotes_and_a_byte_order_mark() {
     }
 }
 
+/// A choice of a model is a key of its scenes: none may be called like one that all scenes have.
+#[test]
+fn no_choice_can_be_named_like_a_key_of_scenes() {
+    let names = include_str!("../../../codegen/arguments.py");
+    let (_, choices) = names.split_once("\"choice\": dict.fromkeys(").unwrap();
+    let (choices, _) = choices.split_once("\"a key of scenes\"").unwrap();
+    let schema = crate::scene::schema(None);
+    for key in schema["properties"].as_object().unwrap().keys() {
+        let is_reserved = choices.contains(&format!("\"{key}\""));
+        assert!(is_reserved || key.starts_with('$'), "{key}");
+    }
+}
+
 #[test]
 fn schema_lists_what_a_model_has() {
     for model in models().iter() {
