@@ -28,6 +28,8 @@ const HAIR: f64 = 0.7;
 /// Width of the piece of line or area in front of a text in a legend, and the space around it.
 const SWATCH: f64 = 16.0;
 const SPACE: f64 = 5.0;
+/// From a vertical axis to the middle of its title.
+const TITLE_AWAY: f64 = 58.0;
 /// Vertical labels this far apart (px) have nearly as much white as text between them; with more
 /// labels than this, the grid draws the eye away from the curves.
 const LABEL_DISTANCE: f64 = 18.0;
@@ -152,16 +154,20 @@ pub(super) fn grid(canvas: &mut Canvas, area: Area, x: &Axis, y: &Axis, title: &
     for tick in x.ticks(horizontal_ticks(area)) {
         canvas.line([area.at(tick.at, 0.0), area.at(tick.at, 1.0)], HAIR, GRID);
     }
+    let mut labels: f64 = 0.0;
     for tick in y.ticks(((area.height / LABEL_DISTANCE) as usize).min(MOST_LABELS)) {
+        labels = labels.max(text_width(&tick.label, SMALL.size));
         let colour = if tick.label == "0" { ZERO } else { GRID };
         canvas.line([area.at(0.0, tick.at), area.at(1.0, tick.at)], HAIR, colour);
         let (left, at) = area.at(0.0, tick.at);
         canvas.text(&tick.label, (left - SPACE, at), Anchor::Right, SMALL);
     }
     let middle = area.top + area.height / 2.0;
+    // Titles stand in one line, but for those whose labels come as far.
+    let away = TITLE_AWAY.max(SPACE + labels + TEXT.size);
     canvas.text(
         &y.title(title),
-        (area.left - 58.0, middle),
+        (area.left - away, middle),
         Anchor::Upwards,
         TEXT,
     );
