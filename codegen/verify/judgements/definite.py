@@ -76,34 +76,56 @@ def prove_matrix(matrix, fixed, box, limit=BISECTIONS, tell=None) -> Verdict:
         known(intervals({**fixed, **box}), forms)
         return prove([_collected(form, still) for form in forms], fixed, box, limit, judge=_signs, tell=tell)
     known(intervals({**fixed, **box}), [form for row in matrix for form in row])
-    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, limit, judge=pivots, tell=tell)
+    return prove([[_collected(form, still) for form in row] for row in matrix], fixed, box, limit, judge=pivots, tell=tell, apart=False)
 
 
 def _collected(form, still):
-    """The parts of a form, [(what is constant in them, as an interval, the rest as a form)], each rest once."""
+    """The parts of a form, [(what is constant in them, as an interval, the rest as a form)], each rest once. Of a harmonic the
+    constant angles are constants too, sin(a + q) = cos a sin q + sin a cos q: where angles occur with many constant ones,
+    little is left that moves, and its interval is narrower."""
     from mpmath import iv
 
     found = {}
-    for (monomial, harmonic), value in form.terms.items():
-        moving = tuple(item for item in monomial if item[0] not in still)
-        constant = form.ring.form({(tuple(item for item in monomial if item[0] in still), ONE): value})
-        rest = form.ring.form({(moving, harmonic): 1}).divided(dict(form.over))
-        found[rest] = found.get(rest, 0) + constant.evaluate(still, iv.sin, iv.cos, iv.mpf(0))
+
+    def add(constant, rest):
+        rest = rest.divided(dict(form.over))
+        found[rest] = found.get(rest, 0) + constant
+
+    for (monomial, (kind, angle)), value in form.terms.items():
+        constant = iv.mpf(value.numerator) / value.denominator
+        for name, exponent in monomial:
+            if name in still:
+                constant = constant * still[name] ** exponent
+        factor = form.ring.form({(tuple(item for item in monomial if item[0] not in still), ONE): 1})
+        moving = {name: slope for name, slope in angle if name not in still}
+        if len(moving) == len(angle):
+            add(constant, factor * form.ring.harmonic(kind, moving))
+            continue
+        fixed = sum((still[name] * slope.numerator / slope.denominator for name, slope in angle if name in still), iv.mpf(0))
+        other, sign = ("cos", 1) if kind == "sin" else ("sin", -1)
+        for part, amount in ((kind, iv.cos(fixed)), (other, sign * iv.sin(fixed))):
+            if harmonic := form.ring.harmonic(part, moving):
+                add(constant * amount, factor * harmonic)
     return [(constant, rest) for rest, constant in found.items()]
 
 
 def _signs(forms, values):
     """The signs of forms as `_collected` gives them over intervals by name: +1, -1 or 0 (not decided)."""
-    from mpmath import iv
-
-    found = []
+    harmonics, found = {}, []
     for form in forms:
         if _opaque(form):
             found.append(0)
             continue
-        value = sum((constant * rest.evaluate(values, iv.sin, iv.cos, iv.mpf(0)) for constant, rest in form), iv.mpf(0))
+        value = _value(form, values, harmonics)
         found.append(1 if value.a > 0 else -1 if value.b < 0 else 0)
     return found
+
+
+def _value(form, values, harmonics):
+    """The interval of a form as `_collected` gives it; `harmonics` as in `Form.evaluate`."""
+    from mpmath import iv
+
+    return sum((constant * rest.evaluate(values, iv.sin, iv.cos, iv.mpf(0), harmonics) for constant, rest in form), iv.mpf(0))
 
 
 def _opaque(form):
@@ -115,12 +137,10 @@ def pivots(matrix, values):
     """The signs of the pivots of a symmetric matrix (entries as `_collected` gives them) over intervals by name: +1, -1 or 0 (not decided, as are all after one
     that is not positive). All are positive only where the matrix is positive definite, and the first that
     is not positive has the sign of its leading minor."""
-    from mpmath import iv
-
     if any(_opaque(entry) for row in matrix for entry in row):
         return [0] * len(matrix)
-    rows = [[sum((constant * form.evaluate(values, iv.sin, iv.cos, iv.mpf(0)) for constant, form in entry), iv.mpf(0))
-             for entry in row[:i + 1]] for i, row in enumerate(matrix)]
+    harmonics = {}
+    rows = [[_value(entry, values, harmonics) for entry in row[:i + 1]] for i, row in enumerate(matrix)]
     found = []
     for k, row in enumerate(rows):
         pivot = row[k]
@@ -133,30 +153,33 @@ def pivots(matrix, values):
     return found
 
 
-def prove(forms, fixed, box, limit=BISECTIONS, judge=signs, tell=None) -> Verdict:
+def prove(forms, fixed, box, limit=BISECTIONS, judge=signs, tell=None, apart=True) -> Verdict:
     """Whether all forms are positive over a box {name: (low, high)} with the other values fixed; `judge(forms, values)`
-    gives their signs over intervals, `tell(done)` is told of each box that is judged."""
+    gives their signs over intervals, each by itself (`apart`: what is positive over a box is not judged again over its
+    parts), `tell(done)` is told of each box that is judged."""
     fixed = intervals(fixed)
-    queue, count = [dict(box)], 0
+    queue, count = [(dict(box), forms)], 0
     while queue:
-        part = queue.pop()
+        part, left = queue.pop()
         count += 1
         if tell:
             tell(count)
-        found = judge(forms, {**fixed, **intervals(part)})
+        found = judge(left, {**fixed, **intervals(part)})
         if -1 in found:
             return Verdict("refuted", count, part)
         if all(sign == 1 for sign in found):
             continue
+        if apart:
+            left = [form for form, sign in zip(left, found) if sign != 1]
         middle = {n: ((low + high) / 2,) * 2 for n, (low, high) in part.items()}
-        if -1 in judge(forms, {**fixed, **intervals(middle)}):
+        if -1 in judge(left, {**fixed, **intervals(middle)}):
             return Verdict("refuted", count, middle)
         widths = {n: (part[n][1] - part[n][0]) / (box[n][1] - box[n][0]) for n in part if box[n][1] > box[n][0]}
         if count >= limit or not widths:
             return Verdict("undecided", count, part)
         name = max(widths, key=widths.get)
         centre = middle[name][0]
-        queue += [{**part, name: (part[name][0], centre)}, {**part, name: (centre, part[name][1])}]
+        queue += [({**part, name: (part[name][0], centre)}, left), ({**part, name: (centre, part[name][1])}, left)]
     return Verdict("proved", count)
 
 

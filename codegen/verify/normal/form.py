@@ -299,24 +299,30 @@ class Form:
             degree += 1
         return None
 
-    def evaluate(self, values, sin, cos, zero=0):
-        """The value for numbers (or intervals) by name; not for opaque factors."""
+    def evaluate(self, values, sin, cos, zero=0, harmonics=None):
+        """The value for numbers (or intervals) by name; not for opaque factors. `harmonics`, {harmonic: value}, is filled with
+        those that are met: whoever evaluates several forms with the same values hands the same to each."""
+        harmonics = {} if harmonics is None else harmonics
         total = zero
-        for (monomial, (kind, angle)), value in self.terms.items():
+        for (monomial, harmonic), value in self.terms.items():
             # what changes nothing is left out: an operation on intervals takes as long with 1 as with others
-            product = zero + value.numerator
+            product = None if value == 1 else zero + value.numerator
             if value.denominator != 1:
                 product = product / value.denominator
-            for name, exponent in monomial:
-                product = product * (values[name] ** exponent if exponent != 1 else values[name])
-            if angle:
-                argument = zero
-                for name, slope in angle:
-                    argument = argument + (values[name] * slope.numerator / slope.denominator if slope != 1 else values[name])
-                product = product * (sin if kind == "sin" else cos)(argument)
-            total = total + product
+            factors = [values[name] ** exponent if exponent != 1 else values[name] for name, exponent in monomial]
+            if harmonic != ONE:
+                if harmonic not in harmonics:
+                    kind, angle = harmonic
+                    argument = zero
+                    for name, slope in angle:
+                        argument = argument + (values[name] * slope.numerator / slope.denominator if slope != 1 else values[name])
+                    harmonics[harmonic] = (sin if kind == "sin" else cos)(argument)
+                factors.append(harmonics[harmonic])
+            for factor in factors:
+                product = factor if product is None else product * factor
+            total = total + (zero + 1 if product is None else product)
         for divisor, power in self.over:
-            total = total / divisor.evaluate(values, sin, cos, zero) ** power
+            total = total / divisor.evaluate(values, sin, cos, zero, harmonics) ** power
         return total
 
 

@@ -162,6 +162,23 @@ class Definiteness(unittest.TestCase):
         self.assertEqual(prove_matrix([[form * -1]], fixed, box).status, "refuted")
         self.assertEqual(prove_matrix([[form + self.ring.read(sympy.Abs(M))]], {**fixed, "m": "1"}, box).status, "undecided")
 
+    def test_constant_angles_are_constants(self):
+        """a sin(b - q) - a sin(b + q) + 1 = 1 - 2 a cos b sin q, with cos b small: one box; term by term it is many."""
+        form = self.ring.read(A * sympy.sin(B - Q) - A * sympy.sin(B + Q) + 1)
+        fixed, box = {"a": "3", "b": "1.5"}, {"q": (-1.0, 1.0)}
+        self.assertGreater(prove([form], fixed, box).boxes, 4)
+        self.assertEqual(prove_matrix([[form]], fixed, box), Verdict("proved", 1))
+        # 2 a cos b is 1.02 and 1.26: the form is zero at sin q = 0.98, outside the box, and at 0.80, inside
+        self.assertEqual(prove_matrix([[form]], {"a": "3", "b": "1.4"}, box).status, "proved")
+        self.assertEqual(prove_matrix([[form]], {"a": "3.7", "b": "1.4"}, box).status, "refuted")
+        for point in (-1.0, -0.3, 0.0, 0.7):
+            other = self.ring.read(A * sympy.cos(B - Q) - A * sympy.cos(B + Q) + 1)
+            for whole, slope in ((form, -7.4 * math.cos(1.4)), (other, 7.4 * math.sin(1.4))):
+                off = whole - Fraction(1 + slope * math.sin(point))
+                for sign in (1, -1):  # as near as the doubles of this test are
+                    near = off * sign + Fraction(1, 10**12)
+                    self.assertEqual(prove_matrix([[near]], {"a": "3.7", "b": "1.4"}, {"q": (point, point)}).status, "proved")
+
     def test_angles_that_enter_as_differences_are_taken_out(self):
         """Links of any number hang on a cart: definite at all angles, which boxes of eight angles do not show."""
         angles = sympy.symbols("q_1:9", real=True)
