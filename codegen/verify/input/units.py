@@ -16,7 +16,7 @@ class Dimension(tuple):
     @staticmethod
     def of(**exponents):
         """The dimension with these exponents."""
-        return Dimension(Fraction(exponents.get(base, 0)) for base in BASE)
+        return Dimension(exponents.get(base, 0) for base in BASE)
 
     def times(self, other, power=1):
         """self * other**power."""

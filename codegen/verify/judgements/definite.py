@@ -31,7 +31,7 @@ def printed_mass(subject, symmetric=False):
     """Mass matrix of the printed equations of motion, each times its constant; `symmetric` takes
     the symmetric part."""
     motions = subject.paper.motions()
-    matrix = [[(subject.multipliers[e.number] * subject.total(e.number)).diff("dd" + f.of) for f in motions] for e in motions]
+    matrix = [[subject.multipliers[e.number] * subject.slope(e.number, "dd" + f.of) for f in motions] for e in motions]
     if not symmetric:
         return matrix
     return [[(matrix[i][j] + matrix[j][i]) * HALF for j in range(len(matrix))] for i in range(len(matrix))]

@@ -16,7 +16,7 @@ def dimensions(subject, motion=None) -> List[Violation]:
         equation, found, violations = subject.paper.equations[number], [], []
         for term in subject.expressions[number]:
             try:
-                found.append(units.measure(term, subject.dimension))
+                found.append(subject.measure(term))
             except UnitError as error:
                 found.append(error)
         if equation.kind == "motion":

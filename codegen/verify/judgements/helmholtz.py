@@ -12,62 +12,85 @@ def lagrangian(subject, motion=None) -> List[Violation]:
     """Judgement 2: the Helmholtz conditions on the part that is not dissipative. They hold
     exactly if some Lagrangian has these equations of motion, each multiplied by its constant."""
     motions = [] if subject.solved else subject.paper.motions()
-    rows = [subject.multipliers[e.number] * subject.conservative(e.number) for e in motions]
-    q = [e.of for e in motions]
-    numbers = [(e.number,) for e in motions]
+    inputs = [x.name for x in subject.paper.symbols.values() if x.role == "input"]
+    # a coordinate without an equation of its own moves too
+    q = subject.quasi.positions if subject.quasi else [e.of for e in motions]
+    chain = {}
+    for name in dict.fromkeys(q + subject.paper.coordinates() + inputs):
+        chain.update({name: "d" + name, "d" + name: "dd" + name, "dd" + name: "ddd" + name})
     if subject.quasi:
         # of the coordinates' equations each is a sum of all that are printed
         if len(motions) != len(subject.paper.coordinates()):
             return []
-        q, numbers = subject.quasi.positions, [tuple(e.number for e in motions)] * len(motions)
-        outside = [v for e, row in zip(motions, rows) for v in _outside(subject, e, row)]
-        rows = subject.quasi.unprojected(subject.in_order(rows))
-    inputs = [x.name for x in subject.paper.symbols.values() if x.role == "input"]
-    chain = {}
-    # a coordinate without an equation of its own moves too
-    for name in dict.fromkeys(q + subject.paper.coordinates() + inputs):
-        chain.update({name: "d" + name, "d" + name: "dd" + name, "dd" + name: "ddd" + name})
-    a = [[row.diff("dd" + name) for name in q] for row in rows]
-    v = [[row.diff("d" + name) for name in q] for row in rows]
-    x = [[row.diff(name) for name in q] for row in rows]
-    violations = []
-
-    def report(i, j, what, form, *missing):
-        # each equation's own terms are what is printed, before it was multiplied by its constant
-        lost = [] if subject.quasi else [(motions[k].number, subject.multipliers[motions[k].number].inverse() * f) for k, f in missing]
-        violations.append(Violation("lagrangian", numbers[i] + numbers[j] if not subject.quasi else numbers[i], (), [what, form], lost))
-
-    def acceleration(k):
-        return subject.ring.symbol("dd" + q[k])
-
-    violations += outside if subject.quasi else [v for e, row in zip(motions, rows) for v in _outside(subject, e, row)]
-    for i, j in product(range(len(q)), repeat=2):
-        number_i, number_j = ("that of " + q[k] if subject.quasi else motions[k].number for k in (i, j))
-        for name in q:
-            if a[i][j].diff("dd" + name):
-                report(i, j, f"({number_i}) is not linear in the accelerations: ", a[i][j])
-        if j < i and (form := a[i][j] - a[j][i]):
-            report(i, j, f"the mass matrix is not symmetric: acceleration of {q[j]} in ({number_i}) minus "
-                         f"acceleration of {q[i]} in ({number_j}) leaves ", form,
-                   (i, -form * acceleration(j)), (j, form * acceleration(i)))
-        if j <= i and (form := v[i][j] + v[j][i] - (a[i][j] + a[j][i]).rate(chain)):
-            report(i, j, f"the velocity terms of ({number_i}) and ({number_j}) do not belong to their mass "
-                         "matrix; left over: ", form,
-                   *[(k, _integral(form * Fraction(-1, 1 + (i == j)), "d" + q[l])) for k, l in ((i, j), (j, i))])
-        if j < i and (form := x[i][j] - x[j][i] - (v[i][j] - v[j][i]).rate(chain) * Fraction(1, 2)):
-            report(i, j, f"the terms of ({number_i}) in {q[j]} and of ({number_j}) in {q[i]} do not come from one "
-                         "energy; left over: ", form)
+        rows = [subject.multipliers[e.number] * subject.conservative(e.number) for e in motions]
+        violations = [v for e, row in zip(motions, rows) for v in _outside(subject, e, row)]
+        numbers, lost = tuple(e.number for e in motions), lambda form: None
+        rows = [_Row("that of " + name, name, q, row, lost) for name, row in zip(q, subject.quasi.unprojected(subject.in_order(rows)))]
+        for i, j in product(range(len(q)), repeat=2):
+            violations += _pair(rows[i], rows[j], numbers, j < i, i == j, chain)
+    else:
+        # what belongs to one equation or two is judged once, whatever is tried on the others
+        scaled = [(e, subject.multipliers[e.number]) for e in motions]
+        rows = [subject.remembered(("helmholtz row", e.number, scale), lambda e=e, scale=scale: _Row(
+            e.number, e.of, q, scale * subject.conservative(e.number),
+            # an equation's own terms are what is printed, before it was multiplied by its constant
+            lambda form: (e.number, scale.inverse() * form))) for e, scale in scaled]
+        violations = [v for row, (e, scale) in zip(rows, scaled) for v in subject.remembered(
+            ("helmholtz outside", e.number, scale), lambda e=e, row=row: _outside(subject, e, row.form))]
+        for i, j in product(range(len(q)), repeat=2):
+            numbers = (motions[i].number, motions[j].number)
+            key = ("helmholtz pair", numbers, j < i, scaled[i][1], scaled[j][1])
+            violations += subject.remembered(key, lambda i=i, j=j, numbers=numbers: _pair(rows[i], rows[j], numbers, j < i, i == j, chain))
     for number, equation in subject.paper.equations.items():
         if equation.momentum:
-            violations += _momentum(subject, number, q, chain)
+            violations += subject.remembered(("momentum", number, tuple(q)), lambda number=number: _momentum(subject, number, q, chain))
+    return violations
+
+
+class _Row:
+    """An equation of motion times its multiplier, with its slopes by accelerations, rates and coordinates: `name` what it is called,
+    `lost(form)` says in which printed equation a form is missing (None: it cannot be said)."""
+
+    def __init__(self, name, of, q, form, lost):
+        self.name, self.of, self.form, self.lost = name, of, form, lost
+        self.a, self.v, self.x = ({n: form.diff(d + n) for n in q} for d in ("dd", "d", ""))
+
+    @property
+    def acceleration(self):
+        """The acceleration of its coordinate."""
+        return self.form.ring.symbol("dd" + self.of)
+
+
+def _pair(one, other, numbers, before, same, chain):
+    """The violations of the Helmholtz conditions by two rows, of printed equations `numbers`: those that are symmetric once, where `other`
+    stands `before`, and those of a row with itself where they are the `same`."""
+    i, j, violations = one.of, other.of, []
+
+    def report(what, form, *missing):
+        lost = [found for row, f in missing if f is not None and (found := row.lost(f))]
+        violations.append(Violation("lagrangian", numbers, (), [what, form], lost))
+
+    for name in one.a:
+        if one.a[j].diff("dd" + name):
+            report(f"({one.name}) is not linear in the accelerations: ", one.a[j])
+    if before and (form := one.a[j] - other.a[i]):
+        report(f"the mass matrix is not symmetric: acceleration of {j} in ({one.name}) minus acceleration of {i} in ({other.name}) leaves ",
+               form, (one, -form * other.acceleration), (other, form * one.acceleration))
+    if (before or same) and (form := one.v[j] + other.v[i] - (one.a[j] + other.a[i]).rate(chain)):
+        report(f"the velocity terms of ({one.name}) and ({other.name}) do not belong to their mass matrix; left over: ", form,
+               *[(row, _integral(form * Fraction(-1, 1 + same), "d" + name)) for row, name in ((one, j), (other, i))])
+    if before and (form := one.x[j] - other.x[i] - (one.v[j] - other.v[i]).rate(chain) * Fraction(1, 2)):
+        report(f"the terms of ({one.name}) in {j} and of ({other.name}) in {i} do not come from one energy; left over: ", form)
     return violations
 
 
 def _integral(form, name):
-    """A form with this derivative by `name`, which is a factor, not an angle."""
+    """A form with this derivative by `name`, which is a factor, not an angle; None where that is a logarithm."""
     total = form.ring.number(0)
     for (monomial, harmonic), value in form.terms.items():
         power = dict(monomial).get(name, 0)
+        if power == -1:
+            return None  # a logarithm
         total += form.ring.form({(monomial, harmonic): Fraction(value) / (power + 1)}) * form.ring.symbol(name)
     return total
 
@@ -114,7 +137,7 @@ def _momentum(subject, number, q, chain):
         if form := velocity - mass.rate(chain) * 2:
             violations.append(Violation("lagrangian", (number,), (), [
                 f"({number}) is not the rate of a momentum: its terms in the velocity of {name} do not belong to those in "
-                "the acceleration; left over: ", form], [(number, _integral(-form, "d" + name))]))
+                "the acceleration; left over: ", form], [] if (lost := _integral(-form, "d" + name)) is None else [(number, lost)]))
         if form := total.diff(name) - velocity.rate(chain) * Fraction(1, 2):
             violations.append(Violation("lagrangian", (number,), (), [
                 f"({number}) is not the rate of a momentum: its terms in {name} do not belong to those in the velocities; "

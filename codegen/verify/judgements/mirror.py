@@ -18,10 +18,18 @@ def mirror(subject, motion=None) -> List[Violation]:
     if not flip:
         return []
 
+    known = subject.shared.setdefault("mirror", {})
+
+    def sign(form):
+        """What the mirror image of a form is, times the form; 0: neither it nor its negative."""
+        if form not in known:
+            image = form.substitute(flip)
+            known[form] = 1 if image == form else -1 if image == -form else 0
+        return known[form]
+
     def judge(number):
         equation, violations = subject.paper.equations[number], []
-        images = [form.substitute(flip) for form in subject.forms[number]]
-        signs = [1 if image == form else -1 if image == -form else 0 for form, image in zip(subject.forms[number], images)]
+        signs = [sign(form) for form in subject.forms[number]]
         if equation.kind == "motion":
             # an equation may have been multiplied by lambda: the majority decides its sign
             expected = max((symbols[equation.of].mirror, -symbols[equation.of].mirror), key=signs.count)
@@ -29,9 +37,9 @@ def mirror(subject, motion=None) -> List[Violation]:
             expected = 1
         else:
             expected = symbols[equation.of].mirror
-        for index, (form, sign) in enumerate(zip(subject.forms[number], signs)):
-            if form and sign != expected:
-                change = {1: "keeps its sign", -1: "changes its sign", 0: "becomes another term"}[sign]
+        for index, (form, found) in enumerate(zip(subject.forms[number], signs)):
+            if form and found != expected:
+                change = {1: "keeps its sign", -1: "changes its sign", 0: "becomes another term"}[found]
                 violations.append(Violation("mirror", (number,), (index,), [
                     "in the mirror image ", form, f" {change}, against the rest of the equation"]))
         return violations

@@ -1,14 +1,16 @@
 """Printed equations in normal form: what the judgements judge."""
 
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 
 from sympy import Expr, Mul, cos, sin, sympify
 
-from ..errors import NotInClass, PaperError
+from ..errors import NotInClass, PaperError, UnitError
 from ..input import units
 from ..input.namespace import Mathematics, sympy_namespace
 from ..normal.algebra import ring_of
+from ..normal.points import at_point, symmetric
 from ..normal.quasi import Quasi
 from ..normal.scales import scales
 from .helmholtz import lagrangian
@@ -41,10 +43,9 @@ class Subject:
             if not base and not self.forms[number]:
                 raise PaperError(f"equation ({number}) has no terms")
         if base:
-            self.memo = {key: value for key, value in base.memo.items() if key[1] is None or key[1] in kept}
-        self.solved = self._solved()
-        self.scales = scales(self)
-        self.multipliers = self._multipliers()
+            # a key's second part is the number of the equation that its value depends on, or several, or None
+            self.memo = {key: value for key, value in base.memo.items()
+                         if key[1] is None or key[1] in kept or isinstance(key[1], tuple) and kept.issuperset(key[1])}
 
     def _terms(self, equation):
         """The terms of an equation as SymPy expressions; an error in its function names it."""
@@ -59,7 +60,7 @@ class Subject:
                 raise PaperError(f"equation ({equation.number}), term {k}: {term!r} is not an expression of the symbols s.… "
                                  "with exact numbers" + ("; write *group(...)" if isinstance(term, (list, tuple)) else ""))
             result.append(sympify(term))
-            for symbol in sorted(result[-1].free_symbols, key=str):
+            for symbol in sorted(result[-1].free_symbols, key=lambda x: x.name):
                 if symbol.name not in known:
                     raise PaperError(f"equation ({equation.number}), term {k}: the symbol '{symbol}' is not declared")
         return result
@@ -76,6 +77,18 @@ class Subject:
         if term not in self.known:
             self.known[term] = self.ring.read(term)
         return self.known[term]
+
+    def measure(self, term):
+        """The dimension of a term, measured once; a UnitError where it has none."""
+        known = self.shared.setdefault("dimensions", {})
+        if term not in known:
+            try:
+                known[term] = units.measure(term, self.dimension)
+            except UnitError as error:
+                known[term] = error
+        if isinstance(known[term], UnitError):
+            raise known[term]
+        return known[term]
 
     def units(self):
         """The sines, cosines and their products that the paper prints and the algebra takes apart."""
@@ -99,14 +112,24 @@ class Subject:
             violations += self.memo[key]
         return violations
 
+    def remembered(self, key, make):
+        """What `make()` gives, made once for the equations that the key names."""
+        if key not in self.memo:
+            self.memo[key] = make()
+        return self.memo[key]
+
     def total(self, number):
         """The sum of an equation's terms."""
-        return sum(self.forms[number], self.ring.number(0))
+        return self.remembered(("total", number), lambda: sum(self.forms[number], self.ring.number(0)))
+
+    def slope(self, number, name):
+        """The derivative of the sum of an equation's terms by a name."""
+        return self.remembered(("slope", number, name), lambda: self.total(number).diff(name))
 
     def conservative(self, number):
         """The sum without what is declared dissipative."""
-        dissipative = {x.name: 0 for x in self.paper.symbols.values() if x.dissipative}
-        return self.total(number).substitute(dissipative)
+        return self.remembered(("conservative", number), lambda: self.total(number).substitute(
+            {x.name: 0 for x in self.paper.symbols.values() if x.dissipative}))
 
     def factors(self):
         """The constants that an equation may have been multiplied by: 1, -1 and these times
@@ -119,41 +142,70 @@ class Subject:
         of = {e.of: row for e, row in zip(self.paper.motions(), rows)}
         return [of.get(name, self.ring.number(0)) for name in self.paper.coordinates()]
 
-    def _solved(self):
+    @cached_property
+    def solved(self):
         """Whether the equations of motion are solved for the accelerations: none has that of another, and there is a divisor, a
         sum that depends on the coordinates. A mass matrix is then not what they show."""
         motions, q = self.paper.motions(), set(self.paper.coordinates())
-        alone = not any(self.total(e.number).diff("dd" + f.of) for e in motions for f in motions if e is not f)
+        alone = not any(self.slope(e.number, "dd" + f.of) for e in motions for f in motions if e is not f)
         return len(motions) > 1 and alone and any(len(divisor.terms) > 1 and divisor.names() & q for e in motions
                                                   for form in self.forms[e.number] for divisor, _ in form.over)
 
-    def _multipliers(self):
+    @cached_property
+    def scales(self):
+        """The factor of each equation of motion, by number (normal/scales.py)."""
+        return scales(self)
+
+    @cached_property
+    def multipliers(self):
         """For each equation of motion, its scale times the constant that makes the mass matrix most
         nearly symmetric; the first equation keeps 1, and 1 is preferred."""
         motions = self.paper.motions()
-        rows = [[self.scales[e.number] * self.total(e.number).diff("dd" + f.of) for f in motions] for e in motions]
+        rows = [[self.scales[e.number] * self.slope(e.number, "dd" + f.of) for f in motions] for e in motions]
         if not motions or not any(row[i] != rows[i][j] for j, row in enumerate(rows) for i in range(len(motions))):
             return self._uncoupled(dict(self.scales), motions, rows)
-        best = None
-        for choice in product(self.factors(), repeat=len(motions) - 1):
-            choice = (self.ring.number(1),) + choice
-            cost = sum(len((choice[i] * rows[i][j] - choice[j] * rows[j][i]).terms)
-                       for i in range(len(motions)) for j in range(i))
-            if best is None or cost < best[0]:
+        cost, choice = self._most_symmetric(rows)
+        found = {e.number: factor * self.scales[e.number] for e, factor in zip(motions, choice)}
+        return self._uncoupled(cost and self._common_functions(motions, rows) or found, motions, rows)
+
+    def _most_symmetric(self, rows):
+        """(terms in which a matrix is not symmetric, the constants of its rows with which these are fewest): the first is 1, and of
+        equals 1 is preferred."""
+        factors, costs = self.factors(), {}
+
+        def apart(i, j, one, other):
+            """The terms in which two couplings differ, each times its constant, by places of these."""
+            # constants are their own reciprocals: their product alone counts
+            if (i, j, one, other) not in costs:
+                costs[i, j, one, other] = len((factors[one] * factors[other] * rows[i][j] - rows[j][i]).terms)
+            return costs[i, j, one, other]
+
+        best, left = None, [(0, (0,))]
+        while left:
+            cost, choice = left.pop()
+            if best is not None and cost >= best[0]:
+                continue  # further rows cost nothing less
+            if len(choice) == len(rows):
                 best = (cost, choice)
-        found = {e.number: factor * self.scales[e.number] for e, factor in zip(motions, best[1])}
-        return self._uncoupled(best[0] and self._common_functions(motions, rows) or found, motions, rows)
+                continue
+            i = len(choice)
+            left += [(cost + sum(apart(i, j, one, other) for j, other in enumerate(choice)), (*choice, one))
+                     for one in reversed(range(len(factors)))]
+        return best[0], [factors[k] for k in best[1]]
 
     def _common_functions(self, motions, rows):
         """The multipliers, where they are functions of the coordinates with which all Helmholtz conditions hold; or
         None. What couples two equations says what one of them was divided by."""
+        points, one = [[at_point(form, self.ring.involutions) for form in row] for row in rows], self.ring.number(1)
         for i in range(len(motions)):
-            found = {}
-            for j, other in enumerate(motions):
-                coupled = i != j and rows[i][j] and rows[j][i] and not rows[j][i].names() & self.ring.involutions
-                ratio = rows[i][j] * rows[j][i].inverse() if coupled else self.ring.number(1)
-                # a number is a slip in a coupling
-                found[other.number] = self.scales[other.number] * (self.ring.number(1) if ratio.is_number() else ratio)
+            # a number is a slip in a coupling
+            divided = [i != j and rows[i][j] and rows[j][i] and not rows[j][i].names() & self.ring.involutions
+                       and not rows[i][j].proportional(rows[j][i]) for j in range(len(motions))]
+            ratios = [points[i][j] / points[j][i] if points[i][j] is not None and points[j][i] else None for j in range(len(motions))]
+            if not symmetric(points, [ratio if known else 1.0 for known, ratio in zip(divided, ratios)]):
+                continue
+            found = {e.number: self.scales[e.number] * (rows[i][j] * rows[j][i].inverse() if divided[j] else one)
+                     for j, e in enumerate(motions)}
             self.multipliers = found
             if not lagrangian(self):
                 return found

@@ -133,6 +133,10 @@ class Form:
 
     def __mul__(self, other):
         other = self._other(other)
+        if other.is_one():
+            return self
+        if self.is_one():
+            return other
         total = {}
         for (m1, h1), v1 in self.terms.items():
             for (m2, h2), v2 in other.terms.items():
@@ -194,9 +198,21 @@ class Form:
 
     __repr__ = __str__
 
+    def is_one(self):
+        """Whether it is the number 1."""
+        return len(self.terms) == 1 and not self.over and self.terms.get(((), ONE)) == 1
+
     def is_number(self):
         """Whether no symbol is left."""
         return not self.over and all(key == ((), ONE) for key in self.terms)
+
+    def proportional(self, other):
+        """Whether it is another form times a number."""
+        if self.over or other.over:
+            return bool(other) and (self * other.inverse()).is_number()
+        if self.terms.keys() != other.terms.keys():
+            return False
+        return len({Fraction(value) / other.terms[key] for key, value in self.terms.items()}) <= 1
 
     def names(self):
         """Names that occur, also inside angles and opaque factors."""
@@ -217,23 +233,22 @@ class Form:
                 if slope := divisor.diff(name):
                     result -= self * slope.divided({divisor: 1}) * power
             return result
-        total = self.ring.number(0)
-        for (monomial, (kind, angle)), value in self.terms.items():
-            rest = Form(self.ring, {((), (kind, angle)): value})
-            slope = dict(angle).get(name)
-            if slope:
-                other = self.ring.harmonic("cos" if kind == "sin" else "sin", dict(angle))
-                total += Form(self.ring, {(monomial, ONE): value * slope * (1 if kind == "sin" else -1)}) * other
-            for factor, exponent in monomial:
-                inner = None
+        total = {}
+        for (monomial, harmonic), value in self.terms.items():
+            kind, angle = harmonic
+            for factor, slope in angle:
                 if factor == name:
-                    inner = self.ring.number(1)
-                elif isinstance(factor, Opaque) and factor.function == "Abs":
-                    inner = self.ring.opaque("sign", factor.argument) * factor.argument.diff(name)
-                if inner:
-                    lowered = _multiply(self.ring, monomial, ((factor, -1),))
-                    total += Form(self.ring, {(lowered, ONE): exponent}) * inner * rest
-        return total
+                    key = (monomial, ("cos" if kind == "sin" else "sin", angle))
+                    total[key] = total.get(key, 0) + value * slope * (1 if kind == "sin" else -1)
+            for factor, exponent in monomial:
+                if factor == name:
+                    key = (_multiply(self.ring, monomial, ((factor, -1),)), harmonic)
+                    total[key] = total.get(key, 0) + value * exponent
+                elif isinstance(factor, Opaque) and factor.function == "Abs" and (inner := factor.argument.diff(name)):
+                    lowered = Form(self.ring, {(_multiply(self.ring, monomial, ((factor, -1),)), harmonic): value * exponent})
+                    for key, part in (lowered * self.ring.opaque("sign", factor.argument) * inner).terms.items():
+                        total[key] = total.get(key, 0) + part
+        return self.ring.form(total)
 
     def rate(self, chain):
         """Time derivative, where `chain` gives the name (or the form) of each varying symbol's rate."""

@@ -1,6 +1,7 @@
 """Values of expressions at one point: a quick answer to whether a sum can be zero everywhere, before that is decided exactly."""
 
 import math
+from itertools import combinations
 from zlib import crc32
 
 # Rounding leaves about 1e-15 of the largest summand; a sum of which more than this is left is not zero everywhere.
@@ -19,10 +20,36 @@ def vanishes(expressions, states):
     return abs(sum(values)) <= LEFT * max(map(abs, values))
 
 
+def at_point(form, states):
+    """The value of a form at the same point; None where it has none, or a factor that is no number."""
+    values = {name: 1.0 if name in states else _value_of(name) for name in form.names()}
+    try:
+        return float(form.evaluate(values, math.sin, math.cos, 0.0))
+    except (ZeroDivisionError, OverflowError, KeyError):
+        return None
+
+
+def symmetric(matrix, factors):
+    """Whether the values of a matrix at a point, each row times its factor, are symmetric; what is None may be anything. Where
+    they are not, the matrix is not symmetric."""
+    for k, l in combinations(range(len(matrix)), 2):
+        parts = (factors[k], matrix[k][l], factors[l], matrix[l][k])
+        if None in parts:
+            continue
+        left, right = parts[0] * parts[1], parts[2] * parts[3]
+        if abs(left - right) > LEFT * max(abs(left), abs(right)):
+            return False
+    return True
+
+
+def _value_of(name):
+    return 0.5 + crc32(name.encode()) / 2**32
+
+
 def value(expression, states):
     """The value of an expression; every symbol but the states has one of its own, between 1/2 and 3/2, which follows from its name."""
     if expression.is_Symbol:
-        return 1.0 if expression.name in states else 0.5 + crc32(expression.name.encode()) / 2**32
+        return 1.0 if expression.name in states else _value_of(expression.name)
     if expression.is_Number:
         return float(expression)
     if expression.is_Add:

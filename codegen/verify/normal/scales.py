@@ -5,6 +5,7 @@ over a mass or m l^2 is judged as what it is.
 An equation most of whose terms have the unit that the energies give is taken as it is: what differs in
 it is a slip, not a multiplier."""
 
+from collections import Counter
 from fractions import Fraction
 from itertools import combinations, product
 
@@ -26,9 +27,11 @@ def scales(subject):
     """The factor of each equation of motion, by number: 1 where it is printed as the energies give it."""
     one = subject.ring.number(1)
     motions = subject.paper.motions()
-    lacking = {e.number: d for e in motions if (d := _lacking(subject, e)) is not None}
+    lacking = {e.number: d for e in motions if (d := subject.remembered(("lacking", e.number), lambda e=e: _lacking(subject, e))) is not None}
     result = {e.number: one for e in motions if e.number not in lacking}
-    rows = {e.number: [subject.total(e.number).diff("dd" + f.of) for f in motions] for e in motions}
+    if not lacking:
+        return result
+    rows = {e.number: [subject.slope(e.number, "dd" + f.of) for f in motions] for e in motions}
     for i, equation in enumerate(motions):
         if equation.number in result:
             continue
@@ -83,13 +86,14 @@ def _lacking(subject, equation):
     found = []
     for term in subject.expressions[equation.number]:
         try:
-            found.append(units.measure(term, subject.dimension))
+            found.append(subject.measure(term))
         except units.UnitError:
             continue
     right = expected(subject, equation)
     if not found:
         return None
-    most = max(found, key=lambda x: (found.count(x), x == right))
+    counts = Counter(found)
+    most = max(counts, key=lambda x: (counts[x], x == right))
     return None if most == right else right.times(most, -1)
 
 
