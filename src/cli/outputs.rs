@@ -92,6 +92,11 @@ impl Observer for Outputs {
         }
     }
 
+    /// Without files and pictures nobody does.
+    fn sees_rows(&self) -> bool {
+        self.stream.is_some() || self.sketch.is_some()
+    }
+
     fn sees_points(&self) -> bool {
         self.sketch.is_some()
     }

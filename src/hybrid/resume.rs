@@ -2,7 +2,7 @@
 
 use super::failure::Reason;
 use super::instant::Instant;
-use super::observe::{Collected, Observer, Samples, sample_time};
+use super::observe::{Collected, Observer, sample_time};
 use super::outputs::OwnOutput;
 use super::problem::{Collisions, Method, Problem};
 use super::simulation::Simulation;
@@ -328,7 +328,7 @@ impl Simulation<'_> {
                 rows
             }
         };
-        self.observers.samples = Samples::from(every, rows);
+        self.observers.samples.go_to(rows);
         Ok(())
     }
 }

@@ -119,7 +119,7 @@ impl Simulation<'_> {
         subject.projected = self.projected();
         self.set_context();
         let last = self.observers.recording.last_row();
-        if last.is_none_or(|t| t < self.here.now.seconds()) {
+        if self.observers.recording.sees_rows && last.is_none_or(|t| t < self.here.now.seconds()) {
             // It is the last one in any case.
             let _ = self.sample_here();
         }

@@ -50,6 +50,10 @@ impl Observer for First<'_> {
         ControlFlow::Continue(())
     }
 
+    fn sees_rows(&self) -> bool {
+        false
+    }
+
     fn event(&mut self, jump: &Jump, _: Option<&[Snapshot; 2]>) {
         self.0.push(Event::new(jump, Default::default()));
     }

@@ -34,6 +34,9 @@ impl Observer for Deaf {
     fn row(&mut self, _: f64, _: usize, _: &[f64]) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
+    fn sees_rows(&self) -> bool {
+        false
+    }
     fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
 }
 

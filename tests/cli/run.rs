@@ -254,6 +254,12 @@ fn more_rows_than_there_is_room_for_are_refused_before_the_run() {
             "{said}"
         );
         assert!(!home.path().join("out").exists());
+        // Without a folder and a page nobody sees them: they are not computed, and the report is the same.
+        let [shown, of_scene] = [&run[..4], &run[..2]].map(|run| {
+            let output = ends_with(0, home.path(), run);
+            stdout(&output).split_once("solver").unwrap().0.to_owned()
+        });
+        assert_eq!(shown, of_scene);
     }
 }
 

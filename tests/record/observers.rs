@@ -176,6 +176,19 @@ fn points_between_rows_are_those_of_the_motion() {
             assert!((values[energy] / told.curve[0].1[energy] - 1.0).abs() < 1e-14);
         }
     }
+    // Rows at the ends of steps alone are few of its points.
+    let steps = scene("bouncing_ball", &["end=0.4", "record={}"]);
+    let mut told = Told {
+        sees_points: true,
+        ..Told::default()
+    };
+    simulate_with(&steps.problem, &mut told, &mut Silent).unwrap();
+    assert!(
+        told.curve.len() > 25 * told.rows.len().max(1) / 2,
+        "{}",
+        told.curve.len()
+    );
+    assert!(told.curve.is_sorted_by(|a, b| a.0 <= b.0));
     // Rows that are as close as that are the curve.
     let scene = scene("bouncing_ball", &["end=0.4", "record.every=5e-5"]);
     let mut told = Told {
@@ -184,6 +197,26 @@ fn points_between_rows_are_those_of_the_motion() {
     };
     simulate_with(&scene.problem, &mut told, &mut Silent).unwrap();
     assert_eq!(told.curve.len(), told.rows.len());
+}
+
+/// Rows that nobody sees are not computed, and change nothing.
+#[test]
+fn an_observer_that_sees_no_rows_is_told_of_none() {
+    let scene = scene("bouncing_ball", &["end=0.4", "record.every=1e-30"]);
+    struct Blind(usize);
+    impl Observer for Blind {
+        fn row(&mut self, _: f64, _: usize, _: &[f64]) -> ControlFlow<()> {
+            self.0 += 1;
+            ControlFlow::Break(())
+        }
+        fn sees_rows(&self) -> bool {
+            false
+        }
+        fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
+    }
+    let mut blind = Blind(0);
+    let run = simulate_with(&scene.problem, &mut blind, &mut Silent).unwrap();
+    assert_eq!((blind.0, run.end.t), (0, 0.4));
 }
 
 /// A picture of a window far shorter than a step has curves in it.

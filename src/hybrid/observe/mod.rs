@@ -34,8 +34,8 @@ use interpolants::{Interpolants, MOST};
 use ledger::RunningLedger;
 pub use observer::{Collected, MadeStep, Observer};
 pub(super) use recording::Recording;
-use samples::Points;
-pub(super) use samples::{Samples, held, sample_time};
+use samples::{Points, Samples};
+pub(super) use samples::{held, sample_time};
 use std::ops::ControlFlow;
 
 /// Most times that a step is cut in halves: in a part with a kink the error is quartered each time, and a
@@ -174,8 +174,8 @@ impl<'o> Observers<'o> {
         let most = 2 * n + layout.reactions.len() + layout.outputs.len() + 3;
         Observers {
             points: Points::new(recording.window),
+            samples: Samples::new(record.every, recording.sees_rows),
             recording,
-            samples: Samples::from(record.every, 0),
             end: problem.end.time,
             outputs: Outputs::new(problem),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
@@ -207,9 +207,9 @@ impl<'o> Observers<'o> {
         self.ledger.is_some() || self.extremes.is_some() || seen
     }
 
-    /// Whether what is recorded depends on the accelerations.
-    fn needs_accelerations(&self) -> bool {
-        self.record.columns.reactions || !self.layout.outputs.is_empty()
+    /// Whether what is recorded in a mode depends on the accelerations.
+    fn needs_accelerations(&self, mode: &Mode) -> bool {
+        samples::has_reactions(&self.layout, mode) || !self.layout.outputs.is_empty()
     }
 
     /// Whether extremes are looked for.

@@ -11,6 +11,11 @@ pub trait Observer {
     /// ends the run at this row.
     fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()>;
 
+    /// Whether [`Observer::row`] is to be called; asked once, before the run. Rows that nobody sees are not computed.
+    fn sees_rows(&self) -> bool {
+        true
+    }
+
     /// A transition, with the states (coordinates, rates, discrete states, reactions) before and after it where
     /// [`crate::hybrid::Record::event_states`] asks for them.
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>);
@@ -62,6 +67,9 @@ impl MadeStep<'_> {
 impl<O: Observer + ?Sized> Observer for &mut O {
     fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()> {
         (**self).row(t, mode, values)
+    }
+    fn sees_rows(&self) -> bool {
+        (**self).sees_rows()
     }
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
         (**self).event(jump, sides);

@@ -19,7 +19,8 @@ enum To<'o> {
 /// The rows and transitions of a run on their way to who wants them.
 pub(in crate::hybrid) struct Recording<'o> {
     to: To<'o>,
-    /// Whether the observer sees steps, and points between rows.
+    /// Whether the observer sees rows, steps, and points between rows.
+    pub sees_rows: bool,
     pub sees_steps: bool,
     pub sees_points: bool,
     /// The window of time that it looks at closely, s.
@@ -59,6 +60,7 @@ impl<'o> Recording<'o> {
     /// To an observer.
     pub fn told(observer: &'o mut dyn Observer, layout: &Layout) -> Self {
         Recording {
+            sees_rows: observer.sees_rows(),
             sees_steps: observer.sees_steps(),
             sees_points: observer.sees_points(),
             window: observer.window(),
@@ -69,6 +71,7 @@ impl<'o> Recording<'o> {
     fn new(to: To<'o>, layout: &Layout) -> Self {
         Recording {
             to,
+            sees_rows: true,
             sees_steps: false,
             sees_points: false,
             window: None,

@@ -43,7 +43,7 @@ impl Row<'_> {
         row[..n].copy_from_slice(&self.q[..n]);
         row[n..2 * n].copy_from_slice(&self.v[..n]);
         let reactions = self.layout.range(Group::Reaction);
-        if !reactions.is_empty() {
+        if has_reactions(self.layout, self.outputs.1) {
             self.outputs
                 .0
                 .reactions(kernel, context, at, &mut row[reactions]);
@@ -68,6 +68,12 @@ impl Row<'_> {
     }
 }
 
+/// Whether reactions are recorded that a mode has: of a free coordinate there is none.
+pub(super) fn has_reactions(layout: &Layout, mode: &Mode) -> bool {
+    let n = layout.coordinates.len();
+    layout.reactions.len() > mode.free.iter().filter(|&&i| i < n).count()
+}
+
 /// The ledger's entries of a row, with the work since it was brought up to date and without the stored energy; zero where no ledger is kept.
 pub(super) fn row_of(ledger: Option<&RunningLedger>, work: [f64; 2]) -> [f64; 4] {
     ledger.map_or([0.0; 4], |ledger| ledger.row(0.0, work))
@@ -83,7 +89,8 @@ pub(in crate::hybrid) fn sample_time(every: Option<f64>, index: u64) -> f64 {
 }
 
 /// Points that a curve has in a step: a line between two of them is off by (4/32)²/8 = 0.2 % of the amplitude of an
-/// oscillation, 4 rad of which are about the longest step that any method takes.
+/// oscillation, 4 rad of which are about the longest step that any method takes (0.45 % where rows make the distance
+/// 1.5 times as long).
 const POINTS: f64 = 32.0;
 /// Points that a curve has in the time of a run, at most: some on each pixel of a screen, also after a zoom.
 const POINTS_OF_A_RUN: f64 = 5000.0;
@@ -95,9 +102,10 @@ pub(super) struct Points {
     window: Option<[f64; 2]>,
     /// Those of a step before, in and after the window.
     grids: [Grid; 3],
-    /// The next one in local time, s.
+    /// The next one in local time, and half of the distance to the one that follows it, s.
     next: f64,
-    /// When the last one was, s.
+    margin: f64,
+    /// When the last one or the last row was, s.
     last: f64,
 }
 
@@ -119,12 +127,14 @@ impl Points {
             window,
             grids: Default::default(),
             next: f64::INFINITY,
+            margin: 0.0,
             last: f64::NEG_INFINITY,
         }
     }
 
-    /// Those of a step between two local times that begins at time `t`, with rows at these intervals: none where rows are
-    /// as close. The run ends at time `end`, if not before. All in s.
+    /// Those of a step between two local times that begins at time `t`, with rows at these intervals, which are points as
+    /// well: between two of them there are so many that their distance is nearest to that of a grid without rows. The run
+    /// ends at time `end`, if not before. All in s.
     pub fn enter(&mut self, [from, to]: [f64; 2], t: f64, every: Option<f64>, end: f64) {
         let [opens, closes] = self.window.unwrap_or([f64::INFINITY; 2]);
         let local = |time: f64| (from + (time - t)).clamp(from, to);
@@ -133,41 +143,46 @@ impl Points {
             let [begins, ends] = [borders[k], borders[k + 1]];
             let shown = if k == 1 { closes - opens } else { end };
             let (of_part, least) = ((ends - begins) / POINTS, shown / POINTS_OF_A_RUN);
-            let spacing = of_part.max(least);
-            let is_by_rows = every.is_some_and(|every| every <= spacing);
+            let wanted = of_part.max(least);
+            let every = every.unwrap_or(f64::INFINITY);
+            let spacing = match every < f64::INFINITY {
+                true => every / (every / wanted).round().max(1.0),
+                false => wanted,
+            };
             // The border of the window is a point, too.
             let first = match begins == from {
                 true => from + of_part.max(self.last + least - t),
                 false => begins,
             };
             *grid = Grid {
-                first: if is_by_rows { f64::INFINITY } else { first },
+                first: match spacing < every {
+                    true => first,
+                    false => f64::INFINITY,
+                },
                 end: ends,
                 spacing,
             };
         }
-        self.next = self.after(f64::NEG_INFINITY);
+        self.follow(f64::NEG_INFINITY);
     }
 
-    /// The point that follows one at a local time, s; infinite where there is none.
-    fn after(&self, point: f64) -> f64 {
-        let next = self
-            .grids
-            .iter()
-            .map(|grid| (grid.first.max(point + grid.spacing), grid.end));
-        let mut within = next.filter(|(next, end)| next < end);
-        within.next().map_or(f64::INFINITY, |(next, _)| next)
+    /// The next one is that which follows a local time, s; infinite where there is none.
+    fn follow(&mut self, point: f64) {
+        let next = |grid: &Grid| grid.first.max(point + grid.spacing);
+        let grid = self.grids.iter().find(|grid| next(grid) < grid.end);
+        let found = grid.map(|grid| (next(grid), grid.spacing / 2.0));
+        (self.next, self.margin) = found.unwrap_or((f64::INFINITY, 0.0));
     }
 
-    /// Local time of the next one, s; infinite where there is none.
-    fn next(&self) -> f64 {
-        self.next
+    /// Local time of the next one, s, if it comes before a row, by more than half of a distance: else the row is the point.
+    fn next_before(&self, row: f64) -> Option<f64> {
+        (self.next + self.margin < row).then_some(self.next)
     }
 
-    /// The next one was told, for this time, s.
-    fn pass(&mut self, t: f64) {
+    /// One was told, or a row, for a local time and this time, s.
+    fn pass(&mut self, tau: f64, t: f64) {
         self.last = t;
-        self.next = self.after(self.next);
+        self.follow(tau);
     }
 }
 
@@ -175,29 +190,44 @@ impl Points {
 #[derive(Debug)]
 pub(in crate::hybrid) struct Samples {
     every: Option<f64>,
+    /// Whether anybody sees them.
+    seen: bool,
     /// Index of the next one.
     index: u64,
-    /// Its time, s: infinite without a grid, but for the first one.
+    /// Its time, s: infinite without a grid, but for the first one, and where nobody sees it.
     next: f64,
 }
 
 impl Persist for Samples {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
-        let Samples { every, index, .. } = self;
-        index.persist(memory)?;
-        *self = Samples::from(*every, *index);
+        self.index.persist(memory)?;
+        self.go_to(self.index);
         Some(())
     }
 }
 
 impl Samples {
-    /// From one on, by its index.
-    pub fn from(every: Option<f64>, index: u64) -> Self {
-        let next = match index {
-            0 => 0.0,
-            _ => sample_time(every, index),
+    /// From the first one on; none where they are not `seen`.
+    pub fn new(every: Option<f64>, seen: bool) -> Self {
+        let (index, next) = (0, 0.0);
+        let mut samples = Samples {
+            every,
+            seen,
+            index,
+            next,
         };
-        Samples { every, index, next }
+        samples.go_to(0);
+        samples
+    }
+
+    /// The next one is that of an index.
+    pub fn go_to(&mut self, index: u64) {
+        self.index = index;
+        self.next = match index {
+            _ if !self.seen => f64::INFINITY,
+            0 => 0.0,
+            _ => sample_time(self.every, index),
+        };
     }
 
     /// Time of the next one, s.
@@ -208,12 +238,12 @@ impl Samples {
 
     /// The next one was recorded.
     pub fn pass(&mut self) {
-        *self = Samples::from(self.every, self.index + 1);
+        self.go_to(self.index + 1);
     }
 
     /// Back to the first.
     pub fn rewind(&mut self) {
-        *self = Samples::from(self.every, 0);
+        self.go_to(0);
     }
 }
 
@@ -235,11 +265,14 @@ pub(in crate::hybrid) fn held<F: Size>(
 impl Observers<'_> {
     /// Local time of the next sample or point of curves, if one is due up to local time `to`, and whether it is a point.
     pub(super) fn due<F: Size>(&self, equations: &Equations<F>, to: f64) -> Option<(f64, bool)> {
-        let sample = Instant::new(self.samples.next()).since(equations.clock.start);
-        let point = self.points.next();
-        let is_point = point < sample;
-        let tau = if is_point { point } else { sample };
-        (tau <= to).then_some((tau, is_point))
+        let next = self.samples.next();
+        let sample = match next < f64::INFINITY {
+            true => Instant::new(next).since(equations.clock.start),
+            false => f64::INFINITY,
+        };
+        let point = self.points.next_before(sample);
+        let tau = point.unwrap_or(sample);
+        (tau <= to).then_some((tau, point.is_some()))
     }
 
     /// Records the samples that are due in a part of a step.
@@ -255,7 +288,12 @@ impl Observers<'_> {
         };
         while let Some((tau, is_point)) = self.due(step.equations, to) {
             let equations = &mut *step.equations;
-            let [q, v, a] = guards::motion(equations, step.motion, tau, self.needs_accelerations());
+            let [q, v, a] = guards::motion(
+                equations,
+                step.motion,
+                tau,
+                self.needs_accelerations(step.mode),
+            );
             let (mode, here) = (step.mode, &mut *step.here);
             let [q, v, a] = match &mode.contacts {
                 Some(contacts) => held(equations, contacts, tau, [q, v, a]),
@@ -284,12 +322,15 @@ impl Observers<'_> {
             if is_point {
                 let t = equations.clock.start.plus(tau).seconds();
                 self.recording.point(t, here.shown, fill);
-                self.points.pass(t);
+                self.points.pass(tau, t);
                 continue;
             }
             let t = self.samples.next();
             let flow = self.recording.row(t, here.shown, fill);
             self.samples.pass();
+            if self.recording.sees_points {
+                self.points.pass(tau, t);
+            }
             if flow.is_break() {
                 let from = part.from;
                 return ControlFlow::Break(Sampled { from, tau, t });
