@@ -11,6 +11,7 @@ use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
 use crate::kernel::with_kernel;
 use crate::model::Mode;
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
 /// What a mode holds, by the index of the coordinate.
@@ -186,15 +187,41 @@ impl Simulation<'_> {
             ))
         });
         let unfit: Vec<_> = unfit.collect();
-        match unfit.is_empty() {
-            true => format!(
-                "no rest is declared for {of}, nor is there a mode in which the motion goes on"
-            ),
+        let why = match unfit.is_empty() {
+            true => format!("no rest is declared for {of}"),
             false => format!(
                 "no rest that is declared for {of} fits the limit: {}",
                 unfit.join("; ")
             ),
+        };
+        match self.undeclared(&limit, &involved) {
+            Some(target) => {
+                let target = modes[target].name;
+                let rests = names
+                    .iter()
+                    .map(|of| format!("`model.rest({of}, {target})`"));
+                let rests: Vec<_> = rests.collect();
+                format!(
+                    "{why}; mode `{target}` fits it: if the motion comes to rest there, declare {}",
+                    rests.join(" and ")
+                )
+            }
+            None => format!("{why}; no mode of the model fits the limit"),
         }
+    }
+
+    /// The mode that fits a limit of events in some modes, holds more than each of them, and of all such modes the least.
+    fn undeclared(&self, limit: &Limit, involved: &BTreeSet<usize>) -> Option<usize> {
+        let holds_more = |target: &Mode, mode: &Mode| {
+            target.free.len() < mode.free.len() && target.free.iter().all(|i| mode.free.contains(i))
+        };
+        let modes = self.modes.iter().enumerate();
+        let fitting = modes.filter(|(_, target)| {
+            involved.iter().all(|&m| holds_more(target, &self.modes[m]))
+                && self.told_apart(target, limit).is_ok()
+        });
+        let least = fitting.min_by_key(|(_, target)| Reverse(target.free.len()));
+        least.map(|(target, _)| target)
     }
 
     /// What a mode holds that a limit does not satisfy, in words.

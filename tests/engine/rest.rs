@@ -104,6 +104,7 @@ fn where_no_rest_fits_the_limit_the_run_stops_and_says_what_does_not_fit() {
             "impact_b",
             "no rest that is declared for mode `both_fly` fits the limit",
             "rest in `a_rests` holds `a` at 0 m, which is",
+            "mode `b_rests` fits it: if the motion comes to rest there, declare `model.rest(both_fly, b_rests)`",
         ] {
             assert!(failure.reason.contains(part), "{}", failure.reason);
         }
@@ -147,8 +148,13 @@ fn switches_without_an_impact_come_to_rest() {
 fn switches_without_a_rest_stop_and_say_what_is_missing() {
     with_each_method(|| {
         for (limit, part) in [
-            ("missing", "no rest is declared for modes `left`, `right`"),
+            (
+                "missing",
+                "no rest is declared for modes `left`, `right`; mode `held` fits it: if the motion comes to rest there, \
+                 declare `model.rest(left, held)` and `model.rest(right, held)`",
+            ),
             ("elsewhere", "rest in `held` holds `x` at 1 m, which is"),
+            ("elsewhere", "no mode of the model fits the limit"),
         ] {
             let mut problem = problem("fuller", &[]);
             problem.choose(&[("limit", limit)]).unwrap();
