@@ -38,7 +38,10 @@ def conserved(subject, lagrangian) -> List[Conserved]:
     """Conserved quantities that do not follow from the energy and one another."""
     ring, q = subject.ring, lagrangian.coordinates
     still = {d + n: 0 for n in lagrangian.chain if n not in q and not n.startswith("d") for d in ("", "d", "dd")}
-    rows = [row.substitute(still) for row in motion_rows(subject)[2]]
+    try:
+        rows = [row.substitute(still) for row in motion_rows(subject)[2]]
+    except ZeroDivisionError:  # the equations are divided by an input
+        return []
     chain = {d + n: "d" + d + n for n in q for d in ("", "d")}
     potential = lagrangian.potential.substitute(still)
     known, found = [ring.number(1), lagrangian.energy().substitute(still)], []

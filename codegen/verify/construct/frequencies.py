@@ -37,7 +37,7 @@ def frequencies(subject):
     if any(row.over for row in rows):
         return None
     small = small_motion(paper, rows, q)
-    if any(small.forces) or any(entry for line in small.damping for entry in line):
+    if small is None or any(small.forces) or any(entry for line in small.damping for entry in line):
         return None
     if any(n in paper.positions() for form in small.mass + small.stiffness for entry in form for n in entry.names()):
         return None

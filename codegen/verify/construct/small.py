@@ -20,14 +20,17 @@ class SmallMotion:
 
 
 def small_motion(paper, rows, q):
-    """The small motions of equations of motion about rest."""
+    """The small motions of equations of motion about rest; None where an equation is divided by what is zero there."""
     zeros, _ = rest(paper)
     still = {d + n: 0 for n, x in paper.symbols.items() if x.role == "input" for d in ("", "d", "dd")}
 
     def matrix(prefix):
         return [[row.diff(prefix + n).substitute(zeros).substitute(still) for n in q] for row in rows]
 
-    return SmallMotion(q, [row.substitute(zeros).substitute(still) for row in rows], matrix("dd"), matrix("d"), matrix(""))
+    try:
+        return SmallMotion(q, [row.substitute(zeros).substitute(still) for row in rows], matrix("dd"), matrix("d"), matrix(""))
+    except ZeroDivisionError:
+        return None
 
 
 def special_cases(paper) -> Dict[str, Dict[str, object]]:

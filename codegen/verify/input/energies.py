@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Callable, Dict, List, Optional
 
+from ...errors import error_location, location
+from ..errors import PaperError, VerifyError
 from .printed import Symbol, latex_name
 
 
@@ -30,6 +32,24 @@ class Energies:
     scales: Dict[str, Callable] = field(default_factory=dict)
     extra: Dict[str, Symbol] = field(default_factory=dict)
     pushes: List[str] = field(default_factory=list)
+
+    def called(self, function, s, m, *context):
+        """What one of the functions gives; an error says where it stands."""
+        try:
+            found = function(s, m, *context)
+        except VerifyError:
+            raise
+        except Exception as error:  # whatever a model file does wrong is its author's to read
+            raise PaperError(f"{self._place(function, error)}the energies '{self.name}': {type(error).__name__}: {error}") from error
+        if found is None or isinstance(found, (tuple, set, dict)):
+            raise PaperError(f"{self._place(function)}the energies '{self.name}': '{function.__name__}' gives {found!r}, which is no expression "
+                             "of the symbols")
+        return found
+
+    def _place(self, function, error=None):
+        """Where an error in a function, or the function, stands."""
+        code = getattr(function, "__code__", None)
+        return f"{error_location(error, code.co_filename) if error else location(code.co_filename, code.co_firstlineno)}: " if code else ""
 
     def coordinate(self, name, unit, meaning, mirror=1, pushes=False):
         """Declare a coordinate that is held at zero in all equations; `pushes` where what holds it cannot pull (the ground),

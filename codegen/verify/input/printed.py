@@ -295,7 +295,14 @@ class Paper:
             for name in names:
                 if name not in self.names():
                     raise PaperError(f"the {where} names '{name}', which is not declared")
-        for name, (low, high) in self.box.items():
+        values = [(f"set '{n}'", v) for n, v in self.sets.items()] + [(f"release '{n}'", r.at) for n, r in self.releases.items()]
+        for where, name, value in [(where, name, value) for where, given in values for name, value in given.items()]:
+            if not _finite(value):
+                raise PaperError(f"the {where} gives {name} the value {value!r}, which is no number")
+        for name, bounds in self.box.items():
+            if not isinstance(bounds, tuple) or len(bounds) != 2 or not all(_finite(x) and not isinstance(x, str) for x in bounds):
+                raise PaperError(f"the box has {name} in {bounds!r}: it is (low, high), two numbers")
+            low, high = bounds
             if not -float("inf") < low <= high < float("inf"):
                 raise PaperError(f"the box has {name} from {low} to {high}: the bounds are finite, the lower one first")
 
@@ -336,6 +343,14 @@ class Paper:
     def with_equations(self, equations):
         """The same paper with some equations replaced (corrected or mutated)."""
         return replace(self, equations={**self.equations, **{e.number: e for e in equations}})
+
+
+def _finite(value):
+    """Whether it is a number, or text of one in decimals."""
+    try:
+        return -float("inf") < float(value) < float("inf")
+    except (TypeError, ValueError, OverflowError):
+        return False
 
 
 def rates(symbol):

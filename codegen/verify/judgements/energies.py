@@ -18,7 +18,7 @@ def wrong_terms(printed, energies):
                for name, function in energies.forces.items() if name in symbols]
     found = []
     for name, function, unit in wanted:
-        for term in Add.make_args(sympify(function(s, m))):
+        for term in Add.make_args(sympify(energies.called(function, s, m))):
             try:
                 measured = units.measure(term, known)
             except UnitError as error:

@@ -25,6 +25,10 @@ from .form import ONE, Form, Opaque, expression
 __all__ = ["ONE", "Form", "Opaque", "Ring", "expression"]
 
 
+# Terms of a power of a sum, multiplied out: the energies of eight links have two hundred, and what is judged of thousands is read by nobody.
+MOST = 1000
+
+
 class Ring:
     """The symbols of a problem: `involutions` are the names whose square is 1, `first` the names
     that lead an angle and so take the positive sign in it (the alpha of alpha - theta), `moving` the names that have a rate
@@ -121,6 +125,17 @@ class Ring:
             return argument
         return factor * self.symbol(Opaque(function, argument))
 
+    def _power(self, base, exponent, expression):
+        """The power of a form, as far as it can be multiplied out."""
+        if exponent < 2 or len(base.terms) < 2:
+            return base**exponent
+        result = base
+        for _ in range(exponent - 1):
+            result = result * base
+            if len(result.terms) > MOST:
+                raise NotInClass(f"{expression} has more than {MOST} terms where it is multiplied out")
+        return result
+
     def read(self, expression):
         """The normal form of a SymPy expression (or of a Python integer)."""
         import sympy
@@ -128,6 +143,8 @@ class Ring:
         if isinstance(expression, Form):
             return expression
         expression = sympy.sympify(expression)
+        if not isinstance(expression, sympy.Expr):
+            raise NotInClass(f"{expression!r} is not an expression of the symbols s.…")
         if expression.is_Symbol:
             return self.symbol(expression.name)
         if expression.is_Rational:
@@ -147,7 +164,7 @@ class Ring:
                 product = product * self.read(argument)
             return product
         if expression.is_Pow and expression.exp.is_Integer:
-            return self.read(expression.base) ** int(expression.exp)
+            return self._power(self.read(expression.base), int(expression.exp), expression)
         if expression.func in (sympy.sin, sympy.cos):
             return self.trigonometric(expression.func.__name__, self.read(expression.args[0]))
         if expression.func in (sympy.tan, sympy.cot, sympy.sec, sympy.csc):

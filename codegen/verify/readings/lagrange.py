@@ -51,9 +51,14 @@ class Motion:
             if number not in self.paper.equations:
                 raise PaperError(f"'{self.energies.name}' has a reference for equation ({number}), which the paper does not have")
 
-    def _read(self, function):
+    def _read(self, function, *context):
         """The form of a function of the namespaces."""
-        return self.ring.read(function(self.s, self.m))
+        return self.ring.read(self.energies.called(function, self.s, self.m, *context))
+
+    def squares(self):
+        """The declared squares, [(coefficient, velocity)] as forms."""
+        found = self.energies.called(lambda s, m: [(coefficient, velocity) for coefficient, velocity in self.energies.squares(s, m)], self.s, self.m)
+        return [(self.ring.read(coefficient), self.ring.read(velocity)) for coefficient, velocity in found]
 
     def units(self):
         """What is printed as one: sums that have a symbol, and sines, cosines and their products in the kinetic energy."""
@@ -111,7 +116,7 @@ class Motion:
         """The normal form that an equation must have: its equation of motion, or what the
         energies' reference says; None where nothing is known."""
         if equation.number in self.energies.references:
-            form = self.ring.read(self.energies.references[equation.number](self.s, self.m, self))
+            form = self._read(self.energies.references[equation.number], self)
             if equation.kind == "value" and equation.of in form.names():
                 raise PaperError(f"the reference of '{self.energies.name}' for ({equation.number}) gives {equation.of} by itself")
             return form
@@ -124,7 +129,7 @@ class Motion:
         function = self.energies.scales.get(number)
         if not function:
             return self.ring.number(1)
-        factor = self.ring.read(function(self.s, self.m))
+        factor = self._read(function)
         if not self.paper.sets or any(signs([factor], intervals(values)) != [1] for values in self.paper.sets.values()):
             raise PaperError(f"the scale of the reference for ({number}) is not shown to be positive: it must be so for every one "
                              "of the paper's parameter sets, of which there is at least one")

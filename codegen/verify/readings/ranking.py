@@ -112,9 +112,9 @@ def _squares(motion):
     """Whether the declared sum of squares is the kinetic energy, an identity in normal form, and no coefficient is negative
     for any parameter set, also with what is neglected."""
     total, coefficients = motion.ring.number(0), []
-    for coefficient, velocity in motion.energies.squares(motion.s, motion.m):
-        coefficients.append(motion.ring.read(coefficient))
-        total += coefficients[-1] * motion.ring.read(velocity) ** 2
+    for coefficient, velocity in motion.squares():
+        coefficients.append(coefficient)
+        total += coefficient * velocity**2
     if total - motion.kinetic.substitute(motion.held) * 2:
         return False
     for values, neglected in product(motion.paper.sets.values(), ({}, {n: 0 for n in motion.paper.negligible})):
@@ -138,7 +138,10 @@ def _boxes(motion, squares, thorough, tell):
     moving = set(paper.coordinates()) & set().union(*(form.names() for row in mass for form in row)) if mass else set()
     zeros, places = rest(paper)
     whole = thorough and moving <= paper.box.keys()
-    at_rest = [[form.substitute(zeros) for form in row] for row in mass]
+    try:
+        at_rest = None if whole else [[form.substitute(zeros) for form in row] for row in mass]
+    except ZeroDivisionError:  # rest is a pole of the energy
+        return {}, whole
     # with a sum of squares the matrix is not negative whatever is neglected, and where it is singular the report says so
     cases = list(product(paper.sets.items(), (False, True) if paper.negligible and not squares else (False,)))
     what, total, before = f"kinetic energy of '{motion.energies.name}'", len(cases) * len(states(paper)) * BISECTIONS, 0

@@ -26,7 +26,9 @@ def construction_parts(constructed, paper):
     if not rest:
         parts.append(("No further conserved quantity of first or second degree in the rates was found with multipliers of low degree.", None))
     small = constructed.small
-    for name, force in zip(small.coordinates, small.forces):
+    if small is None:
+        parts.append(("The equations are divided by what is zero at rest: there are no small motions about it.", None))
+    for name, force in zip(small.coordinates, small.forces) if small else ():
         if force:
             parts.append((f"Rest is no equilibrium: there the equation of {name} leaves ", force))
     return parts + _frequencies(constructed.frequencies)
