@@ -9,12 +9,11 @@ from ..input import units
 from ..input.namespace import sympy_namespace
 from ..judgements.comparison import compare
 from ..judgements.definite import rest
-from ..normal.algebra import expression
+from ..normal.algebra import Opaque, expression
+from .number_claims import beside
 
 # raised when a claim changes its meaning
-VERSION = 1
-# in certificates the name of a sign that counts as a constant
-STEADY = "sign__"
+VERSION = 2
 
 
 def as_certificate(report):
@@ -31,6 +30,8 @@ class _Writer:
         self.moving = [n for n, x in self.paper.symbols.items() if x.role in ("coordinate", "input") and not x.velocity]
         self.extra = list(self.motion.energies.extra) if self.motion else []
         self.let, self.claims, self.without = {}, [], {}
+        # signs that count as constants, by what they are of
+        self.steady = {}
 
     def content(self):
         """All of it. `without` says of what is not an identity why there is none."""
@@ -46,7 +47,8 @@ class _Writer:
         return {
             "certificate": VERSION, "title": self.paper.title, "source": self.paper.source,
             "reading": self.motion.energies.name if self.motion else None,
-            "symbols": [n for n in self.paper.names() if n not in self._named(self.moving)] + [STEADY], "moving": self.moving + self.extra,
+            "symbols": [n for n in self.paper.names() if n not in self._named(self.moving)] + list(self.steady.values()),
+            "moving": self.moving + self.extra,
             "states": [x.name for x in symbols if x.role == "discrete"], "held": [n for n in self._named(self.extra) if n],
             "mirror": [n for x in symbols if x.mirror == -1 for n in (self._named([x.name]) if x.name in self.moving else [x.name])],
             "units": {n: u for n, u in units.items() if u != "1"}, "let": self.let, "claims": self.claims, "without": self.without,
@@ -74,7 +76,7 @@ class _Writer:
         """The equations of motion without what is dissipative, each times its multiplier."""
         for k, equation in enumerate(self.paper.motions()):
             row = self.objected.multipliers[equation.number] * self.objected.conservative(equation.number)
-            self.let[f"row__{k}"] = str(expression(row))
+            self.let[f"row__{k}"] = self._steady(row)
 
     def derivation(self, name):
         """Lagrange's equation of a coordinate as text; of a quasi-velocity, those of the coordinates times their slopes by it."""
@@ -141,6 +143,8 @@ class _Writer:
             if found := re.search(r"it is in \S+, and what it is a term of in (\S+)\. ", f.reason[0]):
                 term, unit = expression(f.printed[0]), self._unit(units.parse(found[1]))
                 self._claim(about, "different", f"scaled({term})", f"({unit})*({term})")
+        elif f.key.startswith("number-"):
+            self._claim(about, "greater", *beside(self.report.numbers, f.key.removeprefix("number-"), self.let))
         elif f.key.startswith("unit-"):
             self._claim(about, "different", *[self._printed_unit(x) for x in (f.printed[0], f.consistent[0])])
         elif f.key == "neglect" and not self.paper.quasi:
@@ -179,6 +183,8 @@ class _Writer:
             expected = [self._unit(part) for part in v.message if isinstance(part, tuple)]
             if unit and len(expected) == 2:
                 self._claim(about, "different", f"scaled({terms[0]})", f"({expected[1]})*({terms[0]})")
+            else:
+                self._has_no_unit(about, self.objected.expressions[number][v.terms[0]])
         elif v.judgement == "mirror":
             equation = self.paper.equations[number]
             signs = [self.objected.forms[number][k] for k in v.terms]
@@ -195,37 +201,82 @@ class _Writer:
                 for name in self.paper.coordinates():
                     if slope := v.message[1].diff("dd" + name):
                         self._not_zero(about, f"diff(diff(row__{i}, dd{b}), dd{name})", slope)
+        elif words.startswith("no Lagrangian gives"):
+            self._has_factor(about, self.objected.multipliers[number] * self.objected.conservative(number), v.message[1])
+        elif found := re.search(r"contains the force (\w+), which", words):
+            self._claim(about, "different", f"diff(row__{symbols[number]}, {found[1]})", "0")
+        elif "multiplies some of its terms only" in words:
+            self._in_some_terms(about, self.objected.total(number))
         elif v.judgement in ("lagrangian", "galilei"):
             self._alone(about, v, number, words)
         elif v.judgement == "definite":
             self._minor(about, v)
 
+    def _has_no_unit(self, about, term):
+        """In other units it is not what it is times a number: their ratio changes with something."""
+        import sympy
+
+        units = {n: self._unit(d) for n, d in self.printed.dimension.items()}
+        ratio = term.subs({x: x * sympy.sympify(units[x.name]) for x in term.free_symbols if units.get(x.name, "1") != "1"}, simultaneous=True) / term
+        for symbol in sorted(term.free_symbols, key=str):
+            if sympy.expand(sympy.fraction(sympy.together(ratio.diff(symbol)))[0]) != 0:
+                self._claim(about, "different", f"diff(scaled({term})/({term}), {symbol})", "0")
+                return
+
     def _not_zero(self, about, text, form):
         """What must be zero is another form."""
-        self._claim(about, "equal", text, str(expression(form)))
+        self._claim(about, "equal", text, self._steady(form))
         self._claim(about, "different", text, "0")
+
+    def _has_factor(self, about, form, factor):
+        """A sign of what moves, alone or in a modulus, is a factor of some term of a form; the name of the sign."""
+        steady, name = self._steady(form), re.search(r"sign__\d+", self._steady(factor))[0]
+        back = "".join(f", {held}, {sign}" for sign, held in self.steady.items())
+        self._claim(about, "equal", f"put({steady}{back})", str(expression(form)))
+        self._claim(about, "different", f"diff({steady}, {name})", "0")
+        return name
+
+    def _in_some_terms(self, about, form):
+        """A sign or modulus of what moves is a factor of some terms of a form, and not of all; or it is a modulus."""
+        ring = form.ring
+        opaque = sorted({n for monomial, _ in form.terms for n, _ in monomial if isinstance(n, Opaque)}, key=str)
+        in_all = [all(any(n == name for n, _ in monomial) for monomial, _ in form.terms) for name in opaque]
+        name = opaque[in_all.index(False)] if False in in_all else opaque[0]
+        sign = self._has_factor(about, form, ring.symbol(name))
+        if False in in_all:
+            self._claim(about, "different", f"put({self._steady(form)}, {sign}, 0)", "0")
+
+    def _steady(self, form):
+        """A form as text, in which the signs count as constants, and moduli are what they are of times its sign."""
+        import sympy
+
+        whole = expression(form).replace(sympy.Abs, lambda x: x * sympy.sign(x))
+        for sign in sorted(whole.atoms(sympy.sign), key=str):
+            name = self.steady.setdefault(str(sign), f"sign__{len(self.steady) + 1}")
+            whole = whole.xreplace({sign: sympy.Symbol(name)})
+        return str(whole)
 
     def _alone(self, about, v, number, words):
         """An objection to one equation: to a momentum, or by Galilei's principle."""
         total = self.objected.total(number)
         if found := re.search(r"is not the rate of a momentum: its terms in (the velocity of )?(\w+) do not", words):
             # a sign that multiplies all of it counts as a constant
-            name, whole = found[2], _steady(expression(total))
+            name, whole = found[2], self._steady(total)
             text = (f"diff({whole}, d{name}) - 2*rate(diff({whole}, dd{name}))" if found[1]
                     else f"diff({whole}, {name}) - rate(diff({whole}, d{name}))/2")
-            self._claim(about, "equal", text, str(_steady(expression(v.message[1]))))
+            self._claim(about, "equal", text, self._steady(v.message[1]))
             self._claim(about, "different", text, "0")
         elif found := re.match(r"the accelerations of (\w+) and (\w+) do not enter as their sum", words):
-            rest_ = _steady(expression(self.objected.conservative(number)))
+            rest_ = self._steady(self.objected.conservative(number))
             self._claim(about, "different", f"diff({rest_}, dd{found[1]}) - diff({rest_}, dd{found[2]})", "0")
         elif found := re.match(r"the accelerations of (\w+) and (\w+) in \(.*\) do not belong to one first moment", words):
-            whole = _steady(expression(self.objected.scales.get(number, self.objected.ring.number(1)) * self.objected.conservative(number)))
+            whole = self._steady(self.objected.scales.get(number, self.objected.ring.number(1)) * self.objected.conservative(number))
             self._claim(about, "different", f"diff(diff({whole}, dd{found[1]}), {found[2]}) - diff(diff({whole}, dd{found[2]}), {found[1]})", "0")
         elif found := re.match(r"a constant (displacement|velocity)", words):
             for name in self.paper.translation:
                 name = name if found[1] == "displacement" else "d" + name
                 if self.objected.conservative(number).diff(name):
-                    self._claim(about, "different", f"diff({_steady(expression(self.objected.conservative(number)))}, {name})", "0")
+                    self._claim(about, "different", f"diff({self._steady(self.objected.conservative(number))}, {name})", "0")
 
     def _minor(self, about, v):
         """A leading minor of the printed mass matrix at rest, and its value for a parameter set."""
@@ -313,13 +364,6 @@ def _helmholtz(i, a, j, b):
     return (f"diff(row__{i}, dd{b}) - diff(row__{j}, dd{a})",
             f"diff(row__{i}, d{b}) + diff(row__{j}, d{a}) - rate(diff(row__{i}, dd{b}) + diff(row__{j}, dd{a}))",
             f"diff(row__{i}, {b}) - diff(row__{j}, {a}) - rate(diff(row__{i}, d{b}) - diff(row__{j}, d{a}))/2")
-
-
-def _steady(expression_):
-    """An expression with a constant in the place of signs and moduli of what moves."""
-    import sympy
-
-    return expression_.replace(lambda x: x.func in (sympy.sign, sympy.Abs), lambda x: sympy.Symbol(STEADY))
 
 
 def _determinant(entries):

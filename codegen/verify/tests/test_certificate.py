@@ -7,7 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from codegen.verify import Paper, check_certificate as script, seeded
+from codegen.verify import Number, Paper, check_certificate as script, seeded
 from codegen.verify.load import Case, load
 from codegen.verify.report import certificate, gather
 from codegen.verify.tests.cases import ROOT, TANK, report_of
@@ -51,6 +51,62 @@ class Certificate(unittest.TestCase):
         self.assertEqual([(c["is"], c.get("at")) for c in claims], [("equal", None), ("greater", {"m": "1.5"})])
         self.assertTrue(all(map(checker.holds, claims)))
         self.assertFalse(checker.holds({**claims[1], "of": claims[1]["of"][::-1]}))
+
+    def certified_alone(self, paper, **case):
+        """The claims on the findings of a paper without energies, all of which hold; and what checks them."""
+        report = gather.verify(Case("alone", Path("."), paper, **case), thorough=False)
+        content = json.loads(certificate.as_certificate(report))
+        checker, claims = script.Checker(content), [c for c in content["claims"] if "finding" in c]
+        self.assertEqual(content["without"], {})
+        self.assertEqual({c["finding"] for c in claims}, {f.key for f in report.findings})
+        self.assertEqual([c for c in claims if not checker.holds(c)], [])
+        return claims, checker
+
+    def test_signs_and_moduli_of_what_moves_are_certified(self):
+        paper = Paper("a block", "none")
+        paper.coordinate("x", "m", "slip", mirror=-1)
+        paper.input("z", "m", "ground")
+        for name, unit in (("m", "kg"), ("N", "N"), ("c", "kg/m")):
+            paper.parameter(name, unit, name)
+        paper.force("F", "N", "force", dissipative=False)
+        paper.force("R", "N", "base shear")
+        paper.motion("1", of="x")(lambda s, m: [s.m * s.ddx, s.N * m.sign(s.dx), s.c * m.Abs(s.dx) * s.dx, -s.F])
+        paper.value("2", of="R", momentum=True)(lambda s, m: [s.m * s.ddx, s.m * m.sign(s.dx) * s.ddz])
+        claims, checker = self.certified_alone(paper)
+        factors = [c["of"][0] for c in claims if c["is"] == "different" and c["of"][0].startswith("diff(")]
+        self.assertTrue(any(of.endswith(", F)") for of in factors), factors)
+        self.assertEqual(len([of for of in factors if of.endswith(", sign__1)")]), 3)
+        for claim in claims:
+            if claim["is"] == "equal":
+                self.assertFalse(checker.holds({**claim, "of": [claim["of"][0] + " + m", claim["of"][1]]}), claim)
+
+    def test_terms_without_a_dimension_are_certified(self):
+        paper = Paper("a pendulum", "none")
+        paper.coordinate("x", "m", "place")
+        paper.parameter("m", "kg", "mass")
+        paper.parameter("k", "N/m", "stiffness")
+        paper.motion("1", of="x")(lambda s, m: [s.m * s.ddx, s.k * s.x * m.sin(s.x), s.k * (s.x + s.dx) * s.x])
+        claims, checker = self.certified_alone(paper)
+        self.assertEqual([c["of"][0].count("scaled") for c in claims if c["finding"].startswith("dim")], [1, 1])
+
+    def test_numbers_that_disagree_are_certified(self):
+        paper = Paper("a tank", "none")
+        paper.coordinate("x", "m", "slip")
+        paper.parameter("m", "kg", "mass")
+        paper.motion("1", of="x")(lambda s, m: [s.m * s.ddx])
+        numbers = [
+            Number("R", "0.2", "m", "radius"),
+            Number("H/2", "0.4", "m", "height", exact=True),
+            Number("half", None, "m", "half of the radius", lambda n, m: n.R / 2),
+            Number("M", "155.3", "kg", "water", lambda n, m: 1000 * m.pi * n.R**2 * 0.4 + 20),
+            Number("D", "0.49", "m", "diagonal", lambda n, m: m.sqrt(n.R**2 + 0.16)),
+            Number("beta", "1.4", "rad", "angle", lambda n, m: m.asin(n.half / n.D)),
+            Number("alpha", "0.465", "rad", "angle", lambda n, m: m.atan(n.R / 0.4)),
+            Number("t", "0.3", "1", "sine", lambda n, m: m.tan(n.alpha) * m.cos(n.alpha))]
+        claims, checker = self.certified_alone(paper, numbers=numbers)
+        self.assertEqual([c["finding"] for c in claims], ["number-M", "number-D", "number-beta", "number-t"])
+        for claim in claims:
+            self.assertFalse(checker.holds({**claim, "of": claim["of"][::-1]}))
 
     def test_what_repairs_leave_is_certified(self):
         """Objections are to the repaired equations, whose terms are others: here a line of one is printed twice."""
