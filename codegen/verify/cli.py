@@ -119,14 +119,18 @@ def _result(case, arguments, tell):
 
 def _gate(arguments, result):
     """The exit status where --fail-on is given."""
+    from .report.lasting import lasting
+
     waived = _waivers(arguments.waivers) if arguments.waivers else {}
-    kinds = FAILS[arguments.fail_on]
-    found = [f.key for f in result.findings if kinds is None or f.kind in kinds]
-    open_ = [key for key in found if key not in waived]
+    kinds, names = FAILS[arguments.fail_on], lasting(result.findings, result.case.paper)
+    # both names of each
+    found = {f.key: {f.key, names.get(f.key, f.key)} for f in result.findings if kinds is None or f.kind in kinds}
+    open_ = [key for key, called in found.items() if not called & waived.keys()]
     # what excuses nothing any more would excuse the next finding of that name
-    stale = [key for key in waived if key not in found]
+    stale = [key for key in waived if key not in set().union(*found.values())]
     if open_:
-        print(f"verify: --fail-on {arguments.fail_on}: {', '.join(open_)}", file=sys.stderr)
+        shown = [f"{key} ({names[key]})" if key in names else key for key in open_]
+        print(f"verify: --fail-on {arguments.fail_on}: {', '.join(shown)}", file=sys.stderr)
     if stale:
         print(f"verify: {arguments.waivers}: no finding needs {', '.join(stale)}: take the line out", file=sys.stderr)
     return 1 if open_ or stale else 0

@@ -5,6 +5,7 @@ import json
 from ..judgements import TITLES
 from .closed import closed
 from .construction import construction_parts
+from .lasting import lasting
 from .show import form_latex, form_text, message_text
 from .words import hidden, undefined_symbols
 
@@ -25,6 +26,7 @@ def as_dictionary(report):
     """The report for machines."""
     paper = report.case.paper
     first = report.comparisons[report.motions[0].energies.name] if report.motions else {}
+    names = lasting(report.findings, paper)
 
     def show(part):
         return {"text": part} if isinstance(part, str) else {"text": form_text(part, paper), "latex": form_latex(part, paper)}
@@ -62,7 +64,7 @@ def as_dictionary(report):
             "objections_after_correction": len(report.corrected_violations[name]),
         } for name, title in TITLES.items()},
         "findings": [{
-            "id": f.key, "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": message_text(f.reason, paper),
+            "id": f.key, "lasting": names.get(f.key, f.key), "equation": f.equation, "kind": f.kind, "slip": f.slip or None, "reason": message_text(f.reason, paper),
             "term": [k + 1 for k in f.ordinals], "printed": [show(x) for x in f.printed],
             "consistent": None if not f.consistent and f.kind in ("objection", "principle") else [show(x) for x in f.consistent], "proved": f.proved,
             "possible": [{"equation": n, "term": [k + 1 for k in r.ordinals], "slip": r.slip,

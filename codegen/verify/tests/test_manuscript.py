@@ -4,6 +4,7 @@ with file, line and column."""
 import contextlib
 import io
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -304,7 +305,9 @@ class Gate(Folder):
         self.change((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot"))
         self.assertEqual(self.status(), (0, ""))
         for kind in ("misprint", "finding"):
-            self.assertEqual(self.status("--fail-on", kind), (1, f"verify: --fail-on {kind}: 5-1\n"))
+            status, said = self.status("--fail-on", kind)
+            self.assertEqual(status, 1)
+            self.assertRegex(said, rf"^verify: --fail-on {kind}: 5-1 \(motion of x [0-9a-f]{{8}}\)\n$")
         waivers.write_text("# agreed with the author\n5-1: the next edition has it right\n")
         self.assertEqual(self.status("--fail-on", "misprint", "--waivers", str(waivers)), (0, ""))
         waivers.write_text("5-1: known\n5-2: gone\n")
@@ -316,6 +319,21 @@ class Gate(Folder):
             self.assertEqual((status, expected in said), (2, True), said)
         waivers.unlink()
         self.assertEqual(self.status("--fail-on", "misprint", "--waivers", str(waivers))[0], 2)
+
+    def test_a_waiver_by_a_lasting_name_stays_where_equations_are_numbered_anew(self):
+        waivers = self.folder / "waivers"
+        self.change((r"- m l \sin\theta \, \dot", r"+ m l \sin\theta \, \dot"))
+        name = re.search(r"\((motion of .*)\)", self.status("--fail-on", "misprint")[1])[1]
+        waivers.write_text(f"{name}: the next edition has it right\n")
+        gate = ("--fail-on", "misprint", "--waivers", str(waivers))
+        self.assertEqual(self.status(*gate), (0, ""))
+        self.change(("T =", "% skip\na = b\n\\end{equation}\n\\begin{equation}\nT ="))
+        self.assertIn("6-1", self.status("--fail-on", "misprint")[1])
+        self.assertEqual(self.status(*gate), (0, ""))
+        # another slip in that term is not excused, and the waiver excuses nothing
+        self.change((r"+ m l \sin\theta \, \dot", r"+ m l \cos\theta \, \dot"))
+        status, said = self.status(*gate)
+        self.assertEqual((status, said.count("\n")), (1, 2), said)
 
     def test_an_objection_is_a_finding_and_no_misprint(self):
         self.change(("T =", "% skip\nT ="), ("V =", "% skip\nV ="), ("D =", "% skip\nD ="), ("Q_x =", "% skip\nQ_x ="))
