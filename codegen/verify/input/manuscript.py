@@ -15,6 +15,7 @@ from sympy import sympify
 from ..errors import PaperError
 from . import transcription, units
 from .displays import ROLES, displayed
+from .latex import Parser
 from .macros import expanded, macros
 from .namespace import Mathematics, sympy_namespace
 from .printed import QUASI, Paper, plain_latex
@@ -49,6 +50,7 @@ def read(folder):
     rows = _symbols(folder / SYMBOLS, paper, known)
     found = displayed(text, shown, str(folder / TEX), known)
     _translation(text, paper, rows, folder / TEX)
+    _singular(text, paper, folder / TEX, known)
     printed = {}
     for equation in found:
         _sort(equation, paper, rows, printed)
@@ -142,6 +144,24 @@ def _translation(text, paper, rows, path):
             raise error_at(Placed(text, 0, len(text), str(path)), match.start(), "a translation is a coordinate and an input of the table, "
                            "with a comma between")
         paper.translation = tuple(names)
+
+
+def _singular(text, paper, path, known):
+    """`% singular where \\sin\\theta = 0`: configurations in which nothing is judged."""
+    for match in re.finditer(r"^%[ \t]*singular where[ \t]*(.*?)[ \t.]*$", text, re.MULTILINE):
+        latex = Placed(text, *match.span(1), str(path), known)
+        tree = Parser(latex).equation() if latex else None
+        if tree is None or [child.text for child in tree.children[1:2]] != ["="] or transcription._number(tree.children[2]) != 0:
+            raise error_at(Placed(text, 0, len(text), str(path)), match.start(1), "what is singular is written as an expression = 0, such as "
+                           "% singular where \\sin\\theta = 0")
+
+        def left(s, m, latex=latex):
+            tree = Parser(latex).equation()
+            transcription._collect(tree.children[0], 1, [0])
+            tree.children = tree.children[:1]
+            return sum(transcription.terms(tree, paper, s, m, latex))
+
+        paper.singular_where(str(latex))(left)
 
 
 def _sort(equation, paper, rows, printed):

@@ -136,6 +136,7 @@ class Paper:
     parameter values of its examples; `box` bounds the coordinates and parameters for which the
     mass matrix must be positive definite (what it does not name is taken from the sets); `quasi` are the definitions of the
     quasi-velocities, by the coordinates that belong to them (readings/quasi.py);
+    `singular` are expressions that are zero in singular configurations, by what says so (judgements/singular.py);
     `negligible` are the parameters that the paper allows to be left out; `special` names special
     cases by what they put (a number or another symbol's name) for which symbols.
     """
@@ -153,6 +154,7 @@ class Paper:
     special: Dict[str, Dict[str, object]] = field(default_factory=dict)
     releases: Dict[str, Release] = field(default_factory=dict)
     quasi: Dict[str, Callable] = field(default_factory=dict)
+    singular: Dict[str, Callable] = field(default_factory=dict)
 
     def _declare(self, symbol):
         """Adds a symbol. No two may have a name, a rate's name or a LaTeX in common: one would be
@@ -253,6 +255,18 @@ class Paper:
         """Register an impact law for the rate of the coordinate `of`, at whose bound it happens; `flips` are the discrete
         states that change their sign at the same time."""
         return self._equation(number, "reset", of, latex, title, flips=tuple(flips))
+
+    def singular_where(self, name):
+        """Register the decorated function of coordinates as what is zero in singular configurations, where nothing is judged; `name` says
+        where: "the pole", "r = 0"."""
+
+        def register(function):
+            if name in self.singular:
+                raise PaperError(f"singular where {name}: that is declared twice")
+            self.singular[name] = function
+            return function
+
+        return register
 
     def release(self, name, at, held=()):
         """Declare a release from rest at the coordinates `at` (decimal strings), while the coordinates `held` do not move:

@@ -14,6 +14,7 @@ from ..normal.algebra import ONE, Opaque
 from ..normal.intervals import intervals, known, signs
 from ..normal.matrices import minors
 from .angles import without_angles
+from .singular import regular
 from .violation import Violation
 
 # A budget of some ten seconds. What is undecided by then lies at a point where the matrix is nearly
@@ -63,16 +64,17 @@ class Verdict:
     point: Optional[Dict[str, Tuple[float, float]]] = None
 
 
-def prove_matrix(matrix, fixed, box, limit=BISECTIONS, tell=None) -> Verdict:
-    """Whether a symmetric matrix is positive definite over a box, with the other values fixed; `tell` as in `prove`."""
+def prove_matrix(matrix, fixed, box, limit=BISECTIONS, tell=None, factors=None) -> Verdict:
+    """Whether a symmetric matrix is positive definite over a box, with the other values fixed; `tell` as in `prove`. Where one of
+    the `factors` is zero (singular.py) it need not be, of up to MULTIPLIED_OUT rows."""
     if (constant := without_angles(matrix)) is not None and matrix != constant:
         # where this is not positive definite, the matrix may still be, if the box has no equal angles
-        verdict = prove_matrix(constant, fixed, box, limit, tell)
+        verdict = prove_matrix(constant, fixed, box, limit, tell, factors)
         if verdict.status == "proved":
             return verdict
     still = intervals({n: value for n, value in fixed.items() if n not in box})
     if len(matrix) <= MULTIPLIED_OUT:
-        forms = minors(matrix)
+        forms = [regular(form, factors)[0] for form in minors(matrix)] if factors else minors(matrix)
         known(intervals({**fixed, **box}), forms)
         return prove([_collected(form, still) for form in forms], fixed, box, limit, judge=_signs, tell=tell)
     known(intervals({**fixed, **box}), [form for row in matrix for form in row])
@@ -189,8 +191,9 @@ def definite(subject, motion=None) -> List[Violation]:
     if not subject.paper.sets or not subject.paper.motions() or subject.solved:
         return []
     zeros, _ = rest(subject.paper)
+    matrix = printed_mass(subject, symmetric=True)
     try:
-        matrix = [[form.substitute(zeros) for form in row] for row in printed_mass(subject, symmetric=True)]
+        matrix = matrix if subject.singular else [[form.substitute(zeros) for form in row] for row in matrix]
     except ZeroDivisionError:  # an equation was divided by what is zero at rest, or it is the pole of a coordinate
         return []
     key = ("definite", None, str(matrix))
@@ -198,7 +201,10 @@ def definite(subject, motion=None) -> List[Violation]:
         # all equations together may have been multiplied by a constant
         found = []
         for factor in subject.factors():
-            found.append(_indefinite(subject, minors([[factor * form for form in row] for row in matrix])))
+            forms = minors([[factor * form for form in row] for row in matrix])
+            if subject.singular:
+                forms = [regular(form, subject.singular)[0].substitute(zeros) for form in forms]
+            found.append(_indefinite(subject, forms))
             if not found[-1]:
                 break
         subject.memo[key] = [] if [] in found else found[0]

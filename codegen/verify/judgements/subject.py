@@ -14,6 +14,7 @@ from ..normal.points import at_point, symmetric
 from ..normal.quasi import Quasi
 from ..normal.scales import scales
 from .helmholtz import lagrangian
+from .singular import singular
 
 
 class Subject:
@@ -31,6 +32,7 @@ class Subject:
         self.known = base.known if base else {}
         self.shared = base.shared if base else {}  # what is made once for a paper, by name
         self.quasi = base.quasi if base else Quasi(paper, self.ring, self.s, self.m) if paper.quasi else None
+        self.singular = base.singular if base else singular(paper, self.ring, self.s, self.m)
         self.expressions, self.forms, self.memo = {}, {}, {}
         kept = set()
         for number, equation in paper.equations.items():

@@ -2,6 +2,7 @@
 
 from ..errors import NotInClass, PaperError
 from ..input.namespace import Mathematics, sympy_namespace
+from ..judgements.singular import singular
 from ..normal.algebra import ring_of
 from ..normal.intervals import intervals, signs
 from ..normal.quasi import Quasi
@@ -32,6 +33,7 @@ class Motion:
         if self.quasi:
             self._moved = self.quasi.in_positions(self.kinetic)
             self.kinetic, self.dissipation = self.quasi.in_quasi(self.kinetic), self.quasi.in_quasi(self.dissipation)
+        self.singular = singular(paper, self.ring, self.s, self.m)
         self.held = {p + n: 0 for n in energies.extra for p in ("", "d", "dd")}
         self._residuals, self._solved, self._units = {}, {}, None
         self._check(moving)

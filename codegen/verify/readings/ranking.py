@@ -139,7 +139,7 @@ def _boxes(motion, squares, thorough, tell):
     zeros, places = rest(paper)
     whole = thorough and moving <= paper.box.keys()
     try:
-        at_rest = None if whole else [[form.substitute(zeros) for form in row] for row in mass]
+        at_rest = None if whole else mass if motion.singular else [[form.substitute(zeros) for form in row] for row in mass]
     except ZeroDivisionError:  # rest is a pole of the energy
         return {}, whole
     # with a sum of squares the matrix is not negative whatever is neglected, and where it is singular the report says so
@@ -152,8 +152,9 @@ def _boxes(motion, squares, thorough, tell):
             key = ", ".join([label] + [f"{n} = {v:+d}" for n, v in state.items()])
             box = paper.box if whole else {n: (p, p) for n, p in places.items()}
             limit = NEGLECTED if neglect else BISECTIONS
-            result[key] = prove_matrix(mass if whole else at_rest, {**values, **neglected, **state}, box, limit,
-                                       lambda done, before=before: tell(what, before + done, total))
+            given = {**values, **neglected, **state} if whole or not motion.singular else {**zeros, **values, **neglected, **state}
+            result[key] = prove_matrix(mass if whole else at_rest, given, box, limit, lambda done, before=before: tell(what, before + done, total),
+                                       motion.singular)
             before += BISECTIONS
     return result, whole
 

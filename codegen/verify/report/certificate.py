@@ -8,8 +8,10 @@ from itertools import permutations, product
 from ..input import units
 from ..input.namespace import sympy_namespace
 from ..judgements.comparison import compare
-from ..judgements.definite import rest
+from ..judgements.definite import printed_mass, rest
+from ..judgements.singular import regular
 from ..normal.algebra import Opaque, expression
+from ..normal.matrices import determinant
 from .number_claims import beside
 
 # raised when a claim changes its meaning
@@ -287,8 +289,15 @@ class _Writer:
         for k, equation in enumerate(motions):
             self.let[f"full__{k}"] = str(expression(self.objected.multipliers[equation.number] * self.objected.total(equation.number)))
         entries = [[f"(diff(full__{i}, dd{f.of}) + diff(full__{j}, dd{e.of}))/2" for j, f in enumerate(motions)] for i, e in enumerate(motions)]
-        zeros = "".join(f", {n}, 0" for n in rest(self.paper)[0])
-        self._claim(about, "equal", f"put({_determinant(entries)}{zeros})", str(expression(v.message[1])))
+        zeros, left = "".join(f", {n}, 0" for n in rest(self.paper)[0]), v.message[1]
+        if self.objected.singular:
+            matrix = [row[:len(motions)] for row in printed_mass(self.objected, symmetric=True)[:len(motions)]]
+            whole, powers = regular(determinant(matrix), self.objected.singular)
+            over = "*".join(["1", *(f"({expression(self.objected.singular[where])})**{power}" for where, power in powers.items())])
+            self._claim(about, "equal", _determinant(entries), f"{over}*({expression(whole)})")
+            self._claim(about, "equal", f"put({expression(whole)}{zeros})", str(expression(left)))
+        else:
+            self._claim(about, "equal", f"put({_determinant(entries)}{zeros})", str(expression(left)))
         name, *states = found[1].rsplit(", ", sum(x.role == "discrete" for x in self.paper.symbols.values()))
         values = {**self.paper.sets[name], **rest(self.paper)[1], **dict(x.split(" = ") for x in states)}
         values = {n: str(int(x)) if str(x).startswith("+") else str(x) for n, x in values.items() if n in v.message[1].names()}

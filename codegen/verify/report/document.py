@@ -104,7 +104,7 @@ def _equations(report):
     blocks = [Heading("The equations as printed, and as they are consistent"),
               Paragraph(["Above, as printed: the energies do not give what is marked. Below, where something is found, the terms one by one, those "
                          "of an equation of motion as left side minus right side: printed above, consistent below, with the numbers of the findings."])]
-    blocks += [Paragraph(line) for line in words.scale_lines(report)]
+    blocks += [Paragraph(line) for line in words.scale_lines(report) + words.singular_lines(report)]
     found = report.comparisons[report.motions[0].energies.name] if report.motions else {}
     for number, equation in paper.equations.items():
         comparison = found.get(number)

@@ -16,6 +16,7 @@ from ..judgements import unjudged, unreferenced
 from ..judgements.comparison import compare
 from ..judgements.definite import critical, printed_mass, rest
 from ..judgements.numbers import check
+from ..judgements.singular import declared, regular
 from ..judgements.subject import Subject
 from ..normal.matrices import determinant
 from ..progress import silent
@@ -29,7 +30,7 @@ from .origin import origin
 class Definiteness:
     """One mass matrix: `at_rest` its determinant at zero coordinates (None: a divisor vanishes there), `neglected` the same with the
     negligible parameters at zero, `critical` values of the first of these, `boxes` the verdict over
-    the box by parameter set, `squares` whether the sum of squares is proved (None: none is given)."""
+    the box by parameter set, `powers` of the forms that are zero in singular configurations by which the determinant was divided, `squares` whether the sum of squares is proved (None: none is given)."""
 
     name: str
     at_rest: object
@@ -37,6 +38,7 @@ class Definiteness:
     critical: object
     boxes: Dict[str, object] = field(default_factory=dict)
     squares: Optional[bool] = None
+    powers: Dict[object, int] = field(default_factory=dict)
 
 
 @dataclass
@@ -60,7 +62,8 @@ class Report:
     those of the first; `corrected` has all corrections of the model folder (`by_hand`) for it, or
     the repairs found here; `unjudged` says why a judgement had nothing to judge by, `unreferenced`
     which equations the energies say nothing about; `constructed` what follows from the equations as printed and as
-    corrected; `impacts` the impact laws by equation and reading, `splits` what is left over where masses are split, by finding;
+    corrected; `impacts` the impact laws by equation and reading, `splits` what is left over where masses are split, by finding; `singular` the declared
+    singular configurations (judgements/singular.py);
     `simulated` the runs with each slip (effects.py); `version`, `date` and `files`, {name: SHA-256}, say what judged what, and when."""
 
     case: object
@@ -81,6 +84,7 @@ class Report:
     constructed: List[Constructed] = field(default_factory=list)
     impacts: Dict = field(default_factory=dict)
     splits: Dict = field(default_factory=dict)
+    singular: List = field(default_factory=list)
     version: str = ""
     date: str = ""
     files: Dict[str, str] = field(default_factory=dict)
@@ -132,9 +136,14 @@ def verify(case, thorough=True, tell=silent):
     report.transcribed = transcription.proved(printed)
     report.numbers = check(case.numbers)
     if paper.motions() and not printed.solved:
-        report.definiteness.append(_definiteness("as printed", paper, printed_mass(printed)))
+        report.definiteness.append(_definiteness("as printed", paper, printed_mass(printed), printed.singular))
     for r in readings:
-        report.definiteness.append(replace(_definiteness(r.name, paper, r.motion.mass()), boxes=r.boxes if r.whole else {}, squares=r.squares))
+        found = _definiteness(r.name, paper, r.motion.mass(), r.motion.singular)
+        report.definiteness.append(replace(found, boxes=r.boxes if r.whole else {}, squares=r.squares))
+    if paper.singular:
+        masses = [r.motion.mass() for r in readings] + ([printed_mass(printed)] if paper.motions() and not printed.solved else [])
+        scales = {n: c.scale for n, c in comparisons[readings[0].name].items()} if readings else printed.scales
+        report.singular = declared(printed, masses, scales)
     _attribute(report)
     _principles(report)
     report.findings += wrong
@@ -236,12 +245,17 @@ def _construct(of, subject):
                        conserved(subject, lagrangian), small_motion(subject.paper, rows, q), frequencies(subject))
 
 
-def _definiteness(name, paper, mass):
-    """The sixth judgement on one mass matrix."""
+def _definiteness(name, paper, mass, factors):
+    """The sixth judgement on one mass matrix; `factors` are zero in singular configurations."""
     zeros = rest(paper)[0]
     try:
-        at_rest = determinant([[form.substitute(zeros) for form in row] for row in mass])
+        if factors:
+            whole, powers = regular(determinant(mass), factors)
+            at_rest = whole.substitute(zeros)
+        else:
+            at_rest, powers = determinant([[form.substitute(zeros) for form in row] for row in mass]), {}
     except ZeroDivisionError:
         return Definiteness(name, None, None, None)
     neglected = at_rest.substitute({n: 0 for n in paper.negligible}) if paper.negligible else None
-    return Definiteness(name, at_rest, neglected, critical(at_rest, paper.negligible[0], paper) if paper.negligible else None)
+    return Definiteness(name, at_rest, neglected, critical(at_rest, paper.negligible[0], paper) if paper.negligible else None,
+                        powers={factors[where]: power for where, power in powers.items()})

@@ -40,6 +40,7 @@ def as_dictionary(report):
         "terms": sum(c.terms() for c in first.values()),
         "multipliers": {n: show(first[n].scale if n in first else scale) for n, scale in report.printed.scales.items()
                         if (first[n].scale if n in first else scale) != report.printed.ring.number(1)},
+        "singular": [{"where": x.where, "zero": show(x.form), "divided": x.divided, "mass_matrix": x.mass} for x in report.singular],
         "unreferenced_equations": report.unreferenced,
         "energies": [{
             "name": m.energies.name, "description": m.energies.description,

@@ -5,7 +5,7 @@ from .construction import construction_parts
 from .show import message_text
 from .words import (READING_HEAD, alternative_lines, consistent_label, consistent_parts, determinant_lines, effect_lines, effect_notes,
                     extent_lines, headline, judged_text, judgement_text, number_parts, origin_line, outcome_text, possible_lines,
-                    printed_parts, reading_rows, reading_text, reason_lines, root_lines, scale_lines, squares_text, summary_lines,
+                    printed_parts, reading_rows, reading_text, reason_lines, root_lines, scale_lines, singular_lines, squares_text, summary_lines,
                     transcription_lines, undefined_symbols, verdict_text)
 
 
@@ -17,7 +17,7 @@ def as_text(report):
         return message_text(sentence, paper)
 
     lines = [f"{case.name}: {paper.title}", f"source: {paper.source}", origin_line(report), "", *transcription_lines(report),
-             *map(show, scale_lines(report)), ""]
+             *map(show, scale_lines(report) + singular_lines(report)), ""]
     lines += summary_lines(report) + [""]
     if report.readings:
         for number, c in report.comparisons[report.readings[0].name].items():

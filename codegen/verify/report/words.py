@@ -3,6 +3,7 @@ expressions, which each writer shows in its own way."""
 
 from ..input.corrections import KINDS
 from ..judgements import TITLES
+from ..judgements.singular import divided, nowhere_zero
 from ..repairs.edits import slip_text
 from .closed import closed
 from .findings import FURTHER, IMPACT
@@ -46,13 +47,37 @@ def scale_lines(report):
             if comparison.solved:
                 of = report.printed.ring.symbol("dd" + report.case.paper.equations[number].of)
                 lines.append([f"Equation ({number}) is judged as solved for the acceleration ", of]
-                             + (["."] if scale == one else [", and multiplied by ", scale, "."]))
+                             + (["."] if scale == one else [", and multiplied by ", scale, *_elsewhere(report, scale)]))
                 continue
         elif report.printed.multipliers[number].names() - report.printed.ring.involutions:
             # without energies, what makes the mass matrix symmetric
             scale = report.printed.multipliers[number]
         if scale != one:
-            lines.append([f"Equation ({number}) is judged as multiplied by ", scale, "."])
+            lines.append([f"Equation ({number}) is judged as multiplied by ", scale, *_elsewhere(report, scale)])
+    return lines
+
+
+def _elsewhere(report, scale):
+    """Where an equation and its multiple do not say the same, behind the multiplier."""
+    moving = set(report.case.paper.positions())
+    if not scale.names() & moving or scale.over:
+        return ["."]
+    left, used = divided(scale, report.printed.singular)
+    declared = "; they say the same but in configurations that are declared singular" if used else ""
+    if not left.names() & moving or nowhere_zero(left, report.case.paper):
+        return [declared + "."]
+    return [f"{declared}; where ", left, " is zero they do not say the same."]
+
+
+def singular_lines(report):
+    """The singular configurations that are declared, and what is singular there, as sentences."""
+    lines = []
+    for found in report.singular:
+        why = ["the determinant of the mass matrix is zero there"] if found.mass else []
+        why += [f"({'), ('.join(found.divided)}) {'was' if len(found.divided) == 1 else 'were'} divided by what is zero there"] if found.divided else []
+        # what a manuscript declares shows by itself
+        lines.append(["Declared singular, and not judged: ", *([] if "=" in found.where else [f"{found.where}, where "]), found.form, " = 0: "
+                      + ("; ".join(why) if why else "nothing that is judged is singular there") + "."])
     return lines
 
 
@@ -281,7 +306,8 @@ def determinant_lines(definiteness, paper):
     """The determinant at rest, without what is negligible, and the coefficients of the critical value, as sentences."""
     if definiteness.at_rest is None:
         return [["determinant at rest: none, since a divisor vanishes there; a box without zero says where else it rests"]]
-    lines = [["determinant at rest: ", closed(definiteness.at_rest)]]
+    over = [part for form, power in definiteness.powers.items() for part in (", divided by (", form, f")^{power}")]
+    lines = [["determinant at rest", *over, ": ", closed(definiteness.at_rest)]]
     if definiteness.neglected is not None:
         zero = " = ".join([*paper.negligible, "0"])
         lines.append([f"with {zero}: "] + ([closed(definiteness.neglected)] if definiteness.neglected else ["0 (singular)"]))
