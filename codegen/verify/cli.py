@@ -108,12 +108,14 @@ def _judge(arguments):
 def _result(case, arguments, tell):
     """The report of a case, with the effects of the slips where they can be simulated."""
     from .report import effects, gather
+    from .report.order import ranked
 
     result = gather.verify(case, not arguments.quick, tell)
     if arguments.program and case.effects and not arguments.quick:
         result.simulated = effects.simulate(case.effects, result.case.corrections, arguments.program,
                                             lambda done, total: tell("simulation of the slips", done, total))
         effects.attach(result.findings, result.case.corrections, result.simulated)
+        result.findings = ranked(result.findings)
     return result
 
 

@@ -119,10 +119,12 @@ def group(factor, *terms):
 @dataclass(frozen=True)
 class Release:
     """A scene at its start: the system at rest with the coordinates `at` (all others zero), `held` the coordinates
-    that do not move; no force acts that the paper gives by a symbol of its own (friction)."""
+    that do not move; no force acts that the paper gives by a symbol of its own (friction). `duration` of the motion that is
+    looked at, s; it ends where a one-sided coordinate comes to its bound."""
 
     at: Dict[str, str]
     held: Tuple[str, ...] = ()
+    duration: float = 0.0
 
 
 @dataclass
@@ -268,15 +270,17 @@ class Paper:
 
         return register
 
-    def release(self, name, at, held=()):
+    def release(self, name, at, held=(), duration=0.0):
         """Declare a release from rest at the coordinates `at` (decimal strings), while the coordinates `held` do not move:
-        a scene in which the reactions of what pushes must be positive."""
+        a scene in which the reactions of what pushes must be positive, at its start and for `duration` seconds."""
         if name in self.releases:
             raise PaperError(f"the release '{name}' is declared twice")
         for coordinate in [*at, *held]:
             if coordinate not in self.coordinates():
                 raise PaperError(f"the release '{name}' names '{coordinate}', which is no coordinate")
-        self.releases[name] = Release({n: str(v) for n, v in at.items()}, tuple(held))
+        if not _finite(duration) or float(duration) < 0:
+            raise PaperError(f"the release '{name}' has the duration {duration!r}: it is a number of seconds, not below 0")
+        self.releases[name] = Release({n: str(v) for n, v in at.items()}, tuple(held), float(duration))
 
     def check(self):
         """Raises a PaperError where the declarations do not fit together."""

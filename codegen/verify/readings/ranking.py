@@ -1,7 +1,7 @@
 """Readings of a paper: energies that it may mean, ranked by what a system must satisfy and then by what the paper prints.
 
 First definiteness (the kinetic energy is not negative, also with what the paper neglects), then the reactions of what
-only pushes in the scenes that the paper speaks of, then the invariances of the derived equations, then the printed
+only pushes in the scenes that the paper speaks of, at their start and along their motion, then the invariances of the derived equations, then the printed
 terms that agree. A reading that only counts terms can make a tank pull on the ground.
 """
 
@@ -19,6 +19,7 @@ from ..normal.algebra import expression
 from ..normal.intervals import intervals, signs
 from ..normal.matrices import determinant
 from ..progress import silent
+from .along import Along, Least
 from .lagrange import Motion
 
 # What is neglected is mostly singular at rest, so that no number of boxes proves anything there; where the matrix is
@@ -31,13 +32,19 @@ VERDICTS = ("squares", "proved", "undecided", "refuted")
 
 @dataclass
 class Reaction:
-    """A reaction in a scene: bounds of its value, proved; negative where it pulls."""
+    """A reaction in a scene: bounds of its value at the start, proved; negative where it pulls. `least` is what it comes down to along the
+    motion, computed (None: not looked at)."""
 
     release: str
     case: str
     coordinate: str
     low: float
     high: float
+    least: Optional[Least] = None
+
+    def pushes(self):
+        """Whether it is proved to push at the start, and does so along the motion by more than its uncertainty."""
+        return self.low > 0 and (self.least is None or self.least.value > self.least.uncertainty)
 
 
 @dataclass
@@ -72,8 +79,8 @@ class Reading:
         return next((v for v in reversed(VERDICTS) if v in found), "undecided")
 
     def pulls(self):
-        """The reactions that are not proved to push."""
-        return [r for r in self.reactions if not r.low > 0]
+        """The reactions that are not known to push."""
+        return [r for r in self.reactions if not r.pushes()]
 
     def rank(self):
         """What readings are sorted by."""
@@ -95,7 +102,11 @@ def _reading(printed, energies, thorough, tell):
     derived = derived_subject(printed, motion)
     objections = {"mirror": mirror(derived), "galilei": galilei(derived)}
     boxes, whole = _boxes(motion, squares, thorough, tell)
-    return Reading(motion, squares, boxes, _reactions(motion), objections, sum(len(c.agree) for c in judged),
+    reactions = _reactions(motion)
+    if thorough and all(r.low > 0 for r in reactions):
+        tell(f"motions of '{energies.name}'")
+        _follow(motion, reactions)
+    return Reading(motion, squares, boxes, reactions, objections, sum(len(c.agree) for c in judged),
                    sum(c.terms() for c in judged), sum(len(c.absent) for c in judged), {n: c.differ for n, c in found.items()}, whole)
 
 
@@ -184,8 +195,29 @@ def _reactions(motion):
             for k, name in enumerate(free):
                 replaced = [row[:k] + [load] + row[k + 1:] for row, load in zip(mass, loads)]
                 found["dd" + name] = determinant(replaced) / whole
-            case = ", ".join([set_name] + [f"{n} = {v:+d}" for n, v in state.items()])
+            case = _case(set_name, state)
             for coordinate in motion.energies.pushes:
                 reaction = value(motion.residual(coordinate), found)
                 result.append(Reaction(release_name, case, coordinate, float(reaction.a), float(reaction.b)))
     return result
+
+
+def _follow(motion, reactions):
+    """Follows the motion of the releases that last, and gives the reactions the least that they come down to."""
+    paper, equations = motion.paper, {}
+    found = {(r.release, r.case, r.coordinate): r for r in reactions}
+    for (release_name, release), (set_name, values), state in product(paper.releases.items(), paper.sets.items(), states(paper)):
+        case = _case(set_name, state)
+        if not release.duration or not any(key[:2] == (release_name, case) for key in found):
+            continue
+        free = tuple(n for n in paper.coordinates() if n not in release.held)
+        if free not in equations:
+            equations[free] = Along(motion, free)
+        numbers = {n: float(v) for n, v in {**values, **release.at, **state}.items()}
+        for coordinate, least in equations[free].least(numbers, numbers, release.duration).items():
+            found[release_name, case, coordinate].least = least
+
+
+def _case(set_name, state):
+    """A parameter set and a state in words."""
+    return ", ".join([set_name] + [f"{n} = {v:+d}" for n, v in state.items()])

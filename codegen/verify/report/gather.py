@@ -23,6 +23,7 @@ from ..progress import silent
 from ..readings.ranking import Reading, ranked
 from . import principles
 from .findings import Finding, consistent_terms, from_corrections, from_locations, from_objections, from_repairs, judge, repaired
+from .order import ranked as ranked_findings
 from .origin import origin
 
 
@@ -153,7 +154,7 @@ def verify(case, thorough=True, tell=silent):
     report.constructed = [] if printed.solved else [_construct("as printed", printed)]
     if findings and not printed.solved:
         report.constructed.append(_construct("with what is consistent", whole))
-    report.findings.sort(key=_order)
+    report.findings = ranked_findings(report.findings)
     return report
 
 
@@ -224,15 +225,6 @@ def _closed(corrections, keys):
     while gone := [key for key in keys if not needed[key] <= set(keys)]:
         keys = [key for key in keys if key not in gone]
     return keys
-
-
-# what weighs most comes first
-KINDS = ("misprint", "repair", "objection", "principle", "approximation", "choice", "undefined")
-
-
-def _order(finding):
-    """What is wrong in every reading comes first, then what depends on one, then what is no slip of an equation."""
-    return (finding.equation == "text", KINDS.index(finding.kind))
 
 
 def _construct(of, subject):

@@ -53,7 +53,8 @@ def as_dictionary(report):
         } for m in report.motions],
         "readings": [{
             "name": r.name, "definiteness": r.verdict(), "agree": r.agree, "terms": r.terms, "absent": r.absent,
-            "reactions": [{"release": x.release, "case": x.case, "coordinate": x.coordinate, "low": x.low, "high": x.high} for x in r.reactions],
+            "reactions": [{"release": x.release, "case": x.case, "coordinate": x.coordinate, "low": x.low, "high": x.high,
+                           "least": x.least and {"value": x.least.value, "t": x.least.time, "uncertainty": x.least.uncertainty}} for x in r.reactions],
             "objections": {name: [message_text(v.message, paper) for v in found] for name, found in r.objections.items()},
         } for r in report.readings],
         "terms_wrong_in_every_reading": _terms(report.wrong_terms()[0]) if len(report.readings) > 1 else None,

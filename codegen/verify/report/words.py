@@ -115,12 +115,25 @@ def reading_rows(report):
         undecided = [key for key, v in r.boxes.items() if v.status == "undecided"]
         definite = VERDICT[r.verdict()] + (f" for {len(refuted)} of {len(r.boxes)} cases: {'; '.join(refuted)}" if refuted
                                            else f" for {len(undecided)} of {len(r.boxes)} cases" if undecided and r.verdict() == "undecided" else "")
-        worst = min(r.reactions, key=lambda x: x.low, default=None)
-        reactions = "not judged" if worst is None else (
-            f"at least {worst.low:.4g} N" if worst.low > 0 else f"{worst.low:.4g} N ({worst.release}; {worst.case}): what only pushes would pull")
+        reactions = _reactions_text(r.reactions)
         objected = [f"{len(v)} to {TITLES[name].lower()}" for name, v in r.objections.items() if v]
         rows.append((r.name, definite, reactions, ", ".join(objected) or "none", f"{r.agree} of {r.terms}", str(r.absent)))
     return rows
+
+
+def _reactions_text(reactions):
+    """The least reaction in the scenes, at the start and along the motion."""
+    worst = min(reactions, key=lambda x: x.low, default=None)
+    if worst is None:
+        return "not judged"
+    if not worst.low > 0:
+        return f"{worst.low:.4g} N ({worst.release}; {worst.case}): what only pushes would pull"
+    text = f"at least {worst.low:.4g} N at the start (proved)"
+    least = min((x for x in reactions if x.least), key=lambda x: x.least.value, default=None)
+    if least is None:
+        return text
+    where = f"{least.least.value:.4g} N at t = {least.least.time:.3g} s (computed; {least.release}; {least.case})"
+    return text + (f"; along the motion at least {where}" if least.pushes() else f"; along the motion {where}: what only pushes would pull")
 
 
 READING_HEAD = ("reading", "kinetic energy", "reactions in the scenes", "objections to invariance", "printed terms that agree", "derived, not printed")

@@ -1,10 +1,12 @@
 """Readings of the tank's paper: their order and its reasons, what is wrong in every one and what only in some, and that
 the corrections of each are exactly its energies."""
 
+import math
 import unittest
 from dataclasses import replace
 from pathlib import Path
 
+from codegen.verify import Energies, Paper
 from codegen.verify.errors import PaperError
 from codegen.verify.input.corrections import apply
 from codegen.verify.judgements.subject import Subject
@@ -114,6 +116,55 @@ class Tank(unittest.TestCase):
                 stream.write('\nreadings["another"] = []\n')
             with self.assertRaisesRegex(PaperError, "'another'"):
                 load(model)
+
+
+class Along(unittest.TestCase):
+    """A particle on a ball of radius l, released at 0.5 rad from its top: the ball pushes it with m g (3 cos q - 2 cos 0.5)."""
+
+    def paper(self, duration, minimum=None):
+        paper = Paper("particle on a ball", "none", sets={"one": {"m": "2", "l": "1.5", "g": "9.81"}}, box={"q": (-1.0, 1.0)})
+        paper.coordinate("q", "rad", "angle from the top", minimum=minimum)
+        for name, unit in (("m", "kg"), ("l", "m"), ("g", "m/s^2")):
+            paper.parameter(name, unit, name)
+        paper.motion("1", of="q")(lambda s, m: [s.m * s.l**2 * s.ddq, -s.m * s.g * s.l * m.sin(s.q)])
+        paper.release("from 0.5 rad", at={"q": "0.5"}, duration=duration)
+        return paper
+
+    def reading(self, paper, thorough=True):
+        energies = Energies("ball", "", lambda s, m: s.m * (s.dr**2 + (s.l + s.r)**2 * s.dq**2) / 2, lambda s, m: s.m * s.g * (s.l + s.r) * m.cos(s.q))
+        energies.coordinate("r", "m", "distance from the ball", pushes=True)
+        return ranked(Subject(paper), [energies], thorough)[0]
+
+    def test_the_least_is_that_of_the_motion(self):
+        from mpmath import cos, mp, odefun, sin
+
+        with mp.workdps(20):
+            at = odefun(lambda t, y: [y[1], mp.mpf("9.81") / mp.mpf("1.5") * sin(y[0])], 0, [mp.mpf("0.5"), mp.mpf(0)])
+            expected = {t: 2 * mp.mpf("9.81") * (3 * cos(at(t)[0]) - 2 * cos(mp.mpf("0.5"))) for t in (0.25, 0.6)}
+        for duration, pushes in ((0.25, True), (0.6, False)):
+            (r,) = self.reading(self.paper(duration)).reactions
+            self.assertAlmostEqual(r.low, 2 * 9.81 * math.cos(0.5), places=9)
+            self.assertEqual((r.least.time, r.pushes()), (duration, pushes))
+            self.assertLess(abs(r.least.value - expected[duration]), 1e-7)
+            self.assertLess(r.least.uncertainty, 1e-6)
+
+    def test_it_is_looked_at_where_it_is_asked_for_and_up_to_a_bound(self):
+        self.assertIsNone(self.reading(self.paper(0.0)).reactions[0].least)
+        self.assertIsNone(self.reading(self.paper(0.5), thorough=False).reactions[0].least)
+        self.assertLess(self.reading(self.paper(0.6, minimum=0.499)).reactions[0].least.value, 0)
+        paper = self.paper(0.5, minimum=0.51)
+        self.assertEqual(self.reading(paper).reactions[0].least.time, 0.0)
+        for duration in (-1, "long", float("inf")):
+            with self.assertRaisesRegex(PaperError, "duration"):
+                self.paper(duration)
+
+    def test_a_reading_that_pulls_on_the_way_comes_after_one_that_does_not(self):
+        paper = self.paper(0.6)
+        heavy = Energies("bead on the ball", "", lambda s, m: s.m * (s.dr**2 + s.l**2 * s.dq**2) / 2, lambda s, m: s.m * s.g * s.l * m.cos(s.q) + s.m * s.g * s.r)
+        light = Energies("ball", "", lambda s, m: s.m * (s.dr**2 + (s.l + s.r)**2 * s.dq**2) / 2, lambda s, m: s.m * s.g * (s.l + s.r) * m.cos(s.q))
+        for energies in (heavy, light):
+            energies.coordinate("r", "m", "distance from the ball", pushes=True)
+        self.assertEqual([r.name for r in ranked(Subject(paper), [light, heavy])], ["bead on the ball", "ball"])
 
 
 if __name__ == "__main__":

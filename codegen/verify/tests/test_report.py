@@ -15,6 +15,7 @@ from codegen.verify.load import load
 from codegen.verify.report import gather, html, tex, texmath
 from codegen.verify.report.aligned import aligned
 from codegen.verify.report.document import ROWS, document
+from codegen.verify.report.order import ranked
 from codegen.verify.report.show import form_latex
 from codegen.verify.tests.cases import ROOT, TANK, report_of
 
@@ -50,6 +51,19 @@ class Pages(unittest.TestCase):
                                  sorted(report.corrected.forms[number], key=key))
                 for pair in pairs:
                     self.assertTrue(pair.findings or not pair.changed(), (number, pair))
+
+    def test_findings_of_a_kind_are_ranked(self):
+        for report in self.reports:
+            for kind in {f.kind for f in report.findings}:
+                of_kind = [f for f in report.findings if f.kind == kind and f.equation != "text"]
+                degrees = [float("inf") if f.order is None else f.order for f in of_kind]
+                self.assertEqual(degrees, sorted(degrees))
+        first, second, third = [replace(f, kind="misprint", equation="1", effects={}) for f in self.reports[0].findings[:3]]
+        effect = lambda value: {"scene": {"changes": ["t"], "without": {"t": 2.0}, "with": {"t": value}}}
+        second.effects, third.effects = effect(2.1), {"scene": {"changes": ["stopped"], "without": {}, "with": {"stopped": "at once"}}}
+        self.assertEqual(ranked([first, second, third]), [third, second, first])
+        third.effects = effect(1.9)
+        self.assertEqual(ranked([first, second, third])[0], third)
 
     def test_the_summary_fits_on_a_page(self):
         for report in self.reports:
