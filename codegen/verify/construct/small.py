@@ -18,6 +18,13 @@ class SmallMotion:
     damping: List[List]
     stiffness: List[List]
 
+    def equation(self, k, ring):
+        """What is zero: the terms of first order of the equation of one coordinate."""
+        total = self.forces[k]
+        for prefix, rows in (("dd", self.mass), ("d", self.damping), ("", self.stiffness)):
+            total += sum((entry * ring.symbol(prefix + n) for n, entry in zip(self.coordinates, rows[k])), ring.number(0))
+        return total
+
 
 def small_motion(paper, rows, q):
     """The small motions of equations of motion about rest; None where an equation is divided by what is zero there."""

@@ -4,7 +4,7 @@
 def construction_parts(constructed, paper):
     """[(words, form or None)]: T and V, balances, conserved quantities, small motions."""
     if constructed.lagrangian is None:
-        return [(f"No Lagrangian: {constructed.why}.", None)]
+        return [(f"No Lagrangian: {constructed.why}.", None), *_small(constructed, paper), *_cases(constructed)]
     found, parts = constructed.lagrangian, []
     parts.append((f"A Lagrangian exists (proved: Lagrange's equations of it are ({'), ('.join(found.equations)}), each times a constant, but for "
                   "what is dissipative). Its kinetic energy, up to a function of time, T = ", found.kinetic))
@@ -25,13 +25,37 @@ def construction_parts(constructed, paper):
         parts.append((f"Conserved without dissipation, forces and inputs, of degree {c.degree} in the rates: ", c.quantity))
     if not rest:
         parts.append(("No further conserved quantity of first or second degree in the rates was found with multipliers of low degree.", None))
-    small = constructed.small
+    return parts + _small(constructed, paper) + _frequencies(constructed.frequencies) + _cases(constructed)
+
+
+def _small(constructed, paper):
+    """Small motions about rest: the equations of first order, and the roots of what is damped."""
+    small, parts = constructed.small, []
     if small is None:
-        parts.append(("The equations are divided by what is zero at rest: there are no small motions about it.", None))
-    for name, force in zip(small.coordinates, small.forces) if small else ():
-        if force:
-            parts.append((f"Rest is no equilibrium: there the equation of {name} leaves ", force))
-    return parts + _frequencies(constructed.frequencies)
+        return [("The equations are divided by what is zero at rest: there are no small motions about it.", None)]
+    given = {n: 0 for n, x in paper.symbols.items() if x.role == "force"}
+    for k, name in enumerate(small.coordinates):
+        if small.forces[k].substitute(given):
+            parts.append((f"Rest is no equilibrium: there the equation of {paper.shown(name)} leaves ", small.forces[k]))
+    if not parts:
+        parts = [(f"Small motions about rest, equation of {paper.shown(name)}: 0 = ", form) for k, name in enumerate(small.coordinates)
+                 if (form := small.equation(k, small.forces[k].ring))]
+    for name, roots in constructed.modes.items():
+        parts.append((f"Small motions about rest, with damping and gyroscopic terms: {', '.join(map(_root_text, roots))} ({name})", None))
+    return parts
+
+
+def _root_text(root):
+    """A motion exp(s t)."""
+    change = "" if root.real == 0 else f"{'decays' if root.real < 0 else 'grows'} with {abs(root.real):.6g} 1/s"
+    if root.imag == 0:
+        return change or "constant"
+    return f"{root.imag:.6g} rad/s" + (f" that {change}" if change else "")
+
+
+def _cases(constructed):
+    """Special cases and limits."""
+    return [(f"Where {name}: {'; '.join(said)}.", None) for name, said in constructed.cases]
 
 
 def _frequencies(found):

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, List, Optional
 
 from ..construct.balance import energy_balance, momentum_balances
+from ..construct.cases import cases
 from ..construct.conserved import conserved
-from ..construct.frequencies import frequencies
+from ..construct.frequencies import frequencies, modes
 from ..construct.lagrangian import construct, motion_rows
 from ..construct.small import small_motion
 from ..input import transcription
@@ -45,7 +46,7 @@ class Definiteness:
 @dataclass
 class Constructed:
     """What is constructed from equations: `lagrangian`, or `why` there is none; balances and conserved quantities;
-    small motions and their frequencies. `of` says of which equations: as printed, or with what is consistent."""
+    small motions with their frequencies, or roots (`modes`); special `cases`. `of` says of which equations: as printed, or with what is consistent."""
 
     of: str
     lagrangian: object
@@ -55,6 +56,8 @@ class Constructed:
     conserved: List = field(default_factory=list)
     small: object = None
     frequencies: object = None
+    modes: Dict = field(default_factory=dict)
+    cases: List = field(default_factory=list)
 
 
 @dataclass
@@ -230,11 +233,12 @@ def _closed(corrections, keys):
 def _construct(of, subject):
     """What follows from equations alone."""
     lagrangian, why = construct(subject)
-    if lagrangian is None:
-        return Constructed(of, None, why)
     _, q, rows = motion_rows(subject, conservative=False)
+    if lagrangian is None:
+        return Constructed(of, None, why, small=small_motion(subject.paper, rows, q), modes=modes(subject), cases=cases(subject))
     return Constructed(of, lagrangian, None, energy_balance(subject, lagrangian), momentum_balances(subject, lagrangian),
-                       conserved(subject, lagrangian), small_motion(subject.paper, rows, q), frequencies(subject))
+                       conserved(subject, lagrangian), small_motion(subject.paper, rows, q), frequencies(subject),
+                       modes(subject), cases(subject))
 
 
 def _definiteness(name, paper, mass, factors):
