@@ -40,7 +40,7 @@ def _summary(report):
         rows = [[[str(k)], [Link(f.key, anchor(f))], [f"({f.equation})" if f.equation != "text" else "text"], _short(words.printed_parts(f)),
                  _short(words.consistent_parts(f)) if f.kind != "principle" else ["see the finding"], [_kind(f)],
                  *[[_holds(report, f)]] * several] for k, f in shown]
-        blocks.append(Table(head, rows, [.04, .13, .085, .255, .255, .155, .08] if several else [.045, .145, .09, .275, .275, .17]))
+        blocks.append(Table(head, rows, [.035, .12, .1, .245, .245, .15, .105] if several else [.045, .145, .09, .275, .275, .17]))
     if rest:
         blocks.append(Paragraph(["Further of these: ", *words.joined([Link(f.key, anchor(f)) for _, f in rest], ", "), "."]))
     for kind, text in (("approximation", "Approximations"), ("choice", "Choices, which depend on the reading or the model"),
