@@ -1,8 +1,7 @@
 //! Reads back what [`Run::write`] has written. Every number comes back to the bit.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufReader;
+use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
@@ -11,7 +10,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::folder::check;
-use super::summary::SUMMARY;
+use super::summary::{FORMAT, SUMMARY};
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
 use crate::model::{Model, Variant};
 use crate::run::Peak;
@@ -32,6 +31,18 @@ pub struct ReadError {
     pub path: PathBuf,
     /// What is wrong with it.
     pub reason: String,
+}
+
+/// The version of a summary.
+#[derive(Deserialize)]
+struct Version {
+    #[serde(default = "first")]
+    format: u32,
+}
+
+/// What summaries have that say nothing.
+fn first() -> u32 {
+    1
 }
 
 /// What is read of `summary.json`; the rest of it follows from the tables.
@@ -106,15 +117,25 @@ impl Earlier {
             path: path.clone(),
             reason,
         };
-        let file = File::open(&path).map_err(|e| error(format!("cannot read the run: {e}")))?;
+        let text = read_to_string(&path);
+        let text = text.map_err(|e| error(format!("cannot read the run: {e}")))?;
+        let unlike = |e: serde_json::Error| error(format!("not the summary of a run: {e}"));
+        // What another version wrote is not held against what this one would have written.
+        if let Ok(Version { format }) = serde_json::from_str(&text)
+            && format != FORMAT
+        {
+            return Err(error(format!(
+                "the summary has format {format}, and this version of dalembert reads format {FORMAT}: go on with the version that \
+                 wrote it, or run the scene from its start"
+            )));
+        }
         for name in [SUMMARY, TRAJECTORY, EVENTS] {
             check(folder, name).map_err(|reason| ReadError {
                 path: folder.join(name),
                 reason,
             })?;
         }
-        let written: Written = serde_json::from_reader(BufReader::new(file))
-            .map_err(|e| error(format!("not the summary of a run: {e}")))?;
+        let written: Written = serde_json::from_str(&text).map_err(unlike)?;
         let subject = subject(&written, model, variant).map_err(error)?;
         let end = end(&written.end, &layout).map_err(error)?;
         let columns = layout.columns();

@@ -14,10 +14,15 @@ use crate::run::{Place, Run};
 /// File name of the summary.
 pub const SUMMARY: &str = "summary.json";
 
+/// Version of the format of summaries, raised when a key changes its meaning or goes. Those that say nothing are of the first.
+pub const FORMAT: u32 = 1;
+
 /// What `summary.json` holds. Names map to values in the order of the model. All bytes follow
 /// from the run, `wall_seconds` alone differs from one execution to the next.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Summary {
+    /// Version of this format: [`FORMAT`].
+    pub format: u32,
     /// Name of the model.
     pub model: String,
     /// Title of the scene.
@@ -215,6 +220,7 @@ impl Summary {
             (column.name.clone(), extremes)
         });
         Summary {
+            format: FORMAT,
             model: run.subject.model.clone(),
             title: run.subject.title.clone(),
             choices: Named(run.subject.choices.clone()),

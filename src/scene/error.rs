@@ -43,6 +43,14 @@ pub enum SceneErrorKind {
         /// Why not.
         reason: String,
     },
+    /// The scene has another version of the format.
+    #[error("this scene has format {found}, and this version of dalembert reads format {known}")]
+    Format {
+        /// Its version.
+        found: String,
+        /// That which is read.
+        known: u32,
+    },
     /// The text is not JSON, or not UTF-8.
     #[error("{message}")]
     Syntax {

@@ -34,6 +34,9 @@ pub(crate) const ORDERS: [(&str, ImpactOrder); 2] = [
     ("sequence", ImpactOrder::InSequence),
 ];
 
+/// Version of the format of scenes, raised when a key changes its meaning or goes. One that says nothing is of the first.
+pub(crate) const FORMAT: u32 = 1;
+
 /// What a run does at a limit state.
 pub(crate) const END: &str = "end";
 pub(crate) const CONTINUE: &str = "continue";
@@ -51,6 +54,11 @@ pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> 
             "$schema",
             "JSON Schema of this file, for editors",
             Shape::Text,
+        ),
+        Key::new(
+            "format",
+            "version of the format of this file",
+            Shape::Values([f64::from(FORMAT)].into()),
         ),
         Key::new("model", "name of the model, or path of a model folder, relative to the scene: anything with a slash is one", name).required(),
         Key::new("title", "what the scene shows", Shape::Line),

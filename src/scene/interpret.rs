@@ -24,6 +24,7 @@ pub(crate) fn scene(
     files: &dyn Files,
     folder: &Path,
 ) -> Result<Scene, SceneErrors> {
+    format_of(&root)?;
     let model = model(&root, models, folder)?;
     let shape = Shape::Object(format::scene(Some(&model), Some(&outputs::named(&root))));
     let reader = inputs::Reader {
@@ -91,6 +92,23 @@ pub(super) fn scene_of(
     errors.check()?;
     let source = SceneSource { root };
     Ok(Scene { problem, source })
+}
+
+/// A scene of another format may have other keys: only that is said.
+fn format_of(root: &Node) -> Result<(), SceneError> {
+    let Some(node) = root.get("format") else {
+        return Ok(());
+    };
+    match &node.value {
+        // What is no number is an error of its own.
+        Value::Number(found) if found.parse() != Ok(f64::from(format::FORMAT)) => {
+            let found = found.clone();
+            let known = format::FORMAT;
+            let help = "run it with the version of dalembert that it was written for, or write it as docs/scene.md says";
+            Err(SceneError::new(SceneErrorKind::Format { found, known }, &node.place()).help(help))
+        }
+        _ => Ok(()),
+    }
 }
 
 pub(super) fn model(root: &Node, models: &Models, folder: &Path) -> Result<Arc<Model>, SceneError> {

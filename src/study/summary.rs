@@ -12,6 +12,9 @@ use super::procedure::Procedure;
 use super::rows::{Row, Status};
 use super::table::Column;
 
+/// Version of the format of summaries of studies, raised when a key changes its meaning or goes.
+const FORMAT: u32 = 1;
+
 /// Seed of the bootstrap: its intervals are the same whenever the same study is counted.
 const SEED: u64 = 1;
 
@@ -82,6 +85,7 @@ impl<'s> Outcome<'s> {
         let of = |status: Status| self.count(|row| row.status == status);
         let described = |column: &Column| json!({ "name": column.name, "unit": column.unit, "meaning": column.meaning });
         let mut summary = json!({
+            "format": FORMAT,
             "title": study.title,
             "kind": study.procedure.name(),
             "model": study.template.model.name,

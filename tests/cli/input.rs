@@ -72,6 +72,25 @@ fn unknown_key() {
     is_refused(r#""parameters""#, r#"¶"parametres""#, &words);
 }
 
+/// A scene of the format that is read says so or not; of one of another format nothing else is said.
+#[test]
+fn format_of_another_version() {
+    let home = tempfile::tempdir().unwrap();
+    let with = RIGHT.replacen('{', r#"{ "format": 1,"#, 1);
+    fs::write(home.path().join("scene.json"), with).unwrap();
+    ends_with(0, home.path(), &["run", "scene.json", "--out", "out"]);
+    let summary = fs::read_to_string(home.path().join("out/summary.json")).unwrap();
+    assert!(summary.starts_with("{\n  \"format\": 1,"), "{summary}");
+
+    let words = [
+        "this scene has format 2, and this version of dalembert reads format 1",
+        "version of dalembert that it was written for",
+    ];
+    let end = r#""end": 0.01"#;
+    is_refused(end, r#""end": 0.01, "format": ¶2, "of_later": 1"#, &words);
+    is_refused(end, r#""end": 0.01, "format": ¶"new""#, &["expected"]);
+}
+
 #[test]
 fn missing_key() {
     let missing = RIGHT

@@ -144,6 +144,12 @@ fn a_folder_that_was_changed_is_not_continued() {
     );
     let work = |text: &str| text.replacen("\"initial\": ", "\"initial\": 1", 1);
     refused("summary.json", &work, "is not what the run has written");
+    let later = |text: &str| text.replacen("\"format\": 1", "\"format\": 2", 1);
+    refused(
+        "summary.json",
+        &later,
+        "has format 2, and this version of dalembert reads format 1",
+    );
     // As it was it goes on.
     ends_with(0, home.path(), &["run", &ball, "--resume", "out"]);
 }
