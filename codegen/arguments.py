@@ -13,15 +13,17 @@ unsized use virtual where while yield"""
 _KEYWORDS = {**dict.fromkeys(_RUST.split(), "Rust"), **dict.fromkeys(_C.split(), "C")}
 
 _COLUMNS = {"t": "the time", "mode": "the mode", "j": "the number of events so far"}
+_INITIAL = dict.fromkeys(("project", "at_rest"), "a key of initial states")
 NOT_FOLDERS = {*_KEYWORDS, "context", "few", "lanes", "tables", "kernel", "core", "std", "alloc"}
 """Names that a model's folder cannot have: its tables are a module in src/kernel/mod.rs."""
 
 RESERVED = {
     "parameter": {"set": "the key that chooses a parameter set", "t": "the time"},
-    "coordinate": {**_COLUMNS, "project": "a key of initial states"}, "discrete state": _COLUMNS, "output": _COLUMNS, "input": _COLUMNS, "ground motion": _COLUMNS,
+    "coordinate": {**_COLUMNS, **_INITIAL}, "discrete state": {**_COLUMNS, **_INITIAL}, "output": _COLUMNS, "input": _COLUMNS,
+    "ground motion": _COLUMNS,
     "choice": dict.fromkeys(
         ("model", "title", "set", "parameters", "contacts", "inputs", "initial", "freeze", "end", "limits", "outputs", "accuracy", "method",
-         "impacts", "record"), "a key of scenes"),
+         "impacts", "record", "format"), "a key of scenes"),
     "transition": {"rest": "the event at the limit of an accumulation", "start": "the start", "end": "the end"},
 }
 """Names that stand for something else in scenes and results, by what is named."""

@@ -254,6 +254,10 @@ pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
             "start on the admissible side",
         ),
         Reason::Beyond { of, .. } => (format!("initial.{of}"), "start on the admissible side"),
+        Reason::NoRest { .. } => (
+            "initial".into(),
+            "give coordinates nearer to where it rests, `\"initial\": { …, \"at_rest\": true }`, or an initial state",
+        ),
         _ => (
             "initial".into(),
             "change the initial state, or name another mode in `initial.mode`",

@@ -309,7 +309,7 @@ fn is_at_rest(guard: &Guard, v: &impl Vector) -> bool {
 }
 
 /// The inverse of a mass matrix that was just solved with.
-fn inverse<M: Matrix>(mass: &M, scale: &<M::Size as Size>::Vector) -> M {
+pub(super) fn inverse<M: Matrix>(mass: &M, scale: &<M::Size as Size>::Vector) -> M {
     let size = mass.size();
     let mut inverse = size.zero_matrix();
     if let Ok(lu) = Lu::<f64, M::Size>::factorize(|i, j| mass[(i, j)], scale) {

@@ -148,6 +148,12 @@ pub enum Reason {
         /// Which coordinate or rate, and what it should be.
         why: String,
     },
+    /// No static equilibrium to start from.
+    #[error("no static equilibrium is found near the initial configuration: {why}")]
+    NoRest {
+        /// What moves, or cannot be brought to rest.
+        why: String,
+    },
     /// The initial state is where no motion leads: settling would move it.
     #[error(
         "the initial state is beyond {what}: in mode `{mode}` {text} is {value:e} {unit} and must not be negative; `{transition}` would move the state at once"

@@ -16,6 +16,7 @@ mod doubt;
 mod ensemble;
 mod enter;
 mod equations;
+mod equilibrium;
 mod failure;
 mod fire;
 mod guards;

@@ -25,6 +25,10 @@ pub struct Problem {
     /// Whether an initial state that contacts and constraints by multipliers do not admit is moved to the nearest that they do,
     /// in the metric of the masses; a run says by how much ([`crate::run::Subject::projected`]). Else it is refused.
     pub project: bool,
+    /// Whether it starts at rest: in the static equilibrium near the initial configuration, without velocities but those of moving partners
+    /// and under the inputs at t = 0, with the contact forces that hold it. A run says by how much coordinates were moved, as
+    /// after a projection.
+    pub at_rest: bool,
     /// Coordinates frozen in addition: modes in which one of them is free are left out.
     pub freeze: Vec<usize>,
     /// Where it ends.
@@ -213,6 +217,7 @@ impl Problem {
                 mode: None,
             },
             project: false,
+            at_rest: false,
             freeze: Vec::new(),
             end: End {
                 time: 1.0,

@@ -230,6 +230,9 @@ pub(super) fn digests(problem: &Problem) -> Vec<(String, String)> {
                 if problem.project {
                     put(1.0);
                 }
+                if problem.at_rest {
+                    put(2.0);
+                }
             }),
         ),
         ("inputs", content("", |put| problem.signals.content(put))),

@@ -89,9 +89,10 @@ impl Simulation<'_> {
         self.solver.method = named;
     }
 
-    /// By how much a projection has changed the initial state.
+    /// By how much a projection, or the search for rest, has changed the initial state.
     fn projected(&self) -> Vec<(String, f64)> {
-        let (Some(begun), true) = (&self.begun, self.problem.project) else {
+        let moves = self.problem.project || self.problem.at_rest;
+        let (Some(begun), true) = (&self.begun, moves) else {
             return Vec::new();
         };
         let (layout, n) = (&self.observers.layout, self.here.q.len());

@@ -277,6 +277,9 @@ impl<'p> Simulation<'p> {
         if self.modes[0].contacts.is_some() {
             return self.start_contacts(parameters);
         }
+        if self.problem.at_rest {
+            return self.start_at_rest(parameters);
+        }
         self.choose_initial_mode()?;
         self.here.shown = self.here.mode;
         self.set_context();

@@ -145,6 +145,12 @@ impl Simulation<'_> {
         }
     }
 
+    /// Why the state does not fit a mode, in words, if it does not.
+    pub fn misfit_in_words(&mut self, mode: usize) -> Option<String> {
+        let misfit = self.misfit(&self.modes[mode])?;
+        Some(self.in_words(misfit))
+    }
+
     /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
     fn misfit(&mut self, mode: &Mode) -> Option<Misfit> {
         let model = &self.problem.model;

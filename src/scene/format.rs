@@ -37,6 +37,9 @@ pub(crate) const ORDERS: [(&str, ImpactOrder); 2] = [
 /// Version of the format of scenes, raised when a key changes its meaning or goes. One that says nothing is of the first.
 pub(crate) const FORMAT: u32 = 1;
 
+/// An initial state in static equilibrium.
+pub(crate) const AT_REST: &str = "at rest";
+
 /// What a run does at a limit state.
 pub(crate) const END: &str = "end";
 pub(crate) const CONTINUE: &str = "continue";
@@ -91,7 +94,14 @@ pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> 
             "prescribed functions of time; zero if absent",
             inputs(model),
         ),
-        Key::new("initial", "state at t = 0", initial(model)),
+        Key::new(
+            "initial",
+            "state at t = 0; `at rest`: in static equilibrium, near where all that is not said is zero",
+            Shape::Either(vec![
+                initial(model).into(),
+                Shape::Choice("state", vec![AT_REST]),
+            ]),
+        ),
         Key::new("freeze", "coordinates held still throughout", freeze(model)),
         Key::new("end", "when the run ends", end(model)).required(),
         Key::new(
@@ -344,7 +354,8 @@ fn initial(model: Option<&Model>) -> Object {
         let keys = vec![Key::new("mode", meaning, Shape::Text)];
         return Object::new("coordinate", keys).others(Quantity::any(""));
     };
-    let mut keys = Vec::new();
+    let rest = "whether it starts in the static equilibrium near these coordinates, with the contact forces that hold it";
+    let mut keys = vec![Key::new("at_rest", rest, Shape::Flag).default(false)];
     let modes = mode_names(&model.variants);
     let by_multipliers = modes.is_empty();
     match by_multipliers {

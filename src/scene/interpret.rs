@@ -76,6 +76,7 @@ pub(super) fn scene_of(
         project: (checked.get("initial"))
             .and_then(|initial| initial.get("project"))
             .is_some_and(Checked::flag),
+        at_rest: state::at_rest(&checked),
         freeze,
         end,
         limits: Limits::default(),

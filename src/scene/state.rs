@@ -63,6 +63,13 @@ fn holding<'m>(model: &Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Hol
     (mode, at.collect())
 }
 
+/// Whether a run starts in static equilibrium.
+pub(crate) fn at_rest(scene: &Checked) -> bool {
+    scene.get("initial").is_some_and(|initial| {
+        initial.as_text().is_some() || initial.get("at_rest").is_some_and(Checked::flag)
+    })
+}
+
 /// The initial state. What the scene does not say is zero, or where the modes hold it.
 pub(crate) fn initial(
     model: &Model,
@@ -120,6 +127,15 @@ pub(crate) fn initial(
         let place = object.map_or(&scene.place, |o| &o.place);
         errors.push(misfit(model, &states, &modes, place));
         return None;
+    }
+
+    if at_rest(scene) {
+        let rates = states.iter().filter_map(|given| given.rate);
+        for rate in rates.filter(|rate| rate.number() != 0.0) {
+            let message = "what starts at rest has no velocity".to_owned();
+            let error = SceneError::new(SceneErrorKind::State { message }, &rate.place);
+            errors.push(error.help("leave the velocity out, or `at_rest`"));
+        }
     }
 
     let q = model

@@ -91,6 +91,35 @@ fn format_of_another_version() {
     is_refused(end, r#""end": 0.01, "format": ¶"new""#, &["expected"]);
 }
 
+/// Static equilibrium is found near what is given, or the scene is refused at its initial state.
+#[test]
+fn initial_state_at_rest() {
+    let home = tempfile::tempdir().unwrap();
+    for initial in [r#""at rest""#, r#"{ "at_rest": true, "x_I": 1e-3 }"#] {
+        let scene = RIGHT
+            .replace(r#"{ "theta": 0.02, "side": 1 }"#, initial)
+            .replace("null", r#"{ "constant": 0.8 }"#);
+        fs::write(home.path().join("scene.json"), scene).unwrap();
+        ends_with(0, home.path(), &["run", "scene.json", "--out", "out"]);
+        let summary = fs::read_to_string(home.path().join("out/summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        let bulge = summary["end"]["q"]["x_I"].as_f64().unwrap();
+        let omega = 2.0 * std::f64::consts::PI * 26.0;
+        assert!((bulge + 0.8 / (omega * omega)).abs() < 1e-18, "{bulge}");
+        assert!(summary["projected"]["x_I"].is_f64(), "{summary}");
+    }
+    let state = r#"{ "theta": 0.02, "side": 1 }"#;
+    let words = [
+        "no static equilibrium is found near",
+        "the force along `x` vanishes",
+    ];
+    let slides = r#"¶"initial": { "mode": "rocks_slides", "theta": 0.02, "at_rest": true }"#;
+    is_refused(&format!(r#""initial": {state}"#), slides, &words);
+    let moves = r#"{ "at_rest": true, "x.rate": ¶1 }"#;
+    is_refused(state, moves, &["what starts at rest has no velocity"]);
+    is_refused(state, r#"¶"resting""#, &["at rest"]);
+}
+
 #[test]
 fn missing_key() {
     let missing = RIGHT

@@ -10,6 +10,7 @@ mod contacts;
 mod coulomb;
 mod derivatives;
 mod doubts;
+mod equilibrium;
 mod extreme_damping;
 mod grazing;
 mod grips;

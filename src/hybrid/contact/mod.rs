@@ -11,9 +11,10 @@
 //! - `impact`: what an impact does, under the law of the scene.
 //! - `phase`: all outcomes of one phase of it, each tried on its impulses and rates.
 //! - `event`: from the fall of a guard to the next set.
-//! - `start`: the set that a run starts in.
+//! - `start`: the set that a run starts in; `equilibrium`: where it starts at rest.
 //! - `limit`: the set at the limit of an accumulation.
 
+mod equilibrium;
 mod event;
 mod geometry;
 mod hold;

@@ -38,14 +38,19 @@ impl<'p> Simulation<'p> {
 
     fn start_contacts_by<F: Size>(
         &mut self,
-        kernel: &ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         contacts: &'p Contacts,
     ) -> Stoppable<()> {
         let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
         let open = vec![State::Open; contacts.contacts.len()];
         write_states(contacts, &open, self.context.discrete_mut());
-        if self.problem.project {
+        if self.problem.project || self.problem.at_rest {
             self.project(kernel, contacts, [&mut q, &mut v]);
+        }
+        if self.problem.at_rest {
+            self.find_rest(kernel, contacts, &mut q)
+                .map_err(|why| Box::new(Reason::NoRest { why }))?;
+            write_states(contacts, &open, self.context.discrete_mut());
         }
         let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
         let refused = |why: String| {
@@ -118,7 +123,10 @@ impl<'p> Simulation<'p> {
             settled => drop(settled?),
         }
         self.take_next();
-        Ok(())
+        match self.problem.at_rest {
+            true => self.check_rest(kernel, contacts),
+            false => Ok(()),
+        }
     }
 
     /// Moves a state to the nearest that constraints admit and no contact penetrates, in the metric of the masses, as far as

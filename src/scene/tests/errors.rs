@@ -153,7 +153,7 @@ fn keys() {
         &tank("\"theta\"", "\"phi\""),
         "unknown coordinate `phi`",
         "5:16",
-        "known: `mode`, `theta`, `theta.rate`",
+        "known: `at_rest`, `mode`, `theta`, `theta.rate`",
     );
     expect(
         &tank("[\"x\"]", "[\"z\"]"),

@@ -230,7 +230,7 @@ fn schema_lists_what_a_model_has() {
                 .iter()
                 .all(|p| parameters.contains_key(p.name))
         );
-        let initial = &schema["properties"]["initial"]["properties"];
+        let initial = &schema["properties"]["initial"]["anyOf"][0]["properties"];
         for c in &model.coordinates {
             // Multipliers are nobody's to give.
             let key = format!("{}.rate", c.name);

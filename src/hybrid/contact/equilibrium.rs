@@ -1,0 +1,224 @@
+//! Static equilibrium with the contact forces that hold it.
+//!
+//! Unknown are the coordinates and the multipliers of what holds: r(q, 0, λ) = 0 with gaps and constraints at zero; what sticks
+//! keeps its place, as far as the friction that holds it is not determined. A contact whose force would pull is open, and the search
+//! goes on without it. Whether friction holds, and no other motion goes on, is judged as for any state a run starts in.
+
+use super::State;
+use super::geometry::{Geometry, Line, multiplier, write_states};
+use super::hold::{Places, ROUNDOFF};
+use crate::hybrid::enter::inverse;
+use crate::hybrid::equilibrium::{least_squares, to_zero};
+use crate::hybrid::failure::{Reason, Stoppable};
+use crate::hybrid::simulation::Simulation;
+use crate::kernel::{Free, ModeKernel};
+use crate::model::Contacts;
+use crate::numerics::Size;
+use nalgebra::{DMatrix, DVector};
+
+impl<'p> Simulation<'p> {
+    /// Brings coordinates to a static equilibrium of the contacts that touch there; why there is none near, in words.
+    pub(super) fn find_rest<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &'p Contacts,
+        q: &mut F::Vector,
+    ) -> Result<(), String> {
+        let size = kernel.size();
+        let zero = size.zeros();
+        let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
+        let mut states: Vec<State> = (contacts.contacts.iter().enumerate())
+            .map(|(k, contact)| {
+                let touches = contact.normal.is_none_or(|_| {
+                    let (gap, rounding) = at.place(Line::Normal(k));
+                    gap <= rounding
+                });
+                match (touches, contact.tangent) {
+                    (false, _) => State::Open,
+                    (true, None) => State::Closed,
+                    (true, Some(_)) => State::Sticks,
+                }
+            })
+            .collect();
+        loop {
+            let forces = self.hold_at_rest(kernel, contacts, q, &states)?;
+            let pulls = (0..states.len())
+                .filter(|&k| states[k].is_closed())
+                .filter_map(|k| Some((k, forces[contacts.contacts[k].normal?])))
+                .filter(|(_, force)| *force < 0.0)
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            match pulls {
+                None => break,
+                // One less each time.
+                Some((k, _)) => states[k] = State::Open,
+            }
+        }
+        let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
+        let penetrates = |&k: &usize| {
+            let (gap, rounding) = at.place(Line::Normal(k));
+            contacts.contacts[k].normal.is_some() && gap < -rounding
+        };
+        match (0..states.len()).find(penetrates) {
+            None => Ok(()),
+            Some(k) => Err(format!(
+                "where forces vanish contact `{}` penetrates",
+                contacts.contacts[k].name
+            )),
+        }
+    }
+
+    /// The same while contacts do this: the multipliers.
+    fn hold_at_rest<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        q: &mut F::Vector,
+        states: &[State],
+    ) -> Result<Vec<f64>, String> {
+        let size = kernel.size();
+        let n = size.get();
+        let (zero, sizes) = (size.zeros(), self.scale(size));
+        write_states(contacts, states, self.context.discrete_mut());
+        let holds = |line: Line| match line {
+            Line::Constraint(_) => true,
+            Line::Normal(k) => states[k].is_closed(),
+            Line::Tangent(k) => states[k] == State::Sticks,
+        };
+        let mut held: Vec<Option<Line>> = vec![None; n];
+        let geometry = Geometry::new(kernel, &mut self.context, contacts, [q, &zero]);
+        let own = geometry.own.clone();
+        for line in geometry.all().filter(|&line| holds(line)) {
+            held[multiplier(contacts, line)] = Some(line);
+        }
+        // Coordinates, and where one is a multiplier its force.
+        let split = |x: &[f64]| {
+            let place = |i: usize| if own.contains(&i) { x[i] } else { 0.0 };
+            let force = |i: usize| if own.contains(&i) { 0.0 } else { x[i] };
+            (size.vector(place), size.vector(force))
+        };
+        let context = std::cell::RefCell::new(&mut self.context);
+        let forces = |x: &Vec<f64>| {
+            let ((q, a), context) = (split(x), context.borrow());
+            let at = Free {
+                q: &q,
+                v: &zero,
+                a: &a,
+            };
+            let (mut r, bounds) = (size.zeros(), kernel.magnitude(&context, at));
+            kernel.residual(&context, at, &mut r);
+            let places = Places::new(kernel, &context, contacts, [&q, &zero]);
+            let of = |i: usize| match held[i] {
+                None => (r[i], bounds[i]),
+                Some(Line::Tangent(_)) => (0.0, 0.0),
+                Some(line) => {
+                    let (value, rounding) = places.place(line);
+                    (value, rounding / ROUNDOFF)
+                }
+            };
+            (0..n).map(of).collect()
+        };
+        let slopes = |x: &Vec<f64>| {
+            let ((q, a), mut context) = (split(x), context.borrow_mut());
+            let at = Free {
+                q: &q,
+                v: &zero,
+                a: &a,
+            };
+            let mut out = [size.zero_matrix(), size.zero_matrix(), size.zero_matrix()];
+            kernel.jacobian(&context, at, &mut out);
+            let geometry = Geometry::new(kernel, &mut context, contacts, [&q, &zero]);
+            let [by_forces, _, by_places] = out;
+            DMatrix::from_fn(n, n, |i, j| {
+                let of_own = own.iter().position(|&own| own == j);
+                match (held[i], of_own) {
+                    (Some(line), Some(j)) => geometry.along(line)[j],
+                    (Some(_), None) => 0.0,
+                    (None, Some(_)) => by_places[(i, j)],
+                    (None, None) => by_forces[(i, j)],
+                }
+            })
+        };
+        let step = |x: &Vec<f64>, change: &[f64]| -> Vec<f64> {
+            x.iter().zip(change).map(|(x, change)| x + change).collect()
+        };
+        let mut start: Vec<f64> = (0..n)
+            .map(|i| if own.contains(&i) { q[i] } else { 0.0 })
+            .collect();
+        // The search begins with the forces that hold best where the coordinates are.
+        let pushing: Vec<usize> = (0..n).filter(|&i| held[i].is_some()).collect();
+        let (loads, by_all): (Vec<(f64, f64)>, _) = (forces(&start), slopes(&start));
+        let by_forces = DMatrix::from_fn(own.len(), pushing.len(), |i, j| {
+            by_all[(own[i], pushing[j])]
+        });
+        let load = DVector::from_iterator(own.len(), own.iter().map(|&i| -loads[i].0));
+        let best = least_squares(by_forces, &load);
+        pushing
+            .iter()
+            .zip(&best)
+            .for_each(|(&i, force)| start[i] = *force);
+        // Forces have the size that they come to.
+        let lengths: Vec<f64> = (0..n)
+            .map(|i| if own.contains(&i) { sizes[i] } else { 1.0 })
+            .collect();
+        let found =
+            to_zero((start, &lengths), forces, slopes, step).map_err(|i| match held[i] {
+                Some(line) => format!(
+                    "what {} holds cannot be reached",
+                    self.name_of_line(contacts, line)
+                ),
+                None if own.contains(&i) => {
+                    let name = self.problem.model.coordinates[self.mode().free[i]].name;
+                    format!("no place near is found at which the force along `{name}` vanishes")
+                }
+                None => "what touches there does not hold it".into(),
+            })?;
+        own.iter().for_each(|&i| q[i] = found[i]);
+        Ok(found)
+    }
+
+    /// Refuses a state in which, with the contact states that were decided, something is accelerated by more than rounding.
+    pub(super) fn check_rest<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &Contacts,
+    ) -> Stoppable<()> {
+        let (mode, size, scale) = (self.mode(), kernel.size(), self.scale(kernel.size()));
+        self.set_accelerations(kernel)?;
+        let [q, v, a] = self.here.free(size, &mode.free);
+        let inverse = inverse(&kernel.system(&self.context, &q, &v).mass, &scale);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let bounds = kernel.magnitude(&self.context, at);
+        let rounding = |i: usize| -> f64 {
+            let terms = (0..size.get()).map(|j| inverse[(i, j)].abs() * bounds[j]);
+            f64::EPSILON * terms.sum::<f64>()
+        };
+        let moved =
+            (0..size.get()).find(|&i| !contacts.is_multiplier(i) && a[i].abs() > rounding(i));
+        self.here.a.fill(0.0);
+        match moved {
+            None => Ok(()),
+            Some(i) => Err(Box::new(Reason::NoRest {
+                why: format!(
+                    "with `{}` the acceleration of `{}` is {:.3e}",
+                    self.name_of(self.here.shown),
+                    self.problem.model.coordinates[mode.free[i]].name,
+                    a[i]
+                ),
+            })),
+        }
+    }
+
+    /// What a line belongs to, in words.
+    fn name_of_line(&self, contacts: &Contacts, line: Line) -> String {
+        match line {
+            Line::Normal(k) | Line::Tangent(k) => {
+                format!("contact `{}`", contacts.contacts[k].name)
+            }
+            Line::Constraint(c) => format!("constraint `{}`", contacts.constraints[c].name),
+        }
+    }
+}
