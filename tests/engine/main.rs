@@ -19,6 +19,7 @@ mod impulses;
 mod invariants;
 mod knots;
 mod libraries;
+mod lift_off;
 mod limits;
 mod linkages;
 mod mechanisms;
