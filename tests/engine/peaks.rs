@@ -317,3 +317,27 @@ fn energies_of_rows_do_not_depend_on_whether_extremes_are_looked_for() {
         }
     });
 }
+
+/// Closed contacts hold their gaps at zero: the dense output of a step, which is off by its error, has no part in the extremes.
+#[test]
+fn a_gap_that_is_held_is_zero_in_the_extremes_too() {
+    with_each_method(|| {
+        let mut block = problem("rigid_block", &[]);
+        block.set_initial("y", 0.6).unwrap();
+        for (input, amplitude, frequency) in [("a_h", 5.5, 2.0), ("a_v", 3.0, 4.0)] {
+            let turns = 2.0 * std::f64::consts::PI * frequency;
+            let shakes = dalembert::input::Sine::new(amplitude, turns, 0.0);
+            block.set_input(input, shakes.into()).unwrap();
+        }
+        block.end.time = 3.0;
+        let run = run(&block);
+        assert!(run.events.len() >= 10, "{}", run.events.len());
+        let columns = run.layout.columns();
+        for (i, peak) in &run.peaks {
+            if columns[*i].name.ends_with(".gap") {
+                assert!(peak.min > -1e-15, "{} {:e}", columns[*i].name, peak.min);
+                assert!(peak.max > 1e-3, "{} {:e}", columns[*i].name, peak.max);
+            }
+        }
+    });
+}

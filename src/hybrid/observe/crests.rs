@@ -19,6 +19,11 @@ impl Observers<'_> {
         let seconds = |tau: f64| clock.start.plus(tau).seconds();
         for f in 0..columns {
             let (column, rate) = (self.functions.columns[f], self.functions.rate_of(f));
+            let discrete = step.equations.context.discrete();
+            if self.functions.is_held(f, step.mode, discrete) {
+                extremes.note(column, seconds(part.from), 0.0);
+                continue;
+            }
             let time = |place: f64| seconds(part.time(place));
             let summits = extremes.look(&self.interpolants, f, column, rate, time);
             for place in summits.into_iter().flatten() {

@@ -25,7 +25,7 @@ use super::outputs::Outputs;
 use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
-use crate::model::Mode;
+use crate::model::{Contacts, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 use crate::run::{Layout, Ledger, Peak};
@@ -95,6 +95,8 @@ struct Functions {
     reactions: Vec<usize>,
     /// Number of outputs.
     outputs: usize,
+    /// Of each output the contact whose gap or slip rate it is, where these are held by multipliers.
+    of_contacts: Box<[Option<OfContact>]>,
     stored: bool,
     /// Number of free coordinates that are columns; multipliers, which come last, are none.
     free: usize,
@@ -102,7 +104,51 @@ struct Functions {
     room: Box<[f64]>,
 }
 
+/// What of a contact, by its index, an output is.
+#[derive(Debug, Clone, Copy)]
+enum OfContact {
+    Gap(usize),
+    Slip(usize),
+}
+
+impl OfContact {
+    /// Of an output by its name.
+    fn named(name: &str, mode: &Mode) -> Option<Self> {
+        let contacts = mode.contacts.as_ref()?.contacts.iter();
+        contacts.enumerate().find_map(|(k, contact)| {
+            let of = name.strip_prefix(contact.name)?;
+            match of {
+                ".gap" => Some(OfContact::Gap(k)),
+                ".slip" => Some(OfContact::Slip(k)),
+                _ => None,
+            }
+        })
+    }
+
+    /// Whether the contact holds it at zero, as these discrete states say.
+    fn is_held(self, contacts: &Contacts, discrete: &[f64]) -> bool {
+        let (OfContact::Gap(k) | OfContact::Slip(k)) = self;
+        let contact = &contacts.contacts[k];
+        let is_closed = contact.closed.is_none_or(|i| discrete[i] != 0.0);
+        match self {
+            OfContact::Gap(_) => is_closed,
+            OfContact::Slip(_) => {
+                is_closed && contact.direction.is_some_and(|i| discrete[i] == 0.0)
+            }
+        }
+    }
+}
+
 impl Functions {
+    /// Whether a function is what contacts hold at zero. The dense output of a step is not: it is off by its error.
+    fn is_held(&self, function: usize, mode: &Mode, discrete: &[f64]) -> bool {
+        let outputs = 2 * self.free + self.reactions.len();
+        let output = function.checked_sub(outputs);
+        let of = output.and_then(|output| *self.of_contacts.get(output)?);
+        (of.zip(mode.contacts.as_ref()))
+            .is_some_and(|(of, contacts)| of.is_held(contacts, discrete))
+    }
+
     /// Which function is the rate of another.
     fn rate_of(&self, function: usize) -> Option<usize> {
         (function < self.free).then_some(self.free + function)
@@ -187,6 +233,9 @@ impl<'o> Observers<'o> {
                 columns: Vec::with_capacity(most),
                 reactions: Vec::with_capacity(layout.reactions.len()),
                 outputs: layout.outputs.len(),
+                of_contacts: (layout.outputs.iter())
+                    .map(|output| OfContact::named(&output.name, &problem.automaton().modes[0]))
+                    .collect(),
                 stored: false,
                 free: 0,
                 room: vec![0.0; layout.reactions.len()].into(),
