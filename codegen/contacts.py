@@ -147,7 +147,7 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
     static = kinetic if static is None else of("`static`", static)
     rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates + model.motions])
     by_rate = slip_expression is not None and bool(rates.numel()) and ca.depends_on(slip_expression, rates)
-    gap = None if gap is None else _line(model, gap_expression, False) or Smooth()
+    gap = None if gap is None else as_line(model, gap_expression, False) or Smooth()
     slip = None if slip is None else _slip_line(model, slip_expression, by_rate) or Smooth()
     for known in model.contacts:
         lines = isinstance(slip, Line) and isinstance(known.slip, Line) and gap is None and known.gap is None
@@ -242,7 +242,7 @@ def _of_motion(model, what, expression, rates):
     return expression
 
 
-def _line(model, expression, of_rates):
+def as_line(model, expression, of_rates):
     """An expression as a coordinate, or a rate, and what parameters add; None where it is not."""
     symbols = [c.symbol for c in model.coordinates]
     column = ca.vertcat(*[s.rate if of_rates else s for s in symbols])
@@ -259,7 +259,7 @@ def _line(model, expression, of_rates):
 
 def _slip_line(model, expression, by_rate):
     """The slip rate as a line, from itself or from the place along which a contact slips."""
-    line = _line(model, expression, by_rate)
+    line = as_line(model, expression, by_rate)
     return line if by_rate or line is None else Line(line.coordinate, line.sign, ca.SX(0))
 
 

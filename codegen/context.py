@@ -4,7 +4,7 @@ import os
 import sys
 import types
 
-from . import contacts
+from . import contacts, rests
 from .errors import ModelError
 
 
@@ -42,6 +42,7 @@ def build(name, file, source, run=exec):
         if context.model is None:
             raise ModelError("no Model(…) is made here", file)
         contacts.expand(context.model)
+        rests.add(context.model)
         models.append(context.model)
         made = dict(context.options)
         for choice, others in context.open:

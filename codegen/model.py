@@ -350,7 +350,8 @@ class Model:
         """A mode at the limit of infinitely many events in finite time, some of which lead to `source`.
 
         It is entered where the limit satisfies what `target` holds: values and rates. A source may have
-        several; the one that holds the most is taken, the first in the order of the file among equals.
+        several; the one that holds the most is taken, the first in the order of the file among equals. Of impacts at a stop the rest
+        follows where the model has one mode for it (rests.py).
         """
         arguments.mode(self, "rest: its source", source)
         arguments.mode(self, "rest: its target", target)

@@ -91,11 +91,27 @@ fn balls_that_bounce_together_rest_together() {
     });
 }
 
+/// The shared case: of the second ball no rest is declared, and one mode holds what its impacts come to.
+#[test]
+fn a_ball_rests_where_one_mode_holds_it_at_its_stop_though_no_rest_is_declared() {
+    with_each_method(|| {
+        let [declared, follows] = ["each", "first_only"].map(|rests| {
+            let mut problem = balls(4.0, 1.0);
+            problem.choose(&[("rests", rests)]).unwrap();
+            let run = run(&problem);
+            nothing_jumps_at_rests(&run, &problem);
+            (super::rest::rests(&run, &problem), run.end.state.q)
+        });
+        assert_eq!(declared, follows);
+        assert_eq!(follows.0.len(), 2);
+    });
+}
+
 #[test]
 fn where_no_rest_fits_the_limit_the_run_stops_and_says_what_does_not_fit() {
     with_each_method(|| {
         let mut problem = balls(4.0, 1.0);
-        problem.choose(&[("rests", "first_only")]).unwrap();
+        problem.choose(&[("rests", "no_second")]).unwrap();
         let run = simulate(&problem, &mut Silent).unwrap();
         let failure = run.failure.clone().expect("no rest is there");
         assert!((failure.at.t - limit(1.0)).abs() < 1e-9);
@@ -104,7 +120,7 @@ fn where_no_rest_fits_the_limit_the_run_stops_and_says_what_does_not_fit() {
             "impact_b",
             "no rest that is declared for mode `both_fly` fits the limit",
             "rest in `a_rests` holds `a` at 0 m, which is",
-            "mode `b_rests` fits it: if the motion comes to rest there, declare `model.rest(both_fly, b_rests)`",
+            "no mode of the model fits the limit",
         ] {
             assert!(failure.reason.contains(part), "{}", failure.reason);
         }
