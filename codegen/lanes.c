@@ -332,14 +332,14 @@ DALEMBERT_INLINE real power_of_two(real x) {
 }
 
 /* Length at which the last terms of a series of order p equal the tolerance, as it fits into what remains
- * up to the times `last` and is not more than the horizon. tolerances: relative, then absolute ones of the
+ * up to the times `last` and is not more than the horizon. tolerances: the relative one, then absolute ones of the
  * coordinates, then of the velocities. terms: 1/n and 1/2 - 1/(2n) of the terms that limit it, of powers
  * n = p - 1, p, p + 1, p - 3 and p - 2, and what is added to their logarithms ÷ n: src/integrate/taylor/length.rs.
  * Gives the lanes in which it reaches `last`. Unclear are those whose series is not finite or whose time would not
  * advance.
  */
 DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *q, const real *v, const real *a,
-                             const double *tolerances, const double *terms, const real *point, const real *last,
+                             const real *tolerances, const double *terms, const real *point, const real *last,
                              const real *horizon, real *h, unsigned *unclear) {
   const real now = point[5 * free], rest = point[5 * free + 1];
   real remaining;
@@ -373,10 +373,10 @@ DALEMBERT_INLINE unsigned length(const size_t free, const size_t p, const real *
 }
 
 unsigned LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
-                                  const double *tolerances, const double *terms, const real *point, const real *last,
+                                  const real *tolerances, const double *terms, const real *point, const real *last,
                                   const real *horizon, real *h, unsigned *unclear);
 unsigned LANES(dalembert_lane_length)(size_t free, size_t p, const real *q, const real *v, const real *a,
-                                  const double *tolerances, const double *terms, const real *point, const real *last,
+                                  const real *tolerances, const double *terms, const real *point, const real *last,
                                   const real *horizon, real *h, unsigned *unclear) {
   switch (free) {
 #define CASE(n) \
@@ -430,11 +430,11 @@ struct guard {
  * the time that a pattern takes at least. rests: whether an accumulation is looked for.
  */
 unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
-                                        unsigned rests, double hardly, double shortest, const double *tolerances,
+                                        unsigned rests, double hardly, double shortest, const real *tolerances,
                                         const real *point, const real *reset, const real *after, const real *last,
                                         unsigned *may_rest);
 unsigned LANES(dalembert_lane_is_apart)(size_t free, size_t coordinates, size_t discretes, const size_t *index,
-                                        unsigned rests, double hardly, double shortest, const double *tolerances,
+                                        unsigned rests, double hardly, double shortest, const real *tolerances,
                                         const real *point, const real *reset, const real *after, const real *last,
                                         unsigned *may_rest) {
   const real now = point[5 * free];
@@ -485,6 +485,64 @@ void LANES(dalembert_lane_leap)(size_t free, size_t coordinates, size_t discrete
   after[2 * free] = pick(lanes, point[5 * free], after[2 * free]);
   for (size_t i = 0; i < discretes; ++i)
     after[2 * free + 1 + i] = pick(lanes, reset[2 * coordinates + i], after[2 * free + 1 + i]);
+}
+
+/* Extremes of each coordinate, then of each velocity: the least value, the greatest one, and when they were first
+ * taken. Those of some lanes take note of a point.
+ */
+void LANES(dalembert_lane_note)(size_t free, unsigned where, const real *point, real *extremes);
+void LANES(dalembert_lane_note)(size_t free, unsigned where, const real *point, real *extremes) {
+  const truth lanes = truth_of(where);
+  const real now = point[5 * free] + point[5 * free + 1];
+  for (size_t i = 0; i < 2 * free; ++i) {
+    real *own = extremes + 4 * i;
+    const truth less = lanes & below(point[i], own[0]), more = lanes & below(own[1], point[i]);
+    own[0] = pick(less, point[i], own[0]);
+    own[2] = pick(less, now, own[2]);
+    own[1] = pick(more, point[i], own[1]);
+    own[3] = pick(more, now, own[3]);
+  }
+}
+
+/* Bounds of what a series adds to its first term up to s, by its powers up to p: from above, from below, and of the
+ * magnitude. */
+struct spread { real above, below, size; };
+DALEMBERT_INLINE struct spread spread(const size_t p, const size_t stride, const real *c, real s) {
+  struct spread all = {{0}, {0}, {0}};
+  for (size_t k = p; k > 0; --k) {
+    const real own = c[k * stride], zero = REAL(0.0);
+    all.above = (all.above + greater(own, zero)) * s;
+    all.below = (all.below + smaller(own, zero)) * s;
+  }
+  all.size = all.above - all.below;
+  return all;
+}
+
+/* The lanes in which a coordinate or a velocity may be beyond its extremes within tau: where its derivative may change
+ * its sign (elsewhere the ends are the extremes), and of coordinates that are bent one way on that side alone. Names as for
+ * `end` and `note`.
+ */
+unsigned LANES(dalembert_lane_may_exceed)(size_t free, size_t p, const real *q, const real *v, const real *a,
+                                          const real *tau, const real *extremes);
+unsigned LANES(dalembert_lane_may_exceed)(size_t free, size_t p, const real *q, const real *v, const real *a,
+                                          const real *tau, const real *extremes) {
+  truth may = truth_of(0);
+  const real zero = REAL(0.0);
+  for (size_t i = 0; i < free; ++i) {
+    const real *rows[3] = {q + i, v + i, a + i};
+    struct spread spreads[3];
+    for (size_t k = 0; k < 3; ++k) spreads[k] = spread(p + 1 - k, free, rows[k], *tau);
+    const truth bent = below(spreads[2].size, size_of(a[i])), no = truth_of(0);
+    const truth concave = bent & below(a[i], zero), convex = bent & below(zero, a[i]);
+    for (size_t k = 0; k < 2; ++k) {
+      const real value = *rows[k], *own = extremes + 4 * (k * free + i);
+      const truth inside = (at_most(own[0], value + spreads[k].below) | (k ? no : concave)) &
+                           (at_most(value + spreads[k].above, own[1]) | (k ? no : convex));
+      const truth one_way = below(spreads[k + 1].size, size_of(*rows[k + 1]));
+      may |= (truth)~(inside | one_way);
+    }
+  }
+  return bits(may);
 }
 
 /* Takes over numbers in some lanes. */

@@ -309,7 +309,7 @@ impl<'p> Simulation<'p> {
     where
         Solvers: SlotsOf<F>,
     {
-        let tolerances = tolerances(kernel.size(), self.problem, &self.modes[index]);
+        let tolerances = tolerances(kernel.size(), self.accuracy, &self.modes[index]);
         let context = &self.context;
         let slots = self.solvers.slots();
         let taylor = || Taylor::new(&tolerances, kernel.series_kind(context));

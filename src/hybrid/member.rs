@@ -1,6 +1,6 @@
 //! What trajectories of a scene may differ in.
 
-use super::problem::{Initial, Problem};
+use super::problem::{Accuracy, Initial, Problem};
 use crate::input::Signals;
 
 /// One trajectory of an ensemble: what is its own.
@@ -12,15 +12,18 @@ pub struct Member<'a> {
     pub signals: &'a Signals,
     /// Where it starts.
     pub initial: &'a Initial,
+    /// Its tolerances, which may follow from its parameters ([`Problem::set_tolerance`]); the relative one is that of the scene.
+    pub accuracy: &'a Accuracy,
 }
 
 impl<'a> From<&'a Problem> for Member<'a> {
-    /// Parameters, inputs and initial state of a problem.
+    /// Parameters, inputs, initial state and tolerances of a problem.
     fn from(problem: &'a Problem) -> Self {
         Member {
             parameters: &problem.parameters,
             signals: &problem.signals,
             initial: &problem.initial,
+            accuracy: &problem.accuracy,
         }
     }
 }

@@ -125,7 +125,7 @@ impl Simulation<'_> {
     /// # Errors
     /// The first component that differs from what the mode holds by more than its tolerance.
     fn told_apart(&self, mode: &Mode, limit: &Limit) -> Result<usize, Held> {
-        let accuracy = &self.problem.accuracy;
+        let accuracy = self.accuracy;
         let n = self.here.q.len();
         let mut told = 0;
         for held in self.holds(mode) {

@@ -11,7 +11,7 @@ use super::inertia::vanished;
 use super::instant::Instant;
 use super::margins::Ended;
 use super::observe::{Step, copy_drifting};
-use super::problem::{Method, Problem};
+use super::problem::{Accuracy, Method};
 use super::simulation::{Simulation, Stop, Violation};
 use super::solvers::{Slots, SlotsOf, Solvers};
 use crate::integrate::Size;
@@ -52,7 +52,7 @@ impl<'p> Simulation<'p> {
     where
         Solvers: SlotsOf<F>,
     {
-        let (problem, mode) = (self.problem, self.mode());
+        let (problem, accuracy, mode) = (self.problem, self.accuracy, self.mode());
         // What follows an event of contacts is another set of their states.
         let stays = stays && mode.contacts.is_none();
         match stages(problem.accuracy.relative) {
@@ -60,7 +60,7 @@ impl<'p> Simulation<'p> {
                 self.made_by = MadeBy::Taylor;
                 let make = |x: &Context| {
                     Taylor::new(
-                        &tolerances(kernel.size(), problem, mode),
+                        &tolerances(kernel.size(), accuracy, mode),
                         kernel.series_kind(x),
                     )
                 };
@@ -68,7 +68,7 @@ impl<'p> Simulation<'p> {
             }
             5 => {
                 self.made_by = MadeBy::RadauOfFive;
-                let make = |_: &Context| Radau::new(&tolerances(kernel.size(), problem, mode));
+                let make = |_: &Context| Radau::new(&tolerances(kernel.size(), accuracy, mode));
                 self.integrate(
                     kernel,
                     |slots| &mut slots.radau_of_five,
@@ -79,7 +79,7 @@ impl<'p> Simulation<'p> {
             }
             _ => {
                 self.made_by = MadeBy::RadauOfSeven;
-                let make = |_: &Context| Radau::new(&tolerances(kernel.size(), problem, mode));
+                let make = |_: &Context| Radau::new(&tolerances(kernel.size(), accuracy, mode));
                 self.integrate(
                     kernel,
                     |slots| &mut slots.radau_of_seven,
@@ -503,8 +503,7 @@ impl<'p> Simulation<'p> {
 }
 
 /// Tolerances of the free coordinates of a mode.
-pub(super) fn tolerances<F: Size>(size: F, problem: &Problem, mode: &Mode) -> Tolerances<F> {
-    let accuracy = &problem.accuracy;
+pub(super) fn tolerances<F: Size>(size: F, accuracy: &Accuracy, mode: &Mode) -> Tolerances<F> {
     let pick = |full: &[f64]| size.vector(|i| full[mode.free[i]]);
     Tolerances::new(
         accuracy.relative,

@@ -11,10 +11,10 @@ use super::limits::Margins;
 use super::member::Member;
 use super::observe::{Observer, Observers};
 use super::plan::Plan;
-use super::problem::{Initial, Problem};
+use super::problem::{Accuracy, Initial, Problem};
 use super::solvers::Solvers;
 use super::stiffness::Stiffness;
-use super::validate::{Invalid, check_initial, check_parameters};
+use super::validate::{Invalid, check_accuracy, check_initial, check_parameters};
 use super::visited::Visited;
 use crate::input::{Side, Signals};
 use crate::jets::Expansion;
@@ -84,6 +84,8 @@ pub(super) struct Simulation<'p> {
     pub problem: &'p Problem,
     /// Its initial state, or that of the member of an ensemble.
     pub initial: &'p Initial,
+    /// Its tolerances, or those of the member.
+    pub accuracy: &'p Accuracy,
     /// The inputs of the problem, or those of the member of an ensemble.
     pub given_signals: &'p Signals,
     /// The same, until the caller commands one.
@@ -173,6 +175,7 @@ impl<'p> Simulation<'p> {
         Ok(Simulation {
             problem,
             initial: &problem.initial,
+            accuracy,
             given_signals: &problem.signals,
             signals: Cow::Borrowed(&problem.signals),
             modes,
@@ -241,6 +244,7 @@ impl<'p> Simulation<'p> {
         check_initial(model, member.initial)?;
         self.become_shaken(member.signals)?;
         self.initial = member.initial;
+        self.become_accurate(member.accuracy)?;
         self.context.set_parameters(model, member.parameters);
         self.expansion.set_parameters(member.parameters);
         self.doubts.forget_errors();
@@ -249,6 +253,33 @@ impl<'p> Simulation<'p> {
         self.begun = None;
         self.rewind(0);
         self.find_start(member.parameters)
+    }
+
+    /// Takes the tolerances of a member.
+    fn become_accurate(&mut self, accuracy: &'p Accuracy) -> Result<(), Reason> {
+        if accuracy == self.accuracy {
+            return Ok(());
+        }
+        check_accuracy(&self.problem.model, accuracy)?;
+        let (own, scene) = (accuracy.relative, self.problem.accuracy.relative);
+        if own != scene {
+            return Err(Invalid::OtherTolerance { own, scene }.into());
+        }
+        self.accuracy = accuracy;
+        let sizes = [
+            (&mut self.sizes, &accuracy.q_absolute),
+            (&mut self.rate_sizes, &accuracy.v_absolute),
+        ];
+        for (sizes, absolute) in sizes {
+            sizes
+                .iter_mut()
+                .zip(absolute)
+                .for_each(|(size, absolute)| *size = absolute / own);
+        }
+        self.accumulation
+            .set_absolute([&accuracy.q_absolute, &accuracy.v_absolute]);
+        self.solvers.set_accuracy(self.modes, accuracy);
+        Ok(())
     }
 
     /// Takes the inputs of a member. Those that never act are left out of the equations of a scene, for all its members.
@@ -320,6 +351,7 @@ impl<'p> Simulation<'p> {
         self.doubts.clear();
         self.margins.clear();
         self.solver = Solver::default();
+        self.solvers.forget();
         self.counted = 0;
         self.set_context();
         self.observers.rewind();

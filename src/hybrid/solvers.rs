@@ -1,5 +1,7 @@
 //! One-step methods, made once for each mode and kept.
 
+use super::problem::Accuracy;
+use super::segment::tolerances;
 use crate::integrate::{Const, Counters, Dynamic, Radau, Size, Taylor};
 use crate::kernel::ModeKernels;
 use crate::model::Mode;
@@ -31,6 +33,33 @@ impl<F: Size> Slots<F> {
         self.taylor.get(mode)?.as_ref()?.order_between_knots()
     }
 
+    /// A new run begins: what Radau's method keeps ends with a restart in any case.
+    fn forget(&mut self) {
+        self.taylor
+            .iter_mut()
+            .flatten()
+            .for_each(|taylor| taylor.forget());
+    }
+
+    /// Gives the methods of all modes other absolute tolerances.
+    fn set_accuracy(&mut self, modes: &[Mode], accuracy: &Accuracy) {
+        fn each<M>(slots: &mut [Option<Box<M>>], modes: &[Mode], set: impl Fn(&mut M, &Mode)) {
+            for (slot, mode) in slots.iter_mut().zip(modes) {
+                slot.iter_mut().for_each(|method| set(method, mode));
+            }
+        }
+        let of = |size: F, mode: &Mode| tolerances(size, accuracy, mode);
+        each(&mut self.taylor, modes, |taylor, mode| {
+            taylor.set_tolerances(|size| of(size, mode));
+        });
+        each(&mut self.radau_of_five, modes, |radau, mode| {
+            radau.set_tolerances(|size| of(size, mode));
+        });
+        each(&mut self.radau_of_seven, modes, |radau, mode| {
+            radau.set_tolerances(|size| of(size, mode));
+        });
+    }
+
     /// Work done since it was last taken, of each method.
     fn take_counters(&mut self) -> impl Iterator<Item = Counters> {
         let taylor = self.taylor.iter_mut().flatten();
@@ -60,6 +89,16 @@ macro_rules! solvers {
             /// None yet.
             pub fn new(modes: &[Mode]) -> Self {
                 Solvers { $($name: Slots::new(modes, |of| matches!(of, ModeKernels::$kernels(_))),)* }
+            }
+
+            /// Forgets what was learnt in the run before.
+            pub fn forget(&mut self) {
+                $(self.$name.forget();)*
+            }
+
+            /// Gives the methods that were made so far other absolute tolerances.
+            pub fn set_accuracy(&mut self, modes: &[Mode], accuracy: &Accuracy) {
+                $(self.$name.set_accuracy(modes, accuracy);)*
             }
 
             /// As [`Taylor::order_between_knots`] of a mode; `None` where it was not used.

@@ -52,6 +52,16 @@ pub enum Invalid {
         /// The input.
         input: &'static str,
     },
+    /// A member of an ensemble has another relative tolerance than the scene, whose methods are made for that.
+    #[error(
+        "a member of the ensemble has the relative tolerance {own:e}, and its scene {scene:e}: make an ensemble for each"
+    )]
+    OtherTolerance {
+        /// That of the member.
+        own: f64,
+        /// That of the scene.
+        scene: f64,
+    },
     /// An input is commanded whose function is given for all times.
     #[error(
         "input `{input}` cannot be commanded: its function was given for all times; give it `Function::commanded`, or a sum with that, before the run"
@@ -202,7 +212,7 @@ impl Problem {
         if let Some(input) = self.barred_input() {
             return Err(Invalid::Barred { input });
         }
-        self.check_accuracy()?;
+        check_accuracy(&self.model, &self.accuracy)?;
         self.check_limits()?;
         let positive = Bounds::POSITIVE;
         within(positive, "s", self.end.time, || "the end".into())?;
@@ -213,41 +223,6 @@ impl Problem {
                 "the interval of the samples".into()
             }),
         }
-    }
-
-    fn check_accuracy(&self) -> Result<(), Invalid> {
-        let n = self.model.coordinates.len();
-        let Accuracy {
-            relative,
-            q_absolute,
-            v_absolute,
-        } = &self.accuracy;
-        count("absolute tolerances of coordinates", q_absolute, n)?;
-        count("absolute tolerances of velocities", v_absolute, n)?;
-        let least = Tolerances::<Const<0>>::SMALLEST_RELATIVE;
-        if !(least..1.0).contains(relative) {
-            return Err(Invalid::OutOfRange {
-                what: "the relative tolerance".into(),
-                value: *relative,
-                range: format!("from {} to below 1", shown(least)),
-            });
-        }
-        for (c, (&q, &v)) in self
-            .model
-            .coordinates
-            .iter()
-            .zip(q_absolute.iter().zip(v_absolute))
-        {
-            let [of_q, of_v] = [q, v].map(SVector::<f64, 1>::repeat);
-            if Tolerances::<Const<1>>::new(*relative, of_q, of_v).is_err() {
-                return Err(Invalid::OutOfRange {
-                    what: format!("an absolute tolerance of `{}`", c.name),
-                    value: if v > 0.0 && v.is_finite() { q } else { v },
-                    range: "> 0".into(),
-                });
-            }
-        }
-        Ok(())
     }
 
     /// The method that was asked for must be there in all modes that may be visited: nothing else stands in for it.
@@ -265,4 +240,36 @@ impl Problem {
             _ => Ok(()),
         }
     }
+}
+
+/// Refuses tolerances that no method can keep.
+pub(super) fn check_accuracy(model: &Model, accuracy: &Accuracy) -> Result<(), Invalid> {
+    let n = model.coordinates.len();
+    let Accuracy {
+        relative,
+        q_absolute,
+        v_absolute,
+    } = accuracy;
+    count("absolute tolerances of coordinates", q_absolute, n)?;
+    count("absolute tolerances of velocities", v_absolute, n)?;
+    let least = Tolerances::<Const<0>>::SMALLEST_RELATIVE;
+    if !(least..1.0).contains(relative) {
+        return Err(Invalid::OutOfRange {
+            what: "the relative tolerance".into(),
+            value: *relative,
+            range: format!("from {} to below 1", shown(least)),
+        });
+    }
+    let tolerances = q_absolute.iter().zip(v_absolute);
+    for (c, (&q, &v)) in model.coordinates.iter().zip(tolerances) {
+        let [of_q, of_v] = [q, v].map(SVector::<f64, 1>::repeat);
+        if Tolerances::<Const<1>>::new(*relative, of_q, of_v).is_err() {
+            return Err(Invalid::OutOfRange {
+                what: format!("an absolute tolerance of `{}`", c.name),
+                value: if v > 0.0 && v.is_finite() { q } else { v },
+                range: "> 0".into(),
+            });
+        }
+    }
+    Ok(())
 }

@@ -96,6 +96,11 @@ where
         }
     }
 
+    /// Takes other absolute tolerances, before a [`Radau::restart`].
+    pub(crate) fn set_tolerances(&mut self, of: impl FnOnce(F) -> Tolerances<F>) {
+        self.control = Control::new::<S>(&of(self.end.q.size()));
+    }
+
     /// Goes on from a state that the last step did not lead to: the initial state, or that behind an
     /// event. `a` are the accelerations at the state, r(t, q, v, a) = 0. The equations may be
     /// others than before. The length of the first step is estimated, unless

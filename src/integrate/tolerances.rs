@@ -37,17 +37,6 @@ pub enum ToleranceError {
 }
 
 impl<F: Size> Tolerances<F> {
-    /// The relative tolerance, then the absolute ones of coordinates and of velocities.
-    pub fn all(&self) -> Vec<f64> {
-        let absolute = self
-            .q_absolute
-            .as_slice()
-            .iter()
-            .chain(self.v_absolute.as_slice())
-            .copied();
-        std::iter::once(self.relative).chain(absolute).collect()
-    }
-
     /// Smallest relative tolerance: ten roundings, as in RADAU5 (Hairer & Wanner 1996, IV.8).
     pub const SMALLEST_RELATIVE: f64 = 10.0 * f64::EPSILON;
 

@@ -62,6 +62,8 @@ lane_functions!(
         is_apart(usize, usize, usize, Indices, Bits, f64, f64, In, In, In, In, In, OutBits) -> Bits;
         departs(In, In, f64, In, Out) -> Bits;
         leap(usize, usize, usize, Indices, Bits, In, Out, Out);
+        note(usize, Bits, In, Out);
+        may_exceed(usize, usize, In, In, In, In, In) -> Bits;
     )
 );
 
@@ -229,14 +231,14 @@ pub(crate) fn lane_unmet<const W: usize>(level: LaneLevel<W>, numbers: &[Lanes<W
 #[inline]
 pub(crate) fn lane_length<const F: usize, const W: usize>(
     level: LaneLevel<W>,
-    limits: &LaneLimits,
+    (limits, tolerances): (&LaneLimits, &[Lanes<W>]),
     series: &LaneSeries<F, W>,
     point: &LanePoint<F, W>,
     [last, horizon]: [&Lanes<W>; 2],
     (h, unclear): (&mut Lanes<W>, &mut LaneMask),
 ) -> LaneMask {
     let p = limits.order;
-    assert!(p >= 5 && p + 2 <= ORDERS && limits.tolerances.len() == 1 + 2 * F);
+    assert!(p >= 5 && p + 2 <= ORDERS && tolerances.len() == 1 + 2 * F);
     let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
     let length = level.functions.length;
     // SAFETY: rows up to p + 1 are there, and the tolerances; the rest is one number a lane each.
@@ -247,7 +249,7 @@ pub(crate) fn lane_length<const F: usize, const W: usize>(
             q,
             v,
             a,
-            limits.tolerances.as_ptr(),
+            tolerances.as_ptr().cast(),
             limits.terms.as_ptr().cast(),
             (&raw const *point).cast(),
             (&raw const *last).cast(),
@@ -425,7 +427,7 @@ pub(crate) fn lane_is_apart<const F: usize, const W: usize>(
             u32::from(past.may_rest),
             past.hardly,
             past.shortest,
-            past.tolerances.as_ptr(),
+            past.tolerances.as_ptr().cast(),
             (&raw const *point).cast(),
             reset.as_ptr().cast(),
             past.after.as_ptr().cast(),
@@ -460,6 +462,55 @@ pub(crate) fn lane_leap<const F: usize, const W: usize>(
             past.after.as_mut_ptr().cast(),
         )
     };
+}
+
+/// Has extremes in some lanes take note of a point: of each free coordinate, then of each velocity, four rows: the least
+/// value, the greatest one, and when (s) they were first taken.
+#[inline]
+pub(crate) fn lane_note<const F: usize, const W: usize>(
+    level: LaneLevel<W>,
+    lanes: LaneMask,
+    point: &LanePoint<F, W>,
+    extremes: &mut [Lanes<W>],
+) {
+    assert_eq!(extremes.len(), 8 * F);
+    let note = level.functions.note;
+    // SAFETY: a point of F coordinates, and four numbers a lane of each of its 2 F values.
+    unsafe {
+        note(
+            F,
+            lanes.0,
+            (&raw const *point).cast(),
+            extremes.as_mut_ptr().cast(),
+        )
+    }
+}
+
+/// The lanes in which a coordinate or a velocity may be beyond its extremes (see [`lane_note`]) inside of a step of duration
+/// `tau`, s, by a series of order p.
+#[inline]
+pub(crate) fn lane_may_exceed<const F: usize, const W: usize>(
+    level: LaneLevel<W>,
+    p: usize,
+    series: &LaneSeries<F, W>,
+    tau: &Lanes<W>,
+    extremes: &[Lanes<W>],
+) -> LaneMask {
+    assert!(p >= 1 && p + 2 <= ORDERS && extremes.len() == 8 * F);
+    let [q, v, a] = [&series.q, &series.v, &series.a].map(|rows| rows.as_ptr().cast());
+    let may_exceed = level.functions.may_exceed;
+    // SAFETY: rows up to p + 1 are there, and four numbers a lane of each of 2 F values.
+    LaneMask(unsafe {
+        may_exceed(
+            F,
+            p,
+            q,
+            v,
+            a,
+            (&raw const *tau).cast(),
+            extremes.as_ptr().cast(),
+        )
+    })
 }
 
 impl<const F: usize, const W: usize> LanePast<F, W> {

@@ -251,7 +251,7 @@ pub(crate) struct LanePast<const F: usize, const W: usize> {
     /// Part of the time that the last pattern of an accumulation takes at least.
     pub shortest: f64,
     /// The relative tolerance, and the absolute ones of free coordinates and velocities.
-    pub tolerances: Box<[f64]>,
+    pub tolerances: LaneRows<W>,
     /// After the last event: free coordinates, their velocities, the time (s), discrete states; not a
     /// number before the first one.
     pub after: LaneRows<W>,
@@ -277,8 +277,6 @@ pub(crate) struct LaneSeries<const F: usize, const W: usize> {
 pub(crate) struct LaneLimits {
     /// Order p of the series.
     pub order: usize,
-    /// The relative tolerance, and the absolute ones of coordinates and velocities.
-    pub tolerances: Box<[f64]>,
     /// The terms that limit it, of powers n = p − 1, p, p + 1, p − 3 and p − 2: 1/n; ½ − 1/(2n); and what is added to
     /// their logarithms ÷ n, so that they are those of reciprocal lengths.
     pub terms: [[f64; 5]; 3],

@@ -1,8 +1,9 @@
 //! What is measured of each run, and when one has failed.
 
+use super::ending::Ending;
 use crate::hybrid::{Problem, Record};
 use crate::record::{Layout, Recorded};
-use crate::run::{Group, Ledger, Peak, Run};
+use crate::run::{Group, Peak};
 
 /// A quantity that is measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,81 +93,35 @@ pub(crate) fn record(measures: &[Measure], problem: &Problem) -> Record {
 /// The values of some measures of a run; NaN where one has none.
 pub(crate) fn values<'m>(
     measures: &'m [Measure],
-    run: &'m Run,
-) -> impl Iterator<Item = f64> + use<'m> {
-    measures.iter().map(|measure| value(&measure.what, run))
+    ending: &'m impl Ending,
+) -> impl Iterator<Item = f64> {
+    measures.iter().map(|measure| value(&measure.what, ending))
 }
 
-fn value(what: &What, run: &Run) -> f64 {
-    let reached = |name: &str| run.reached.limit_states.iter().find(|s| s.name == *name);
+fn value(what: &What, ending: &impl Ending) -> f64 {
+    let peak = |name: &str, of: fn(Peak) -> f64| ending.peak(name).map_or(f64::NAN, of);
+    let mut states = ending.limit_states().iter();
+    let mut reached = |name: &str| states.find(|s| s.name == *name);
     match what {
-        What::Peak(name) => peak(run, name).map_or(f64::NAN, |p| p.max.abs().max(p.min.abs())),
-        What::Max(name) => peak(run, name).map_or(f64::NAN, |p| p.max),
-        What::Min(name) => peak(run, name).map_or(f64::NAN, |p| p.min),
-        What::End(name) => end(run, name).unwrap_or(f64::NAN),
-        What::Count(None) => run.tally.total() as f64,
-        What::Count(Some(name)) => run.tally.count(name) as f64,
+        What::Peak(name) => peak(name, |p| p.max.abs().max(p.min.abs())),
+        What::Max(name) => peak(name, |p| p.max),
+        What::Min(name) => peak(name, |p| p.min),
+        What::End(name) => ending.end(name).unwrap_or(f64::NAN),
+        What::Count(transition) => ending.count(transition.as_deref()) as f64,
         What::Reached(name) => f64::from(u8::from(reached(name).is_some())),
         What::Time(name) => reached(name).map_or(f64::NAN, |state| state.t),
     }
 }
 
-fn peak(run: &Run, name: &str) -> Option<Peak> {
-    let column = run.trajectory.column(name)?;
-    let found = run.peaks.iter().find(|(index, _)| *index == column);
-    found.map(|(_, peak)| *peak)
-}
-
-/// The value of a quantity at the end of a run.
-fn end(run: &Run, name: &str) -> Option<f64> {
-    let Layout {
-        coordinates,
-        velocities,
-        reactions,
-        discretes,
-        outputs,
-        ..
-    } = &run.layout;
-    let state = &run.end.state;
-    let groups = [
-        (coordinates, &state.q),
-        (velocities, &state.v),
-        (reactions, &state.reactions),
-        (discretes, &state.discrete),
-        (outputs, &state.outputs),
-    ];
-    let found = groups.into_iter().find_map(|(quantities, values)| {
-        let index = quantities.iter().position(|q| q.name == name)?;
-        values.get(index).copied()
-    });
-    found.or_else(|| {
-        run.energy
-            .as_ref()
-            .and_then(|ledger| of_ledger(ledger, name))
-    })
-}
-
-fn of_ledger(ledger: &Ledger, name: &str) -> Option<f64> {
-    match name {
-        "energy.stored" => Some(ledger.final_),
-        "energy.input_work" => Some(ledger.input_work),
-        "energy.dissipated" => Some(ledger.dissipated),
-        "energy.lost_at_impacts" => Some(ledger.lost_at_impacts),
-        _ => None,
-    }
-}
-
 impl Failure {
     /// Whether a run with these values has failed; `None` if it does not tell.
-    pub fn happened(&self, run: &Run, values: &[f64]) -> Option<bool> {
+    pub fn happened(&self, ending: &impl Ending, values: &[f64]) -> Option<bool> {
         match self {
-            Failure::Limit(name) => Some(
-                run.reached
-                    .limit_states
-                    .iter()
-                    .any(|state| state.name == *name),
-            ),
-            Failure::Transition(name) => Some(run.tally.count(name) > 0),
+            Failure::Limit(name) => {
+                let mut states = ending.limit_states().iter();
+                Some(states.any(|state| state.name == *name))
+            }
+            Failure::Transition(name) => Some(ending.count(Some(name)) > 0),
             Failure::Measure {
                 index,
                 above,
@@ -183,7 +138,12 @@ impl Failure {
     }
 
     /// The same of a run that stopped early: what has happened has happened, and of anything else nobody knows.
-    pub fn happened_early(&self, measures: &[Measure], run: &Run, values: &[f64]) -> Option<bool> {
+    pub fn happened_early(
+        &self,
+        measures: &[Measure],
+        ending: &impl Ending,
+        values: &[f64],
+    ) -> Option<bool> {
         let lasts = match self {
             Failure::Limit(_) | Failure::Transition(_) => true,
             Failure::Measure { index, above, .. } => match measures[*index].what {
@@ -192,7 +152,8 @@ impl Failure {
                 What::End(_) | What::Reached(_) | What::Time(_) => false,
             },
         };
-        self.happened(run, values).filter(|failed| lasts && *failed)
+        self.happened(ending, values)
+            .filter(|failed| lasts && *failed)
     }
 
     /// The measure that decides, by its index.

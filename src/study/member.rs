@@ -1,16 +1,17 @@
-//! The runs of a case.
+//! A run of a case: its problem, and its row.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::design::number_node;
+use super::ending::Ending;
 use super::file::{SecondRuns, Study};
 use super::measure;
-use super::procedure::{Along, Failed, Procedure};
+use super::procedure::{Along, Failed};
 use super::rows::{Row, Status};
 use crate::hybrid::{Observer, Problem, simulate_member};
 use crate::integrate::{Const, Tolerances};
-use crate::run::{Jump, Progress, Run, Snapshot};
+use crate::run::{Jump, Progress, Snapshot};
 use crate::scene::SceneErrors;
 use crate::scene::template::Change;
 
@@ -52,6 +53,15 @@ impl Progress for Stoppable<'_> {
     }
 }
 
+/// A run that is to be made.
+pub(crate) struct Planned {
+    pub case: u64,
+    /// The value along the path of an analysis; NaN for a single run.
+    pub intensity: f64,
+    /// Its problem, or why its scene is none.
+    pub problem: Result<Problem, String>,
+}
+
 /// A run as far as a study looks at it.
 struct Measured {
     values: Vec<f64>,
@@ -59,44 +69,98 @@ struct Measured {
 }
 
 impl Study {
-    /// All runs of a case in the order in which they are made; `None` if the study was stopped meanwhile.
-    pub fn runs_of(&self, case: u64, stop: &AtomicBool) -> Option<Vec<Row>> {
+    /// The run of a case, at a value along the path of its analysis.
+    pub fn planned(&self, case: u64, value: Option<f64>) -> Planned {
         let changes = self.design.changes(case);
-        let Some(along) = self.procedure.along() else {
-            return Some(vec![self.run(case, &changes, None, stop)?]);
-        };
-        let mut rows: Vec<Row> = Vec::new();
-        let mut runs: Vec<(f64, Failed)> = Vec::new();
-        loop {
-            let next = match &self.procedure {
-                Procedure::Ida(ida) => ida.next(&runs),
-                Procedure::Critical(critical) => critical.next(&runs),
-                Procedure::Once { .. } => None,
-            };
-            let Some(value) = next else { break };
-            let row = self.run(case, &changes, Some((along, value)), stop)?;
-            runs.push((value, row.failed));
-            rows.push(row);
+        let at = self.procedure.along().zip(value);
+        let problem = self.problem(&changes, at).map_err(|errors| {
+            let first = errors.iter().next();
+            first.map_or(String::new(), |e| e.kind().to_string())
+        });
+        Planned {
+            case,
+            intensity: value.unwrap_or(f64::NAN),
+            problem,
         }
-        self.check_bracket(case, &changes, &mut rows, stop)?;
-        Some(rows)
     }
 
-    /// Runs the two runs about a capacity again where no measure says how near they are.
-    fn check_bracket(
-        &self,
-        case: u64,
-        changes: &[Change],
-        rows: &mut [Row],
-        stop: &AtomicBool,
-    ) -> Option<()> {
+    /// Makes a run; `None` if it was stopped.
+    pub fn run_alone(&self, planned: &Planned, stop: &AtomicBool) -> Option<Row> {
+        let refused = |reason: String| {
+            let none = vec![f64::NAN; self.measures.len()];
+            Row::refused(planned.case, planned.intensity, none, reason)
+        };
+        let problem = match &planned.problem {
+            Ok(problem) => problem,
+            Err(reason) => return Some(refused(reason.clone())),
+        };
+        let run = match simulate_member(problem, &mut Deaf, &mut Stoppable(stop)) {
+            Ok(run) => run,
+            Err(reason) => return Some(refused(reason.to_string())),
+        };
+        if run.failure.is_some() && stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        self.decided(self.row(planned, &run), planned, stop)
+    }
+
+    /// The row of a run; whether it is decided is not looked at.
+    pub fn row(&self, planned: &Planned, ending: &impl Ending) -> Row {
+        let Measured { values, failed } = self.measured(ending);
+        let (reason, solver) = (ending.failure(), ending.solver());
+        Row {
+            case: planned.case,
+            intensity: planned.intensity,
+            failed,
+            undecided: false,
+            status: match reason {
+                None => Status::Ok,
+                Some(_) => Status::Stopped,
+            },
+            reason,
+            t: ending.time(),
+            events: ending.count(None) as u64,
+            uncertain: ending.uncertain(),
+            work: [
+                solver.steps,
+                solver.rejected,
+                solver.residual_evaluations,
+                solver.jacobian_evaluations,
+                solver.factorizations,
+            ],
+            values,
+        }
+    }
+
+    /// A row after a second run, where it is to have one; `None` if that was stopped.
+    pub fn decided(&self, mut row: Row, planned: &Planned, stop: &AtomicBool) -> Option<Row> {
+        let Ok(problem) = &planned.problem else {
+            return Some(row);
+        };
+        if !self.needs_second(&row) {
+            return Some(row);
+        }
+        let mut problem = problem.clone();
+        row.undecided = loop {
+            let Some(again) = self.again(&mut problem, stop)? else {
+                break true;
+            };
+            // A method that is better than it is asked for may take the very same steps: that says nothing.
+            let same = again.values.iter().zip(&row.values);
+            let same = same.fold(true, |same, (a, b)| same && a.to_bits() == b.to_bits());
+            if !same || problem.accuracy.relative <= LEAST {
+                break self.is_undecided(&row, &again);
+            }
+        };
+        Some(row)
+    }
+
+    /// Makes the two runs about a capacity again where no measure says how near they are; `None` if they were stopped.
+    pub fn check_bracket(&self, case: u64, rows: &mut [Row], stop: &AtomicBool) -> Option<()> {
         let judged_by_measure = self.failure.as_ref().is_some_and(|f| f.measure().is_some());
         if self.second_runs != SecondRuns::Near || judged_by_measure {
             return Some(());
         }
-        let Some(along) = self.procedure.along() else {
-            return Some(());
-        };
         let runs: Vec<(f64, Failed)> = rows.iter().map(|r| (r.intensity, r.failed)).collect();
         let Some(bracket) = self.procedure.bracket(&runs) else {
             return Some(());
@@ -105,18 +169,17 @@ impl Study {
             let Some(row) = rows.iter_mut().find(|row| row.intensity == value) else {
                 continue;
             };
-            let Ok(mut problem) = self.problem(changes, Some((along, value))) else {
+            let Ok(mut problem) = self.planned(case, Some(value)).problem else {
                 continue;
             };
             let again = self.again(&mut problem, stop)?;
             row.undecided = again.is_none_or(|again| again.failed != row.failed);
-            debug_assert_eq!(row.case, case);
         }
         Some(())
     }
 
     /// The problem of a case, at a value along the path of its analysis.
-    fn problem(
+    pub fn problem(
         &self,
         changes: &[Change],
         at: Option<(&Along, f64)>,
@@ -137,80 +200,12 @@ impl Study {
         Ok(problem)
     }
 
-    /// A run and its row; `None` if it was stopped.
-    fn run(
-        &self,
-        case: u64,
-        changes: &[Change],
-        at: Option<(&Along, f64)>,
-        stop: &AtomicBool,
-    ) -> Option<Row> {
-        let refused = |reason: String| {
-            let none = vec![f64::NAN; self.measures.len()];
-            let intensity = at.map_or(f64::NAN, |(_, value)| value);
-            Row::refused(case, intensity, none, reason)
-        };
-        let problem = match self.problem(changes, at) {
-            Ok(problem) => problem,
-            Err(errors) => {
-                let first = errors.iter().next();
-                return Some(refused(
-                    first.map_or(String::new(), |e| e.kind().to_string()),
-                ));
-            }
-        };
-        let run = match simulate_member(&problem, &mut Deaf, &mut Stoppable(stop)) {
-            Ok(run) => run,
-            Err(reason) => return Some(refused(reason.to_string())),
-        };
-        if run.failure.is_some() && stop.load(Ordering::Relaxed) {
-            return None;
-        }
-        let Measured { values, failed } = self.measured(&run);
-        let mut row = Row {
-            case,
-            intensity: at.map_or(f64::NAN, |(_, value)| value),
-            failed,
-            undecided: false,
-            status: match run.failure {
-                None => Status::Ok,
-                Some(_) => Status::Stopped,
-            },
-            reason: run.failure.as_ref().map(|f| f.reason.clone()),
-            t: run.end.t,
-            events: run.tally.total() as u64,
-            uncertain: run.uncertain.total,
-            work: [
-                run.solver.steps,
-                run.solver.rejected,
-                run.solver.residual_evaluations,
-                run.solver.jacobian_evaluations,
-                run.solver.factorizations,
-            ],
-            values,
-        };
-        if self.needs_second(&row) {
-            let mut problem = problem;
-            row.undecided = loop {
-                let Some(again) = self.again(&mut problem, stop)? else {
-                    break true;
-                };
-                // A method that is better than it is asked for may take the very same steps: that says nothing.
-                let same = again.values.iter().zip(&row.values);
-                let same = same.fold(true, |same, (a, b)| same && a.to_bits() == b.to_bits());
-                if !same || problem.accuracy.relative <= LEAST {
-                    break self.is_undecided(&row, &again);
-                }
-            };
-        }
-        Some(row)
-    }
-
-    fn measured(&self, run: &Run) -> Measured {
-        let values: Vec<f64> = measure::values(&self.measures, run).collect();
-        let failed = self.failure.as_ref().and_then(|failure| match run.failure {
-            None => failure.happened(run, &values),
-            Some(_) => failure.happened_early(&self.measures, run, &values),
+    fn measured(&self, ending: &impl Ending) -> Measured {
+        let values: Vec<f64> = measure::values(&self.measures, ending).collect();
+        let failure = self.failure.as_ref();
+        let failed = failure.and_then(|failure| match ending.failure() {
+            None => failure.happened(ending, &values),
+            Some(_) => failure.happened_early(&self.measures, ending, &values),
         });
         Measured { values, failed }
     }

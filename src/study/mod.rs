@@ -1,10 +1,12 @@
 //! Many runs as one question: designs of what varies, and what their results say.
 //!
 //! A study file says what varies in a scene (`file`); that makes cases (`design`, `distribution`, `sampling`), of each of which
-//! one run or several are made (`procedure`, `member`) on all cores (`work`). What is measured of them (`measure`) are the rows
+//! one run or several are made (`procedure`, `member`), side by side (`batch`), on all cores (`work`). What is measured of them (`measure`) are the rows
 //! of one table (`rows`, `table`); a folder keeps them while the study goes on (`folder`). In the end they are counted and
 //! fitted (`summary`, `fragility`, `cloud`) and drawn (`charts`).
 
+#[cfg(feature = "cli")]
+mod batch;
 #[cfg(feature = "cli")]
 mod capacities;
 #[cfg(feature = "cli")]
@@ -17,6 +19,8 @@ mod command;
 mod design;
 #[cfg(feature = "cli")]
 mod distribution;
+#[cfg(feature = "cli")]
+mod ending;
 #[cfg(feature = "cli")]
 mod file;
 #[cfg(feature = "cli")]

@@ -46,13 +46,16 @@ pub(crate) struct Row {
     pub t: f64,
     /// Number of transitions.
     pub events: u64,
-    /// Number of places where the run cannot tell whether a guard falls.
-    pub uncertain: u64,
+    /// Number of places where the run cannot tell whether a guard falls; `None` where nobody looked, in the lanes of an ensemble.
+    pub uncertain: Option<u64>,
     /// Steps, rejected steps, evaluations of residuals and Jacobians, factorizations.
     pub work: [u64; 5],
     /// The measures, NaN where there is none.
     pub values: Vec<f64>,
 }
+
+/// Stands in a file for a number of places that nobody looked for.
+const NOT_LOOKED: u64 = u64::MAX;
 
 /// What [`Row::work`] holds.
 pub(crate) const WORK: [&str; 5] = [
@@ -75,7 +78,7 @@ impl Row {
             reason: Some(reason),
             t: f64::NAN,
             events: 0,
-            uncertain: 0,
+            uncertain: Some(0),
             work: [0; 5],
             values,
         }
@@ -94,7 +97,8 @@ impl Row {
             u8::from(self.reason.is_some()),
         ]);
         put(&self.t.to_bits().to_le_bytes());
-        for count in [self.events, self.uncertain].iter().chain(&self.work) {
+        let uncertain = self.uncertain.unwrap_or(NOT_LOOKED);
+        for count in [self.events, uncertain].iter().chain(&self.work) {
             put(&count.to_le_bytes());
         }
         for value in &self.values {
@@ -130,7 +134,7 @@ impl Row {
             reason: (has_reason == 1).then(|| reason.to_owned()),
             t,
             events,
-            uncertain,
+            uncertain: (uncertain != NOT_LOOKED).then_some(uncertain),
             work,
             values: values?,
         })
@@ -220,12 +224,13 @@ mod tests {
             reason: Some("it leaves the ground µ".into()),
             t: 1.5,
             events: 3,
-            uncertain: 1,
+            uncertain: Some(1),
             work: [1, 2, 3, 4, 5],
             values: vec![-0.0, 5e-324],
         };
         let other = Row {
             failed: None,
+            uncertain: None,
             reason: None,
             status: Status::Ok,
             ..row.clone()

@@ -61,10 +61,14 @@ pub(crate) fn run(
 ) -> Result<Ended, StudyFolderError> {
     let stop = AtomicBool::new(false);
     let next = AtomicUsize::new(0);
+    let ensemble = &study.ensemble();
+    let size = study.batch(pending.len(), rayon::current_num_threads());
+    let batches: &Vec<&[u64]> = &pending.chunks(size).collect();
     let (send, receive) = mpsc::channel::<Vec<(u64, Vec<Row>)>>();
     std::thread::scope(|scope| {
         let (stop, next) = (&stop, &next);
         let pool = rayon::current_num_threads();
+        let ensemble = ensemble.as_ref();
         // Rayon's threads must not wait for the disk, so this thread keeps what they send.
         let spawned = std::thread::Builder::new()
             .name("study".into())
@@ -74,17 +78,19 @@ pub(crate) fn run(
                     threads.for_each_with(send, |send, _| {
                         let mut finished = Vec::new();
                         let mut sent = Instant::now();
-                        // Each takes the next case that nobody has begun, so none waits while there are any.
-                        while let Some(&case) = pending.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        // Each takes the next batch that nobody has begun, so none waits while there are any.
+                        while let Some(cases) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
                             if stop.load(Ordering::Relaxed) {
                                 break;
                             }
-                            finished.extend(study.runs_of(case, stop).map(|rows| (case, rows)));
-                            if sent.elapsed() >= ASK {
-                                // Nobody hears any more where the disk is full.
-                                let _ = send.send(std::mem::take(&mut finished));
-                                sent = Instant::now();
-                            }
+                            study.run_cases(cases, ensemble, stop, &mut |case, rows| {
+                                finished.push((case, rows));
+                                if sent.elapsed() >= ASK {
+                                    // Nobody hears any more where the disk is full.
+                                    let _ = send.send(std::mem::take(&mut finished));
+                                    sent = Instant::now();
+                                }
+                            });
                         }
                         let _ = send.send(finished);
                     });

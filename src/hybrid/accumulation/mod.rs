@@ -159,6 +159,13 @@ impl Accumulation {
         }
     }
 
+    /// Takes other absolute tolerances of coordinates and velocities.
+    pub fn set_absolute(&mut self, [q, v]: [&[f64]; 2]) {
+        let (of_q, of_v) = self.absolute.split_at_mut(q.len());
+        of_q.copy_from_slice(q);
+        of_v.copy_from_slice(v);
+    }
+
     /// Forgets all events.
     pub fn clear(&mut self) {
         (self.count, self.still, self.unresolved) = (0, 0, 0);

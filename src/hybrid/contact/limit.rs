@@ -46,7 +46,7 @@ impl<'p> Simulation<'p> {
         contacts: &'p Contacts,
         limit: Limit,
     ) -> Stoppable<bool> {
-        let accuracy = &self.problem.accuracy;
+        let accuracy = self.accuracy;
         if limit.at.seconds() >= self.problem.end.time {
             return Ok(false);
         }

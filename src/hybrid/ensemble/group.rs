@@ -4,8 +4,8 @@ use super::super::accumulation::{Accumulation, SHORTEST_PATTERN, Signature};
 use super::super::crossing::Signs;
 use super::super::guards::slope;
 use super::super::instant::Instant;
+use super::super::problem::Accuracy;
 use super::super::roots::Watch;
-use super::super::segment::tolerances;
 use super::super::simulation::Simulation;
 use crate::input::LaneSignals;
 use crate::integrate::{LaneMask, LaneTaylor, Lanes, ORDERS};
@@ -124,6 +124,8 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     pub bounds: LaneRows<W>,
     /// Of each margin, the lanes in which it has been reached before.
     pub passed: Vec<LaneMask>,
+    /// Extremes of free coordinates and their velocities, where they are looked for: see [`crate::kernel::lane_note`].
+    pub extremes: Option<LaneRows<W>>,
     /// Lanes that have not made the last step.
     pub unclear: LaneMask,
     /// Steps of the group, and how many of them each lane has not made since it was loaded or came before.
@@ -184,7 +186,6 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 coefficients: [Lanes::of(0.0); ORDERS],
             }
         });
-        let tolerances = tolerances(kernel.size(), problem, mode);
         let kind = kernel.series_kind(&like.context);
         let mut group = Group {
             kernel,
@@ -192,7 +193,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             index: like.here.mode,
             level,
             quiet,
-            taylor: LaneTaylor::new(level, &tolerances, kind, order),
+            taylor: LaneTaylor::new(level, problem.accuracy.relative, kind, order),
             context,
             signals: LaneSignals::new(level, &problem.signals),
             guards: guards.collect(),
@@ -206,7 +207,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 may_rest: like.plan.rests(like.here.mode),
                 hardly: Accumulation::HARDLY,
                 shortest: SHORTEST_PATTERN,
-                tolerances: tolerances.all().into(),
+                tolerances: LaneRows::zeros(1 + 2 * F),
                 after: LaneRows::zeros(2 * F + 1 + discretes),
             },
             left: LaneRows::zeros(discretes),
@@ -214,6 +215,10 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             analytic_from: Lanes::of(problem.signals.last_knot()),
             bounds: LaneRows::zeros(mode.requirements.len() + mode.margins.len()),
             passed: vec![LaneMask::NONE; mode.margins.len()],
+            extremes: like
+                .observers
+                .watch_extremes()
+                .then(|| LaneRows::zeros(8 * F)),
             unclear: LaneMask::NONE,
             steps: 0,
             missed: [0; W],
@@ -234,6 +239,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     /// Puts a trajectory, which has just entered the mode, into a lane.
     pub fn load(&mut self, lane: usize, from: &Simulation<'p>) {
         self.context.load(lane, &from.context);
+        self.set_tolerances(lane, from.accuracy);
         self.set(lane, from);
         for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
             let dormant = *watch == Watch::Dormant;
@@ -277,6 +283,15 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
         true
     }
 
+    fn set_tolerances(&mut self, lane: usize, accuracy: &Accuracy) {
+        let tolerances = &mut self.past.tolerances;
+        tolerances[0].0[lane] = accuracy.relative;
+        for (i, &coordinate) in self.mode.free.iter().enumerate() {
+            tolerances[1 + i].0[lane] = accuracy.q_absolute[coordinate];
+            tolerances[1 + F + i].0[lane] = accuracy.v_absolute[coordinate];
+        }
+    }
+
     fn set(&mut self, lane: usize, from: &Simulation) {
         let here = &mut self.here;
         let [q, v, a] = from.here.free(self.kernel.size(), &self.mode.free);
@@ -292,6 +307,8 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
         for (margin, passed) in self.passed.iter_mut().enumerate() {
             passed.set(lane, !from.margins.is_pending(margin));
         }
+        self.load_extremes(lane, &from.observers);
+        self.note_here(LaneMask(1 << lane));
         self.past.after.fill_lane(lane, f64::NAN);
         if let Some((at, states, discretes)) = from.accumulation.last() {
             let after = &mut self.past.after;
@@ -341,6 +358,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
         let here = &self.here;
         let [q, v, a] = [column(&here.q), column(&here.v), column(&here.a)];
         into.here.set_free(&self.mode.free, [&q, &v, &a]);
+        self.unload_extremes(lane, &mut into.observers);
         let discrete = into.context.discrete_mut().iter_mut();
         for (into, of) in discrete.zip(self.context.discrete()) {
             *into = of.0[lane];

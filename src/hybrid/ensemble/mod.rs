@@ -11,6 +11,7 @@
 //! threads: to the bit. A single run by the Taylor method takes the same steps, with other roundings; from knot to knot of
 //! a table it chooses the order of each, where lanes have one for all.
 
+mod extremes;
 mod group;
 mod step;
 mod transit;
@@ -18,12 +19,12 @@ mod worker;
 
 use super::failure::Reason;
 use super::member::Member;
-use super::problem::{Method, Problem};
+use super::problem::{Method, Problem, Record};
 use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
-use crate::run::{Jump, Reached, Recorded, Silent};
+use crate::run::{Jump, Layout, Peak, Reached, Recorded, Silent, Snapshot, Solver};
 use rayon::prelude::*;
-use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::{AtomicBool, AtomicUsize};
 use worker::Worker;
 
 /// A scene made ready for many runs.
@@ -39,13 +40,13 @@ pub struct Ensemble {
 
 /// A trajectory at its end.
 pub struct Finished<'a, 'p> {
-    simulation: &'a Simulation<'p>,
+    simulation: &'a mut Simulation<'p>,
     /// Why it stopped before its end, if it did.
     pub failure: Option<Reason>,
 }
 
 impl Ensemble {
-    /// Prepares a scene. Neither a trajectory nor the ledger nor states at events are recorded.
+    /// Prepares a scene. Neither a trajectory nor the ledger, states at events or extremes are recorded.
     ///
     /// With [`Method::Auto`] the scene itself is run once: modes that turn out to be stiff in it do not
     /// go in lanes, and where most steps go from knot to knot of a record, they have the order that costs least.
@@ -53,12 +54,35 @@ impl Ensemble {
     /// # Errors
     /// As [`super::simulate`].
     pub fn new(problem: &Problem) -> Result<Self, Reason> {
+        Self::prepare(problem, false, Recorded::default())
+    }
+
+    /// The same with what the problem records, as far as that is extremes of coordinates and velocities ([`Finished::peak`]), and
+    /// reactions and outputs at the end ([`Finished::state`]): `None` where it records more.
+    ///
+    /// # Errors
+    /// As [`super::simulate`].
+    pub fn recording(problem: &Problem) -> Result<Option<Self>, Reason> {
+        let Record {
+            columns,
+            ledger,
+            extremes,
+            ..
+        } = problem.record;
+        let more = ledger || columns.energies || extremes && (columns.reactions || columns.outputs);
+        match more {
+            true => Ok(None),
+            false => Self::prepare(problem, extremes, columns).map(Some),
+        }
+    }
+
+    fn prepare(problem: &Problem, extremes: bool, columns: Recorded) -> Result<Self, Reason> {
         problem.check()?;
         let mut problem = problem.clone();
         problem.record.ledger = false;
         problem.record.event_states = false;
-        problem.record.extremes = false;
-        problem.record.columns = Recorded::default();
+        problem.record.extremes = extremes;
+        problem.record.columns = columns;
         problem.record.every = Some(problem.end.time);
         let modes = &problem.automaton().modes;
         let mut pilot = Simulation::new(&problem)?;
@@ -122,12 +146,8 @@ impl Ensemble {
             let mut take = |member: usize, finished: Finished| {
                 results.push((member, extract(member, finished)));
             };
-            let share = (&next, workers);
-            match LANES_OF_LEVELS[self.level] {
-                8 => Worker::<8>::new(self, members, share).run(&mut take),
-                4 => Worker::<4>::new(self, members, share).run(&mut take),
-                _ => Worker::<2>::new(self, members, share).run(&mut take),
-            }
+            let never = AtomicBool::new(false);
+            self.work(members, (&next, workers), &never, &mut take);
             results
         };
         // Each takes the next member when it has room for one, so none waits while there are any.
@@ -141,6 +161,52 @@ impl Ensemble {
         results
             .map(|result| result.expect("every member comes to its end"))
             .collect()
+    }
+}
+
+impl Ensemble {
+    /// Runs all members on this thread; `take` gets each at its end. Those that have not come to it when `stop` becomes true
+    /// are left out.
+    pub fn run_here(
+        &self,
+        members: &[Member],
+        stop: &AtomicBool,
+        mut take: impl FnMut(usize, Finished),
+    ) {
+        self.work(members, (&AtomicUsize::new(0), 1), stop, &mut take);
+    }
+
+    /// Runs members until there are no more, from the `next` on that no other of so many workers has started.
+    fn work(
+        &self,
+        members: &[Member],
+        share: (&AtomicUsize, usize),
+        stop: &AtomicBool,
+        take: &mut impl FnMut(usize, Finished),
+    ) {
+        match LANES_OF_LEVELS[self.level] {
+            8 => Worker::<8>::new(self, members, share, stop).run(take),
+            4 => Worker::<4>::new(self, members, share, stop).run(take),
+            _ => Worker::<2>::new(self, members, share, stop).run(take),
+        }
+    }
+
+    /// Whether a problem differs from that of the ensemble in nothing but what members differ in ([`Member`]).
+    pub fn is_like(&self, problem: &Problem) -> bool {
+        let own = &self.problem;
+        let zero = |of: &Problem, input: usize| of.signals.input_is_zero(input);
+        std::sync::Arc::ptr_eq(&own.model, &problem.model)
+            && own.chosen == problem.chosen
+            && (0..own.model.inputs.len()).all(|i| zero(own, i) == zero(problem, i))
+            && own.project == problem.project
+            && own.at_rest == problem.at_rest
+            && own.freeze == problem.freeze
+            && own.end == problem.end
+            && own.limits == problem.limits
+            && own.outputs == problem.outputs
+            && own.accuracy.relative == problem.accuracy.relative
+            && own.method == problem.method
+            && own.collisions == problem.collisions
     }
 }
 
@@ -170,6 +236,22 @@ impl Finished<'_, '_> {
         self.simulation.context.discrete()
     }
 
+    /// The state, with reactions and outputs where the scene of the ensemble records them.
+    pub fn state(&mut self) -> Snapshot {
+        self.simulation.snapshot()
+    }
+
+    /// Names of what a state consists of.
+    pub fn layout(&self) -> &Layout {
+        &self.simulation.observers.layout
+    }
+
+    /// The extremes of a coordinate or, behind all of these, of a velocity, by its index; `None` where none are looked for.
+    pub fn peak(&self, column: usize) -> Option<Peak> {
+        let observers = &self.simulation.observers;
+        observers.watch_extremes().then(|| observers.peak(column))
+    }
+
     /// The transitions.
     pub fn events(&self) -> &[Jump] {
         self.simulation.observers.recording.jumps()
@@ -183,5 +265,10 @@ impl Finished<'_, '_> {
     /// Steps made, in lanes and alone.
     pub fn steps(&self) -> u64 {
         self.simulation.solver.steps
+    }
+
+    /// Work done, in lanes and alone; the method is not named.
+    pub fn solver(&self) -> &Solver {
+        &self.simulation.solver
     }
 }

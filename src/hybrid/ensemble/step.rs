@@ -22,7 +22,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             true => &self.way.pieces[1],
             false => &self.way.unlimited,
         };
-        let limits = [&self.last, horizon];
+        let limits = ([&self.last, horizon], &self.past.tolerances[..]);
         let to = (&mut self.way.h, &mut unclear);
         let reached = self.taylor.length(&self.here, limits, to);
         let falls = self.first_falls(&mut unclear);
@@ -31,6 +31,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         let until = reached & !falls;
 
         let made = self.occupied & !unclear;
+        self.look_for_extremes(made);
         self.here.take(self.level, made, &self.next);
         self.at_start = self.at_start & !made;
         for guard in &mut self.guards {

@@ -80,6 +80,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             guard.linear.take(level, plain, &guard.after);
         }
         lane_leap(level, plain, reset, &mut self.here, &mut self.past);
+        self.note_here(plain);
         plain
     }
 

@@ -7,8 +7,21 @@ use super::group::{Group, Outcome};
 use super::{Ensemble, Finished};
 use crate::integrate::LaneMask;
 use crate::kernel::{LaneLevel, with_kernel};
-use crate::run::Silent;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use crate::run::Progress;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// Ends a segment when the ensemble is to stop.
+struct Until<'s>(&'s AtomicBool);
+
+impl Progress for Until<'_> {
+    fn advance(&mut self, _: f64, _: u64) -> ControlFlow<()> {
+        match self.0.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
 
 /// A group, whatever its number of free coordinates.
 trait AnyGroup<'p, const W: usize> {
@@ -103,6 +116,8 @@ pub(super) struct Worker<'a, const W: usize> {
     members: &'a [Member<'a>],
     /// The first member that no worker has started.
     next: &'a AtomicUsize,
+    /// Whether it is to stop.
+    stop: &'a AtomicBool,
     slots: Vec<Slot<'a>>,
     /// The lanes of each mode, made when they are first needed.
     lanes: Vec<Option<Lanes<'a, W>>>,
@@ -118,6 +133,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         ensemble: &'a Ensemble,
         members: &'a [Member<'a>],
         (next, workers): (&'a AtomicUsize, usize),
+        stop: &'a AtomicBool,
     ) -> Self {
         let modes = ensemble.problem.variant().modes.len();
         let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
@@ -132,6 +148,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             ensemble,
             members,
             next,
+            stop,
             slots: (0..count).map(slot).collect(),
             lanes: (0..modes).map(|_| None).collect(),
             vacancies: true,
@@ -142,7 +159,7 @@ impl<'a, const W: usize> Worker<'a, W> {
 
     /// Runs all of them; `take` gets each at its end.
     pub fn run(mut self, take: &mut impl FnMut(usize, Finished)) {
-        loop {
+        while !self.stop.load(Ordering::Relaxed) {
             if std::mem::take(&mut self.vacancies) {
                 (0..self.slots.len()).for_each(|slot| self.fill(slot, take));
             }
@@ -157,7 +174,7 @@ impl<'a, const W: usize> Worker<'a, W> {
 
     /// Starts members in a slot until one waits for a lane, and looks for one.
     fn fill(&mut self, slot: usize, take: &mut impl FnMut(usize, Finished)) {
-        while self.slots[slot].state == State::Free {
+        while self.slots[slot].state == State::Free && !self.stop.load(Ordering::Relaxed) {
             let member = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(next) = self.members.get(member) else {
                 return;
@@ -295,9 +312,17 @@ impl<'a, const W: usize> Worker<'a, W> {
                 return;
             }
             alone = false;
-            passed = simulation.advance_to_event(false, &mut Silent);
+            passed = simulation.advance_to_event(false, &mut Until(self.stop));
         };
+        *state = State::Free;
+        // One that was stopped has not come to its end.
+        if self.stop.load(Ordering::Relaxed) {
+            return;
+        }
         simulation.count_work();
+        simulation
+            .observers
+            .jump(&simulation.here, [&[], &[]], None);
         take(
             *member,
             Finished {
@@ -305,6 +330,5 @@ impl<'a, const W: usize> Worker<'a, W> {
                 failure,
             },
         );
-        *state = State::Free;
     }
 }

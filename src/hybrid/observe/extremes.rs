@@ -33,6 +33,11 @@ impl Extremes {
         }
     }
 
+    /// Those of a column so far.
+    pub fn peak(&self, column: usize) -> Peak {
+        self.peaks[column]
+    }
+
     /// Takes over those of a run that goes on.
     pub fn go_on(&mut self, peaks: &[(usize, Peak)]) {
         for &(column, peak) in peaks {

@@ -271,6 +271,24 @@ impl<'o> Observers<'o> {
         self.extremes = None;
     }
 
+    /// The extremes of a column so far; the times of one without a value are not numbers.
+    ///
+    /// # Panics
+    /// If none are looked for.
+    pub fn peak(&self, column: usize) -> Peak {
+        self.extremes
+            .as_ref()
+            .expect("extremes are looked for")
+            .peak(column)
+    }
+
+    /// A column has a value at time `t`, s: nothing where that is not a number.
+    pub fn note(&mut self, column: usize, t: f64, x: f64) {
+        if let (Some(extremes), false) = (&mut self.extremes, t.is_nan()) {
+            extremes.note(column, t, x);
+        }
+    }
+
     /// A segment starts here.
     pub fn enter(&mut self, mode: &Mode, here: &Here) {
         self.joined = false;

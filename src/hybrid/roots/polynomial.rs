@@ -96,6 +96,25 @@ impl<const N: usize> Polynomial<N> {
         [slope, curvature].map(|coefficients| Self { coefficients })
     }
 
+    /// Gives places and values of all extrema in (0, 1), in ascending order of the places.
+    pub(in crate::hybrid) fn each_extremum(&self, mut found: impl FnMut(f64, f64)) {
+        // Bent one way it has one at most, where its slope changes its sign.
+        let [slope, curvature] = self.derivatives();
+        let rest: f64 = curvature.coefficients[1..].iter().map(|c| c.abs()).sum();
+        if curvature.coefficients[0].abs() > rest {
+            let sign = -curvature.coefficients[0].signum();
+            let [left, right] = [0.0, 1.0].map(|s| (s, sign * slope.sum(s)));
+            if left.1 > 0.0 && right.1 < 0.0 {
+                let s = close(&mut |s| sign * slope.sum(s), left, right).0.0;
+                found(s, self.value(s));
+            }
+            return;
+        }
+        for &s in extrema::<N>(self).as_slice() {
+            found(s, self.value(s));
+        }
+    }
+
     /// The value where the polynomial is a multiple of s.
     fn value_of_multiple(&self, s: f64) -> f64 {
         let (order, mut quotient) = (self.leading_zeros(), Self::ZERO);

@@ -1,12 +1,11 @@
 //! The Taylor method for trajectories side by side: the formulas of [`super::Taylor`], lane by lane.
 
-use super::super::tolerances::Tolerances;
 use super::length::{self, Terms};
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
     lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
 };
-use crate::numerics::{Const, LaneMask, Lanes, ORDERS, SeriesKind};
+use crate::numerics::{LaneMask, Lanes, ORDERS, SeriesKind};
 
 /// The last step of `W` trajectories of a mode with `F` free coordinates.
 pub(crate) struct LaneTaylor<const F: usize, const W: usize> {
@@ -19,17 +18,9 @@ pub(crate) struct LaneTaylor<const F: usize, const W: usize> {
 }
 
 impl<const F: usize, const W: usize> LaneTaylor<F, W> {
-    /// A method of the order that [`super::Taylor::new`] chooses, or of a lower one.
-    pub fn new(
-        level: LaneLevel<W>,
-        tolerances: &Tolerances<Const<F>>,
-        kind: SeriesKind,
-        lower: Option<usize>,
-    ) -> Self {
+    /// A method of the order that [`super::Taylor::new`] chooses for a relative tolerance, or of a lower one.
+    pub fn new(level: LaneLevel<W>, relative: f64, kind: SeriesKind, lower: Option<usize>) -> Self {
         let rows = [[Lanes::of(0.0); F]; LANE_ROWS];
-        let relative = tolerances.relative();
-        let absolute = [tolerances.q_absolute(), tolerances.v_absolute()];
-        let absolute = absolute.into_iter().flat_map(|all| all.iter().copied());
         let own = length::order(relative, kind, F);
         let order = lower.map_or(own, |lower| lower.min(own));
         let terms = Terms::new(relative, order, kind);
@@ -43,7 +34,6 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
             has_lower_order: length::half_period(relative, kind).is_some(),
             limits: LaneLimits {
                 order,
-                tolerances: std::iter::once(relative).chain(absolute).collect(),
                 terms: [
                     terms.powers.map(|n| 1.0 / n as f64),
                     terms.powers.map(|n| 0.5 - 0.5 / n as f64),
@@ -78,17 +68,19 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         lane_begin(self.level, point, at_start, system, series, inverse)
     }
 
-    /// The length of the step, as a step of [`super::Taylor`]: see [`lane_length`].
+    /// The length of the step, as a step of [`super::Taylor`], with these tolerances (the relative one, then the absolute ones of
+    /// coordinates and velocities): see [`lane_length`].
     #[inline]
     pub fn length(
         &self,
         point: &LanePoint<F, W>,
-        limits: [&Lanes<W>; 2],
+        (limits, tolerances): ([&Lanes<W>; 2], &[Lanes<W>]),
         to: (&mut Lanes<W>, &mut LaneMask),
     ) -> LaneMask {
         let (h, unclear) = to;
         let to = (&mut *h, &mut *unclear);
-        let reached = lane_length(self.level, &self.limits, &self.series, point, limits, to);
+        let own = (&self.limits, tolerances);
+        let reached = lane_length(self.level, own, &self.series, point, limits, to);
         if self.has_lower_order {
             // Twice as soon: what decides is the single trajectory.
             let [last, horizon] = limits;

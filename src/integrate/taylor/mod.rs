@@ -157,6 +157,18 @@ impl<F: Size> Taylor<F> {
         }
     }
 
+    /// Forgets what was inverted, so that the work of the next run does not depend on the one before.
+    pub(crate) fn forget(&mut self) {
+        self.inverse.clear();
+    }
+
+    /// Takes other absolute tolerances, before a [`Taylor::restart`].
+    pub(crate) fn set_tolerances(&mut self, of: impl FnOnce(F) -> Tolerances<F>) {
+        let tolerances = of(self.tolerances.size());
+        debug_assert!(tolerances.relative() == self.tolerances.relative());
+        self.tolerances = tolerances;
+    }
+
     /// Goes on from a state that the last step did not lead to, as [`super::Radau::restart`]. Accelerations that are
     /// not given are those of the equations; [`Taylor::state`] has zeros instead before the first step.
     pub fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {

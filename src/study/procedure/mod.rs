@@ -75,6 +75,20 @@ impl Procedure {
         }
     }
 
+    /// The value of the next run of a search after these; `None` if it is over.
+    pub fn next(&self, runs: &[(f64, Failed)]) -> Option<f64> {
+        match self {
+            Procedure::Once { .. } => None,
+            Procedure::Ida(ida) => ida.next(runs),
+            Procedure::Critical(critical) => critical.next(runs),
+        }
+    }
+
+    /// The value of the first run of a search.
+    pub fn first_value(&self) -> Option<f64> {
+        self.next(&[])
+    }
+
     /// The largest value known not to fail below the first that does, and that one.
     pub fn bracket(&self, runs: &[(f64, Failed)]) -> Option<[f64; 2]> {
         match self {
@@ -86,12 +100,7 @@ impl Procedure {
 
     /// Where it begins.
     pub fn first(&self) -> Option<(&[Span], Node)> {
-        let along = self.along()?;
-        let value = match self {
-            Procedure::Ida(ida) => ida.first,
-            Procedure::Critical(critical) => critical.from,
-            Procedure::Once { .. } => return None,
-        };
+        let (along, value) = (self.along()?, self.first_value()?);
         Some((&along.names, number_node(value, &along.place)))
     }
 

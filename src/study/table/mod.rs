@@ -146,13 +146,10 @@ pub(crate) fn columns(study: &Study, finished: &Finished) -> Vec<Column> {
         "transitions",
         counts(&|row| row.events),
     ));
-    let meaning = "places where it cannot tell whether a guard falls";
-    columns.push(column(
-        "uncertain",
-        "1",
-        meaning,
-        counts(&|row| row.uncertain),
-    ));
+    let meaning = "places where it cannot tell whether a guard falls; empty where nobody looked, in vector lanes";
+    let uncertain = rows.iter().map(|row| row.uncertain.map(|n| n as i64));
+    let cells = Cells::Counts(uncertain.collect());
+    columns.push(column("uncertain", "1", meaning, cells));
     for (i, name) in WORK.iter().enumerate() {
         columns.push(column(
             name,

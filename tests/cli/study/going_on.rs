@@ -132,7 +132,7 @@ fn wait_for_parts(out: &Path, count: usize) {
 #[test]
 fn a_study_that_was_killed_goes_on_to_the_same_bytes() {
     let folder = folder();
-    long(folder.path(), 1500);
+    long(folder.path(), 8000);
     assert!(start(folder.path(), &["whole"]).wait().unwrap().success());
     let out = folder.path().join("killed");
     for parts in [1, 2] {

@@ -120,8 +120,10 @@ fn a_sweep_has_a_row_for_each_case_and_the_values_of_single_runs() {
             ("peak.theta", &summary["peaks"]["theta"]["max"]),
             ("end.theta.rate", &summary["end"]["v"]["theta.rate"]),
         ] {
+            // In lanes the steps are the same, with other roundings.
             let found: f64 = rows[case][column].parse().unwrap();
-            assert_eq!(Some(found), value.as_f64(), "{column} of case {case}");
+            let off = (found - value.as_f64().unwrap()).abs();
+            assert!(off <= 1e-13, "{column} of case {case}: {off:e}");
         }
     }
 }

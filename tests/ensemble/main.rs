@@ -1,10 +1,13 @@
 //! Ensembles: each trajectory is what a single run gives, and independent of everything around it.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod extremes;
+mod members;
 
 use common::{lifted_slider, numbers, problem, reference};
-use dalembert::hybrid::{Ensemble, Initial, Member, Problem, Simulator};
-use dalembert::input::{Function, Interpolation, Outside, Side, Sine, Table};
+use dalembert::hybrid::{Ensemble, Member, Problem, Simulator};
+use dalembert::input::{Function, Sine};
 use dalembert::kernel::processor_level;
 use dalembert::record::{Jump, Silent};
 
@@ -18,6 +21,8 @@ struct End {
     state: Vec<f64>,
     failure: Option<String>,
     steps: u64,
+    /// Matrices that were factorized: none is left over from the trajectory before.
+    factorizations: u64,
 }
 
 /// The problems of the members: `count` variations of one, which `vary` makes of a number in [0, 1).
@@ -46,6 +51,7 @@ fn alone(problems: &[Problem]) -> Vec<End> {
             state: [simulator.q(), simulator.v(), simulator.discrete()].concat(),
             failure,
             steps: simulator.solver().steps,
+            factorizations: simulator.solver().factorizations,
         }
     };
     problems.iter().map(run).collect()
@@ -66,6 +72,7 @@ fn together(problems: &[Problem], level: usize, threads: usize) -> Vec<End> {
         state: [finished.q(), finished.v(), finished.discrete()].concat(),
         failure: finished.failure.as_ref().map(|why| why.to_string()),
         steps: finished.steps(),
+        factorizations: finished.solver().factorizations,
     };
     pool.build()
         .unwrap()
@@ -453,63 +460,6 @@ fn oscillations_of_thousands_of_periods_are_those_of_single_runs() {
     }
 }
 
-#[test]
-fn members_start_where_their_initial_state_says() {
-    let initial = |h: f64| Initial {
-        q: vec![h],
-        v: vec![0.0],
-        discrete: vec![],
-        mode: None,
-    };
-    let mut ball = problem("hand_ball", &[]);
-    ball.initial = initial(1.0);
-    ball.end.time = 1.0;
-    set_size(&mut ball, 1e-9, 1.0, 4.4);
-    let g = ball.parameters[ball
-        .model
-        .parameters
-        .iter()
-        .position(|p| p.name == "g")
-        .unwrap()];
-    let balls = variations(&ball, 11, |p, x| p.initial = initial(1.0 + x));
-    for (end, ball) in together(&balls, processor_level(), 1).iter().zip(&balls) {
-        let fall = (2.0 * ball.initial.q[0] / g).sqrt();
-        assert!(
-            (end.events[0].1 - fall).abs() < 4e-16,
-            "{} {fall}",
-            end.events[0].1
-        );
-    }
-}
-
-/// Blocks under a record whose lines have a kink every hundredth of a second: lanes go on across it, to the same bits on every
-/// level and with any threads, and to what single runs give.
-#[test]
-fn kinks_of_a_record_are_passed_in_lanes() {
-    let times: Vec<f64> = (0..1001).map(|i| 0.01 * f64::from(i)).collect();
-    let shake = |t: &f64| -3.4 * (3.0 * std::f64::consts::PI * t + 0.3).sin();
-    let values: Vec<f64> = times.iter().map(shake).collect();
-    let mut problems = shaken_blocks(1e-10, 16);
-    for problem in &mut problems {
-        let table = Table::new(&times, &values, Interpolation::Linear, Outside::Zero);
-        problem
-            .set_input("ground_acceleration", table.unwrap().into())
-            .unwrap();
-    }
-    let single = alone(&problems);
-    assert!(
-        single
-            .iter()
-            .all(|end| end.steps > 1000 && end.failure.is_none())
-    );
-    let all = together(&problems, 0, 1);
-    let found = difference(&all, &single);
-    assert!(found < 1e-9, "{found:e}");
-    for level in 0..=processor_level() {
-        assert_eq!(together(&problems, level, 2), all, "level {level}");
-    }
-}
-
 /// The velocity is that of the load over 1e15 to 1e17 N s/m, below any tolerance, and turns back where the force is its own
 /// rounding.
 #[test]
@@ -532,61 +482,4 @@ fn a_motion_below_rounding_goes_through_in_lanes_as_alone() {
         }
         assert_eq!(alone, together(&problems, processor_level(), 1));
     }
-}
-
-/// Blocks that are shaken by sines of their own, by records of their own, and some like the scene: what a member gives depends on
-/// its own input alone.
-#[test]
-fn members_have_inputs_of_their_own() {
-    let mut problems = shaken_blocks(1e-10, 21);
-    for (i, problem) in problems.iter_mut().enumerate() {
-        let x = i as f64 / 21.0;
-        let shake = Sine::new(-3.4 - x, (3.0 - 0.5 * x) * std::f64::consts::PI, 0.3);
-        let input: Function = match i % 3 {
-            0 => continue,
-            1 => shake.into(),
-            _ => {
-                let times: Vec<f64> = (0..900).map(|i| (0.01 + 1e-3 * x) * f64::from(i)).collect();
-                let value = |t: &f64| Function::from(shake.clone()).at(*t, Side::Right).value;
-                let values: Vec<f64> = times.iter().map(value).collect();
-                let table = Table::new(&times, &values, Interpolation::Linear, Outside::Zero);
-                table.unwrap().into()
-            }
-        };
-        problem.set_input("ground_acceleration", input).unwrap();
-    }
-    let single = alone(&problems);
-    assert!(single.iter().all(|end| end.failure.is_none()));
-    let all = together(&problems, 0, 1);
-    let found = difference(&all, &single);
-    assert!(found < 1e-9, "{found:e}");
-    for level in 0..=processor_level() {
-        for threads in [1, 2] {
-            assert_eq!(together(&problems, level, threads), all, "level {level}");
-        }
-    }
-    let mut reversed = problems.clone();
-    reversed[1..].reverse(); // the first one is the scene itself
-    let mut ends = together(&reversed, processor_level(), 1);
-    ends[1..].reverse();
-    assert_eq!(ends, all);
-}
-
-#[test]
-fn a_scene_that_is_never_shaken_has_no_members_that_are() {
-    let shaken = &shaken_blocks(1e-9, 1)[0];
-    let mut still = shaken.clone();
-    let input = "ground_acceleration";
-    still.set_input(input, Function::zero()).unwrap();
-    let ends = together(&[still.clone(), shaken.clone()], processor_level(), 1);
-    assert_eq!(ends[0].failure, None);
-    let why = ends[1].failure.as_deref().unwrap();
-    assert!(
-        why.contains("acts in a member of the ensemble and not in its scene"),
-        "{why}"
-    );
-    // The other way round the input of the member is zero.
-    let ends = together(&[shaken.clone(), still.clone()], processor_level(), 1);
-    // It comes to rest, at the limit of a series, which is known to the tolerance.
-    assert!(difference(&ends[1..], &alone(&[still])) < 1e-8);
 }
