@@ -8,27 +8,33 @@ SERIES = ("series", "quiet_series", "guard_series")
 """What is emitted as a Taylor series."""
 
 LANES = ("series", "quiet_series", "requirement_bounds", "guard")
-"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and resets that stay in the mode."""
+"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and series of their guards that are not linear, and resets
+that stay in the mode."""
 
 MOST_IN_LANES = 6
 """Most free coordinates of modes that go in lanes; `FREE` in codegen/lanes.c tells so many apart."""
 
 
 def goes_in_lanes(variant, i):
-    """Whether trajectories in a mode can go side by side: it is analytic, nothing drifts, and its guards
-    are coordinates or rates whose fall is an event under any conditions; and few coordinates are free."""
+    """Whether trajectories in a mode can go side by side: it and its guards are analytic, nothing drifts, the fall of each guard is an
+    event under any conditions, and few coordinates are free."""
     equations = variant.modes[i]
-    analytic = all(variant.functions[i, what].symbol for what in ("series", "quiet_series"))
-    guards = [
-        linear_shape(variant.model, equations, equations.place(expression)) is not None
-        and any(t.condition is None for t in transitions)
-        for expression, transitions in equations.guards]
+    analytic = all(variant.functions[i, what].symbol for what in SERIES)
+    guards = [any(t.condition is None for t in transitions) for _, transitions in equations.guards]
     return 0 < len(equations.free) <= MOST_IN_LANES and analytic and not equations.mode.drift and all(guards)
 
 
 def is_for_lanes(variant, slot, function):
     """Whether a function, by its slot, is emitted for lanes, too."""
-    return (slot[1] in LANES or function.stays) and goes_in_lanes(variant, slot[0])
+    i, what, *_ = slot
+    wanted = what in LANES or function.stays or what == "guard_series" and has_general_guards(variant, i)
+    return wanted and goes_in_lanes(variant, i)
+
+
+def has_general_guards(variant, i):
+    """Whether a mode has a guard that is more than a coordinate or a rate."""
+    equations = variant.modes[i]
+    return any(linear_shape(variant.model, equations, equations.place(expression)) is None for expression, _ in equations.guards)
 
 
 def shape(model, equations, expression):

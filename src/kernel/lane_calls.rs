@@ -1,7 +1,7 @@
 //! Calls into the generated C of a model, for trajectories side by side.
 
 use super::context::Dimensions;
-use super::lanes::{LaneContext, LaneLevel, LaneSeries, LaneSystem};
+use super::lanes::{LANE_ROWS, LaneContext, LaneLevel, LaneSeries, LaneSystem};
 use super::raw::RawContext;
 use super::tables::{GuardKernel, ModeKernel, TransitionKernel};
 use crate::numerics::{Const, Lanes, ORDERS};
@@ -79,6 +79,33 @@ impl<const F: usize> ModeKernel<Const<F>> {
         let inverse = inverse.as_ptr().cast::<f64>().cast_mut();
         // SAFETY: as in `series_run`, with `W` numbers for each, which the level was compiled for.
         unsafe { (series.run)(n, q, v, a, u, &raw, w.cast(), inverse) }
+    }
+
+    /// As [`Self::guard_series`]: gives the coefficients, one row an order, as many rows as those of a series have.
+    ///
+    /// # Panics
+    /// If no guard of the mode is more than a coordinate or a rate.
+    pub(crate) fn lane_guard_series<'x, const W: usize>(
+        &self,
+        level: LaneLevel<W>,
+        x: &'x mut LaneContext<W>,
+        orders: usize,
+        at: &mut LaneSeries<F, W>,
+    ) -> &'x [Lanes<W>] {
+        let series = self.lane_kernel(level).guard_series.as_ref();
+        let series = series.expect("a guard is not linear");
+        let raw = x.raw(&self.dimensions);
+        assert!(orders <= ORDERS && x.workspace.len() >= self.workspace());
+        assert!(x.guard_series.len() == self.guards * LANE_ROWS);
+        let [q, v, a] = [&mut at.q, &mut at.v, &mut at.a].map(|rows| rows.as_mut_ptr().cast());
+        let (u, w) = (x.signal_series.as_ptr().cast(), x.workspace.as_mut_ptr());
+        let out = x.guard_series.as_mut_ptr().cast();
+        // SAFETY: as in `guard_series`, with `W` numbers for each, which the level was compiled for.
+        unsafe {
+            (series.start)(q, v, a, u, &raw, w.cast(), out);
+            (series.run)(orders, q, v, a, u, &raw, w.cast(), out);
+        }
+        &x.guard_series
     }
 
     /// As [`Self::requirement_bounds`], one lane entry a requirement; `quiet`: no input acts.

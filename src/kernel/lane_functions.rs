@@ -260,28 +260,29 @@ pub(crate) fn lane_length<const F: usize, const W: usize>(
     })
 }
 
-/// Looks for the first fall of a guard, factor · Σ `rows[k][i]` τᵏ + offset, on 0 < τ ≤ h. Where it is
+/// Looks for the first fall of a guard, factor · Σ rows[k · `stride` + i] τᵏ + offset over `count` rows, on 0 < τ ≤ h. Where it is
 /// before `place`, a part of h, that becomes it. `coefficients` get those in powers of τ/h. Gives the
 /// lanes with such a fall, and those where it takes a closer look.
 #[inline]
-pub(crate) fn lane_first_fall<const F: usize, const W: usize>(
+pub(crate) fn lane_first_fall<const W: usize>(
     level: LaneLevel<W>,
-    (rows, i): (&[[Lanes<W>; F]], usize),
+    (rows, count): (&[Lanes<W>], usize),
+    (stride, i): (usize, usize),
     h: &Lanes<W>,
     guard: &LaneGuard<W>,
     coefficients: &mut [Lanes<W>; ORDERS],
     place: &mut Lanes<W>,
 ) -> [LaneMask; 2] {
-    assert!(i < F && (2..=ORDERS).contains(&rows.len()));
+    assert!(i < stride && (2..=ORDERS).contains(&count) && rows.len() >= count * stride);
     let mut unclear = 0;
-    let row = rows.as_flattened()[i..].as_ptr().cast();
+    let row = rows[i..].as_ptr().cast();
     let first_fall = level.functions.first_fall;
-    // SAFETY: as many rows of F entries are there, of which entry i is read, and room for all
+    // SAFETY: as many rows of so many entries are there, of which entry i is read, and room for all
     // coefficients; the rest is one number a lane each, and a guard.
     let first = unsafe {
         first_fall(
-            rows.len(),
-            F,
+            count,
+            stride,
             row,
             (&raw const *h).cast(),
             (&raw const *guard).cast(),

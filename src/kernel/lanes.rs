@@ -104,6 +104,9 @@ pub(crate) struct LaneContext<const W: usize> {
     pub(super) discrete: LaneRows<W>,
     pub(super) held: LaneRows<W>,
     pub(super) constants: LaneRows<W>,
+    /// Taylor coefficients of the guards, one row an order, where one of them is not linear; those beyond the last order are zero, as in
+    /// [`LaneSeries`].
+    pub(super) guard_series: LaneRows<W>,
     pub(super) workspace: LaneRows<W>,
     /// Angles that sine and cosine were computed of last, which a function of C may replace.
     pub(super) angles: Box<[Cell<Block<W>>]>,
@@ -130,6 +133,7 @@ impl<const W: usize> LaneContext<W> {
             discrete: zeros(like.arrays.discrete.len()),
             held: zeros(like.arrays.held.len()),
             constants: zeros(like.arrays.constants.len()),
+            guard_series: zeros(kernel.guards * LANE_ROWS),
             workspace: zeros(kernel.workspace()),
             angles: zero_angles(like.dimensions.angles),
         };

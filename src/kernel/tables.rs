@@ -102,6 +102,8 @@ pub struct LaneKernel {
     /// The same where no input acts.
     pub(crate) quiet_series: SeriesKernel,
     pub(crate) requirement_bounds: Raw,
+    /// Where the mode has guards that are not linear.
+    pub(crate) guard_series: Option<SeriesKernel>,
 }
 
 /// The generated Taylor series of a mode.

@@ -330,6 +330,13 @@ pub struct Guard {
     pub transitions: Box<[Transition]>,
 }
 
+impl Guard {
+    /// Whether it is more than a coordinate or a rate.
+    pub fn is_general(&self) -> bool {
+        matches!(self.shape, GuardShape::General { .. })
+    }
+}
+
 /// How a guard depends on the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GuardShape {

@@ -92,12 +92,16 @@ pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String
 pub(super) fn limits(problem: &Problem, scene: &Checked, errors: &mut Errors) -> Limits {
     let (model, variant) = (&*problem.model, problem.variant());
     let mut limits = Limits::default();
-    let own_outputs = problem.outputs.iter().map(|o| &o.quantity);
-    let own_outputs: Vec<_> = own_outputs
-        .map(|q| (q.name.clone(), q.unit.clone()))
-        .collect();
-    let observables = observables(model, variant, &own_outputs);
-    for (name, said) in scene.get("limits").map_or(&[][..], Checked::entries) {
+    let said = scene.get("limits").map_or(&[][..], Checked::entries);
+    let observables = match said.iter().any(|(_, said)| said.is_object()) {
+        true => {
+            let own = problem.outputs.iter().map(|o| &o.quantity);
+            let own: Vec<_> = own.map(|q| (q.name.clone(), q.unit.clone())).collect();
+            observables(model, variant, &own)
+        }
+        false => Vec::new(),
+    };
+    for (name, said) in said {
         if said.is_object() {
             limits.own.extend(own(name, said, &observables, errors));
             continue;

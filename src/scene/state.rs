@@ -49,7 +49,9 @@ type Holding<'m> = (&'m Mode, Vec<Option<f64>>);
 
 /// Where a mode holds the coordinates under these parameters, if they are known.
 fn holding<'m>(model: &Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Holding<'m> {
-    let values = parameters.map(|parameters| {
+    let depends = |at: &Option<HeldAt>| matches!(at, Some(HeldAt::Expression(_)));
+    let depends = mode.held_at.iter().any(depends);
+    let values = parameters.filter(|_| depends).map(|parameters| {
         let context = Context::new(model, parameters);
         let mut values = vec![0.0; model.coordinates.len()];
         with_kernel!(&mode.kernels, k => k.held_values(&context, &mut values));

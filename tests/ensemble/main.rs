@@ -483,3 +483,33 @@ fn a_motion_below_rounding_goes_through_in_lanes_as_alone() {
         assert_eq!(alone, together(&problems, processor_level(), 1));
     }
 }
+
+/// Tanks that are let go from a tilt, and stick while they rock: friction and lift-off are guards that depend on forces.
+fn released_tanks(tolerance: f64) -> Vec<Problem> {
+    let mut tank = problem("walking_tank", &[]);
+    tank.set_initial("theta", 0.02).unwrap();
+    tank.set_initial("side", 1.0).unwrap();
+    tank.end.time = 0.5;
+    tank.set_tolerance(tolerance);
+    variations(&tank, 19, |p, x| {
+        p.set_initial("theta", 0.02 + 0.01 * x).unwrap();
+        p.set_tolerance(tolerance);
+    })
+}
+
+#[test]
+fn guards_that_are_forces_are_followed_in_lanes() {
+    for tolerance in [1e-6, 1e-10] {
+        let tanks = released_tanks(tolerance);
+        let (single, all) = (alone(&tanks), together(&tanks, 0, 1));
+        for (one, other) in single.iter().zip(&all) {
+            assert_eq!(one.failure, None);
+            assert!(one.events.len() > 3 && one.steps == other.steps);
+        }
+        let found = difference(&single, &all);
+        assert!(found < 1e-10, "{tolerance:e}: {found:e}");
+        for level in 0..=processor_level() {
+            assert_eq!(together(&tanks, level, 2), all, "level {level}");
+        }
+    }
+}

@@ -1,7 +1,6 @@
 //! Trajectories of one mode side by side, from one event of each to its next.
 
 use super::super::accumulation::{Accumulation, SHORTEST_PATTERN, Signature};
-use super::super::crossing::Signs;
 use super::super::guards::slope;
 use super::super::instant::Instant;
 use super::super::problem::Accuracy;
@@ -28,10 +27,11 @@ pub(super) enum Outcome {
     Unclear,
 }
 
-/// A guard of the mode that is watched.
+/// A guard of the mode that is watched and is a coordinate or a rate.
 pub(super) struct WatchedGuard<const W: usize> {
-    /// Index in the mode.
+    /// Index in the mode, and among those that are watched.
     pub guard: usize,
+    place: usize,
     /// Index of the coordinate, and whether it is its rate.
     pub of: (usize, bool),
     /// What it is multiplied with: a number, and a discrete state.
@@ -105,6 +105,8 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     pub context: LaneContext<W>,
     pub signals: LaneSignals<'p, W>,
     pub guards: Vec<WatchedGuard<W>>,
+    /// Indices of the other guards that are watched, in the mode.
+    pub general: Vec<usize>,
     /// Where the trajectories are. Accelerations are given where a segment starts.
     pub here: LanePoint<F, W>,
     /// Where the step under way leads to.
@@ -148,7 +150,10 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
         let (problem, mode) = (like.problem, like.mode());
         let context = LaneContext::new(kernel, &like.context);
         let (coordinates, discretes) = (like.here.q.len(), context.discrete().len());
-        let guards = like.plan.watched[like.here.mode].iter().map(|watched| {
+        let all = &like.plan.watched[like.here.mode];
+        let general = all.iter().map(|watched| watched.guard);
+        let general: Vec<usize> = general.filter(|&g| mode.guards[g].is_general()).collect();
+        let guards = all.iter().enumerate().filter_map(|(place, watched)| {
             let GuardShape::Linear {
                 index,
                 rate,
@@ -157,7 +162,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 offset,
             } = mode.guards[watched.guard].shape
             else {
-                unreachable!("codegen has looked at the guards of what goes in lanes")
+                return None;
             };
             let linear = LaneGuard {
                 factor: Lanes::of(1.0),
@@ -165,14 +170,16 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 starts_at_zero: LaneMask::NONE,
             };
             let own = &mode.guards[watched.guard];
-            let transition = transition_in_lanes(like, watched.guard);
+            let transition =
+                transition_in_lanes(like, watched.guard).filter(|_| general.is_empty());
             let signature = Signature {
                 guard: watched.guard,
                 transition: transition.unwrap_or_default(),
                 mode: like.here.mode,
             };
-            WatchedGuard {
+            Some(WatchedGuard {
                 guard: watched.guard,
+                place,
                 of: (index, rate),
                 factor: (factor, discrete),
                 offset,
@@ -184,8 +191,9 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 reset: LaneRows::zeros(2 * coordinates + discretes),
                 after: linear,
                 coefficients: [Lanes::of(0.0); ORDERS],
-            }
+            })
         });
+        let guards = guards.collect();
         let kind = kernel.series_kind(&like.context);
         let mut group = Group {
             kernel,
@@ -196,7 +204,8 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             taylor: LaneTaylor::new(level, problem.accuracy.relative, kind, order),
             context,
             signals: LaneSignals::new(level, &problem.signals),
-            guards: guards.collect(),
+            guards,
+            general,
             here: LanePoint::zero(),
             next: LanePoint::zero(),
             way: Way::new(),
@@ -232,8 +241,16 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     }
 
     /// Whether the guards of a simulation that has just entered the mode can be followed in a lane.
-    pub fn takes(signs: &Signs) -> bool {
-        !signs.waits() && signs.watches.iter().all(|watch| *watch != Watch::Violated)
+    pub fn takes(of: &Simulation) -> bool {
+        let (signs, mode) = (&of.signs, of.mode());
+        let watched = signs.watches.iter().zip(&of.plan.watched[of.here.mode]);
+        let mut known = watched.map(|(watch, watched)| match watch {
+            Watch::Armed => true,
+            // Of a general guard the values near zero are roundings.
+            Watch::Dormant => !mode.guards[watched.guard].is_general(),
+            Watch::Violated => false,
+        });
+        !signs.waits() && known.all(|known| known)
     }
 
     /// Puts a trajectory, which has just entered the mode, into a lane.
@@ -241,8 +258,8 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
         self.context.load(lane, &from.context);
         self.set_tolerances(lane, from.accuracy);
         self.set(lane, from);
-        for (guard, watch) in self.guards.iter_mut().zip(&from.signs.watches) {
-            let dormant = *watch == Watch::Dormant;
+        for guard in &mut self.guards {
+            let dormant = from.signs.watches[guard.place] == Watch::Dormant;
             guard.linear.starts_at_zero.set(lane, dormant);
         }
         if !std::ptr::eq(self.signals.of(lane), from.given_signals) {
@@ -261,6 +278,9 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     ///
     /// The accelerations, the mass matrix and what the mode requires are looked at in the next step.
     pub fn go_on(&mut self, lane: usize, from: &Simulation) -> bool {
+        if !self.general.is_empty() {
+            return false;
+        }
         self.context.load_state(lane, &from.context);
         self.set(lane, from);
         let here = LaneMask(1 << lane);

@@ -3,8 +3,8 @@
 //! Trajectories in the same mode go side by side, one in each lane of a vector register: each at its
 //! own time, with steps and events of its own (`group`, `step`), and takes the transitions that most events
 //! are (`transit`). What is not a plain step, a plain fall of a guard or a plain transition is done by the
-//! engine for single runs, on the trajectory alone, and so is a mode that does not go in lanes: stiff ones,
-//! and those with guards that are more than a coordinate or a rate. A trajectory that leaves its mode makes
+//! engine for single runs, on the trajectory alone, and so are the step in which a guard falls that is more than a coordinate or a
+//! rate, and a mode that does not go in lanes: stiff ones, and those that drift. A trajectory that leaves its mode makes
 //! room for the next that has entered it (`worker`).
 //!
 //! What a trajectory gives is independent of the others, of their number, of the number of lanes and of

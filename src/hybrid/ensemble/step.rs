@@ -6,8 +6,10 @@ use super::super::roots::{Isolation, Kind, Search, Watch};
 use super::super::search::{Coefficients, search_window};
 use super::group::{Group, Way};
 use crate::input::Signals;
-use crate::integrate::{LaneMask, Lanes};
-use crate::kernel::{lane_crossed, lane_durations, lane_take, lane_unmet};
+use crate::integrate::{LaneMask, Lanes, ORDERS};
+use crate::kernel::{
+    LaneGuard, lane_crossed, lane_durations, lane_first_fall, lane_take, lane_unmet,
+};
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
 /// [`super::super::locate`].
@@ -126,7 +128,49 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             }
             falls = falls | first;
         }
+        if !self.general.is_empty() {
+            self.look_at_general(unclear);
+        }
         falls
+    }
+
+    /// Marks the lanes in which a guard that is no coordinate and no rate may fall before the first of those that are, by its own
+    /// series, or that does not fall off: that is for the engine.
+    fn look_at_general(&mut self, unclear: &mut LaneMask) {
+        let order = self.taylor.order();
+        let (context, series) = (&mut self.context, &mut self.taylor.series);
+        let rows = (self.kernel).lane_guard_series(self.level, context, order, series);
+        let Way { h, places, .. } = &self.way;
+        let relative = self.past.tolerances[0].0;
+        let itself = LaneGuard {
+            factor: Lanes::of(1.0),
+            offset: Lanes::of(0.0),
+            starts_at_zero: LaneMask::NONE,
+        };
+        for &guard in &self.general {
+            let mut coefficients = [Lanes::of(0.0); ORDERS];
+            let which = (self.kernel.guards, guard);
+            let to = (&mut coefficients, &mut places.clone());
+            let falls = lane_first_fall(self.level, (rows, order), which, h, &itself, to.0, to.1);
+            let mut sizes = [Lanes::<W>::of(0.0); 2];
+            for (k, own) in coefficients[..order].iter().enumerate() {
+                let last = k + 2 >= order;
+                for lane in 0..W {
+                    sizes[0].0[lane] += own.0[lane].abs();
+                    sizes[1].0[lane] += if last { own.0[lane].abs() } else { 0.0 };
+                }
+            }
+            *unclear = *unclear | falls[0] | falls[1];
+            for lane in 0..W {
+                // As the search of a single run, which says why.
+                let most = relative[lane] * ((order * order) as f64 * sizes[0].0[lane]);
+                let falls_off = sizes[1].0[lane] <= most;
+                let is_positive = coefficients[0].0[lane] > 0.0;
+                if !(falls_off && is_positive) {
+                    unclear.set(lane, true);
+                }
+            }
+        }
     }
 
     /// Goes to the end of the step, in `next`: for a fall to the first state on its far side. Gives the

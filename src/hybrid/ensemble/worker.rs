@@ -306,7 +306,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             }
             if !alone
                 && self.ensemble.in_lanes[simulation.here.mode]
-                && Group::<0, W>::takes(&simulation.signs)
+                && Group::<0, W>::takes(simulation)
             {
                 *state = State::Waiting;
                 return;

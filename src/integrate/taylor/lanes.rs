@@ -113,8 +113,10 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
             false => &self.series.q[..self.order() + 2],
             true => &self.series.v[..self.order() + 1],
         };
-        let found = lane_first_fall(self.level, (rows, index), h, guard, coefficients, place);
-        (found, rows.len())
+        let (count, which) = (rows.len(), (F, index));
+        let rows = (rows.as_flattened(), count);
+        let found = lane_first_fall(self.level, rows, which, h, guard, coefficients, place);
+        (found, count)
     }
 
     /// Moves the end of the step, from `point`, beyond the zero of such a guard in some lanes: see

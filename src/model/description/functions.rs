@@ -52,11 +52,13 @@ impl Reader<'_> {
             true => self.lanes,
             false => &[],
         };
+        let general = guards.iter().any(Guard::is_general);
         let lanes = lanes.iter().map(|functions| {
             let series = |key: &str| at.get(key, |at| self.series(at, functions));
             Ok(LaneKernel {
                 series: series("series")?,
                 quiet_series: series("quiet_series")?,
+                guard_series: general.then(|| series("guard_series")).transpose()?,
                 requirement_bounds: at.get("requirement_bounds", |at| {
                     in_lanes(at, self.functions, functions)
                 })?,
