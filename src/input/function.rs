@@ -190,6 +190,16 @@ impl Function {
         out.zip(room).for_each(|(out, c)| *out = *c);
     }
 
+    /// Whether value and rate are all that is known of it in each piece: nothing, or a table without splines.
+    #[inline(always)]
+    fn is_line_in_pieces(&self) -> bool {
+        match &self.terms[..] {
+            [] => true,
+            [Term::Table(table)] => !table.is_cubic(),
+            _ => false,
+        }
+    }
+
     /// [`Function::at`] on the right of each of several times, for some lanes.
     #[inline]
     pub(super) fn at_lanes<const W: usize>(
@@ -205,6 +215,11 @@ impl Function {
                 sine.at_lanes(level, t, &mut of_all);
                 for lane in lanes.lanes() {
                     jet.set(lane, of_all.get(lane));
+                }
+            }
+            [Term::Table(table)] => {
+                for lane in (0..W).filter(|&lane| lanes.is(lane)) {
+                    jet.set(lane, table.at(t.0[lane], Side::Right));
                 }
             }
             _ => {
@@ -239,9 +254,23 @@ impl Function {
             }
             return;
         }
+        let [rate, value, ..] = jet.0;
+        if self.is_line_in_pieces() {
+            for (k, row) in rows.iter_mut().step_by(stride).enumerate() {
+                let own = match k {
+                    0 => &value,
+                    1 => &rate,
+                    _ => &Lanes::of(0.0),
+                };
+                match lanes == LaneMask::ALL {
+                    true => *row = *own,
+                    false => lanes.lanes().for_each(|lane| row.0[lane] = own.0[lane]),
+                }
+            }
+            return;
+        }
         let mut room = [0.0; Signals::MOST_ORDERS];
         let room = &mut room[..rows.len().div_ceil(stride)];
-        let [rate, value, ..] = jet.0;
         for lane in (0..W).filter(|&lane| lanes.is(lane)) {
             let known = [value, rate].map(|x| x.0[lane]);
             self.series(t.0[lane], Side::Right, known, 1, room);

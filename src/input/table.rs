@@ -184,6 +184,11 @@ impl Table {
         self.pieces[self.piece_index(t, side)].add_series(t, out);
     }
 
+    /// Whether it is a spline.
+    pub(super) fn is_cubic(&self) -> bool {
+        self.interpolation == Interpolation::Cubic
+    }
+
     /// Time of the last row, s.
     pub(super) fn end(&self) -> f64 {
         self.knots[self.knots.len() - 1]
@@ -230,10 +235,14 @@ impl Table {
             i.checked_sub(1).is_none_or(|i| is_before(&self.knots[i]))
                 && self.knots.get(i).is_none_or(|knot| !is_before(knot))
         };
-        let near = guess.min(self.knots.len());
-        (near..=(near + 2).min(self.knots.len()))
-            .find(fits)
-            .unwrap_or_else(|| self.knots.partition_point(is_before))
+        // Behind so many steps of the first knot there is one knot more.
+        let near = guess.saturating_add(1).min(self.knots.len());
+        let others = [near - 1, (near + 1).min(self.knots.len())];
+        match fits(&near) {
+            true => near,
+            false => (others.into_iter().find(fits))
+                .unwrap_or_else(|| self.knots.partition_point(is_before)),
+        }
     }
 
     /// Whether a knot is a breakpoint. At inner knots lines and splines go on continuously by construction; whether their
