@@ -91,8 +91,8 @@ void LANES(dalembert_lane_sin_cos)(const real *x, real *sine, real *cosine) {
   *cosine = pair.cos;
 }
 
-/* A sine, as Sine in src/input/sine.rs lays it out. */
-struct sine { double amplitude, angular_frequency, start, end, sin_phase, cos_phase, of_integral, of_double_integral; };
+/* A sine for each lane, as LaneSines in src/input/sine.rs lays them out. */
+struct sine { real amplitude, angular_frequency, start, end, sin_phase, cos_phase, of_integral, of_double_integral; };
 
 /* y - sin y for y >= 0, as there. */
 DALEMBERT_INLINE real less_its_sine(real y, real sin_y) {
@@ -108,8 +108,8 @@ DALEMBERT_INLINE real less_its_sine(real y, real sin_y) {
 /* Rate, value, integral and double integral of a sine just after the times t. */
 void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *jet);
 void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *jet) {
-  const double amplitude = sine->amplitude, omega = sine->angular_frequency;
-  const real start = REAL(sine->start), end = REAL(sine->end);
+  const real amplitude = sine->amplitude, omega = sine->angular_frequency;
+  const real start = sine->start, end = sine->end;
   const real acting = pick(below(*t, start), start, smaller(end, *t));
   const real y = omega * (acting - start);
   const struct dalembert_sin_cos half = dalembert_sin_cos(0.5 * y);
@@ -126,17 +126,17 @@ void LANES(dalembert_lane_sine)(const struct sine *sine, const real *t, real *je
   jet[3] = double_integral + integral * pick(below(end, *t), *t - end, zero);
 }
 
-/* Rows of the Taylor coefficients of a sine, from its value and rate: each is factor * inverses[k] times the
+/* Rows of the Taylor coefficients of a sine, from its value and rate: each is *factor * inverses[k] times the
  * last but one.
  */
-void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, double factor, const double *inverses,
+void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, const real *factor, const double *inverses,
                                        const real *jet, real *row);
-void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, double factor, const double *inverses,
+void LANES(dalembert_lane_sine_series)(size_t count, size_t stride, const real *factor, const double *inverses,
                                        const real *jet, real *row) {
   real now = jet[1], next = jet[0];
   for (size_t k = 0; k < count; ++k) {
     row[k * stride] = now;
-    const real after = now * (factor * inverses[k]);
+    const real after = now * (*factor * inverses[k]);
     now = next;
     next = after;
   }

@@ -4,7 +4,6 @@ use super::commanded::{Command, Commanded};
 use super::lanes::LaneJet;
 use super::sine::{self, Sine};
 use super::{Signals, Table};
-use crate::kernel::LaneLevel;
 use crate::numerics::{LaneMask, Lanes, Side};
 use crate::numerics::{Memory, Persist};
 
@@ -190,72 +189,50 @@ impl Function {
         out.zip(room).for_each(|(out, c)| *out = *c);
     }
 
-    /// Whether value and rate are all that is known of it in each piece: nothing, or a table without splines.
-    #[inline(always)]
-    fn is_line_in_pieces(&self) -> bool {
+    /// The sine that it is, if it is one.
+    pub(super) fn sine(&self) -> Option<&Sine> {
         match &self.terms[..] {
-            [] => true,
-            [Term::Table(table)] => !table.is_cubic(),
-            _ => false,
+            [Term::Sine(sine)] => Some(sine),
+            _ => None,
         }
     }
 
-    /// [`Function::at`] on the right of each of several times, for some lanes.
+    /// [`Function::at`] on the right of each of several times, for some lanes. Sines are for [`sine::LaneSines`].
     #[inline]
     pub(super) fn at_lanes<const W: usize>(
         &self,
-        (level, lanes): (LaneLevel<W>, LaneMask),
+        lanes: LaneMask,
         t: &Lanes<W>,
         jet: &mut LaneJet<W>,
     ) {
+        let lanes = (0..W).filter(|&lane| lanes.is(lane));
         match &self.terms[..] {
-            [Term::Sine(sine)] if lanes == LaneMask::ALL => sine.at_lanes(level, t, jet),
-            [Term::Sine(sine)] => {
-                let mut of_all = *jet;
-                sine.at_lanes(level, t, &mut of_all);
-                for lane in lanes.lanes() {
-                    jet.set(lane, of_all.get(lane));
-                }
-            }
             [Term::Table(table)] => {
-                for lane in (0..W).filter(|&lane| lanes.is(lane)) {
-                    jet.set(lane, table.at(t.0[lane], Side::Right));
-                }
+                lanes.for_each(|lane| jet.set(lane, table.at(t.0[lane], Side::Right)));
             }
-            _ => {
-                for lane in (0..W).filter(|&lane| lanes.is(lane)) {
-                    jet.set(lane, self.at(t.0[lane], Side::Right));
-                }
-            }
+            _ => lanes.for_each(|lane| jet.set(lane, self.at(t.0[lane], Side::Right))),
         }
     }
 
-    /// [`Function::series`] for each of several times, into every `stride`-th of `rows`, for some lanes.
+    /// [`Function::series`] for each of several times, into every `stride`-th of `rows`, for some lanes. Sines are for
+    /// [`sine::LaneSines`].
     #[inline]
     pub(super) fn series_of_lanes<const W: usize>(
         &self,
-        (level, lanes): (LaneLevel<W>, LaneMask),
+        lanes: LaneMask,
         t: &Lanes<W>,
         jet: &LaneJet<W>,
         stride: usize,
         rows: &mut [Lanes<W>],
     ) {
-        if let [Term::Sine(sine)] = &self.terms[..] {
-            if lanes == LaneMask::ALL {
-                return sine.fill_series_of_lanes(level, jet, stride, rows);
-            }
-            let mut of_all = [Lanes::of(0.0); Signals::MOST_ORDERS];
-            let of_all = &mut of_all[..rows.len().div_ceil(stride)];
-            sine.fill_series_of_lanes(level, jet, 1, of_all);
-            for (row, of_all) in rows.iter_mut().step_by(stride).zip(&*of_all) {
-                for lane in lanes.lanes() {
-                    row.0[lane] = of_all.0[lane];
-                }
-            }
-            return;
-        }
         let [rate, value, ..] = jet.0;
-        if self.is_line_in_pieces() {
+        // What jets tell is all of a constant, and of a straight line.
+        let is_line_in_pieces = match &self.terms[..] {
+            [] => true,
+            [Term::Table(table)] => !table.is_cubic(),
+            _ => false,
+        };
+        if is_line_in_pieces {
             for (k, row) in rows.iter_mut().step_by(stride).enumerate() {
                 let own = match k {
                     0 => &value,

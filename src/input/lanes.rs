@@ -1,5 +1,6 @@
 //! Signals of trajectories side by side.
 
+use super::sine::LaneSines;
 use super::{INVERSES, Jet, Signals};
 use crate::kernel::{LaneLevel, lane_antiderivative, lane_take};
 use crate::model::InputKind;
@@ -40,6 +41,8 @@ pub(crate) struct LaneSignals<'s, const W: usize> {
     of: [&'s Signals; W],
     /// Which of them differ, and the lanes that have each.
     groups: Vec<(&'s Signals, LaneMask)>,
+    /// Of each channel, the sines.
+    sines: Box<[LaneSines<W>]>,
     /// Times that the signals are set for, s; NaN: none.
     t: Lanes<W>,
     /// Of each channel.
@@ -54,6 +57,7 @@ impl<'s, const W: usize> LaneSignals<'s, W> {
             level,
             of: [signals; W],
             groups: vec![(signals, LaneMask::ALL)],
+            sines: sines(&[signals; W]),
             t: Lanes::of(f64::NAN),
             jets: vec![zero; signals.channels.len()].into(),
         }
@@ -77,6 +81,7 @@ impl<'s, const W: usize> LaneSignals<'s, W> {
         if let [(_, lanes)] = &mut self.groups[..] {
             *lanes = LaneMask::ALL;
         }
+        self.sines = sines(&self.of);
     }
 
     /// The functions of a lane.
@@ -94,9 +99,15 @@ impl<'s, const W: usize> LaneSignals<'s, W> {
             return;
         }
         self.t = *t;
+        for (sines, jet) in self.sines.iter().zip(&mut self.jets) {
+            if sines.lanes.any() {
+                sines.at(self.level, t, jet);
+            }
+        }
         for &(signals, lanes) in &self.groups {
-            for (c, jet) in signals.channels.iter().zip(&mut self.jets) {
-                c.function.at_lanes((self.level, lanes), t, jet);
+            let channels = signals.channels.iter().zip(&mut self.jets);
+            for (c, jet) in channels.filter(|(c, _)| c.function.sine().is_none()) {
+                c.function.at_lanes(lanes, t, jet);
             }
         }
         for (c, jet) in self.of[0].channels.iter().zip(&self.jets) {
@@ -129,10 +140,17 @@ impl<'s, const W: usize> LaneSignals<'s, W> {
     #[inline]
     pub fn series(&self, wanted: &[bool], rows: &mut [Lanes<W>]) {
         let width = wanted.len();
+        let of_all = self.of[0].channels.iter().zip(&self.jets);
+        for ((c, jet), sines) in of_all.zip(&self.sines) {
+            if sines.lanes.any() {
+                sines.fill_series(self.level, jet, width, &mut rows[c.signal..]);
+            }
+        }
         for &(signals, lanes) in &self.groups {
-            for (c, jet) in signals.channels.iter().zip(&self.jets) {
+            let channels = signals.channels.iter().zip(&self.jets);
+            for (c, jet) in channels.filter(|(c, _)| c.function.sine().is_none()) {
                 let own = &mut rows[c.signal..];
-                (c.function).series_of_lanes((self.level, lanes), &self.t, jet, width, own);
+                (c.function).series_of_lanes(lanes, &self.t, jet, width, own);
             }
         }
         for (c, jet) in self.of[0].channels.iter().zip(&self.jets) {
@@ -146,4 +164,12 @@ impl<'s, const W: usize> LaneSignals<'s, W> {
             }
         }
     }
+}
+
+/// The sines of each channel.
+fn sines<const W: usize>(of: &[&Signals; W]) -> Box<[LaneSines<W>]> {
+    let channels = 0..of[0].channels.len();
+    channels
+        .map(|c| LaneSines::new(of.map(|signals| signals.channels[c].function.sine())))
+        .collect()
 }

@@ -3,7 +3,7 @@
 use super::lanes::LaneJet;
 use super::{Jet, Side, Signals};
 use crate::kernel::{LaneLevel, lane_sine, lane_sine_series, sin_cos, sin_cos_of_eight};
-use crate::numerics::Lanes;
+use crate::numerics::{LaneMask, Lanes};
 
 /// 1/((k + 1) (k + 2)), of the product of the rounded inverses.
 const INVERSES_OF_PAIRS: [f64; Signals::MOST_ORDERS] = {
@@ -122,16 +122,10 @@ impl Sine {
         }
     }
 
-    /// [`Sine::at`] on the right of each of several times (codegen/lanes.c).
-    #[inline]
-    pub(super) fn at_lanes<const W: usize>(
-        &self,
-        level: LaneLevel<W>,
-        t: &Lanes<W>,
-        jet: &mut LaneJet<W>,
-    ) {
+    /// The numbers that its values follow from, as `struct sine` of codegen/lanes.c has them, and the factor of its series.
+    fn numbers(&self) -> [f64; 9] {
         let [of_integral, of_double_integral] = self.of_integrals;
-        let numbers = [
+        [
             self.amplitude,
             self.angular_frequency,
             self.start,
@@ -140,8 +134,8 @@ impl Sine {
             self.cos_phase,
             of_integral,
             of_double_integral,
-        ];
-        lane_sine(level, &numbers, t, &mut jet.0);
+            -(self.angular_frequency * self.angular_frequency),
+        ]
     }
 
     /// y = ω s while the sine acts.
@@ -203,19 +197,6 @@ impl Sine {
         }
     }
 
-    /// [`Sine::fill_series`] for each of several times.
-    #[inline]
-    pub(super) fn fill_series_of_lanes<const W: usize>(
-        &self,
-        level: LaneLevel<W>,
-        jet: &LaneJet<W>,
-        stride: usize,
-        out: &mut [Lanes<W>],
-    ) {
-        let factor = -(self.angular_frequency * self.angular_frequency);
-        lane_sine_series(level, (factor, &INVERSES_OF_PAIRS), &jet.0, stride, out);
-    }
-
     /// Start and end, if they are after `t`.
     pub fn next_breakpoint(&self, t: f64) -> f64 {
         [self.start, self.end]
@@ -230,6 +211,74 @@ impl Sine {
             std::f64::consts::FRAC_PI_2 / self.angular_frequency
         } else {
             f64::INFINITY
+        }
+    }
+}
+
+/// The sines of trajectories side by side, each with its own.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LaneSines<const W: usize> {
+    numbers: [Lanes<W>; 8],
+    /// Of the series: −ω².
+    factor: Lanes<W>,
+    /// The lanes that have one.
+    pub lanes: LaneMask,
+    /// Whether all of them have.
+    all: bool,
+}
+
+impl<const W: usize> LaneSines<W> {
+    /// Of some lanes. The values of a lane are the same whatever the others have.
+    pub fn new(of: [Option<&Sine>; W]) -> Self {
+        let mut sines = LaneSines {
+            numbers: [Lanes::of(0.0); 8],
+            factor: Lanes::of(0.0),
+            lanes: LaneMask::NONE,
+            all: of.iter().all(Option::is_some),
+        };
+        for (lane, sine) in of.into_iter().enumerate() {
+            let Some(sine) = sine else { continue };
+            let rows = sines.numbers.iter_mut().chain([&mut sines.factor]);
+            rows.zip(sine.numbers())
+                .for_each(|(row, number)| row.0[lane] = number);
+            sines.lanes.set(lane, true);
+        }
+        sines
+    }
+
+    /// [`Sine::at`] on the right of each of several times (codegen/lanes.c), in the lanes that have one.
+    #[inline]
+    pub fn at(&self, level: LaneLevel<W>, t: &Lanes<W>, jet: &mut LaneJet<W>) {
+        if self.all {
+            return lane_sine(level, &self.numbers, t, &mut jet.0);
+        }
+        let mut of_all = *jet;
+        lane_sine(level, &self.numbers, t, &mut of_all.0);
+        for lane in self.lanes.lanes() {
+            jet.set(lane, of_all.get(lane));
+        }
+    }
+
+    /// [`Sine::fill_series`] for each of several times, in the lanes that have one.
+    #[inline]
+    pub fn fill_series(
+        &self,
+        level: LaneLevel<W>,
+        jet: &LaneJet<W>,
+        stride: usize,
+        out: &mut [Lanes<W>],
+    ) {
+        let of = (&self.factor, &INVERSES_OF_PAIRS[..]);
+        if self.all {
+            return lane_sine_series(level, of, &jet.0, stride, out);
+        }
+        let mut of_all = [Lanes::of(0.0); Signals::MOST_ORDERS];
+        let of_all = &mut of_all[..out.len().div_ceil(stride)];
+        lane_sine_series(level, of, &jet.0, 1, of_all);
+        for (out, of_all) in out.iter_mut().step_by(stride).zip(&*of_all) {
+            for lane in self.lanes.lanes() {
+                out.0[lane] = of_all.0[lane];
+            }
         }
     }
 }

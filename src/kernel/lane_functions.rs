@@ -45,7 +45,7 @@ lane_functions!(
     (
         sin_cos(In, Out, Out);
         sine(In, In, Out);
-        sine_series(usize, usize, f64, In, In, Out);
+        sine_series(usize, usize, In, In, In, Out);
         antiderivative(usize, usize, In, In, Out);
         start(usize, In, Out, Out);
         begin(usize, In, Bits, In, Out, Out, Out, Out) -> Bits;
@@ -123,18 +123,18 @@ pub(crate) fn sin_cos_of_eight(x: &[f64; 8]) -> [[f64; 8]; 2] {
     }
 }
 
-/// Rate, value, integral and double integral of a sine at times of lanes (s), on their right; the numbers
+/// Rate, value, integral and double integral of the sine of each lane at its time (s), on the right of it; the numbers
 /// of a sine are those of [`crate::input::Sine`].
 #[inline]
 pub(crate) fn lane_sine<const W: usize>(
     level: LaneLevel<W>,
-    sine: &[f64; 8],
+    sine: &[Lanes<W>; 8],
     t: &Lanes<W>,
     jet: &mut [Lanes<W>; 4],
 ) {
     let (t, jet) = ((&raw const *t).cast(), jet.as_mut_ptr().cast());
-    // SAFETY: eight numbers, one number a lane, four a lane.
-    unsafe { (level.functions.sine)(sine.as_ptr(), t, jet) };
+    // SAFETY: eight numbers a lane, one, four.
+    unsafe { (level.functions.sine)(sine.as_ptr().cast(), t, jet) };
 }
 
 /// Rows of the Taylor coefficients of a sine into every `stride`-th of `rows`, given its jet. Each is the
@@ -142,7 +142,7 @@ pub(crate) fn lane_sine<const W: usize>(
 #[inline]
 pub(crate) fn lane_sine_series<const W: usize>(
     level: LaneLevel<W>,
-    (factor, inverses): (f64, &[f64]),
+    (factor, inverses): (&Lanes<W>, &[f64]),
     jet: &[Lanes<W>; 4],
     stride: usize,
     rows: &mut [Lanes<W>],
@@ -150,6 +150,7 @@ pub(crate) fn lane_sine_series<const W: usize>(
     let count = rows.len().div_ceil(stride);
     assert!(inverses.len() >= count);
     let (row, jet) = (rows.as_mut_ptr().cast(), jet.as_ptr().cast());
+    let factor = (&raw const *factor).cast();
     let series = level.functions.sine_series;
     // SAFETY: the last of the rows is (count − 1) · stride < their number; inverses are as many.
     unsafe { series(count, stride, factor, inverses.as_ptr(), jet, row) };
