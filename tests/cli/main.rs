@@ -21,6 +21,7 @@ mod page;
 mod pictures;
 mod precision;
 mod run;
+mod sizes;
 mod study;
 mod verify;
 mod watch;
