@@ -1,7 +1,7 @@
 //! The event engine: modes, guards, transitions, settling, accumulation.
 //!
 //! [`simulate`] runs a [`Problem`]. `simulation` holds the loop; `enter` starts a segment, `segment`
-//! integrates it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
+//! and `follow` integrate it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
 //! the transition; `accumulation` recognises where infinitely many of them end; `observe` records. [`resume`] goes on with
 //! a run that was interrupted.
 
@@ -19,6 +19,7 @@ mod equations;
 mod equilibrium;
 mod failure;
 mod fire;
+mod follow;
 mod guards;
 mod inertia;
 mod instant;
