@@ -313,10 +313,7 @@ pub(super) fn inverse<M: Matrix>(mass: &M, scale: &<M::Size as Size>::Vector) ->
     let size = mass.size();
     let mut inverse = size.zero_matrix();
     if let Ok(lu) = Lu::<f64, M::Size>::factorize(|i, j| mass[(i, j)], scale) {
-        for j in 0..size.get() {
-            let column = lu.solve(|i| if i == j { 1.0 } else { 0.0 });
-            (0..size.get()).for_each(|i| inverse[(i, j)] = column[i]);
-        }
+        lu.inverse(|i, j, entry| inverse[(i, j)] = entry);
     }
     inverse
 }

@@ -166,6 +166,18 @@ impl<T: Scalar, F: Size> Lu<T, F> {
     }
 }
 
+impl<F: Size> Lu<f64, F> {
+    /// Gives the entries of A⁻¹, by columns: row, column, value.
+    #[inline(always)]
+    pub fn inverse(&self, mut entry: impl FnMut(usize, usize, f64)) {
+        let n = self.size.get();
+        for j in 0..n {
+            let column = self.solve(|i| if i == j { 1.0 } else { 0.0 });
+            (0..n).for_each(|i| entry(i, j, column[i]));
+        }
+    }
+}
+
 /// Solves `matrix` · x = `right_side` by LU with row pivoting; rows are compared as they are after
 /// scaling row i by `row_scale[i]` (a typical size of coordinate i; all ones where units agree).
 ///

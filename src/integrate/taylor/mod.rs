@@ -440,11 +440,7 @@ impl<F: Size> Taylor<F> {
             }
         })?;
         let inverse = self.inverse.write();
-        let n = mass.size().get();
-        for j in 0..n {
-            let column = lu.solve(|i| if i == j { 1.0 } else { 0.0 });
-            (0..n).for_each(|i| inverse.1[(i, j)] = column[i]);
-        }
+        lu.inverse(|i, j, entry| inverse.1[(i, j)] = entry);
         self.counters.factorizations += 1;
         inverse.0 = mass;
         Ok(())
