@@ -16,7 +16,7 @@ mod uncertain;
 pub(crate) use digest::{digest, hexadecimal};
 pub use layout::{Layout, Quantity, Recorded};
 pub use peaks::Peak;
-pub use progress::{Progress, Silent};
+pub use progress::{Progress, Silent, Until};
 pub use reached::{Left, LimitState, Reached};
 pub use recorder::Recorder;
 pub use result::{

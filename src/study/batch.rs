@@ -15,6 +15,9 @@ use crate::hybrid::{Ensemble, Member, Problem};
 /// Cases of single runs in a batch: at the end of one, lanes run empty.
 const MOST: usize = 256;
 
+/// Most lanes that a processor has: with fewer cases than these a study has no use of an ensemble.
+const LANES: usize = 8;
+
 /// Searches in a batch. Each round makes one run of each; what is finished is known when the last one is.
 const MOST_SEARCHES: usize = 16;
 
@@ -28,11 +31,14 @@ struct Search {
 
 impl Study {
     /// The ensemble whose members the runs of the study can be: of the scene itself or, where that is not like a case in the
-    /// middle of the design, of that. `None` where what is measured is more than an ensemble tells.
-    pub fn ensemble(&self) -> Option<Ensemble> {
+    /// middle of the design, of that. `None` where what is measured is more than an ensemble tells, or where there are few cases.
+    pub fn ensemble(&self, stop: &AtomicBool) -> Option<Ensemble> {
+        if self.cases() < LANES as u64 {
+            return None;
+        }
         let middle = self.planned(self.cases() / 2, self.procedure.first_value());
         let middle = middle.problem.ok()?;
-        let of = |problem: &Problem| Ensemble::recording(problem).ok().flatten();
+        let of = |problem: &Problem| Ensemble::recording(problem, stop).ok().flatten();
         let scene = self.problem(&[], None).ok();
         let of_scene = scene.and_then(|scene| of(&scene));
         of_scene
@@ -46,8 +52,9 @@ impl Study {
             None => MOST,
             Some(_) => MOST_SEARCHES,
         };
-        // Towards the end no thread is to wait long for another.
-        (pending / (8 * threads)).clamp(1, most)
+        // Towards the end no thread is to wait long for another; and lanes are to be full, as long as each thread has some.
+        let least = LANES.min(pending.div_ceil(threads)).max(1);
+        (pending / (8 * threads)).clamp(least, most)
     }
 
     /// Runs all cases of a batch; `finished` gets each with its rows in the order in which they were made. Those that have not
@@ -121,8 +128,14 @@ impl Study {
         let Some(ensemble) = ensemble else { return };
         ensemble.run_here(&members, stop, |member, mut finished| {
             let run = &planned[places[member]];
-            let row = self.row(run, &OfEnsemble::new(&mut finished));
-            if let Some(row) = self.decided(row, run, stop) {
+            let row = match &finished.failure {
+                Some(reason) if !finished.has_begun => Some(self.refused(run, reason.to_string())),
+                _ => {
+                    let row = self.row(run, &OfEnsemble::new(&mut finished));
+                    self.decided(row, run, true, stop)
+                }
+            };
+            if let Some(row) = row {
                 take(places[member], row);
             }
         });

@@ -11,7 +11,7 @@ use super::procedure::{Along, Failed};
 use super::rows::{Row, Status};
 use crate::hybrid::{Observer, Problem, simulate_member};
 use crate::integrate::{Const, Tolerances};
-use crate::run::{Jump, Progress, Snapshot};
+use crate::run::{Jump, Snapshot, Until};
 use crate::scene::SceneErrors;
 use crate::scene::template::Change;
 
@@ -39,18 +39,6 @@ impl Observer for Deaf {
         false
     }
     fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
-}
-
-/// Ends a run when the study is to stop.
-struct Stoppable<'s>(&'s AtomicBool);
-
-impl Progress for Stoppable<'_> {
-    fn advance(&mut self, _: f64, _: u64) -> ControlFlow<()> {
-        match self.0.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    }
 }
 
 /// A run that is to be made.
@@ -86,22 +74,24 @@ impl Study {
 
     /// Makes a run; `None` if it was stopped.
     pub fn run_alone(&self, planned: &Planned, stop: &AtomicBool) -> Option<Row> {
-        let refused = |reason: String| {
-            let none = vec![f64::NAN; self.measures.len()];
-            Row::refused(planned.case, planned.intensity, none, reason)
-        };
         let problem = match &planned.problem {
             Ok(problem) => problem,
-            Err(reason) => return Some(refused(reason.clone())),
+            Err(reason) => return Some(self.refused(planned, reason.clone())),
         };
-        let run = match simulate_member(problem, &mut Deaf, &mut Stoppable(stop)) {
+        let run = match simulate_member(problem, &mut Deaf, &mut Until(stop)) {
             Ok(run) => run,
-            Err(reason) => return Some(refused(reason.to_string())),
+            Err(reason) => return Some(self.refused(planned, reason.to_string())),
         };
         if run.failure.is_some() && stop.load(Ordering::Relaxed) {
             return None;
         }
-        self.decided(self.row(planned, &run), planned, stop)
+        self.decided(self.row(planned, &run), planned, false, stop)
+    }
+
+    /// The row of a run that cannot be started.
+    pub fn refused(&self, planned: &Planned, reason: String) -> Row {
+        let none = vec![f64::NAN; self.measures.len()];
+        Row::refused(planned.case, planned.intensity, none, reason)
     }
 
     /// The row of a run; whether it is decided is not looked at.
@@ -132,21 +122,34 @@ impl Study {
         }
     }
 
-    /// A row after a second run, where it is to have one; `None` if that was stopped.
-    pub fn decided(&self, mut row: Row, planned: &Planned, stop: &AtomicBool) -> Option<Row> {
+    /// A row after a second run, where it is to have one; `None` if that was stopped. `in_lanes`: the first was made in an ensemble.
+    pub fn decided(
+        &self,
+        mut row: Row,
+        planned: &Planned,
+        in_lanes: bool,
+        stop: &AtomicBool,
+    ) -> Option<Row> {
         let Ok(problem) = &planned.problem else {
             return Some(row);
         };
         if !self.needs_second(&row) {
             return Some(row);
         }
+        // Steps of lanes have other roundings, by which the same steps cannot be known.
+        let alone = match in_lanes {
+            true => self.alone(problem, stop)?,
+            false => None,
+        };
+        let first = alone.map_or_else(|| row.values.clone(), |run| run.values);
         let mut problem = problem.clone();
         row.undecided = loop {
-            let Some(again) = self.again(&mut problem, stop)? else {
+            tighten(&mut problem);
+            let Some(again) = self.alone(&problem, stop)? else {
                 break true;
             };
             // A method that is better than it is asked for may take the very same steps: that says nothing.
-            let same = again.values.iter().zip(&row.values);
+            let same = again.values.iter().zip(&first);
             let same = same.fold(true, |same, (a, b)| same && a.to_bits() == b.to_bits());
             if !same || problem.accuracy.relative <= LEAST {
                 break self.is_undecided(&row, &again);
@@ -172,7 +175,8 @@ impl Study {
             let Ok(mut problem) = self.planned(case, Some(value)).problem else {
                 continue;
             };
-            let again = self.again(&mut problem, stop)?;
+            tighten(&mut problem);
+            let again = self.alone(&problem, stop)?;
             row.undecided = again.is_none_or(|again| again.failed != row.failed);
         }
         Some(())
@@ -227,17 +231,9 @@ impl Study {
         }
     }
 
-    /// The run of a problem whose tolerance is tightened; the inner `None` where it cannot start, the outer where it was stopped.
-    fn again(&self, problem: &mut Problem, stop: &AtomicBool) -> Option<Option<Measured>> {
-        let accuracy = &mut problem.accuracy;
-        let factor = (accuracy.relative * TIGHTER).max(LEAST) / accuracy.relative;
-        accuracy.relative *= factor;
-        let absolute = accuracy
-            .q_absolute
-            .iter_mut()
-            .chain(&mut accuracy.v_absolute);
-        absolute.for_each(|tolerance| *tolerance *= factor);
-        let run = simulate_member(problem, &mut Deaf, &mut Stoppable(stop));
+    /// A run by itself; the inner `None` where it cannot start, the outer where it was stopped.
+    fn alone(&self, problem: &Problem, stop: &AtomicBool) -> Option<Option<Measured>> {
+        let run = simulate_member(problem, &mut Deaf, &mut Until(stop));
         match run {
             Ok(run) if run.failure.is_some() && stop.load(Ordering::Relaxed) => None,
             Ok(run) => Some(Some(self.measured(&run))),
@@ -257,4 +253,16 @@ impl Study {
             _ => row.failed != again.failed,
         }
     }
+}
+
+/// Tightens the tolerances for a second run.
+fn tighten(problem: &mut Problem) {
+    let accuracy = &mut problem.accuracy;
+    let factor = (accuracy.relative * TIGHTER).max(LEAST) / accuracy.relative;
+    accuracy.relative *= factor;
+    let absolute = accuracy
+        .q_absolute
+        .iter_mut()
+        .chain(&mut accuracy.v_absolute);
+    absolute.for_each(|tolerance| *tolerance *= factor);
 }

@@ -61,18 +61,21 @@ pub(crate) fn run(
 ) -> Result<Ended, StudyFolderError> {
     let stop = AtomicBool::new(false);
     let next = AtomicUsize::new(0);
-    let ensemble = &study.ensemble();
     let size = study.batch(pending.len(), rayon::current_num_threads());
     let batches: &Vec<&[u64]> = &pending.chunks(size).collect();
     let (send, receive) = mpsc::channel::<Vec<(u64, Vec<Row>)>>();
     std::thread::scope(|scope| {
         let (stop, next) = (&stop, &next);
         let pool = rayon::current_num_threads();
-        let ensemble = ensemble.as_ref();
         // Rayon's threads must not wait for the disk, so this thread keeps what they send.
         let spawned = std::thread::Builder::new()
             .name("study".into())
             .spawn_scoped(scope, move || {
+                let ensemble = match pending.is_empty() {
+                    true => None,
+                    false => study.ensemble(stop),
+                };
+                let ensemble = ensemble.as_ref();
                 let work = || {
                     let threads = (0..pool).into_par_iter().with_max_len(1);
                     threads.for_each_with(send, |send, _| {

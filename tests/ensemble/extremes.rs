@@ -4,6 +4,8 @@ use super::common::problem;
 use super::{dry_oscillators, pairs_of_balls, set_size, shaken_blocks, shuttles, variations};
 use dalembert::hybrid::{Ensemble, Member, Problem, simulate};
 use dalembert::kernel::processor_level;
+use std::sync::atomic::AtomicBool;
+
 use dalembert::record::{Peak, Recorded, Silent};
 
 /// The extremes of coordinates and velocities of each, by single runs.
@@ -20,7 +22,9 @@ fn alone(problems: &[Problem]) -> Vec<Vec<Peak>> {
 fn together(problems: &[Problem], level: usize, threads: usize) -> Vec<Vec<Peak>> {
     let mut scene = problems[0].clone();
     (scene.record.ledger, scene.record.columns) = (false, Recorded::default());
-    let ensemble = Ensemble::recording(&scene).unwrap().unwrap();
+    let ensemble = Ensemble::recording(&scene, &AtomicBool::new(false))
+        .unwrap()
+        .unwrap();
     let ensemble = ensemble.at_level(level);
     let members: Vec<_> = problems.iter().map(Member::from).collect();
     let count = 2 * problems[0].model.coordinates.len();

@@ -105,8 +105,9 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     pub context: LaneContext<W>,
     pub signals: LaneSignals<'p, W>,
     pub guards: Vec<WatchedGuard<W>>,
-    /// Indices of the other guards that are watched, in the mode.
+    /// Indices of the other guards that are watched, in the mode, and room for the coefficients of one.
     pub general: Vec<usize>,
+    pub room: [Lanes<W>; ORDERS],
     /// Where the trajectories are. Accelerations are given where a segment starts.
     pub here: LanePoint<F, W>,
     /// Where the step under way leads to.
@@ -206,6 +207,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             signals: LaneSignals::new(level, &problem.signals),
             guards,
             general,
+            room: [Lanes::of(0.0); ORDERS],
             here: LanePoint::zero(),
             next: LanePoint::zero(),
             way: Way::new(),

@@ -22,7 +22,7 @@ use super::member::Member;
 use super::problem::{Method, Problem, Record};
 use super::simulation::Simulation;
 use crate::kernel::{LANES_OF_LEVELS, processor_level, with_kernel};
-use crate::run::{Jump, Layout, Peak, Reached, Recorded, Silent, Snapshot, Solver};
+use crate::run::{Jump, Layout, Peak, Reached, Recorded, Snapshot, Solver, Until};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize};
 use worker::Worker;
@@ -43,6 +43,8 @@ pub struct Finished<'a, 'p> {
     simulation: &'a mut Simulation<'p>,
     /// Why it stopped before its end, if it did.
     pub failure: Option<Reason>,
+    /// Whether it could be started; if not, it has no state.
+    pub has_begun: bool,
 }
 
 impl Ensemble {
@@ -54,15 +56,17 @@ impl Ensemble {
     /// # Errors
     /// As [`super::simulate`].
     pub fn new(problem: &Problem) -> Result<Self, Reason> {
-        Self::prepare(problem, false, Recorded::default())
+        let never = AtomicBool::new(false);
+        Self::prepare(problem, (false, Recorded::default()), Until(&never))
     }
 
     /// The same with what the problem records, as far as that is extremes of coordinates and velocities ([`Finished::peak`]), and
-    /// reactions and outputs at the end ([`Finished::state`]): `None` where it records more.
+    /// reactions and outputs at the end ([`Finished::state`]): `None` where it records more. The run of the scene ends when `stop` becomes
+    /// true.
     ///
     /// # Errors
     /// As [`super::simulate`].
-    pub fn recording(problem: &Problem) -> Result<Option<Self>, Reason> {
+    pub fn recording(problem: &Problem, stop: &AtomicBool) -> Result<Option<Self>, Reason> {
         let Record {
             columns,
             ledger,
@@ -72,11 +76,15 @@ impl Ensemble {
         let more = ledger || columns.energies || extremes && (columns.reactions || columns.outputs);
         match more {
             true => Ok(None),
-            false => Self::prepare(problem, extremes, columns).map(Some),
+            false => Self::prepare(problem, (extremes, columns), Until(stop)).map(Some),
         }
     }
 
-    fn prepare(problem: &Problem, extremes: bool, columns: Recorded) -> Result<Self, Reason> {
+    fn prepare(
+        problem: &Problem,
+        (extremes, columns): (bool, Recorded),
+        mut stop: Until,
+    ) -> Result<Self, Reason> {
         problem.check()?;
         let mut problem = problem.clone();
         problem.record.ledger = false;
@@ -92,7 +100,7 @@ impl Ensemble {
             Method::Taylor => vec![false; modes.len()],
             Method::Auto => {
                 // Where it fails it has shown what it can.
-                let _ = pilot.run(&mut Silent);
+                let _ = pilot.run(&mut stop);
                 let verdicts = pilot.stiffness.iter();
                 verdicts.map(|s| s.is_stiff()).collect()
             }
@@ -147,7 +155,7 @@ impl Ensemble {
                 results.push((member, extract(member, finished)));
             };
             let never = AtomicBool::new(false);
-            self.work(members, (&next, workers), &never, &mut take);
+            self.work(members, (&next, workers), Until(&never), &mut take);
             results
         };
         // Each takes the next member when it has room for one, so none waits while there are any.
@@ -173,7 +181,7 @@ impl Ensemble {
         stop: &AtomicBool,
         mut take: impl FnMut(usize, Finished),
     ) {
-        self.work(members, (&AtomicUsize::new(0), 1), stop, &mut take);
+        self.work(members, (&AtomicUsize::new(0), 1), Until(stop), &mut take);
     }
 
     /// Runs members until there are no more, from the `next` on that no other of so many workers has started.
@@ -181,7 +189,7 @@ impl Ensemble {
         &self,
         members: &[Member],
         share: (&AtomicUsize, usize),
-        stop: &AtomicBool,
+        stop: Until,
         take: &mut impl FnMut(usize, Finished),
     ) {
         match LANES_OF_LEVELS[self.level] {

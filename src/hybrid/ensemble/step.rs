@@ -6,7 +6,7 @@ use super::super::roots::{Isolation, Kind, Search, Watch};
 use super::super::search::{Coefficients, search_window};
 use super::group::{Group, Way};
 use crate::input::Signals;
-use crate::integrate::{LaneMask, Lanes, ORDERS};
+use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{
     LaneGuard, lane_crossed, lane_durations, lane_first_fall, lane_take, lane_unmet,
 };
@@ -148,10 +148,10 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             starts_at_zero: LaneMask::NONE,
         };
         for &guard in &self.general {
-            let mut coefficients = [Lanes::of(0.0); ORDERS];
-            let which = (self.kernel.guards, guard);
-            let to = (&mut coefficients, &mut places.clone());
-            let falls = lane_first_fall(self.level, (rows, order), which, h, &itself, to.0, to.1);
+            let (coefficients, mut place) = (&mut self.room, *places);
+            let (all, which) = ((rows, order), (self.kernel.guards, guard));
+            let [falls, looks] =
+                lane_first_fall(self.level, all, which, h, &itself, coefficients, &mut place);
             let mut sizes = [Lanes::<W>::of(0.0); 2];
             for (k, own) in coefficients[..order].iter().enumerate() {
                 let last = k + 2 >= order;
@@ -160,7 +160,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
                     sizes[1].0[lane] += if last { own.0[lane].abs() } else { 0.0 };
                 }
             }
-            *unclear = *unclear | falls[0] | falls[1];
+            *unclear = *unclear | falls | looks;
             for lane in 0..W {
                 // As the search of a single run, which says why.
                 let most = relative[lane] * ((order * order) as f64 * sizes[0].0[lane]);

@@ -7,21 +7,8 @@ use super::group::{Group, Outcome};
 use super::{Ensemble, Finished};
 use crate::integrate::LaneMask;
 use crate::kernel::{LaneLevel, with_kernel};
-use crate::run::Progress;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-
-/// Ends a segment when the ensemble is to stop.
-struct Until<'s>(&'s AtomicBool);
-
-impl Progress for Until<'_> {
-    fn advance(&mut self, _: f64, _: u64) -> ControlFlow<()> {
-        match self.0.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    }
-}
+use crate::run::Until;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A group, whatever its number of free coordinates.
 trait AnyGroup<'p, const W: usize> {
@@ -117,7 +104,7 @@ pub(super) struct Worker<'a, const W: usize> {
     /// The first member that no worker has started.
     next: &'a AtomicUsize,
     /// Whether it is to stop.
-    stop: &'a AtomicBool,
+    stop: Until<'a>,
     slots: Vec<Slot<'a>>,
     /// The lanes of each mode, made when they are first needed.
     lanes: Vec<Option<Lanes<'a, W>>>,
@@ -133,7 +120,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         ensemble: &'a Ensemble,
         members: &'a [Member<'a>],
         (next, workers): (&'a AtomicUsize, usize),
-        stop: &'a AtomicBool,
+        stop: Until<'a>,
     ) -> Self {
         let modes = ensemble.problem.variant().modes.len();
         let going = ensemble.in_lanes.iter().filter(|&&goes| goes).count();
@@ -159,7 +146,7 @@ impl<'a, const W: usize> Worker<'a, W> {
 
     /// Runs all of them; `take` gets each at its end.
     pub fn run(mut self, take: &mut impl FnMut(usize, Finished)) {
-        while !self.stop.load(Ordering::Relaxed) {
+        while !self.stop.is_reached() {
             if std::mem::take(&mut self.vacancies) {
                 (0..self.slots.len()).for_each(|slot| self.fill(slot, take));
             }
@@ -174,14 +161,23 @@ impl<'a, const W: usize> Worker<'a, W> {
 
     /// Starts members in a slot until one waits for a lane, and looks for one.
     fn fill(&mut self, slot: usize, take: &mut impl FnMut(usize, Finished)) {
-        while self.slots[slot].state == State::Free && !self.stop.load(Ordering::Relaxed) {
+        while self.slots[slot].state == State::Free && !self.stop.is_reached() {
             let member = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(next) = self.members.get(member) else {
                 return;
             };
             self.slots[slot].member = member;
-            let begun = self.slots[slot].simulation.become_member(next);
-            self.go_on(slot, begun.map(|()| true).map_err(Box::new), false, take);
+            match self.slots[slot].simulation.become_member(next) {
+                Ok(()) => self.go_on(slot, Ok(true), false, take),
+                Err(reason) => {
+                    let finished = Finished {
+                        simulation: &mut self.slots[slot].simulation,
+                        failure: Some(reason),
+                        has_begun: false,
+                    };
+                    take(member, finished);
+                }
+            }
         }
         if self.slots[slot].state == State::Waiting {
             self.find_lane(slot);
@@ -312,11 +308,11 @@ impl<'a, const W: usize> Worker<'a, W> {
                 return;
             }
             alone = false;
-            passed = simulation.advance_to_event(false, &mut Until(self.stop));
+            passed = simulation.advance_to_event(false, &mut self.stop);
         };
         *state = State::Free;
         // One that was stopped has not come to its end.
-        if self.stop.load(Ordering::Relaxed) {
+        if self.stop.is_reached() {
             return;
         }
         simulation.count_work();
@@ -328,6 +324,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             Finished {
                 simulation,
                 failure,
+                has_begun: true,
             },
         );
     }

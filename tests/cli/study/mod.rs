@@ -128,6 +128,34 @@ fn a_sweep_has_a_row_for_each_case_and_the_values_of_single_runs() {
     }
 }
 
+/// Nine oscillators in lanes, and one beyond its stop, which cannot begin: it is refused with the reason of a single run, as is that
+/// of a study too small for lanes.
+#[test]
+fn a_run_that_cannot_begin_is_refused_in_lanes_as_alone() {
+    let folder = folder();
+    let free = json!({ "static_friction": 0, "kinetic_friction": 0, "stop": 1 });
+    let scene = json!({
+        "model": "coulomb_oscillator", "parameters": free, "initial": { "x": 0.5 }, "end": 1
+    });
+    write(folder.path(), "scene.json", &scene);
+    let places: Vec<f64> = (0..9).map(|i| 0.1 * f64::from(i)).chain([2.0]).collect();
+    let study = |places: &[f64]| {
+        let study = json!({
+            "scene": "scene.json", "vary": { "initial.x": places }, "measure": ["end.x", "peak.x"]
+        });
+        write(folder.path(), "study.json", &study);
+        let rows = run(folder.path());
+        fs::remove_dir_all(folder.path().join("out")).unwrap();
+        rows
+    };
+    let (many, few) = (study(&places), study(&places[8..]));
+    assert_eq!((&*many[0]["uncertain"], &*few[0]["uncertain"]), ("", "0"));
+    for column in ["status", "reason", "end.x", "peak.x", "t"] {
+        assert_eq!(many[9][column], few[1][column], "{column}");
+    }
+    assert_eq!((&*many[9]["status"], &*many[9]["end.x"]), ("refused", ""));
+}
+
 #[test]
 fn the_studies_that_ship_run() {
     let folder = tempfile::tempdir().unwrap();
