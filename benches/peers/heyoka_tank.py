@@ -91,7 +91,7 @@ class Tank:
         return (self.library.tank_idle(self.free, t, self.address(y), 0, self.discrete_at), *self.discrete)
 
     def expressions(self):
-        variant = generate._variant(generate.load(str(ROOT / "models" / "walking_tank"))[0])
+        variant = generate.derive_variant(generate.load(str(ROOT / "models" / "walking_tank"))[0])
         model = variant.model
         y = hy.make_vars("theta", "x_I", "x", "theta_rate", "x_I_rate", "x_rate")
         zero = hy.expression(0.0)
@@ -109,7 +109,7 @@ class Tank:
             mass, load = ca.reshape(system[: n * n], n, n), system[n * n:]
             accelerations = -ca.inv_minor(mass) @ load
             inputs = [equations.q, equations.v, discretes, signals, equations.held]
-            arguments = [[y[i] for i in free], [y[3 + i] for i in free], [hy.par[0], hy.par[1]], [ground, zero, zero], [*y[:3], zero]]
+            arguments = [[y[i] for i in free], [y[3 + i] for i in free], [hy.par[0], hy.par[1]], [ground, *[zero] * (signals.numel() - 1)], [*y[:3], zero]]
             # All of the parameters of the full plate are the model's defaults.
             place = lambda e: ca.Function("f", inputs, [ca.densify(ca.cse(ca.substitute(ca.substitute(e, equations.a, accelerations), parameters, values)))])
             a = translated(place(accelerations), *arguments)

@@ -1,9 +1,10 @@
 """The walking tank for the peers: its generated C, compiled, and the tables of its modes as C++.
 
-python3 tank.py FOLDER writes walking_tank.c, tank_tables.hpp and libtank.a into the folder. The tables are read
-off the Rust tables of the generator, for the variant of the defaults: the one that the scenes take.
+python3 tank.py FOLDER writes the generated files, tank_tables.hpp and libtank.a into the folder. The tables are read
+off the description of the model, for the variant of the defaults: the one that the scenes take.
 """
 
+import json
 import pathlib
 import re
 import subprocess
@@ -12,77 +13,67 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
-def blocks(text, word):
-    """The texts between the braces of every `word {` that is not inside another one."""
-    found, start = [], 0
-    while match := re.compile(rf"\b{word} \{{").search(text, start):
-        depth, end = 1, match.end()
-        while depth:
-            depth += {"{": 1, "}": -1}.get(text[end], 0)
-            end += 1
-        found.append(text[match.end():end - 1])
-        start = end
-    return found
+def transition(of, names):
+    condition = of["condition"] or {"function": None, "count": 0}
+    function = "nullptr" if condition["function"] is None else names[condition["function"]]
+    impact = str(of["impact"]).lower()
+    return f"{{{of['target']}, {names[of['reset']]}, {function}, {condition['count']}, {impact}}}"
 
 
-def field(name, text):
-    """The word or number that follows `name: `."""
-    found = re.search(rf"\b{name}: ([-\w.]+)", text)
-    if not found:
-        raise ValueError(f"the tables of the generator have no `{name}` here: {text[:200]}")
-    return found.group(1)
+def guard(of, names):
+    transitions = ", ".join(transition(t, names) for t in of["transitions"])
+    accelerations = str(of["shape"].get("general", {}).get("accelerations", False)).lower()
+    return f"{{{names[of['value']]}, {accelerations}, {{{transitions}}}}}"
 
 
-def transition(text):
-    condition = re.search(r"condition: Some\(\((\w+), \d+, (\d+)\)\)", text)
-    function, count = condition.groups() if condition else ("nullptr", "0")
-    return f"{{{field('target', text)}, {field('reset', text)}, {function}, {count}, {field('impact', text)}}}"
-
-
-def guard(text):
-    transitions = ", ".join(transition(t) for t in blocks(text, "Transition"))
-    accelerations = "true" if "accelerations: true" in text else "false"
-    return f"{{{field('value', text)}, {accelerations}, {{{transitions}}}}}"
-
-
-def mode(text):
-    guards = ",\n    ".join(guard(g) for g in blocks(text, "Guard"))
-    rest = re.search(r"\brest: Some\((\d+)\)", text)
-    free = re.search(r"free: &\[([\d, ]*)\]", text).group(1)
-    head = f"{len(free.split(','))}, {{{free}}}, {field('system', text)}, {field('jacobian', text)}, {rest.group(1) if rest else -1}"
+def mode(index, of, rests, names):
+    guards = ",\n    ".join(guard(g, names) for g in of["guards"])
+    rest = next((r["target"] for r in rests if r["source"] == index), -1)
+    free, kernel = of["free"], of["kernel"]
+    head = f"{len(free)}, {{{', '.join(map(str, free))}}}, {names[kernel['system']]}, {names[kernel['jacobian']]}, {rest}"
     return f"  {{{head},\n   {{{guards}}}}},"
 
 
-def tables(rust):
-    """The C++ tables of the first variant."""
-    variant = blocks(rust, "Variant")[0]
-    if "false" in re.search(r"defaults: &\[(.*)\]", variant).group(1):
+def tables(description, names):
+    """The C++ tables of the first variant, from the description of the model and the names of its functions by their places."""
+    variant = description["variants"][0]
+    if not all(variant["defaults"]):
         raise ValueError("the first variant of the generator is not that of the defaults")
-    modes = blocks(variant, "Mode")
-    names = ", ".join(re.search(r'name: "(\w+)"', m).group(1).upper() for m in modes)
-    rows = [mode(m) for m in modes]
-    constants = field("function", rust[rust.index("ConstantsKernel"):])
+    rows = [mode(i, m, variant["rests"], names) for i, m in enumerate(variant["modes"])]
+    constants = names[description["constants"]["function"]]
     functions = sorted(set(re.findall(r"\bdalembert_\w+", "".join(rows))) | {constants})
-    declared = blocks(rust[rust.index("parameters: &["):rust.index("parameter_sets: &[")], "Parameter")
-    parameters = ", ".join(field("default", p) for p in declared)
-    dimensions = [f"constexpr int {what.upper()} = {field(what, rust)};" for what in ("coordinates", "signals", "discretes", "constants", "angles")]
+    parameters = ", ".join(repr(p["default"]) for p in description["parameters"])
+    dimensions = [f"constexpr int {what.upper()} = {description['dimensions'][what]};"
+                  for what in ("coordinates", "signals", "discretes", "constants", "angles")]
     return "\n".join([
         "// Modes of the walking tank; written by tank.py.", 'extern "C" {', *(f"Function {name};" for name in functions), "}",
         *dimensions, f"constexpr double PARAMETERS[] = {{{parameters}}};", f"constexpr auto &CONSTANTS_OF = {constants};",
-        f"enum {{ {names} }};", "inline const Mode MODES[] = {", *rows, "};", ""])
+        f"enum {{ {', '.join(m['name'].upper() for m in variant['modes'])} }};", "inline const Mode MODES[] = {", *rows, "};", ""])
+
+
+def functions_of(table):
+    """The names of a model's functions, in the order of the table in its C."""
+    return re.search(r"\bvalues\[\] = \{([^}]*)\}", table).group(1).replace(",", " ").split()
 
 
 def main(folder):
     folder.mkdir(parents=True, exist_ok=True)
     subprocess.run([sys.executable, "-B", "-m", "codegen", "generate", "--model-dir", "models/walking_tank", "--out", folder], cwd=ROOT, check=True)
     generated = folder / "walking_tank"
-    (folder / "tank_tables.hpp").write_text(tables((generated / "model.rs").read_text()))
-    compile_c = ["gcc", "-O3", "-march=native", "-fPIC", "-c"]
-    subprocess.run([*compile_c, generated / "walking_tank.c", "-o", folder / "walking_tank.o"], check=True)
+    manifest = json.loads((generated / "manifest.json").read_text())
+    description = json.loads((generated / "description.json").read_text())
+    names = functions_of((generated / manifest["tables"]).read_text())
+    (folder / "tank_tables.hpp").write_text(tables(description, names))
+    compile_c = ["gcc", "-O3", "-march=native", "-fPIC", f"-I{ROOT / 'codegen'}", "-c"]
+    objects = []
+    for source in manifest["sources"]:
+        objects.append(folder / f"{source}.o")
+        subprocess.run([*compile_c, generated / source, "-o", objects[-1]], check=True)
     # Its error-free sums must not be contracted.
-    subprocess.run([*compile_c, "-ffp-contract=off", ROOT / "codegen" / "elementary.c", "-o", folder / "elementary.o"], check=True)
+    objects.append(folder / "elementary.o")
+    subprocess.run([*compile_c, "-ffp-contract=off", ROOT / "codegen" / "elementary.c", "-o", objects[-1]], check=True)
     (folder / "libtank.a").unlink(missing_ok=True)
-    subprocess.run(["ar", "rcs", folder / "libtank.a", folder / "walking_tank.o", folder / "elementary.o"], check=True)
+    subprocess.run(["ar", "rcs", folder / "libtank.a", *objects], check=True)
 
 
 if __name__ == "__main__":

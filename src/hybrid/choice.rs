@@ -32,6 +32,7 @@ impl<'p> Simulation<'p> {
             signals: &self.signals,
             // As just after the event.
             until: (f64::INFINITY, f64::INFINITY),
+            commanded: f64::INFINITY,
             held: &[],
             drift: &[],
         };

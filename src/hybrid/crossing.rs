@@ -11,7 +11,7 @@ use super::roots::{
 use super::search::search;
 use crate::integrate::{Motion, OneStep, State};
 use crate::kernel::Free;
-use crate::model::{Guard, Mode};
+use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
 
@@ -170,15 +170,33 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         let time = match M::EXPLICIT {
             true => {
                 let (watches, found, from) = signs.parts();
-                let only = at_most_one((start, to), watches, found, |i, _, to, watch, found| {
-                    let of = (&mode.guards[watched[i].guard], watched[i]);
-                    let window = (from[i], to);
-                    let what = (watch, Isolation::Place, &mut *found);
-                    match from[i] < to {
-                        true => search(equations, conditions, dense, of, window, what),
-                        false => *found = Search::quiet(watch),
-                    }
-                });
+                // What is a coordinate or a rate costs little to search, and behind its event no other need be searched.
+                let is_coordinate = |&i: &usize| is_coordinate(mode, watched[i]);
+                let all = 0..watched.len();
+                let others = all.clone().filter(|i| !is_coordinate(i));
+                let order = all.filter(is_coordinate).chain(others);
+                let mut nearest = to;
+                let only = at_most_one(
+                    (start, to),
+                    watches,
+                    found,
+                    order,
+                    |i, _, to, watch, found| {
+                        let of = (&mode.guards[watched[i].guard], watched[i]);
+                        let is_coordinate = is_coordinate(&i);
+                        let to = if is_coordinate { to } else { nearest };
+                        let window = (from[i], to);
+                        let what = (watch, Isolation::Place, &mut *found);
+                        match from[i] < to {
+                            true => search(equations, conditions, dense, of, window, what),
+                            false => *found = Search::quiet(watch),
+                        }
+                        if let (true, Some(crossing)) = (is_coordinate, found.crossing) {
+                            let apart = APART * (crossing.outside - start);
+                            nearest = nearest.min(crossing.outside + apart);
+                        }
+                    },
+                );
                 match only {
                     Some(only) => only.time,
                     None => put_in_order(equations, conditions, dense, (mode, watched), to, signs),
@@ -268,6 +286,13 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             }
         }
     }
+}
+
+/// Whether a coordinate or a rate is watched.
+#[inline(always)]
+fn is_coordinate(mode: &Mode, watched: Watched) -> bool {
+    let shape = mode.guards[watched.guard].shape;
+    matches!(shape, GuardShape::Linear { .. }) && watched.condition.is_none()
 }
 
 /// Guards that were zero at the start of the segment and are not searched before some time of the last step: one that its

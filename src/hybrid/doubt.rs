@@ -264,6 +264,9 @@ impl Doubts {
     ) -> Option<Doubt> {
         let fallen = step.found.iter().position(|f| f.crossing.is_some())?;
         let watched = step.watched[fallen];
+        let error = self.errors[step.index].get(fallen);
+        // What it moves by, or has risen to, is by far more, as it mostly is.
+        let enough = 2.0 * tolerances(1) * error.copied().unwrap_or(f64::INFINITY);
         if let (
             GuardShape::Linear {
                 index,
@@ -273,38 +276,48 @@ impl Doubts {
                 ..
             },
             None,
-            Some(&error),
-        ) = (
-            step.mode.guards[watched.guard].shape,
-            watched.condition,
-            self.errors[step.index].get(fallen),
-        ) && !outlasts
+        ) = (step.mode.guards[watched.guard].shape, watched.condition)
+            && !outlasts
         {
             let factor = slope((factor, discrete), equations.context);
             let dense = method.dense().expect("a step was made");
             let [_, moves] = dense.value_and_slope((index, rate), factor);
-            // It moves by far more, as most do.
-            if moves.abs() > 2.0 * tolerances(1) * error {
+            if moves.abs() > enough {
                 return None;
             }
         }
-        Self::about_small_fall((step, fallen, outlasts), method, equations, conditions)
+        Self::about_small_fall(
+            (step, fallen),
+            (outlasts, enough),
+            method,
+            equations,
+            conditions,
+        )
     }
 
-    /// The same of the guard of an index, where its slope does not tell at once.
+    /// The same of the guard of an index, where its slope does not tell at once. There is none if it was more than `enough`
+    /// at the start of the step, which tells nothing where the step outlasts the fastest decay, or comes to less than −`enough`.
     #[inline(never)]
     fn about_small_fall<'a, F: Size>(
-        (step, fallen, outlasts): (&Searched, usize, bool),
+        (step, fallen): (&Searched, usize),
+        (outlasts, enough): (bool, f64),
         method: &impl OneStep<F, Equations<'a, F>>,
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) -> Option<Doubt> {
         let mut guard = step.guard(step.watched[fallen], equations, conditions);
+        let start = method.start();
+        let risen = guard.value(start.t, &start.q, &start.v);
+        if !outlasts && risen > enough {
+            return None;
+        }
+        let dense = method.dense().expect("a step was made");
+        if guard.value_within(dense, dense.start() + dense.length()) < -enough {
+            return None;
+        }
         let (t, value) = guard.deepest(method);
         let error = tolerances(1) * guard.error_at(t, method);
-        let start = method.start();
-        let is_small =
-            -value <= error && (outlasts || guard.value(start.t, &start.q, &start.v) <= error);
+        let is_small = -value <= error && (outlasts || risen <= error);
         is_small.then(|| guard.doubt(t, Question::Graze, value, error))
     }
 

@@ -16,6 +16,8 @@ pub(super) struct Clock<'a> {
     /// Local time of the segment's last admissible instant and the absolute time it stands for.
     /// Inputs are smooth before it and take their left-hand limits at it.
     pub until: (f64, f64),
+    /// Local time of the next instant at which an input may be commanded; infinite where none is, or only at the end of the run.
+    pub commanded: f64,
     /// All coordinates at the start, if any drifts.
     pub held: &'a [f64],
     /// Rates of the frozen coordinates; empty if none drifts.
@@ -355,7 +357,7 @@ impl<F: Size> Analytic<F> for Equations<'_, F> {
             return f64::INFINITY;
         }
         self.piece = self.clock.piece(t, self.piece).1;
-        self.piece.limit
+        self.piece.limit.min(self.clock.commanded)
     }
 }
 

@@ -66,6 +66,10 @@ impl Simulation<'_> {
             start,
             signals: &self.signals,
             until: (until, last),
+            commanded: match self.pause.knot < problem.end.time {
+                true => Instant::new(self.pause.knot).since(start),
+                false => f64::INFINITY,
+            },
             held: &self.at_start,
             drift: if drifts { &self.drift } else { &[] },
         };

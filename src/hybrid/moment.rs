@@ -220,6 +220,7 @@ impl<'p> Simulation<'p> {
                 signals: &self.signals,
                 // Before the end of the step no input breaks.
                 until: (f64::INFINITY, f64::INFINITY),
+                commanded: f64::INFINITY,
                 held: &self.at_start,
                 drift: if drifts { &self.drift } else { &[] },
             },

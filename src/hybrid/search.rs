@@ -239,6 +239,10 @@ fn search_series<F: Size>(
     }
     let tolerance = equations.tolerance;
     let (mut length, mut to) = (dense.length(), window.1);
+    // What is far beyond the window says nothing about how well the series does in it.
+    while to <= tau + 0.5 * length {
+        length *= 0.5;
+    }
     loop {
         let mut falls_off = true;
         let coefficients = Coefficients {

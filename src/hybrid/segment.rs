@@ -161,6 +161,7 @@ impl<'p> Simulation<'p> {
             if !goes_on {
                 let [q, v, a] = self.here.free(kernel.size(), &mode.free);
                 method.restart(0.0, &q, &v, has_accelerations.then_some(&a));
+                method.foresee(self.accumulation.foreseen());
             }
             let now = self.here.now.seconds();
             if now >= self.smooth_until {

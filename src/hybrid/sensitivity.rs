@@ -160,7 +160,7 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
     }
 
     /// Its value on the dense output at local time `t`.
-    fn value_within(&mut self, dense: &impl Motion<F>, t: f64) -> f64 {
+    pub fn value_within(&mut self, dense: &impl Motion<F>, t: f64) -> f64 {
         let [q, v, _] = motion(self.equations, dense, t, false);
         self.value(t, &q, &v)
     }

@@ -24,6 +24,10 @@ pub trait OneStep<F: Size, Y> {
     /// If accelerations are needed and not given.
     fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>);
 
+    /// Tells, after a restart, that nothing beyond a time may be needed, s after it: what a step costs may follow from that, its
+    /// accuracy does not.
+    fn foresee(&mut self, _length: f64) {}
+
     /// Goes on from a state close to the one that the last step led to, at the same time: what the motion is held at was
     /// off by its error.
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector);
@@ -214,6 +218,10 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {
         self.restart(t, q, v, a);
+    }
+
+    fn foresee(&mut self, length: f64) {
+        self.foresee(length);
     }
 
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, _: &F::Vector) {

@@ -263,6 +263,23 @@ impl Accumulation {
         pairs.all(|(a, b)| a.to_bits() == b.to_bits())
     }
 
+    /// How long it takes at most, as far as the last events tell, until something happens after the last of them, s: as
+    /// long as after the event before that was like it, where that took less than after the one before it. Infinite where
+    /// nothing is told. Discrete states do not count: of what they say about what is open nothing follows.
+    pub fn foreseen(&self) -> f64 {
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(2) / 2);
+        // What has happened, and in which mode.
+        let event = |back: usize| (self.keys[self.place(back)], self.mode(back + 1));
+        let Some(p) = (1..=known).find(|&p| event(p) == event(0)) else {
+            return f64::INFINITY;
+        };
+        let after = |back: usize| self.at(back - 1).since(self.at(back));
+        match event(2 * p) == event(0) && after(p) < after(2 * p) {
+            true => after(p),
+            false => f64::INFINITY,
+        }
+    }
+
     /// The limit, if the last events accumulate and what is left of the series moves no component
     /// of the state by more than its tolerance; `relative` is the relative one, and the accuracy asked of
     /// the limit's time.

@@ -128,3 +128,32 @@ fn events_between_which_nothing_moves_stand_still() {
         assert_eq!(accumulation.stands_still(now), stands);
     }
 }
+
+#[test]
+fn what_follows_is_foreseen_from_hops_that_shrink() {
+    let mut accumulation = Accumulation::new([1e-9; 2].into(), 0);
+    let mut happens = |mode: usize, t: f64| {
+        let signature = Signature {
+            mode,
+            ..Signature::default()
+        };
+        accumulation.push(signature.key(), Instant::new(t), &[0.0, t]);
+        accumulation.foreseen()
+    };
+    // From another mode, then hops of 4, 2 and 1 s.
+    for t in [0.0, 0.5] {
+        assert_eq!(happens(1, t), f64::INFINITY);
+    }
+    assert_eq!(happens(0, 1.0), f64::INFINITY);
+    assert_eq!(happens(0, 5.0), f64::INFINITY);
+    assert_eq!(happens(0, 7.0), f64::INFINITY);
+    assert_eq!(happens(0, 8.0), 1.0);
+    // One that is longer tells nothing.
+    assert_eq!(happens(0, 9.5), f64::INFINITY);
+    // Two kinds in turns: what follows one of them is what followed it before.
+    let turns = [(1, 10.0), (0, 14.0), (1, 15.0), (0, 18.0), (1, 18.5)];
+    let foreseen: Vec<f64> = turns.iter().map(|&(mode, t)| happens(mode, t)).collect();
+    assert_eq!(foreseen[3..], [f64::INFINITY, 3.0]);
+    assert_eq!(happens(0, 20.0), 0.5);
+    assert_eq!(happens(1, 20.25), 1.5);
+}

@@ -38,23 +38,26 @@ pub fn earliest(
         found.len(),
         "as many remembered signs as guards"
     );
-    match at_most_one((from, to), watches, found, &mut search) {
+    let order = 0..watches.len();
+    match at_most_one((from, to), watches, found, order, &mut search) {
         Some(only) => only,
         None => first_of_several((from, to), watches, found, search),
     }
 }
 
-/// The event of several guards, each searched once, where there is at most one; `None` where there are several, or where
+/// The event of several guards, each searched once, in an `order`, where there is at most one; `None` where there are several, or where
 /// the sign of another guard may have changed before or behind it: what was found of each is written.
 #[inline(always)]
 pub(in crate::hybrid) fn at_most_one(
     (from, to): (f64, f64),
     watches: &[Watch],
     found: &mut [Search],
+    order: impl Iterator<Item = usize>,
     mut search: impl FnMut(usize, f64, f64, Watch, &mut Search),
 ) -> Option<Earliest> {
     let (mut time, mut events, mut changes, mut resolved) = (None, 0, false, true);
-    for (index, (found, &watch)) in found.iter_mut().zip(watches).enumerate() {
+    for index in order {
+        let (found, watch) = (&mut found[index], watches[index]);
         search(index, from, to, watch, found);
         resolved &= found.resolved;
         match found.crossing {

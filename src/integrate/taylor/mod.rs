@@ -100,14 +100,16 @@ pub struct Taylor<F: Size> {
     /// Whether the accelerations after a restart were given.
     accelerations_given: bool,
     implicit: Implicit,
-    /// Length of the last step as far as accuracy limits it.
+    /// Length of the last step as far as accuracy limits it; infinite where nothing was expanded yet.
     length: f64,
+    /// What the first step after a restart need not go beyond, s after it.
+    foreseen: f64,
     counters: Counters,
 }
 
 persist!([F: Size] Taylor<F> {
     start, end, lost_at_start, lost, dense, open, last, weights, inverse, accelerations_given, length, counters
-} but { tolerances, order, lower, orders, limited, unlimited, implicit });
+} but { tolerances, order, lower, orders, limited, unlimited, implicit, foreseen });
 
 impl Persist for Last {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
@@ -130,6 +132,7 @@ impl<F: Size> Taylor<F> {
         Taylor {
             implicit,
             length: f64::INFINITY,
+            foreseen: f64::INFINITY,
             tolerances: tolerances.clone(),
             order,
             lower: length::half_period(relative, kind),
@@ -160,6 +163,7 @@ impl<F: Size> Taylor<F> {
     /// Forgets what was inverted, so that the work of the next run does not depend on the one before.
     pub(crate) fn forget(&mut self) {
         self.inverse.clear();
+        self.length = f64::INFINITY;
     }
 
     /// Takes other absolute tolerances, before a [`Taylor::restart`].
@@ -183,6 +187,13 @@ impl<F: Size> Taylor<F> {
         self.lost = Lost::nothing(q.size());
         self.open = None;
         self.last = Last::Restart;
+        self.foreseen = f64::INFINITY;
+    }
+
+    /// As [`super::OneStep::foresee`].
+    #[inline]
+    pub fn foresee(&mut self, length: f64) {
+        self.foreseen = length;
     }
 
     /// Goes on from a state close to the one that the last step led to, at its time.
@@ -320,15 +331,20 @@ impl<F: Size> Taylor<F> {
         Ok(self.report())
     }
 
-    /// The order of a step that need not go beyond `horizon`, s: the least whose step would be twice as long, as far as the
-    /// length of the step before tells. Twice, since that tells the radius of convergence to some per cent only, and what
-    /// follows has another.
+    /// The order of a step that need not go beyond `horizon`, or, after a restart, beyond what was foreseen, s: the least whose
+    /// step would be twice as long, as far as the length of the step before tells. Twice, since that tells the radius of
+    /// convergence to some per cent only, and what follows has another.
     #[inline]
     fn order_up_to(&self, horizon: f64) -> usize {
-        match self.last.is_step() && horizon < f64::INFINITY {
+        let needed = match self.last {
+            Last::FirstStep | Last::Step => horizon,
+            Last::Restart => self.foreseen,
+            Last::Failure => f64::INFINITY,
+        };
+        match needed < f64::INFINITY && self.length < f64::INFINITY {
             true => {
                 let last = (self.dense.known, self.length);
-                self.orders.least(last, 2.0 * horizon)
+                self.orders.least(last, 2.0 * needed)
             }
             false => self.order,
         }
