@@ -102,6 +102,16 @@ pub enum Reason {
         /// Why they do not come to rest.
         missing: String,
     },
+    /// Constraints depend on each other at a place.
+    #[error(
+        "mode `{mode}`: constraints depend on each other here (a singular position, such as a dead point or a stretched arm): the force of `{of}` is not determined, and the motion may branch"
+    )]
+    SingularPosition {
+        /// Mode.
+        mode: &'static str,
+        /// What is held by the force.
+        of: &'static str,
+    },
     /// The model needs a mode that the scene left out by freezing a coordinate.
     #[error("no mode is left in which {frozen} may be frozen")]
     NoModeLeft {

@@ -1,6 +1,6 @@
 //! The life of a step: made, cut at its first event, seen by observers.
 
-use super::contact::hold;
+use super::contact::{NEARLY, hold};
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, free_of};
@@ -109,6 +109,8 @@ impl Simulation<'_> {
         if (chooses || is_explicit) && !goes_on {
             stiffness.begin();
         }
+        // Whether steps pass a singular position without the forces of constraints.
+        let mut passes = goes_on && self.pause.passes;
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin(kernel.size());
         if !goes_on {
@@ -231,7 +233,28 @@ impl Simulation<'_> {
             }
             if let (Some(contacts), None) = (&mode.contacts, event) {
                 let State { q, v, a, .. } = &mut state;
-                hold(kernel, equations.context, contacts, [q, v]);
+                let held = hold(kernel, equations.context, contacts, [q, v]);
+                let held = held.map_err(|of| {
+                    let (mode, of) = (mode.name, of);
+                    Box::new(Reason::SingularPosition { mode, of })
+                })?;
+                self.most_told = self.most_told.max(held);
+                let is_near = held <= NEARLY * self.most_told;
+                if is_near || passes {
+                    // Behind a pole the impulses have no value.
+                    let (before, leaves_out) = (method.start(), passes && !method.shows_all());
+                    let mut controlled = kernel.size().repeat(1.0);
+                    for i in contacts.constraints.iter().map(|c| c.multiplier) {
+                        if leaves_out {
+                            (q[i], v[i]) = (before.q[i], before.v[i]);
+                        }
+                        if is_near {
+                            controlled[i] = 0.0;
+                        }
+                    }
+                    method.control(&controlled);
+                    passes = is_near;
+                }
                 let held = equations.acceleration_here(q, v);
                 *a = held.map_err(|s| Box::new(Reason::singular(mode, &problem.model, s)))?;
                 method.correct(q, v, a);
@@ -265,10 +288,10 @@ impl Simulation<'_> {
                 return Err(Box::new(Reason::Interrupted));
             }
 
-            // 10. Stiffness.
+            // 10. Stiffness. Roundings that a singular position amplifies look like it.
             let h = end - method.start().t;
             let unseen = event.is_some() && self.signs.unseen();
-            if is_explicit && (event.is_none() || unseen) {
+            if is_explicit && !passes && (event.is_none() || unseen) {
                 let h = if unseen { length } else { h };
                 let rate = || equations.decay_rate(at);
                 if chooses {
@@ -313,11 +336,16 @@ impl Simulation<'_> {
                     return Ok(Stop::Breakpoint);
                 }
             }
+            if chooses && passes {
+                // The explicit method passes: what slowed it down was the pole.
+                stiffness.passes_pole();
+            }
             if chooses && stiffness.prefers_implicit() == is_explicit {
                 return Ok(Stop::Method);
             }
             if self.here.now.seconds() >= self.pause.at {
                 self.pause.keep_start(&mode.free, &began);
+                self.pause.passes = passes;
                 return Ok(Stop::Pause);
             }
         }

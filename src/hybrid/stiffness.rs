@@ -155,6 +155,11 @@ impl Stiffness {
         };
     }
 
+    /// The motion goes on smoothly while forces have a pole, which looks like a stiff decay: nothing is known.
+    pub fn passes_pole(&mut self) {
+        *self = Stiffness::default();
+    }
+
     /// The next segment has no transients of its own: the event before it is of what is less than the errors of a step.
     pub fn go_on(&mut self) {
         self.goes_on = true;

@@ -28,6 +28,13 @@ pub trait OneStep<F: Size, Y> {
     /// accuracy does not.
     fn foresee(&mut self, _length: f64) {}
 
+    /// How much of the errors of the coordinates counts in the steps that follow, until the next restart, after which all of it
+    /// does: 1, or 0 where a coordinate is not controlled.
+    fn control(&mut self, part: &F::Vector);
+
+    /// Whether the last step shows all coordinates within their tolerances, those as well that are not controlled.
+    fn shows_all(&self) -> bool;
+
     /// Goes on from a state close to the one that the last step led to, at the same time: what the motion is held at was
     /// off by its error.
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector);
@@ -153,6 +160,14 @@ where
         self.restart(t, q, v, a);
     }
 
+    fn control(&mut self, part: &F::Vector) {
+        self.control(part);
+    }
+
+    fn shows_all(&self) -> bool {
+        self.shows_all()
+    }
+
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
         self.correct(q, v, a);
     }
@@ -222,6 +237,14 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     fn foresee(&mut self, length: f64) {
         self.foresee(length);
+    }
+
+    fn control(&mut self, part: &F::Vector) {
+        self.control(part);
+    }
+
+    fn shows_all(&self) -> bool {
+        self.shows_all()
     }
 
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, _: &F::Vector) {

@@ -53,11 +53,13 @@ pub struct Radau<const S: usize, F: Size> {
     dense: Kept<Dense<S, F>>,
     /// Components that the last step did not resolve.
     unresolved: F::List<bool>,
+    /// How much of the error of each coordinate counts.
+    controlled: F::Vector,
     counters: Counters,
 }
 
 persist!([const S: usize, F: Size] Radau<S, F> {
-    controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, counters
+    controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, controlled, counters
 } but { control });
 
 impl Blank for Linearized {
@@ -92,6 +94,7 @@ where
             stages: Stages::zeros(size),
             dense: Kept::nothing(Dense::zero(size)),
             unresolved: size.list(false),
+            controlled: size.repeat(1.0),
             counters: Counters::default(),
         }
     }
@@ -122,6 +125,17 @@ where
         self.proposal = None;
         self.dense.clear();
         self.unresolved = size.list(false);
+        self.controlled = size.repeat(1.0);
+    }
+
+    /// As [`super::OneStep::control`].
+    pub fn control(&mut self, part: &F::Vector) {
+        self.controlled.clone_from(part);
+    }
+
+    /// As [`super::OneStep::shows_all`]; of what is not controlled that is not known.
+    pub fn shows_all(&self) -> bool {
+        (0..self.controlled.size().get()).all(|i| self.controlled[i] == 1.0)
     }
 
     /// Goes on from a state close to the one that the last step led to, at its time.
@@ -231,7 +245,7 @@ where
             });
         }
         let origin = self.end.clone();
-        let weights = self.control.weights(&origin.q, &origin.v);
+        let weights = self.control.weights(&origin.q, &origin.v, &self.controlled);
         let keep = system.is_linear() || self.newton.rate <= REUSE;
         self.linearization = match self.linearization {
             Some(_) if keep => Some(Linearized::Before),
@@ -365,7 +379,7 @@ where
     ) -> Result<StepReport, StepError> {
         assert!(h > 0.0, "h = {h} is not positive");
         let origin = self.start.clone();
-        let weights = self.control.weights(&origin.q, &origin.v);
+        let weights = self.control.weights(&origin.q, &origin.v, &self.controlled);
         let end = add(origin.t, h, self.lost_at_start.t);
         let (step, limit) = ((h, end.0), Newton::<S, F>::PATIENCE);
         let mut solved = self.attempt(system, &origin, step, &weights, limit);

@@ -145,16 +145,16 @@ impl<F: Size> Control<F> {
         &self.v_size
     }
 
-    /// Reciprocal tolerances of the estimate at the state (q, v).
+    /// Reciprocal tolerances of the estimate at the state (q, v), times how much of the error of each coordinate counts.
     #[inline]
-    pub fn weights(&self, q: &F::Vector, v: &F::Vector) -> Weights<F> {
+    pub fn weights(&self, q: &F::Vector, v: &F::Vector, counts: &F::Vector) -> Weights<F> {
         let mut weights = Weights::<F> {
             q: q.size().zeros(),
             v: q.size().zeros(),
         };
         for i in 0..q.size().get() {
-            weights.q[i] = 1.0 / (self.relative * (self.q_size[i] + q[i].abs()));
-            weights.v[i] = 1.0 / (self.relative * (self.v_size[i] + v[i].abs()));
+            weights.q[i] = counts[i] / (self.relative * (self.q_size[i] + q[i].abs()));
+            weights.v[i] = counts[i] / (self.relative * (self.v_size[i] + v[i].abs()));
         }
         weights
     }

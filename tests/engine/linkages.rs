@@ -2,7 +2,8 @@
 
 use super::multipliers::{check, scenes};
 use crate::common::*;
-use dalembert::hybrid::Method;
+use dalembert::hybrid::{Method, Problem, Simulator};
+use dalembert::record::Silent;
 
 /// The demand of the IVP test set at a tolerance of 1e-13, of relative errors: two digits less.
 const DEMAND: f64 = 1e-11;
@@ -67,6 +68,69 @@ fn a_double_pendulum_strikes_a_wall_slides_along_it_and_leaves() {
             check(&scene, &run(&pendulum), 2, method);
         }
     }
+}
+
+/// Reference 14b: the cranks stand, and the first pin moves at 1 m/s to the right.
+fn double_four_bar(tolerance: f64, method: Method) -> Problem {
+    let mut linkage = problem("double_four_bar", &[]);
+    for crank in ["crank_1", "crank_2", "crank_3"] {
+        linkage
+            .set_initial(crank, std::f64::consts::FRAC_PI_2)
+            .unwrap();
+        linkage.set_initial(&format!("{crank}.rate"), -1.0).unwrap();
+    }
+    linkage.project = true;
+    linkage.method = method;
+    linkage.set_tolerance(tolerance);
+    linkage.end.time = 10.0;
+    linkage.record.every = Some(0.5);
+    linkage.record.ledger = true;
+    linkage
+}
+
+#[test]
+fn five_bars_pass_positions_in_which_all_are_in_line() {
+    let reference = reference("14b_n_four_bar");
+    let exact = reference["reference"].as_array().unwrap();
+    // The demand of the reference; and what is chosen by itself, within ten times its tolerance.
+    for (method, tolerance, demand) in [(Method::Taylor, 1e-10, 1e-10), (Method::Auto, 1e-9, 1e-8)]
+    {
+        let run = run(&double_four_bar(tolerance, method));
+        let mut compared = 0;
+        for exact in exact.iter().filter(|e| e["N"] == 2) {
+            let row = run
+                .trajectory
+                .row((number(&exact["t"]) / 0.5).round() as usize);
+            let place = numbers(&exact["B0"]);
+            for crank in 0..3 {
+                let (sin, cos) = row[crank].sin_cos();
+                let off = (cos - place[0]).abs().max((sin - place[1]).abs());
+                let rate = (row[5 + crank] - number(&exact["omega"])).abs();
+                assert!(
+                    off < demand && rate < demand,
+                    "{method:?}: {off:e} {rate:e}"
+                );
+            }
+            compared += 1;
+        }
+        assert_eq!(compared, 5);
+        let energy = run.energy.as_ref().unwrap();
+        let imbalance = energy.imbalance() / energy.initial;
+        assert!(imbalance.abs() < 0.1 * demand, "{method:?}: {imbalance:e}");
+    }
+}
+
+#[test]
+fn a_singular_position_that_rounding_hides_is_named() {
+    let mut linkage = double_four_bar(1e-13, Method::Radau);
+    linkage.end.time = 1.0;
+    let mut simulator = Simulator::new(&linkage).unwrap();
+    let reason = simulator.run(&mut Silent).unwrap_err();
+    let text = reason.to_string();
+    assert!(
+        text.contains("singular position") && text.contains("pin_"),
+        "{text}"
+    );
 }
 
 #[test]

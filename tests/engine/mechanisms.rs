@@ -8,8 +8,9 @@ use dalembert::record::Run;
 use std::fs;
 
 /// The shipped models that have contacts or constraints and nothing by hand.
-const DECLARED: [&str; 12] = [
+const DECLARED: [&str; 13] = [
     "bead_on_hoop",
+    "double_four_bar",
     "four_bar",
     "rigid_block",
     "rod",

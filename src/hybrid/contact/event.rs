@@ -119,7 +119,9 @@ impl<'p> Simulation<'p> {
     ) -> Stoppable<()> {
         let free = &self.mode().free;
         let [mut q, mut v, a] = self.here.free(kernel.size(), free);
-        hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
+        let held = hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
+        let mode = self.mode().name;
+        held.map_err(|of| Box::new(Reason::SingularPosition { mode, of }))?;
         self.here.set_free(free, [&q, &v, &a]);
         self.set_context();
         self.set_accelerations(kernel)

@@ -7,7 +7,7 @@ use crate::numerics::{Dynamic, Lu, Size};
 
 /// What is left of a line beside others, as a part of it, where it is taken to depend on them: √ε. What is less cannot be told
 /// from the rounding of a matrix of such lines, which squares it.
-const DEPENDENT: f64 = 1.5e-8;
+pub(super) const DEPENDENT: f64 = 1.5e-8;
 
 /// Something that a force acts along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,6 +115,26 @@ impl Geometry {
         kept
     }
 
+    /// Of some lines that of which the least is left beside those before it, as a part of the longest: where its force is told least,
+    /// and how well; `None` of no lines. What becomes shorter than all others is told as little as what becomes parallel to them.
+    pub fn least_told(&self, lines: &[Line]) -> Option<(Line, f64)> {
+        let length = |line: &Line| {
+            let scaled = &self.scaled[self.place(*line)];
+            dot(scaled, scaled).sqrt()
+        };
+        let longest = lines.iter().map(length).fold(0.0, f64::max);
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let told = |&line: &Line| {
+            let (part, unit) = left_of(&self.scaled[self.place(line)], &basis);
+            basis.push(unit);
+            (line, part * length(&line) / longest)
+        };
+        lines
+            .iter()
+            .map(told)
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
     /// Whether a line depends on others.
     pub fn depends(&self, line: Line, others: &[Line]) -> bool {
         let mut all = self.independent(others);
@@ -191,6 +211,13 @@ pub(super) fn write_states(contacts: &Contacts, states: &[State], discrete: &mut
 
 /// What is left of a vector beside an orthonormal basis, of the length 1; `None` if nothing is.
 fn beside(vector: &[f64], basis: &[Vec<f64>]) -> Option<Vec<f64>> {
+    let (part, unit) = left_of(vector, basis);
+    (part > DEPENDENT).then_some(unit)
+}
+
+/// The part of a vector that is left beside an orthonormal basis, and what is left, of the length 1. Of a vector that is zero
+/// nothing is.
+fn left_of(vector: &[f64], basis: &[Vec<f64>]) -> (f64, Vec<f64>) {
     let length = dot(vector, vector).sqrt();
     let mut rest = vector.to_vec();
     // Twice is enough (Giraud, Langou and Rozložník 2005).
@@ -201,7 +228,11 @@ fn beside(vector: &[f64], basis: &[Vec<f64>]) -> Option<Vec<f64>> {
         }
     }
     let left = dot(&rest, &rest).sqrt();
-    (left > DEPENDENT * length).then(|| rest.iter().map(|x| x / left).collect())
+    if left == 0.0 {
+        return (0.0, rest);
+    }
+    rest.iter_mut().for_each(|x| *x /= left);
+    (left / length, rest)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

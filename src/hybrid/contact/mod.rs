@@ -25,7 +25,7 @@ mod many;
 mod phase;
 mod start;
 
-pub(super) use hold::hold;
+pub(super) use hold::{NEARLY, hold};
 
 use crate::model::Contacts;
 

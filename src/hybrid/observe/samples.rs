@@ -257,7 +257,8 @@ pub(in crate::hybrid) fn held<F: Size>(
 ) -> [F::Vector; 3] {
     equations.at(tau);
     let (kernel, context) = (equations.kernel, &mut *equations.context);
-    hold(kernel, context, contacts, [&mut q, &mut v]);
+    // A step that passes a singular position shows the motion there all the same.
+    let _ = hold(kernel, context, contacts, [&mut q, &mut v]);
     let a = equations.acceleration_here(&q, &v).unwrap_or(a);
     [q, v, a]
 }

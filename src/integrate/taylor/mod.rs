@@ -95,6 +95,8 @@ pub struct Taylor<F: Size> {
     last: Last,
     /// Reciprocal tolerances of coordinates and velocities at the start of the step.
     weights: [F::Vector; 2],
+    /// How much of the error of each coordinate counts.
+    controlled: F::Vector,
     /// The mass matrix at the start of the last step, and its inverse; `None` where it has none.
     inverse: Kept<(F::Matrix, F::Matrix)>,
     /// Whether the accelerations after a restart were given.
@@ -108,7 +110,7 @@ pub struct Taylor<F: Size> {
 }
 
 persist!([F: Size] Taylor<F> {
-    start, end, lost_at_start, lost, dense, open, last, weights, inverse, accelerations_given, length, counters
+    start, end, lost_at_start, lost, dense, open, last, weights, controlled, inverse, accelerations_given, length, counters
 } but { tolerances, order, lower, orders, limited, unlimited, implicit, foreseen });
 
 impl Persist for Last {
@@ -154,6 +156,7 @@ impl<F: Size> Taylor<F> {
             open: None,
             last: Last::Restart,
             weights: [size.zeros(), size.zeros()],
+            controlled: size.repeat(1.0),
             inverse: Kept::nothing((size.zero_matrix(), size.zero_matrix())),
             accelerations_given: false,
             counters: Counters::default(),
@@ -176,6 +179,7 @@ impl<F: Size> Taylor<F> {
     /// Goes on from a state that the last step did not lead to, as [`super::Radau::restart`]. Accelerations that are
     /// not given are those of the equations; [`Taylor::state`] has zeros instead before the first step.
     pub fn restart(&mut self, t: f64, q: &F::Vector, v: &F::Vector, a: Option<&F::Vector>) {
+        self.controlled = q.size().repeat(1.0);
         self.weights = self.weights_at(q, v);
         self.end = State {
             t,
@@ -188,6 +192,18 @@ impl<F: Size> Taylor<F> {
         self.open = None;
         self.last = Last::Restart;
         self.foreseen = f64::INFINITY;
+    }
+
+    /// As [`super::OneStep::control`].
+    pub fn control(&mut self, part: &F::Vector) {
+        self.controlled.clone_from(part);
+    }
+
+    /// As [`super::OneStep::shows_all`].
+    pub fn shows_all(&self) -> bool {
+        let all = self.start.size().repeat(1.0);
+        let weights = self.weights_of([&self.start.q, &self.start.v], &all);
+        self.end.t - self.start.t <= self.length_by(&weights)
     }
 
     /// As [`super::OneStep::foresee`].
@@ -462,12 +478,17 @@ impl<F: Size> Taylor<F> {
         Ok(())
     }
 
-    /// Reciprocal tolerances of given coordinates and velocities.
+    /// Reciprocal tolerances of given coordinates and velocities, of those that are controlled.
     fn weights_at(&self, q: &F::Vector, v: &F::Vector) -> [F::Vector; 2] {
+        self.weights_of([q, v], &self.controlled)
+    }
+
+    /// The same, times how much of the error of each counts.
+    fn weights_of(&self, [q, v]: [&F::Vector; 2], counts: &F::Vector) -> [F::Vector; 2] {
         let relative = self.tolerances.relative();
         let weights = |absolute: &F::Vector, x: &F::Vector| {
             x.size()
-                .vector(|i| 1.0 / (absolute[i] + relative * x[i].abs()))
+                .vector(|i| counts[i] / (absolute[i] + relative * x[i].abs()))
         };
         [
             weights(self.tolerances.q_absolute(), q),
@@ -478,8 +499,13 @@ impl<F: Size> Taylor<F> {
     /// The length at which the last terms equal the tolerance, as far as those before agree.
     #[inline(always)]
     fn accurate_length(&self) -> f64 {
+        self.length_by(&self.weights)
+    }
+
+    /// The same for given reciprocal tolerances.
+    #[inline(always)]
+    fn length_by(&self, [of_q, of_v]: &[F::Vector; 2]) -> f64 {
         let Series { q, v, .. } = &self.dense.series;
-        let [of_q, of_v] = &self.weights;
         let of_q = |power: usize| largest::<F>(&q[power], of_q);
         let of_v = |power: usize| largest::<F>(&v[power], of_v);
         let p = self.dense.known;
