@@ -1,6 +1,6 @@
 //! The life of a step: made, cut at its first event, seen by observers.
 
-use super::contact::{NEARLY, hold};
+use super::contact::{NEARLY, hold, passes_pole};
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, free_of};
@@ -241,8 +241,11 @@ impl Simulation<'_> {
                 self.most_told = self.most_told.max(held);
                 let is_near = held <= NEARLY * self.most_told;
                 if is_near || passes {
-                    // Behind a pole the impulses have no value.
-                    let (before, leaves_out) = (method.start(), passes && !method.shows_all());
+                    let before = method.start();
+                    let states = [[&before.q, &before.v], [&*q, &*v]];
+                    // Over a pole the impulses have no value.
+                    let leaves_out =
+                        passes && passes_pole(kernel, equations.context, contacts, states);
                     let mut controlled = kernel.size().repeat(1.0);
                     for i in contacts.constraints.iter().map(|c| c.multiplier) {
                         if leaves_out {

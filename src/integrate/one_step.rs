@@ -32,9 +32,6 @@ pub trait OneStep<F: Size, Y> {
     /// does: 1, or 0 where a coordinate is not controlled.
     fn control(&mut self, part: &F::Vector);
 
-    /// Whether the last step shows all coordinates within their tolerances, those as well that are not controlled.
-    fn shows_all(&self) -> bool;
-
     /// Goes on from a state close to the one that the last step led to, at the same time: what the motion is held at was
     /// off by its error.
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector);
@@ -164,10 +161,6 @@ where
         self.control(part);
     }
 
-    fn shows_all(&self) -> bool {
-        self.shows_all()
-    }
-
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
         self.correct(q, v, a);
     }
@@ -241,10 +234,6 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     fn control(&mut self, part: &F::Vector) {
         self.control(part);
-    }
-
-    fn shows_all(&self) -> bool {
-        self.shows_all()
     }
 
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, _: &F::Vector) {

@@ -133,11 +133,6 @@ where
         self.controlled.clone_from(part);
     }
 
-    /// As [`super::OneStep::shows_all`]; of what is not controlled that is not known.
-    pub fn shows_all(&self) -> bool {
-        (0..self.controlled.size().get()).all(|i| self.controlled[i] == 1.0)
-    }
-
     /// Goes on from a state close to the one that the last step led to, at its time.
     pub fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
         let State { t, .. } = self.end;

@@ -135,6 +135,18 @@ impl Geometry {
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
+    /// Whether what is left of a line beside those before it points the other way at another place.
+    pub fn turns_round(&self, line: Line, lines: &[Line], at: &Geometry) -> bool {
+        let left = |geometry: &Geometry| {
+            let mut basis: Vec<Vec<f64>> = Vec::new();
+            for &before in lines.iter().take_while(|&&before| before != line) {
+                basis.extend(beside(&geometry.scaled[geometry.place(before)], &basis));
+            }
+            left_of(&geometry.scaled[geometry.place(line)], &basis).1
+        };
+        dot(&left(self), &left(at)) < 0.0
+    }
+
     /// Whether a line depends on others.
     pub fn depends(&self, line: Line, others: &[Line]) -> bool {
         let mut all = self.independent(others);

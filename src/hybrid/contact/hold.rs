@@ -132,6 +132,21 @@ pub(in crate::hybrid) fn hold<F: Size>(
     }
 }
 
+/// Whether a singular position lies between two states: what is left of the line whose force is told least turns round there.
+pub(in crate::hybrid) fn passes_pole<F: Size>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    contacts: &Contacts,
+    states: [[&F::Vector; 2]; 2],
+) -> bool {
+    let [places, _] = held_lines(contacts, &State::all(contacts, context.discrete()));
+    let [before, after] = states.map(|state| Geometry::new(kernel, context, contacts, state));
+    match after.least_told(&places) {
+        Some((line, _)) => before.turns_round(line, &places, &after),
+        None => false,
+    }
+}
+
 /// Where the force that is told least is told by so much less than elsewhere in the run, a singular position is close. There the
 /// forces of constraints have a pole, while the motion goes on smoothly: a step that has to show the forces becomes as short
 /// as the pole is near, and none leads behind it. At 1/10 that costs a digit of the forces, and more is left for the step that

@@ -25,7 +25,7 @@ mod many;
 mod phase;
 mod start;
 
-pub(super) use hold::{NEARLY, hold};
+pub(super) use hold::{NEARLY, hold, passes_pole};
 
 use crate::model::Contacts;
 

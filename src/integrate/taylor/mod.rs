@@ -199,13 +199,6 @@ impl<F: Size> Taylor<F> {
         self.controlled.clone_from(part);
     }
 
-    /// As [`super::OneStep::shows_all`].
-    pub fn shows_all(&self) -> bool {
-        let all = self.start.size().repeat(1.0);
-        let weights = self.weights_of([&self.start.q, &self.start.v], &all);
-        self.end.t - self.start.t <= self.length_by(&weights)
-    }
-
     /// As [`super::OneStep::foresee`].
     #[inline]
     pub fn foresee(&mut self, length: f64) {
@@ -478,17 +471,12 @@ impl<F: Size> Taylor<F> {
         Ok(())
     }
 
-    /// Reciprocal tolerances of given coordinates and velocities, of those that are controlled.
+    /// Reciprocal tolerances of given coordinates and velocities, times how much of the error of each counts.
     fn weights_at(&self, q: &F::Vector, v: &F::Vector) -> [F::Vector; 2] {
-        self.weights_of([q, v], &self.controlled)
-    }
-
-    /// The same, times how much of the error of each counts.
-    fn weights_of(&self, [q, v]: [&F::Vector; 2], counts: &F::Vector) -> [F::Vector; 2] {
         let relative = self.tolerances.relative();
         let weights = |absolute: &F::Vector, x: &F::Vector| {
             x.size()
-                .vector(|i| counts[i] / (absolute[i] + relative * x[i].abs()))
+                .vector(|i| self.controlled[i] / (absolute[i] + relative * x[i].abs()))
         };
         [
             weights(self.tolerances.q_absolute(), q),
@@ -499,13 +487,8 @@ impl<F: Size> Taylor<F> {
     /// The length at which the last terms equal the tolerance, as far as those before agree.
     #[inline(always)]
     fn accurate_length(&self) -> f64 {
-        self.length_by(&self.weights)
-    }
-
-    /// The same for given reciprocal tolerances.
-    #[inline(always)]
-    fn length_by(&self, [of_q, of_v]: &[F::Vector; 2]) -> f64 {
         let Series { q, v, .. } = &self.dense.series;
+        let [of_q, of_v] = &self.weights;
         let of_q = |power: usize| largest::<F>(&q[power], of_q);
         let of_v = |power: usize| largest::<F>(&v[power], of_v);
         let p = self.dense.known;
