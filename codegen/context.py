@@ -4,7 +4,7 @@ import os
 import sys
 import types
 
-from . import contacts, rests
+from . import reduced, rests
 from .errors import ModelError
 
 
@@ -41,7 +41,7 @@ def build(name, file, source, run=exec):
             sys.path[:] = path
         if context.model is None:
             raise ModelError("no Model(…) is made here", file)
-        contacts.expand(context.model)
+        reduced.expand(context.model)
         rests.add(context.model)
         models.append(context.model)
         made = dict(context.options)

@@ -83,8 +83,6 @@ pub(super) struct Pause {
     pub knot: f64,
     /// Coordinates and velocities with which the segment that is left has begun; of free ones alone.
     began: [Box<[f64]>; 2],
-    /// Whether it passes a singular position.
-    pub passes: bool,
 }
 
 /// The state with which the segment has begun; where the next advance ends it says itself.
@@ -92,8 +90,7 @@ impl Persist for Pause {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
         let [q, v] = &mut self.began;
         memory.slice(q)?;
-        memory.slice(v)?;
-        self.passes.persist(memory)
+        memory.slice(v)
     }
 }
 
@@ -104,7 +101,6 @@ impl Pause {
             at: f64::INFINITY,
             knot: f64::INFINITY,
             began: [0; 2].map(|_| vec![0.0; coordinates].into()),
-            passes: false,
         }
     }
 

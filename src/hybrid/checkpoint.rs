@@ -253,7 +253,7 @@ impl<'p> Simulation<'p> {
         self.signs.persist(memory)?;
         self.doubts.persist(memory)?;
         self.margins.persist(memory)?;
-        self.most_told.persist(memory)?;
+        self.best_determined.persist(memory)?;
         self.accumulation.persist(memory)?;
         self.visited.persist(memory)?;
         self.observers.persist(memory)?;

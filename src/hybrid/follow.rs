@@ -1,6 +1,6 @@
 //! The life of a step: made, cut at its first event, seen by observers.
 
-use super::contact::{NEARLY, hold, passes_pole};
+use super::contact::{Conditioning, hold};
 use super::crossing::{Cut, cut};
 use super::doubt::Searched;
 use super::equations::{Clock, Equations, free_of};
@@ -110,7 +110,7 @@ impl Simulation<'_> {
             stiffness.begin();
         }
         // Whether steps pass a singular position without the forces of constraints.
-        let mut passes = goes_on && self.pause.passes;
+        let mut passes = !method.controls_all();
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin(kernel.size());
         if !goes_on {
@@ -233,19 +233,18 @@ impl Simulation<'_> {
             }
             if let (Some(contacts), None) = (&mode.contacts, event) {
                 let State { q, v, a, .. } = &mut state;
-                let held = hold(kernel, equations.context, contacts, [q, v]);
-                let held = held.map_err(|of| {
-                    let (mode, of) = (mode.name, of);
-                    Box::new(Reason::SingularPosition { mode, of })
-                })?;
-                self.most_told = self.most_told.max(held);
-                let is_near = held <= NEARLY * self.most_told;
-                if is_near || passes {
+                hold(kernel, equations.context, contacts, [q, v]);
+                let here = Conditioning::new(kernel, equations.context, contacts, [q, v]);
+                let is_near = match &here {
+                    Some(here) => here.is_nearly_singular(mode, &mut self.best_determined)?,
+                    None => false,
+                };
+                if let Some(here) = here.filter(|_| is_near || passes) {
                     let before = method.start();
-                    let states = [[&before.q, &before.v], [&*q, &*v]];
+                    let state = [&before.q, &before.v];
                     // Over a pole the impulses have no value.
                     let leaves_out =
-                        passes && passes_pole(kernel, equations.context, contacts, states);
+                        passes && here.is_beyond(kernel, equations.context, contacts, state);
                     let mut controlled = kernel.size().repeat(1.0);
                     for i in contacts.constraints.iter().map(|c| c.multiplier) {
                         if leaves_out {
@@ -348,7 +347,6 @@ impl Simulation<'_> {
             }
             if self.here.now.seconds() >= self.pause.at {
                 self.pause.keep_start(&mode.free, &began);
-                self.pause.passes = passes;
                 return Ok(Stop::Pause);
             }
         }

@@ -113,8 +113,8 @@ pub(super) struct Simulation<'p> {
     pub solvers: Solvers,
     /// What was seen of the stiffness of each mode.
     pub stiffness: Box<[Stiffness]>,
-    /// How well the force of a constraint that is told least was told where it was told best so far.
-    pub most_told: f64,
+    /// How well the least determined force of a constraint was determined at best so far.
+    pub best_determined: f64,
     /// Until when the inputs are smooth, or the run lasts, s; −∞ where it must be found out.
     pub smooth_until: f64,
     /// The piece of the inputs, where one without end is known.
@@ -204,7 +204,7 @@ impl<'p> Simulation<'p> {
             solver: Solver::default(),
             solvers: Solvers::new(modes),
             stiffness: vec![Stiffness::default(); modes.len()].into(),
-            most_told: 0.0,
+            best_determined: 0.0,
             smooth_until: f64::NEG_INFINITY,
             piece: Piece::UNKNOWN,
             began: Instant::default(),
@@ -349,7 +349,7 @@ impl<'p> Simulation<'p> {
         self.at_zero.clear();
         self.stiffness.fill(Stiffness::default());
         self.has_inertia.fill(false);
-        self.most_told = 0.0;
+        self.best_determined = 0.0;
         self.accumulation.clear();
         self.visited.clear();
         self.doubts.clear();

@@ -32,6 +32,9 @@ pub trait OneStep<F: Size, Y> {
     /// does: 1, or 0 where a coordinate is not controlled.
     fn control(&mut self, part: &F::Vector);
 
+    /// Whether all of the errors of all coordinates counts.
+    fn controls_all(&self) -> bool;
+
     /// Goes on from a state close to the one that the last step led to, at the same time: what the motion is held at was
     /// off by its error.
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector);
@@ -161,6 +164,10 @@ where
         self.control(part);
     }
 
+    fn controls_all(&self) -> bool {
+        self.controls_all()
+    }
+
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
         self.correct(q, v, a);
     }
@@ -234,6 +241,10 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     fn control(&mut self, part: &F::Vector) {
         self.control(part);
+    }
+
+    fn controls_all(&self) -> bool {
+        self.controls_all()
     }
 
     fn correct(&mut self, q: &F::Vector, v: &F::Vector, _: &F::Vector) {

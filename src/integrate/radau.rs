@@ -133,6 +133,11 @@ where
         self.controlled.clone_from(part);
     }
 
+    /// Whether all of the errors of all coordinates counts.
+    pub fn controls_all(&self) -> bool {
+        self.controlled.as_slice().iter().all(|&part| part == 1.0)
+    }
+
     /// Goes on from a state close to the one that the last step led to, at its time.
     pub fn correct(&mut self, q: &F::Vector, v: &F::Vector, a: &F::Vector) {
         let State { t, .. } = self.end;

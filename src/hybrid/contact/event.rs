@@ -3,7 +3,7 @@
 use super::geometry::{Geometry, Line, multiplier, write_states};
 use super::hold::{Places, held_lines, hold, hold_lines};
 use super::impact::{Impact, Impacted};
-use super::{State, Tangent};
+use super::{Conditioning, State, Tangent};
 use crate::hybrid::accumulation::Signature;
 use crate::hybrid::advance::MadeBy;
 use crate::hybrid::failure::{Reason, Stoppable};
@@ -119,9 +119,11 @@ impl<'p> Simulation<'p> {
     ) -> Stoppable<()> {
         let free = &self.mode().free;
         let [mut q, mut v, a] = self.here.free(kernel.size(), free);
-        let held = hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
-        let mode = self.mode().name;
-        held.map_err(|of| Box::new(Reason::SingularPosition { mode, of }))?;
+        hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
+        let here = Conditioning::new(kernel, &mut self.context, contacts, [&q, &v]);
+        if let Some(here) = here {
+            here.is_nearly_singular(self.mode(), &mut self.best_determined)?;
+        }
         self.here.set_free(free, [&q, &v, &a]);
         self.set_context();
         self.set_accelerations(kernel)

@@ -115,23 +115,24 @@ impl Geometry {
         kept
     }
 
-    /// Of some lines that of which the least is left beside those before it, as a part of the longest: where its force is told least,
-    /// and how well; `None` of no lines. What becomes shorter than all others is told as little as what becomes parallel to them.
-    pub fn least_told(&self, lines: &[Line]) -> Option<(Line, f64)> {
+    /// Of some lines that of which the least is left beside those before it, as a part of the longest: whose force is determined
+    /// least, and that part; `None` of no lines. What becomes shorter than all others is determined as little as what becomes
+    /// parallel to them.
+    pub fn least_determined(&self, lines: &[Line]) -> Option<(Line, f64)> {
         let length = |line: &Line| {
             let scaled = &self.scaled[self.place(*line)];
             dot(scaled, scaled).sqrt()
         };
         let longest = lines.iter().map(length).fold(0.0, f64::max);
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        let told = |&line: &Line| {
+        let determined = |&line: &Line| {
             let (part, unit) = left_of(&self.scaled[self.place(line)], &basis);
             basis.push(unit);
             (line, part * length(&line) / longest)
         };
         lines
             .iter()
-            .map(told)
+            .map(determined)
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
@@ -290,6 +291,46 @@ mod tests {
         assert_eq!(beside(&[3.0, 4.0, 0.0], &basis), Some(vec![0.0, 1.0, 0.0]));
         assert_eq!(beside(&[3.0, 1e-9, 0.0], &basis), None);
         assert!(beside(&[3.0, 1e-6, 0.0], &basis).is_some());
+    }
+
+    /// Of two lines of a unit mass in the plane, the second this far off the first.
+    fn two_lines(angle: f64, length: f64) -> Geometry {
+        let lines = [[1.0, 0.0], [length * angle.cos(), length * angle.sin()]].map(Vec::from);
+        Geometry {
+            own: vec![0, 1],
+            mass: vec![1.0, 0.0, 0.0, 1.0],
+            lines: [0, 1]
+                .map(|c| (Line::Constraint(c), lines[c].clone()))
+                .into(),
+            scaled: lines.into(),
+        }
+    }
+
+    #[test]
+    fn a_line_is_determined_by_what_is_left_of_it_as_a_part_of_the_longest() {
+        let both = [Line::Constraint(0), Line::Constraint(1)];
+        let least = |angle: f64, length: f64| two_lines(angle, length).least_determined(&both);
+        let (line, part) = least(0.3, 1.0).unwrap();
+        assert_eq!(line, Line::Constraint(1));
+        assert!((part - 0.3_f64.sin()).abs() < 1e-15);
+        // A short line is determined as little as one that is nearly parallel to the first.
+        let (line, part) = least(std::f64::consts::FRAC_PI_2, 0.01).unwrap();
+        assert_eq!(line, Line::Constraint(1));
+        assert!((part - 0.01).abs() < 1e-15);
+        let (line, part) = least(std::f64::consts::FRAC_PI_2, 4.0).unwrap();
+        assert_eq!((line, part), (Line::Constraint(0), 0.25));
+        assert_eq!(two_lines(0.3, 1.0).least_determined(&[]), None);
+    }
+
+    #[test]
+    fn what_is_left_of_a_line_turns_round_beyond_a_singular_position() {
+        let both = [Line::Constraint(0), Line::Constraint(1)];
+        let turns =
+            |[a, b]: [f64; 2]| two_lines(a, 1.0).turns_round(both[1], &both, &two_lines(b, 1.0));
+        assert!(turns([0.2, -0.1]));
+        assert!(turns([-0.2, 0.1]));
+        assert!(!turns([0.2, 0.1]));
+        assert!(!turns([-0.2, -0.1]));
     }
 
     #[test]

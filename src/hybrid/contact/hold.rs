@@ -1,7 +1,7 @@
 //! Positions and rates where contacts and constraints hold them, to rounding.
 
 use super::State;
-use super::geometry::{DEPENDENT, Geometry, Line};
+use super::geometry::{Geometry, Line};
 use crate::kernel::{Context, ModeKernel};
 use crate::model::Contacts;
 use crate::numerics::Size;
@@ -105,53 +105,16 @@ pub(super) fn held_lines(contacts: &Contacts, states: &[State]) -> [Vec<Line>; 2
 
 /// Brings coordinates and rates back to where the contacts and constraints of a mode hold them, in the states that the
 /// context says, for whose time it is set.
-///
-/// Tells how well the force of a constraint is told that is told least ([`Geometry::least_told`]); 1 where there is none.
-///
-/// # Errors
-/// A singular position: the name of what is held there by a force that is not determined.
 pub(in crate::hybrid) fn hold<F: Size>(
     kernel: &ModeKernel<F>,
     context: &mut Context,
     contacts: &Contacts,
     [q, v]: [&mut F::Vector; 2],
-) -> Result<f64, &'static str> {
+) {
     let states = State::all(contacts, context.discrete());
     let [places, rates] = held_lines(contacts, &states);
     hold_lines(kernel, context, contacts, [&places, &rates], [q, v]);
-    if contacts.constraints.is_empty() {
-        return Ok(1.0);
-    }
-    let geometry = Geometry::new(kernel, context, contacts, [q, v]);
-    match geometry.least_told(&places) {
-        Some((line, told)) if told <= DEPENDENT => Err(match line {
-            Line::Normal(k) | Line::Tangent(k) => contacts.contacts[k].name,
-            Line::Constraint(c) => contacts.constraints[c].name,
-        }),
-        told => Ok(told.map_or(1.0, |(_, told)| told)),
-    }
 }
-
-/// Whether a singular position lies between two states: what is left of the line whose force is told least turns round there.
-pub(in crate::hybrid) fn passes_pole<F: Size>(
-    kernel: &ModeKernel<F>,
-    context: &mut Context,
-    contacts: &Contacts,
-    states: [[&F::Vector; 2]; 2],
-) -> bool {
-    let [places, _] = held_lines(contacts, &State::all(contacts, context.discrete()));
-    let [before, after] = states.map(|state| Geometry::new(kernel, context, contacts, state));
-    match after.least_told(&places) {
-        Some((line, _)) => before.turns_round(line, &places, &after),
-        None => false,
-    }
-}
-
-/// Where the force that is told least is told by so much less than elsewhere in the run, a singular position is close. There the
-/// forces of constraints have a pole, while the motion goes on smoothly: a step that has to show the forces becomes as short
-/// as the pole is near, and none leads behind it. At 1/10 that costs a digit of the forces, and more is left for the step that
-/// passes: it amplifies roundings as 1/told².
-pub(in crate::hybrid) const NEARLY: f64 = 0.1;
 
 /// The same of given lines: those whose place, and those whose rate is held. Newton's method, each time by the least
 /// change in the metric of the masses, as long as it comes closer.

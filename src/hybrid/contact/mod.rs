@@ -6,6 +6,7 @@
 //!
 //! - `geometry`: masses, and the lines along which contacts and constraints push.
 //! - `hold`: positions and rates brought back to where they are held, to rounding.
+//! - `singular`: how well the forces are determined that hold them.
 //! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
 //! - `many`: which of them are tried where these are too many.
 //! - `impact`: what an impact does, under the law of the scene.
@@ -23,9 +24,11 @@ mod judge;
 mod limit;
 mod many;
 mod phase;
+mod singular;
 mod start;
 
-pub(super) use hold::{NEARLY, hold, passes_pole};
+pub(super) use hold::hold;
+pub(super) use singular::Conditioning;
 
 use crate::model::Contacts;
 

@@ -257,8 +257,7 @@ pub(in crate::hybrid) fn held<F: Size>(
 ) -> [F::Vector; 3] {
     equations.at(tau);
     let (kernel, context) = (equations.kernel, &mut *equations.context);
-    // A step that passes a singular position shows the motion there all the same.
-    let _ = hold(kernel, context, contacts, [&mut q, &mut v]);
+    hold(kernel, context, contacts, [&mut q, &mut v]);
     let a = equations.acceleration_here(&q, &v).unwrap_or(a);
     [q, v, a]
 }

@@ -163,7 +163,7 @@ impl<F: Size> Taylor<F> {
         }
     }
 
-    /// Forgets what was inverted, so that the work of the next run does not depend on the one before.
+    /// Forgets what was inverted and how long steps were, so that the work of the next run does not depend on the one before.
     pub(crate) fn forget(&mut self) {
         self.inverse.clear();
         self.length = f64::INFINITY;
@@ -197,6 +197,11 @@ impl<F: Size> Taylor<F> {
     /// As [`super::OneStep::control`].
     pub fn control(&mut self, part: &F::Vector) {
         self.controlled.clone_from(part);
+    }
+
+    /// Whether all of the errors of all coordinates counts.
+    pub fn controls_all(&self) -> bool {
+        self.controlled.as_slice().iter().all(|&part| part == 1.0)
     }
 
     /// As [`super::OneStep::foresee`].

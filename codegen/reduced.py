@@ -1,0 +1,305 @@
+"""The modes that follow from contacts: one for each set of contact states where gaps and slips are coordinates, which it freezes.
+
+This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts (Newton's law) and rests follow. Where there is
+none, one mode serves all sets (`multipliers.py`).
+"""
+
+import itertools
+
+import casadi as ca
+
+from . import contact_outputs, derive, limits, multipliers
+from .contacts import CLOSED, OPEN, SLIDES, STICKS
+from .declarations import Transition
+from .errors import ModelError
+
+MOST_MODES = 16
+"""Most sets of contact states for which modes are generated, each with its own code."""
+
+
+class NotReducible(ModelError):
+    """Why contacts have no reduced form."""
+
+
+def expand(model):
+    """Adds the modes, transitions and rests of a model with contacts or constraints; those of any other stay as they are."""
+    if not model.contacts and not model.constraints:
+        if model.switched_off and not model.modes:
+            model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
+        return
+    if model.modes:
+        raise ModelError("the model has contacts and modes by hand; contacts make all modes: leave `model.mode(…)` out, or write"
+                         " all of it by hand", model.modes[0].location)
+    if not _reduce(model):
+        multipliers.build(model)
+    contact_outputs.add(model)
+
+
+def _reduce(model):
+    """Adds the modes of the reduced form; whether there is one."""
+    if model.by_multipliers or model.constraints or not all(contact.is_reducible() for contact in model.contacts):
+        return False
+    try:
+        Expansion(model).build()
+    except NotReducible:
+        model.modes, model.transitions, model.rests, model.placeholders = [], [], [], {}
+        return False
+    return True
+
+
+def _bound(model, contact):
+    """A gap is not negative: a bound of its coordinate, where the model has given none."""
+    declaration = next(c for c in model.coordinates if c.name == contact.gap.name)
+    side = "minimum" if contact.gap.sign > 0 else "maximum"
+    if declaration.extra[side] is None:
+        value = contact.gap.value()
+        declaration.extra[side] = float(value) if value.is_constant() else value
+
+
+class Expansion:
+    """The modes of all sets of contact states that can be."""
+
+    def __init__(self, model):
+        self.model, self.contacts = model, model.contacts
+        self.modes = {}
+        self.mass = _mass(model)
+
+    def build(self):
+        """Adds everything to the model."""
+        sets = [states for states in itertools.product(*[c.states() for c in self.contacts]) if self._can_be(states)]
+        if len(sets) > MOST_MODES:
+            raise NotReducible(f"{len(sets)} sets of contact states")
+        for states in sets:
+            self.modes[states] = self._mode(states)
+        for states in sets:
+            for i, contact in enumerate(self.contacts):
+                self._transitions(states, i, contact)
+        for contact in self.contacts:
+            if contact.gap is not None:
+                _bound(self.model, contact)
+
+    def _can_be(self, states):
+        """A coordinate is where one gap is zero, not two; friction along it holds nothing there."""
+        closed = [c.gap.name for c, s in zip(self.contacts, states) if c.gap and s != OPEN]
+        slides = [c.slip.name for c, s in zip(self.contacts, states) if s == SLIDES]
+        return len(set(closed)) == len(closed) and not set(closed) & set(slides)
+
+    def _holder(self, states, coordinate):
+        """The closed contact that holds a coordinate."""
+        return next((c for c, s in zip(self.contacts, states) if c.gap and s != OPEN and c.gap.name == coordinate), None)
+
+    def _mode(self, states):
+        model, freeze, drift = self.model, [], []
+        for contact, state in zip(self.contacts, states):
+            if contact.gap and state != OPEN:
+                freeze.append((contact.gap.coordinate, contact.gap.value()))
+        for contact, state in zip(self.contacts, states):
+            if state == STICKS and not self._holder(states, contact.slip.name):
+                freeze.append(contact.slip.coordinate)
+                if not contact.slip.offset.is_zero():
+                    drift.append((contact.slip.coordinate, contact.slip.value()))
+        mode = model._mode(_words(self.contacts, states), "", freeze, drift)
+        mode.location = self.contacts[0].location
+        mode.contact_states = {contact.name: state for contact, state in zip(self.contacts, states)}
+        for contact, state in zip(self.contacts, states):
+            if state == SLIDES:
+                mode.friction(contact.slip.coordinate, normal=contact.normal_force(mode), coefficient=contact.kinetic,
+                              direction=contact.slip.sign * contact.direction, against=contact.slip.value())
+                model.locations[id(mode.forces), len(mode.forces) - 1] = contact.location
+            if contact.gap is None and not contact.permanent:
+                self._require_normal(mode, contact)
+        return mode
+
+    def _require_normal(self, mode, contact):
+        """Friction without a gap ends where its normal force pulls; one of parameters alone is what it is."""
+        if not limits.is_of_parameters(self.model, contact.normal):
+            mode.requirements.append((contact.normal, f"the normal force of `{contact.name}` would pull", contact.location))
+
+    def _add(self, contact, verb, states, target, when, reset=(), provided=None, impact=False):
+        target = self.modes.get(tuple(target))
+        if target is None:
+            return
+        conditions = None if not provided else ca.vertcat(*provided)
+        self.model.transitions.append(Transition(
+            f"{contact.name} {verb}", self.modes[states], target, ca.SX(when), conditions,
+            [(symbol, ca.SX(value)) for symbol, value in reset], impact, contact.location))
+
+    def _transitions(self, states, i, contact):
+        """What contact `i` can do next in a mode."""
+        mode, state = self.modes[states], states[i]
+        with_state = lambda new: [*states[:i], new, *states[i + 1:]]
+        if state == OPEN:
+            if mode.is_free(contact.gap.coordinate):
+                self._strike(states, i)
+                for rest in contact.states()[1:]:
+                    self._rest(states, self._joined(with_state(rest), contact))
+            return
+        if contact.gap:
+            self._opens(states, i, with_state)
+        if state == STICKS and not self._holder(states, contact.slip.name):
+            for direction, margin in self._holds(contact, mode).items():
+                self._add(contact, "slips", states, with_state(SLIDES), margin, [(contact.direction, direction)])
+        if state == SLIDES:
+            stops = contact.direction * contact.slip_rate()
+            sticking = self.modes.get(tuple(with_state(STICKS)))
+            if sticking is not None:
+                self._add(contact, "sticks", states, with_state(STICKS), stops,
+                          provided=list(self._holds(contact, sticking).values()))
+            self._add(contact, "reverses", states, states, stops, [(contact.direction, -contact.direction)])
+
+    @staticmethod
+    def _holds(contact, mode):
+        """By direction: what is left before static friction lets a slip begin that way."""
+        limit = contact.static * contact.normal_force(mode)
+        force = contact.slip.sign * mode.reaction(contact.slip.coordinate)
+        return {+1: limit + force, -1: limit - force}
+
+    def _joined(self, states, contact):
+        """The states once `contact` has closed: friction along the coordinate of its gap has nothing left to do."""
+        return [STICKS if c.slip and c.slip.name == contact.gap.name and s == SLIDES and c is not contact else s
+                for c, s in zip(self.contacts, states)]
+
+    def _rest(self, states, target):
+        source, target = self.modes[states], self.modes.get(tuple(target))
+        if target is not None and set(source.held) < set(target.held):
+            self.model.rests.append((source, target))
+
+    def _opens(self, states, i, with_state):
+        """The contact pushes; friction along its own gap may pull."""
+        contact, mode = self.contacts[i], self.modes[states]
+        target, margin, reset = with_state(OPEN), contact.normal_force(mode), []
+        for k, other in enumerate(self.contacts):
+            if k != i and other.slip and other.slip.name == contact.gap.name:
+                margin = margin + other.static * other.normal_force(mode)
+                target[k] = SLIDES
+                reset.append((other.direction, contact.gap.sign * other.slip.sign))
+        self._add(contact, "opens", states, target, margin, reset)
+
+    # ---- impacts ----------------------------------------------------------------------------------
+
+    def _strike(self, states, i):
+        """The impacts of a gap that closes: Newton's law for its rate, Coulomb's for the impulses (Moreau 1988)."""
+        contact = self.contacts[i]
+        pressed, loose = self._reached(states, contact)
+        if len(pressed) > 1 or pressed and (contact.slip or pressed[0].slip):
+            raise NotReducible(f"the impact of `{contact.name}` acts on several contacts with friction")
+        slides = [+1, -1] if contact.slip else []
+        ways = [(opens, slip) for opens in ([True, False] if pressed else [False]) for slip in slides + [0]]
+        for opens, slip in ways:
+            self._outcome(states, i, (pressed, loose), opens, slip)
+
+    def _reached(self, states, contact):
+        """The closed contacts that an impulse at a gap acts on, and the coordinates whose rates it changes besides."""
+        names = [c.name for c in self.model.coordinates]
+        start = names.index(contact.gap.name)
+        found, pressed, loose, pending = {start}, [], [], [start]
+        while pending:
+            row = pending.pop()
+            for k in range(len(names)):
+                if k in found or self.mass[row, k].is_zero():
+                    continue
+                found.add(k)
+                holder = self._holder(states, names[k])
+                if holder is not None:
+                    pressed.append(holder)
+                else:
+                    loose.append(k)
+                    pending.append(k)
+        if contact.slip and names.index(contact.slip.name) not in loose:
+            loose.append(names.index(contact.slip.name))
+        return pressed, sorted(loose)
+
+    def _outcome(self, states, i, reached, opens, slip):
+        """One way in which an impact may end: whether the pressed contact opens, and which way this one slips (0: not)."""
+        contact, (pressed, loose) = self.contacts[i], reached
+        pushed = pressed[0] if pressed else None
+        names = [c.name for c in self.model.coordinates]
+        coordinates = [c.symbol for c in self.model.coordinates]
+        gap = names.index(contact.gap.name)
+        along = names.index(contact.slip.name) if contact.slip else None
+        free = list(loose) + ([names.index(pushed.gap.name)] if opens else [])
+        prescribed = {gap: -contact.restitution * coordinates[gap].rate}
+        if contact.slip and slip == 0:
+            free.remove(along)
+            prescribed[along] = contact.slip.value()
+        change = {k: rate - coordinates[k].rate for k, rate in prescribed.items()}
+        friction = (along, -contact.kinetic * slip * contact.slip.sign * contact.gap.sign) if slip else None
+        solved, _ = self._rates(gap, free, change, friction)
+        conditions = []
+        if slip:
+            conditions.append(slip * contact.slip_rate())
+            # A push that friction turns against itself has no such outcome (a self-locking wedge).
+            unit = {k: ca.SX(1 if k == gap else 0) for k in change}
+            _, push = self._rates(gap, free, unit, friction)
+            if not push.is_constant() and not self.mass[gap, along].is_zero():
+                conditions.append(push)
+        target = list(states)
+        keeps = contact.restitution.is_zero()
+        if keeps:
+            target[i] = CLOSED if not contact.slip else SLIDES if slip else STICKS
+            target = self._joined(target, contact)
+        reset = [(contact.gap.coordinate, contact.gap.value())]
+        after = {**{k: coordinates[k].rate + delta for k, delta in solved.items()}, **prescribed}
+        reset += [(coordinates[k].rate, after[k]) for k in sorted(after)]
+        if slip:
+            reset.append((contact.direction, slip))
+        if opens:
+            target[self.contacts.index(pushed)] = OPEN
+            conditions.append(pushed.gap.sign * pushed.gap.coordinate.rate)
+        for k, other in enumerate(self.contacts):
+            place = names.index(other.slip.name) if other.slip else None
+            if k == i or place not in after or states[k] == OPEN or target[k] == STICKS and keeps and place == gap:
+                continue
+            # Friction without an impulse of its own does not hold against one.
+            target[k] = SLIDES
+            rate = other.slip.sign * after[place] + other.slip.offset
+            # Where the impact leaves no slip rate, the direction stays as it was.
+            reset.append((other.direction, other.direction * (1 - 2 * (other.direction * rate < 0))))
+        if keeps:
+            held = self.modes.get(tuple(target))
+            reset = [(s, v) for s, v in reset if not _is_held(held, s)]
+        self._add(contact, "strikes", states, target, contact.gap.sign * contact.gap.coordinate + contact.gap.offset,
+                  reset, conditions, impact=True)
+
+    def _rates(self, gap, free, change, friction):
+        """How the rates of coordinates `free` change when others do by `change`, and the push that it takes on the gap.
+
+        Momentum: M Δv is zero along what is free, but for the friction impulse, a multiple of the push M Δv along the gap.
+        """
+        mass, size = self.mass, len(free)
+        unknown = ca.vertcat(*[ca.SX.sym(f"change{k}") for k in range(size)]) if size else ca.SX(0, 1)
+        deltas = {**change, **{k: unknown[n] for n, k in enumerate(free)}}
+        impulse = lambda row: sum((mass[row, k] * delta for k, delta in deltas.items()), ca.SX(0))
+        rows = []
+        for k in free:
+            force = friction[1] * impulse(gap) if friction and friction[0] == k else 0
+            rows.append(impulse(k) - force)
+        solved = {}
+        if size:
+            column = ca.vertcat(*rows)
+            matrix = ca.densify(ca.jacobian(column, unknown))
+            load = ca.substitute(column, unknown, ca.SX.zeros(size))
+            solution = -(ca.inv_minor(matrix) @ load) if size > 1 else -load / matrix
+            solved = {k: solution[n] for n, k in enumerate(free)}
+        push = impulse(gap)
+        if size:
+            push = ca.substitute(push, unknown, ca.vertcat(*[solved[k] for k in free]))
+        return solved, push
+
+
+def _is_held(mode, symbol):
+    """Whether a reset of a coordinate or a rate is what a mode holds anyway."""
+    return mode is not None and any(
+        c.symbol.element_hash() == symbol.element_hash() or c.symbol.rate.element_hash() == symbol.element_hash()
+        for c in mode.model.coordinates if c.name in mode.held)
+
+
+def _mass(model):
+    """∂²T/∂v² of all coordinates, frozen or not."""
+    rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates])
+    return ca.densify(ca.simplify(ca.hessian(derive.kinetic_energy(model), rates)[0]))
+
+
+def _words(contacts, states):
+    """The name of a set of contact states."""
+    return ", ".join(f"{contact.name} {state}" for contact, state in zip(contacts, states))
