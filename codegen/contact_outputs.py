@@ -1,7 +1,8 @@
 """What people see of contacts and constraints: gaps, slip rates and forces as outputs of the model, and their laws as text.
 
 Of a contact `left` the outputs are `left.gap`, `left.slip` (the slip rate), `left.normal` (λ_N ≥ 0, pushes the gap open) and
-`left.friction` (λ_T, along the slip); of one equation of a constraint `pin` its force, `pin.force` (along what it holds at zero).
+`left.friction` (λ_T, along the slip); of a ratchet `pawl` they are `pawl.rate` and `pawl.force` (≥ 0, along the rate); of one equation
+of a constraint `pin` its force, `pin.force` (along what it holds at zero).
 They are the same for both forms of equations. With multipliers there are the impulses, too, `left.normal_impulse`,
 `left.friction_impulse`, `pin.impulse`: the forces integrated over time since the start, which jump at impacts.
 """
@@ -20,7 +21,7 @@ def add(model):
     for constraint in model.constraints:
         force = lambda equations, of=constraint: of.multiplier.acceleration
         model.outputs.append(Output(
-            f"{constraint.name}.force", _force_unit(model, constraint.expression),
+            f"{constraint.name}.force", _force_unit(model, constraint.expression, constraint.is_rate),
             "force of the constraint, positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
     model.outputs.extend(c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
 
@@ -28,8 +29,9 @@ def add(model):
 def _of_contact(model, contact):
     name = contact.name
     if contact.gap is not None:
+        value, meaning = ("rate", "0 where it is engaged") if contact.is_ratchet else ("gap", "0 where it is closed")
         unit = units.text(units.dimension_of(contact.gap_expression, model.dimensions))
-        yield Output(f"{name}.gap", unit, "0 where it is closed", contact.gap_expression, contact.location, "",
+        yield Output(f"{name}.{value}", unit, meaning, contact.gap_expression, contact.location, "",
                      lambda equations: equations.freeze(contact.gap_expression))
     if contact.slip is not None:
         rate = contact.slip_rate_of(derive.configuration(model))
@@ -37,13 +39,11 @@ def _of_contact(model, contact):
         yield Output(f"{name}.slip", unit, "slip rate", rate, contact.location, "",
                      lambda equations: equations.freeze(rate))
     if contact.gap is not None:
-        yield Output(f"{name}.normal", _force_unit(model, contact.gap_expression), "normal force, pushes the gap open",
+        meaning = "force along its rate, not negative" if contact.is_ratchet else "normal force, pushes the gap open"
+        yield Output(contact.force_name, _force_unit(model, contact.gap_expression, contact.is_ratchet), meaning,
                      ca.SX(0), contact.location, "λ_N", lambda equations: _normal(equations, contact))
     if contact.slip is not None and not _shares_its_slip(model, contact):
-        place = units.dimension_of(contact.slip_expression, model.dimensions)
-        if contact.slips_by_rate:
-            place = units.combine(place, units.parse("s"))
-        yield Output(f"{name}.friction", _force_of(place), "friction force, along the slip", ca.SX(0), contact.location,
+        yield Output(f"{name}.friction", _force_unit(model, contact.slip_expression, contact.slips_by_rate), "friction force, along the slip", ca.SX(0), contact.location,
                      "λ_T", lambda equations: _friction(equations, contact))
 
 
@@ -80,12 +80,11 @@ def _state(mode, contact):
     return mode.contact_states[contact.name]
 
 
-def _force_unit(model, expression):
-    """Unit of the force along an expression."""
-    return _force_of(units.dimension_of(expression, model.dimensions))
-
-
-def _force_of(dimension):
+def _force_unit(model, expression, is_rate):
+    """Unit of the force along an expression, or along what it is the rate of."""
+    dimension = units.dimension_of(expression, model.dimensions)
+    if is_rate:
+        dimension = units.combine(dimension, units.parse("s"))
     return units.named(units.combine(units.parse("kg m^2/s^2"), dimension, -1), ("N", "N m"))
 
 
@@ -98,10 +97,10 @@ def described(model):
     found = []
     for contact in model.contacts:
         found.append({
-            "name": contact.name, "kind": "friction" if contact.gap is None else "contact", "gap": text(contact.gap_expression),
+            "name": contact.name, "kind": "ratchet" if contact.is_ratchet else "friction" if contact.gap is None else "contact", "gap": text(contact.gap_expression),
             "slip": text(contact.slip_expression), "normal": text(contact.normal) if contact.gap is None else None,
             "static": text(contact.static), "kinetic": text(contact.kinetic),
-            "restitution": None if contact.gap is None else text(contact.restitution), "states": contact.states()})
+            "restitution": None if contact.gap is None or contact.is_ratchet else text(contact.restitution), "states": contact.states()})
     for constraint in model.constraints:
         found.append({
             "name": constraint.name, "kind": "constraint", "gap": text(constraint.expression), "slip": None, "normal": None,

@@ -17,6 +17,7 @@ from . import arguments, derive, graph, limits, multipliers, units
 from .errors import caller_location
 
 OPEN, CLOSED, STICKS, SLIDES = "open", "closed", "sticks", "slides"
+FREE, ENGAGED = "free", "engaged"
 
 @dataclass
 class Line:
@@ -43,8 +44,8 @@ class Smooth:
 
 @dataclass
 class Contact:
-    """A contact, or friction without a gap (`gap` is None, `normal` given). Gap and slip are `Line`s where they are coordinates,
-    else `Smooth`."""
+    """A contact, friction without a gap (`gap` is None, `normal` given), or a ratchet, whose `gap_expression` is its rate. Gap and slip
+    are `Line`s where they are coordinates, else `Smooth`."""
 
     name: str
     gap: object
@@ -60,18 +61,34 @@ class Contact:
     direction: ca.SX
     location: str
     permanent: bool = False
+    is_ratchet: bool = False
     law: list = field(default_factory=list)
     """The rates after its impacts that the model states, as (coordinate, rate)."""
     held: list = field(default_factory=list)
     """Of a permanent contact in the form with multipliers, the constraints that hold it: its gap, its slip rate."""
 
+    @property
+    def force_name(self):
+        """Name of the force that keeps the gap, or the rate, from being negative."""
+        return f"{self.name}.force" if self.is_ratchet else f"{self.name}.normal"
+
+    @property
+    def impulse_name(self):
+        """Name of its impulse."""
+        return f"{self.name}.impulse" if self.is_ratchet else f"{self.name}.normal_impulse"
+
     def states(self):
         """What it can do."""
+        if self.is_ratchet:
+            return [ENGAGED] if self.permanent else [FREE, ENGAGED]
         slipping = [STICKS, SLIDES] if self.slip else [CLOSED]
         return slipping[:1] if self.permanent else ([OPEN] if self.gap else []) + slipping
 
     def hold(self, model):
         """Makes the constraints of a permanent contact."""
+        if self.is_ratchet:
+            self.held.append(multipliers.Constraint(self.name, self.gap_expression, self.location, True))
+            return
         if self.gap is not None:
             self.held.append(multipliers.Constraint(f"{self.name}.gap", self.gap_expression, self.location, force=f"{self.name}.normal"))
         if self.slip is not None:
@@ -80,7 +97,7 @@ class Contact:
 
     def is_reducible(self):
         """Whether its gap and its slip are coordinates, and its impacts are Newton's without a slip that turns back."""
-        plain = self.permanent or not self.law and self.tangential_restitution.is_zero()
+        plain = not self.is_ratchet and (self.permanent or not self.law and self.tangential_restitution.is_zero())
         return plain and isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
 
     def slip_rate_of(self, x):
@@ -118,9 +135,7 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
     """Adds a contact to a model; see `Model.contact` and `Model.friction`."""
     kind = "friction" if gap is None else "contact"
     what = f"{kind} `{name}`"
-    arguments.name(model, kind, name)
-    if any(known.name == name for known in model.contacts):
-        raise model.error(f"{what}: there is a contact or a friction of this name above")
+    _check_name(model, kind, name)
     chosen = switched(model, kind, name, switch)
     of = lambda key, value: arguments.expression(model, f"{what}: {key}", value)
     gap_expression = None if gap is None else _of_motion(model, f"{what}: its gap", of("its gap", gap), rates=False)
@@ -156,11 +171,44 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
         caller_location(model.file), chosen == PERMANENT))
 
 
+def declare_ratchet(model, name, rate, switch):
+    """Adds a one-sided constraint on a rate to a model; see `Model.ratchet`."""
+    what = f"ratchet `{name}`"
+    _check_name(model, "ratchet", name)
+    chosen = switched(model, "ratchet", name, switch)
+    rate = _of_motion(model, f"{what}: its rate", arguments.expression(model, f"{what}: its rate", rate), rates=True)
+    if not _is_of_rates(model, f"{what}: its rate", rate):
+        raise model.error(f"{what}: its rate, `{units.short(rate)}`, does not depend on the rate of any coordinate; what is one-sided in a"
+                          " place is a contact")
+    if chosen == OFF:
+        return
+    zero = ca.SX(0)
+    model.contacts.append(Contact(name, Smooth(), rate, None, None, False, None, None, None, zero, zero, None,
+                                  caller_location(model.file), chosen == PERMANENT, True))
+
+
+def _check_name(model, kind, name):
+    arguments.name(model, kind, name)
+    if any(known.name == name for known in model.contacts):
+        raise model.error(f"{kind} `{name}`: there is a contact, a friction or a ratchet of this name above")
+
+
+def _is_of_rates(model, what, expression):
+    """Whether an expression depends on rates of coordinates, on which it must depend linearly: their factors are the directions of
+    its force."""
+    rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates])
+    slopes = ca.densify(ca.jacobian(expression, rates))
+    if ca.depends_on(slopes, rates):
+        raise model.error(f"{what}, `{units.short(expression)}`, is not linear in the rates, so that it has no force that follows from it")
+    return not slopes.is_zero()
+
+
 def declare_impact(model, name, rates):
     """Adds a law of the model's own for the impacts of a contact; see `Model.impact`."""
-    contact = next((c for c in model.contacts if c.name == name and c.gap is not None), None)
+    with_gap = [c for c in model.contacts if c.gap is not None and not c.is_ratchet]
+    contact = next((c for c in with_gap if c.name == name), None)
     if contact is None and (name, "contact") not in model.switched_off:
-        known = ", ".join(f"`{c.name}`" for c in model.contacts if c.gap is not None) or "none"
+        known = ", ".join(f"`{c.name}`" for c in with_gap) or "none"
         raise model.error(f"impact: there is no contact `{name}` with a gap above (contacts: {known})")
     if contact is not None and contact.law:
         raise model.error(f"impact of `{name}`: its law is stated twice")
@@ -198,15 +246,18 @@ def declare_constraint(model, name, expressions, switch):
     arguments.name(model, "constraint", name)
     chosen = switched(model, "constraint", name, switch)
     if any(known.name == name or known.name.startswith(f"{name}.") for known in [*model.constraints, *model.contacts]):
-        raise model.error(f"constraint `{name}`: there is a contact, a friction or a constraint of this name above")
+        raise model.error(f"constraint `{name}`: there is a contact, a friction, a ratchet or a constraint of this name above")
     listed = list(expressions) if isinstance(expressions, (list, tuple)) else [expressions]
     for k, expression in enumerate(listed):
         own = name if len(listed) == 1 else f"{name}.{k + 1}"
         what = f"constraint `{own}`"
-        expression = _of_motion(model, what, arguments.expression(model, what, expression), rates=False)
+        expression = _of_motion(model, what, arguments.expression(model, what, expression), rates=True)
+        is_rate = _is_of_rates(model, what, expression)
+        if not is_rate and ca.depends_on(expression, ca.vertcat(ca.SX(0, 1), *[m.symbol.rate for m in model.motions])):
+            raise model.error(f"{what}, `{units.short(expression)}`, depends on the rate of a motion of the ground, but on none of a coordinate")
         if chosen == OFF:
             continue
-        model.constraints.append(multipliers.Constraint(own, expression, caller_location(model.file)))
+        model.constraints.append(multipliers.Constraint(own, expression, caller_location(model.file), is_rate))
 
 
 def _of_motion(model, what, expression, rates):

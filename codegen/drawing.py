@@ -91,7 +91,7 @@ def _pushes(model, what, of, along, location):
     contact = next((c for c in model.contacts if c.name == of), None)
     held = [c.name for c in model.constraints if c.name == of or isinstance(of, str) and c.name.startswith(f"{of}.")]
     if contact is not None:
-        forces = {f"{of}.normal": (0, 1)} if contact.gap is not None else {}
+        forces = {contact.force_name: (0, 1)} if contact.gap is not None else {}
         forces |= {f"{of}.friction": (1, 0)} if contact.slip is not None else {}
     elif any(of == name for name, _ in model.switched_off):
         return []

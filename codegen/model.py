@@ -285,9 +285,17 @@ class Model:
         a scene may ask for."""
         self.by_multipliers = True
 
+    def ratchet(self, name, *, rate, switch=False):
+        """A one-sided constraint on a velocity, as of a ratchet or an overrunning clutch: `rate` ≥ 0, and a force along it that
+        pushes it to grow where it is zero. It is linear in rates of coordinates. Where an impact, whatever strikes, would turn the
+        rate round, the ratchet takes part with an impulse of its own, without restitution. `switch` as for contacts; held for
+        good the rate is zero."""
+        contacts.declare_ratchet(self, name, rate, switch)
+
     def constraint(self, name, expressions, *, switch=False):
-        """A constraint that always holds: each of the expressions is zero. Its multipliers are the reactions: forces along
-        what the expressions measure, positive where they push it to grow. With `switch=True` a scene may leave it out."""
+        """A constraint that always holds: each of the expressions is zero. What depends on rates, linearly, is a constraint on a
+        velocity (a blade on ice, a wheel that rolls). Its multipliers are the reactions: forces along what the expressions
+        measure, positive where they push it to grow. With `switch=True` a scene may leave it out."""
         contacts.declare_constraint(self, name, expressions, switch)
 
     # ---- hybrid structure ---------------------------------------------------------------------

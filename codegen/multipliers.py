@@ -96,8 +96,8 @@ def build(model):
     form = Form(contacts, constraints)
     for contact in contacts:
         form.normals.append(None if contact.gap is None else _multiplier(
-            model, f"{contact.name}.normal", contact.gap_expression, False, "impulse of the normal force", contact,
-            f"{contact.name}.normal_impulse"))
+            model, contact.force_name, contact.gap_expression, contact.is_ratchet, "impulse of the normal force", contact,
+            contact.impulse_name))
         form.tangents.append(None if contact.slip is None else _multiplier(
             model, f"{contact.name}.friction", contact.slip_expression, contact.slips_by_rate,
             "impulse of the friction force", contact, f"{contact.name}.friction_impulse"))
@@ -221,7 +221,7 @@ class MultiplierEquations(derive.ModeEquations):
         name = lambda symbol: next(i for i, c in enumerate(model.coordinates) if c.symbol is symbol)
         for k, of in enumerate(self.terms):
             if form.normals[k] is not None:
-                along = self._along(form.contacts[k].gap_expression, x.q)
+                along = self._along(form.contacts[k].gap_expression, x.v if form.contacts[k].is_ratchet else x.q)
                 rows[name(form.normals[k])] = of.closed * of.gap_acceleration + (1 - of.closed) * of.normal
                 loaded, powers = self._push(loaded, along, of.normal), powers + of.normal * ca.dot(along, rates)
             if form.tangents[k] is not None:
@@ -260,16 +260,20 @@ class MultiplierEquations(derive.ModeEquations):
         rate = ca.jtimes(expression, x.q, x.v)
         return [self.freeze(e) for e in (expression, rate, derive.total_time_derivative(rate, x))]
 
+    def _of_rate(self, expression, x):
+        """The same of a rate, of which there is no place."""
+        return [ca.SX(0), self.freeze(expression), self.freeze(derive.total_time_derivative(expression, x))]
+
     def _held(self, constraint, x):
-        """What a constraint holds, its rate and its acceleration; of a rate there is no place."""
-        if not constraint.is_rate:
-            return self._rates(constraint.expression, x)
-        return [ca.SX(0), self.freeze(constraint.expression), self.freeze(derive.total_time_derivative(constraint.expression, x))]
+        """What a constraint holds, its rate and its acceleration."""
+        return (self._of_rate if constraint.is_rate else self._rates)(constraint.expression, x)
 
     def _terms(self, k, x):
         form, contact = self.form, self.form.contacts[k]
         zero, one = ca.SX(0), ca.SX(1)
-        gap = [zero, zero, zero] if contact.gap is None else self._rates(contact.gap_expression, x)
+        gap = [zero, zero, zero]
+        if contact.gap is not None:
+            gap = (self._of_rate if contact.is_ratchet else self._rates)(contact.gap_expression, x)
         slip = [zero, zero]
         if contact.slip is not None:
             rate = contact.slip_rate_of(x)
@@ -291,13 +295,14 @@ class MultiplierEquations(derive.ModeEquations):
 
     def contact_guards(self):
         """Three a contact, each positive while the contact stays in its state, and smooth in each of its states: what pushes, or
-        the gap; what is left before it slips forwards, or the slip rate along its direction; what is left before it slips
-        backwards."""
+        the gap (of a ratchet the rate); what is left before it slips forwards, or the slip rate along its direction; what is left
+        before it slips backwards."""
         guards = []
         for k, of in enumerate(self.terms):
             limit, slides = self._limit(k), of.closed * of.direction ** 2
+            opening = of.gap_rate if self.form.contacts[k].is_ratchet else of.gap
             guards += [
-                of.closed * of.normal + (1 - of.closed) * of.gap if self.form.normals[k] is not None else ca.SX(1),
+                of.closed * of.normal + (1 - of.closed) * opening if self.form.normals[k] is not None else ca.SX(1),
                 of.sticks * (limit - of.tangent) + of.closed * of.direction * of.slip_rate + (1 - of.sticks - slides),
                 of.sticks * (limit + of.tangent) + (1 - of.sticks)]
         return guards
@@ -341,7 +346,7 @@ class MultiplierEquations(derive.ModeEquations):
         form, count = self.form, len(self.form.contacts)
         return {
             "contacts": [{
-                "name": contact.name, "normal": coordinate(form.normals[k]), "tangent": coordinate(form.tangents[k]),
+                "name": contact.name, "is_ratchet": contact.is_ratchet, "normal": coordinate(form.normals[k]), "tangent": coordinate(form.tangents[k]),
                 "closed": discrete(form.closed[k]), "direction": discrete(form.directions[k]), "dropped": discrete(form.dropped[k]),
                 "joined": [discrete(form.joined.get((k, j))) for j in range(count)],
                 "law": [coordinate(symbol) for symbol, _ in contact.law],

@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::failure::Stoppable;
 use super::guards::{self, Conditions};
-use super::locate::{Landing, TAYLOR, land, land_later, rate_at, value_at};
+use super::locate::{Landing, TAYLOR, is_rounding, land, land_later, rate_at, value_at};
 use super::plan::Watched;
 use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
@@ -213,21 +213,25 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                 }
             }
         }
-        let Some(first) = time.and_then(|_| found.iter().position(|f| f.crossing.is_some())) else {
+        let first = time.and_then(|_| found.iter().position(|f| f.crossing.is_some()));
+        let until = first.and_then(|first| found[first].crossing);
+        if signs.waits {
+            let until = until.map_or(to, |crossing| crossing.outside);
+            let watched = (mode, watched);
+            let fallen = fallen(method, equations, conditions, watched, signs, until)?;
+            if let Some((guard, state)) = fallen {
+                *landed = state;
+                return Ok(Cut::Event { guard, beyond: 0.0 });
+            }
+        }
+        let dense = method.dense().expect("a step was made");
+        let (watches, found, from) = signs.parts();
+        let Some(first) = first else {
             landed.clone_from(method.state());
             if hides {
                 signs.below = below(equations, conditions, (mode, watched), signs, landed);
             }
-            return Ok(match signs.waits {
-                true => fallen(
-                    method,
-                    equations,
-                    conditions,
-                    (mode, watched),
-                    (signs, landed),
-                )?,
-                false => Cut::Nothing,
-            });
+            return Ok(Cut::Nothing);
         };
         let crossing = found[first].crossing.expect("it was found by it");
         let index = watched[first].guard;
@@ -245,22 +249,29 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             from[first] = crossing.outside;
             continue;
         }
-        // A contact that has left its gap, or its stop, within this step: how far is below the rounding of its own value, and
-        // known from its series.
+        // A contact that has left its gap, or its stop, within this step: where how far is below the rounding of its own value, it
+        // is known from its series alone.
         let from_zero = watches[first] == Watch::Dormant && start == 0.0;
+        let mut crossing = crossing;
         if M::EXPLICIT && from_zero && mode.contacts.is_some() && crossing.kind == Kind::Fall {
             let found = &mut found[first];
             let (start_of, dense) = (from[first], method.dense().expect("a step was made"));
             let window = (start_of, to);
             let what = (Watch::Dormant, Isolation::Bracket, &mut *found);
             search(equations, conditions, dense, guard, window, what);
-            if let Some(crossing) = found.crossing {
-                method.step_exactly(equations, crossing.outside - start)?;
-                landed.clone_from(method.state());
-                return Ok(Cut::Event {
-                    guard: index,
-                    beyond: 0.0,
-                });
+            if let Some(of_series) = found.crossing {
+                let t = of_series.outside;
+                let (q, v, a) = dense.at(t);
+                let end = State { t, q, v, a };
+                if is_rounding(equations, conditions, guard, (method.start(), &end)) {
+                    method.step_exactly(equations, t - start)?;
+                    landed.clone_from(method.state());
+                    return Ok(Cut::Event {
+                        guard: index,
+                        beyond: 0.0,
+                    });
+                }
+                crossing = of_series;
             }
         }
         let landing = match land(method, equations, conditions, guard, crossing, landed)? {
@@ -342,40 +353,68 @@ fn below<F: Size>(
 }
 
 /// The event of a guard that was zero at the start of the segment, or came to zero within rounding, and rose from it by
-/// less than the dense output shows, so that it never was seen to be positive: it is negative at the end of the step, and
-/// falls. It has fallen where it first is negative after it was known to be positive; and it is in doubt, having turned at
-/// zero.
+/// less than the dense output shows, so that it never was seen to be positive: it is negative at the end of the step, or where
+/// the event of another guard cuts it (`end`), and falls. It has fallen where it first is negative and falls after it was known
+/// to be positive, to a factor of two; and it is in doubt, having turned at zero. The guard, and the state there.
 #[cold]
 fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     (mode, watched): (&Mode, &[Watched]),
-    (signs, landed): (&mut Signs, &mut State<F>),
-) -> Stoppable<Cut> {
-    let (start, end) = (method.start().t, method.end());
+    signs: &mut Signs,
+    end: f64,
+) -> Stoppable<Option<(usize, State<F>)>> {
+    let start = method.start().t;
+    let mut at_end = None;
     for (i, &watched) in watched.iter().enumerate() {
-        let guard = (&mode.guards[watched.guard], watched);
-        let is_below = signs.away[i] > 0.0
-            && signs.found[i].watch == Watch::Violated
-            && value_at(equations, conditions, guard, landed) < 0.0
-            && rate_at(equations, guard.0, landed) < 0.0;
-        if !is_below {
+        let found = &signs.found[i];
+        let is_negative = found.watch == Watch::Violated && found.crossing.is_none();
+        if !(signs.away[i] > 0.0 && is_negative) {
             continue;
         }
-        let mut length = (signs.away[i] - start).max(TAYLOR * (end - start));
-        loop {
-            if start + length < end {
-                method.step_exactly(equations, length)?;
-            } else if method.end() < end {
-                method.step_exactly(equations, end - start)?;
+        let at_end = at_end.get_or_insert_with(|| match end < method.end() {
+            true => {
+                let [q, v, a] = guards::motion(
+                    equations,
+                    method.dense().expect("a step was made"),
+                    end,
+                    true,
+                );
+                State { t: end, q, v, a }
             }
-            landed.clone_from(method.state());
-            if value_at(equations, conditions, guard, landed) < 0.0 || start + length >= end {
-                break;
+            false => method.state().clone(),
+        });
+        let guard = (&mode.guards[watched.guard], watched);
+        let mut has_fallen = |equations: &mut Equations<'a, F>, state: &State<F>| {
+            value_at(equations, conditions, guard, state) < 0.0
+                && rate_at(equations, guard.0, state) < 0.0
+        };
+        if !has_fallen(equations, at_end) {
+            continue;
+        }
+        let away = signs.away[i] - start;
+        let mut length = if away > 0.0 {
+            away
+        } else {
+            TAYLOR * (end - start)
+        };
+        let state = loop {
+            let tau = (start + length).min(end);
+            if method.end() != tau {
+                method.step_exactly(equations, tau - start)?;
+            }
+            let state = method.state();
+            if has_fallen(equations, state) || tau >= end {
+                break state.clone();
             }
             length *= 2.0;
-        }
+        };
+        // What happens later is the next segment's.
+        signs
+            .found
+            .iter_mut()
+            .for_each(|found| found.crossing = None);
         signs.found[i].crossing = Some(Crossing {
             inside: method.end(),
             outside: method.end(),
@@ -383,12 +422,9 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         });
         signs.found[i].turn = 0.0;
         signs.unseen = true;
-        return Ok(Cut::Event {
-            guard: watched.guard,
-            beyond: 0.0,
-        });
+        return Ok(Some((watched.guard, state)));
     }
-    Ok(Cut::Nothing)
+    Ok(None)
 }
 
 /// Searches a guard, unless the window from which it is searched is empty.

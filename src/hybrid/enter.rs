@@ -1,5 +1,6 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
+use super::contact::held_by_others;
 use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, watched_value};
@@ -55,6 +56,10 @@ impl<'p> Simulation<'p> {
         let is_explicit = self.is_explicit(kernel);
         self.signs.clear();
         let mut violation = None;
+        let held = match &mode.contacts {
+            Some(contacts) => held_by_others(kernel, &mut self.context, contacts, [&q, &v]),
+            None => Vec::new(),
+        };
         for w in 0..self.plan.watched[self.here.mode].len() {
             let watched = self.plan.watched[self.here.mode][w];
             let guard = &mode.guards[watched.guard];
@@ -72,6 +77,13 @@ impl<'p> Simulation<'p> {
             let own = watched_value(kernel, context, &mut conditions, guard, watched, at);
             let zero = self.at_zero.iter().find(|zero| zero.guard == watched.guard);
             let vanishing = zero.map_or(0, |zero| zero.vanishing);
+            if held.contains(&watched.guard) {
+                let departure = self.departure(watched.guard, vanishing);
+                if matches!(departure, Departure::Stays | Departure::Unknown) {
+                    self.signs.remember(Watch::Dormant, f64::INFINITY);
+                    continue;
+                }
+            }
             let sign = match vanishing {
                 0 => Watch::of(own),
                 _ => Watch::Dormant,

@@ -121,10 +121,18 @@ pub(super) fn to_zero<X>(
         })
         .collect();
     let size = |forces: &[(f64, f64)]| -> f64 {
-        let parts = forces.iter().zip(&scales);
-        parts.map(|((f, _), s)| (f / s) * (f / s)).sum()
+        let parts = || forces.iter().zip(&scales).map(|((f, _), s)| f / s);
+        let most = parts().fold(0.0, |most: f64, part| most.max(part.abs()));
+        if most == 0.0 {
+            return 0.0;
+        }
+        // Squares of the parts themselves vanish before forces do that have no terms to round, as of a spring at its length.
+        let squares = parts().map(|part| (part / most) * (part / most));
+        most * squares.sum::<f64>().sqrt()
     };
-    let is_zero = |&(force, bound): &(f64, f64)| force.abs() <= f64::EPSILON * bound;
+    // What underflows is zero: its rounding is not a part of it any more.
+    let is_zero =
+        |&(force, bound): &(f64, f64)| force.abs() <= (f64::EPSILON * bound).max(f64::MIN_POSITIVE);
     loop {
         let slopes = slopes(&state);
         let (rows, columns) = slopes.shape();

@@ -58,7 +58,7 @@ pub(super) fn land<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
 
 /// Whether the value of a guard is no more than what rounding in a step's polynomials makes of it at its end.
 #[cold]
-fn is_rounding<F: Size>(
+pub(super) fn is_rounding<F: Size>(
     equations: &mut Equations<F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),

@@ -6,14 +6,14 @@
 use super::Tape;
 use super::name::intern;
 
-/// A contact, a friction element or one equation of a constraint as the model declares it, for people.
+/// A contact, a friction element, a ratchet or one equation of a constraint as the model declares it, for people.
 #[derive(Debug, Clone)]
 pub struct DeclaredContact {
     /// Name.
     pub name: &'static str,
-    /// `contact`, `friction` or `constraint`.
+    /// `contact`, `friction`, `ratchet` or `constraint`.
     pub kind: &'static str,
-    /// Its gap, or what a constraint holds at zero; none of friction.
+    /// Its gap, the rate of a ratchet, or what a constraint holds at zero; none of friction.
     pub gap: Option<&'static str>,
     /// The place along which it slips, or its slip rate.
     pub slip: Option<&'static str>,
@@ -23,15 +23,15 @@ pub struct DeclaredContact {
     pub friction: [Option<&'static str>; 2],
     /// Restitution.
     pub restitution: Option<&'static str>,
-    /// What it can do: `open`, `closed`, `sticks`, `slides`, `holds`.
+    /// What it can do: `open`, `closed`, `sticks`, `slides`, `free`, `engaged`, `holds`.
     pub states: Box<[&'static str]>,
 }
 
 /// The contacts and constraints of a mode.
 #[derive(Debug)]
 pub struct Contacts {
-    /// The contacts, and friction without a gap, in the order of the file. Each has three guards, one behind the other: what
-    /// pushes, or the gap where it is open; what is left before it slips forwards, or its slip rate along its direction where it
+    /// The contacts, ratchets and friction without a gap, in the order of the file. Each has three guards, one behind the other: what
+    /// pushes, or the gap (of a ratchet the rate) where it is open; what is left before it slips forwards, or its slip rate along its direction where it
     /// slides; what is left before it slips backwards.
     pub contacts: Box<[Contact]>,
     /// The constraints, one an equation.
@@ -46,6 +46,9 @@ pub struct Contacts {
 pub struct Contact {
     /// Name.
     pub name: &'static str,
+    /// Whether it is one-sided in a rate: this takes the place of the rate of a gap, and there is no gap; it is closed where it is
+    /// engaged.
+    pub is_ratchet: bool,
     /// The multiplier of its gap; none of friction that has none.
     pub normal: Option<usize>,
     /// The multiplier of its friction, if it has any.
@@ -108,7 +111,7 @@ impl Contacts {
             let word = words[set % words.len()];
             set /= words.len();
             if let Some(i) = contact.closed {
-                discrete[i] = f64::from(u8::from(word != "open"));
+                discrete[i] = f64::from(u8::from(!matches!(word, "open" | "free")));
             }
             if let (Some(i), true) = (contact.direction, word != "slides") {
                 discrete[i] = 0.0;
@@ -119,9 +122,10 @@ impl Contacts {
     /// Names of all that can happen.
     pub fn events(&self) -> Vec<&'static str> {
         let of_contact = |contact: &Contact| {
-            let gap: &[_] = match contact.closed {
-                Some(_) => &["strikes", "closes", "opens"],
-                None => &[],
+            let gap: &[_] = match (contact.closed, contact.is_ratchet) {
+                (Some(_), false) => &["strikes", "closes", "opens"],
+                (Some(_), true) => &["strikes", "engages", "releases"],
+                (None, _) => &[],
             };
             let slip: &[_] = match contact.tangent {
                 Some(_) => &["slips", "sticks", "reverses"],
@@ -151,9 +155,15 @@ impl Contacts {
 }
 
 impl Contact {
+    /// Which derivative of what is positive while it is open is an acceleration: the second of a gap, the first of a rate.
+    pub fn derivative_of_acceleration(&self) -> usize {
+        if self.is_ratchet { 1 } else { 2 }
+    }
+
     /// What it can do.
     fn words(&self) -> &'static [&'static str] {
         match (self.closed, self.tangent) {
+            _ if self.is_ratchet => &["free", "engaged"],
             (Some(_), Some(_)) => &["open", "sticks", "slides"],
             (Some(_), None) => &["open", "closed"],
             (None, _) => &["sticks", "slides"],

@@ -123,7 +123,7 @@ pub fn unsettled(problem: &Problem, run: &Run, events: &[Event], other: &Other) 
     })?;
     Some(Doubt {
         t: found.until,
-        mode: problem.variant().modes[event.from].name.to_owned(),
+        mode: run.layout.modes[event.from].clone(),
         guard: event.transition.to_owned(),
         what: Question::Unsettled,
         value: found.apart,

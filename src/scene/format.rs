@@ -86,7 +86,7 @@ pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> 
     keys.extend([
         Key::new(
             "contacts",
-            "contacts, friction and constraints that are left out (`off`) or held for good (`permanent`)",
+            "contacts, friction, ratchets and constraints that are left out (`off`) or held for good (`permanent`)",
             switches,
         ),
         Key::new(

@@ -103,7 +103,7 @@ impl Display for Text<'_> {
         let heads = [
             "contact",
             "kind",
-            "gap, held at zero by a constraint",
+            "gap, rate of a ratchet, held at zero by a constraint",
             "slip",
             "friction",
             "restitution",

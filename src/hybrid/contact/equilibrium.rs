@@ -30,8 +30,11 @@ impl<'p> Simulation<'p> {
         let mut states: Vec<State> = (contacts.contacts.iter().enumerate())
             .map(|(k, contact)| {
                 let touches = contact.normal.is_none_or(|_| {
-                    let (gap, rounding) = at.place(Line::Normal(k));
-                    gap <= rounding
+                    let (opening, rounding) = match contact.is_ratchet {
+                        false => at.place(Line::Normal(k)),
+                        true => at.rate(Line::Normal(k)),
+                    };
+                    opening <= rounding
                 });
                 match (touches, contact.tangent) {
                     (false, _) => State::Open,

@@ -37,7 +37,8 @@ impl<F: Size> Standing<F> {
             self.v[multiplier(contacts, line)] += impulse;
         }
         self.leaves = (touches.iter().zip(&impact.touching))
-            .map(|(touches, after)| *touches && after.is_none())
+            .zip(&contacts.contacts)
+            .map(|((touches, after), of)| *touches && after.is_none() && !of.is_ratchet)
             .collect();
         self.touching = impact.touching;
     }
@@ -60,15 +61,22 @@ impl<'p> Simulation<'p> {
         self.set_context();
         let (k, part) = (guard / GUARDS, guard % GUARDS);
         let before = State::all(contacts, self.context.discrete());
-        let closes = part == 0 && before[k] == State::Open;
+        let of = &contacts.contacts[k];
+        let closes = part == 0 && before[k] == State::Open && !of.is_ratchet;
         let mut standing = match closes {
             true => self.closing(kernel, contacts, (k, &before)),
             false => {
-                let stops = (part == 1 && matches!(before[k], State::Slides(_))).then_some(k);
+                let stops = match (part, before[k]) {
+                    (1, State::Slides(_)) => Some(Line::Tangent(k)),
+                    // A ratchet whose rate has come to zero.
+                    (0, State::Open) => Some(Line::Normal(k)),
+                    _ => None,
+                };
                 self.standing(kernel, contacts, (stops, &before))
             }
         };
-        let unresolved = closes && self.is_unresolved(kernel, contacts, k, &standing);
+        let unresolved =
+            closes && (self.signs.unseen() || self.is_unresolved(kernel, contacts, k, &standing));
         if unresolved && self.rest_unresolved(kernel, contacts)? {
             return Ok(());
         }
@@ -162,17 +170,17 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// The contacts as they stand where none closes; `stops`: one whose slip rate has come to zero, and with it that of all
-    /// whose slip depends on it.
+    /// The contacts as they stand where none closes; `stops`: the slip rate, or the rate of a ratchet, that has come to zero, and with
+    /// it all that depend on it.
     pub(super) fn standing<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        (stops, before): (Option<usize>, &[State]),
+        (stops, before): (Option<Line>, &[State]),
     ) -> Standing<F> {
         let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
         let [places, mut still] = held_lines(contacts, before);
-        still.extend(stops.map(Line::Tangent));
+        still.extend(stops);
         let context = &mut self.context;
         hold_lines(
             kernel,
@@ -182,8 +190,25 @@ impl<'p> Simulation<'p> {
             [&mut q, &mut v],
         );
         let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
-        let touching = (before.iter().enumerate())
-            .map(|(k, &state)| tangent_of(state, || geometry.depends(Line::Tangent(k), &still)))
+        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        let accuracy = &self.accuracy;
+        // Of two belts with speeds of their own one alone stops, although their lines are the same: what depends on a line that is
+        // still has stopped too if the tolerances do not tell its rate from zero.
+        let stops = |line: Line| {
+            let (rate, rounding) = at.rate(line);
+            let within: f64 = (geometry.along(line).iter().zip(&geometry.own))
+                .map(|(along, &i)| {
+                    along.abs() * (accuracy.v_absolute[i] + accuracy.relative * v[i].abs())
+                })
+                .sum();
+            let is_still = || rate.abs() <= rounding + within;
+            stops == Some(line) || geometry.depends(line, &still) && is_still()
+        };
+        let touching = (before.iter().zip(&contacts.contacts).enumerate())
+            .map(|(k, (&state, contact))| match state {
+                State::Open if contact.is_ratchet && stops(Line::Normal(k)) => Some(Tangent::None),
+                _ => tangent_of(state, || stops(Line::Tangent(k))),
+            })
             .collect();
         Standing {
             q,
@@ -207,7 +232,8 @@ impl<'p> Simulation<'p> {
         let at = Places::new(kernel, context, contacts, [&q, &v]);
         let closes = |j: usize| {
             let (gap, rounding) = at.place(Line::Normal(j));
-            before[j] == State::Open && (j == k || gap <= rounding)
+            let is_open = before[j] == State::Open && !contacts.contacts[j].is_ratchet;
+            is_open && (j == k || gap <= rounding)
         };
         let [mut places, rates] = held_lines(contacts, before);
         places.extend((0..before.len()).filter(|&j| closes(j)).map(Line::Normal));
@@ -250,6 +276,13 @@ impl<'p> Simulation<'p> {
         // Of the initial state it is not known whether what opens has left its gap.
         let is_given = self.here.j == 0;
         for j in 0..touches.len() {
+            if before[j] == State::Open && contacts.contacts[j].is_ratchet {
+                let (rate, rounding) = places.rate(Line::Normal(j));
+                touches[j] = true;
+                rests[j] = rate <= rounding;
+                standing.touching[j] = rests[j].then_some(Tangent::None);
+                continue;
+            }
             if !touches[j] || before[j] != State::Open {
                 continue;
             }
@@ -301,7 +334,8 @@ impl<'p> Simulation<'p> {
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
         for j in (0..touches.len()).filter(|&j| touches[j]) {
-            let (rate, rounding) = match contacts.contacts[j].normal {
+            let contact = &contacts.contacts[j];
+            let (rate, rounding) = match contact.normal {
                 Some(_) => places.rate(Line::Normal(j)),
                 None => (0.0, 0.0),
             };
@@ -313,14 +347,15 @@ impl<'p> Simulation<'p> {
                     rate,
                 }));
             }
-            standing.leaves[j] = rate > rounding;
+            let is_open = rate > rounding;
+            standing.leaves[j] = is_open && !contact.is_ratchet;
             let (slip, rounding) = places.rate(Line::Tangent(j));
-            let tangent = match contacts.contacts[j].tangent {
+            let tangent = match contact.tangent {
                 None => Tangent::None,
                 Some(_) if slip.abs() <= rounding => Tangent::Still,
                 Some(_) => Tangent::Slips(slip.signum()),
             };
-            standing.touching[j] = (!standing.leaves[j]).then_some(tangent);
+            standing.touching[j] = (!is_open).then_some(tangent);
         }
         Ok(())
     }
@@ -333,14 +368,18 @@ impl<'p> Simulation<'p> {
         standing: &mut Standing<F>,
         reason: Box<Reason>,
     ) -> Stoppable<()> {
-        let touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
+        let rests: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
+        // Ratchets take part, whatever their rate is.
+        let touches: Vec<bool> = (rests.iter().zip(&contacts.contacts))
+            .map(|(rests, of)| *rests || of.is_ratchet)
+            .collect();
         let impact = Impact {
             contacts,
             geometry: &standing.geometry,
             places: &Places::new(kernel, &self.context, contacts, [&standing.q, &standing.v]),
             collisions: self.problem.collisions,
             touches: &touches,
-            rests: &touches,
+            rests: &rests,
         };
         let asked = self.problem.collisions.without_collision;
         match asked.then(|| impact.without_collision()).flatten() {
@@ -394,7 +433,10 @@ impl<'p> Simulation<'p> {
         self.next[2 * n..].copy_from_slice(&decision.discrete);
         self.at_zero = (touching.iter().zip(&decision.states).enumerate())
             .filter_map(|(k, (tangent, state))| match (tangent, state) {
-                (Some(_), State::Open) => Some((GUARDS * k, 2 + decision.vanishing_of_gap(k))),
+                (Some(_), State::Open) => {
+                    let of_guard = contacts.contacts[k].derivative_of_acceleration();
+                    Some((GUARDS * k, of_guard + decision.vanishing_of_gap(k)))
+                }
                 (Some(Tangent::Still), State::Slides(_)) => {
                     Some((GUARDS * k + 1, 1 + decision.vanishing_of_slip(k)))
                 }
@@ -429,7 +471,7 @@ impl Simulation<'_> {
         self.at_zero = touches
             .map(|k| AtZero {
                 guard: GUARDS * k,
-                vanishing: 2,
+                vanishing: contacts.contacts[k].derivative_of_acceleration(),
             })
             .collect();
     }
@@ -461,6 +503,8 @@ fn verb(
     let changed = std::iter::once(k).chain(others);
     let found = changed.filter(|&j| before[j] != after[j]).find_map(|j| {
         let verb = match (before[j], after[j]) {
+            (State::Open, _) if contacts.contacts[j].is_ratchet => "engages",
+            (_, State::Open) if contacts.contacts[j].is_ratchet => "releases",
             (State::Open, _) => "closes",
             (_, State::Open) => "opens",
             (_, State::Sticks) => "sticks",

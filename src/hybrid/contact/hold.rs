@@ -1,6 +1,7 @@
 //! Positions and rates where contacts and constraints hold them, to rounding.
 
 use super::State;
+use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
 use crate::kernel::{Context, ModeKernel};
 use crate::model::Contacts;
@@ -116,7 +117,32 @@ pub(in crate::hybrid) fn hold<F: Size>(
     hold_lines(kernel, context, contacts, [&places, &rates], [q, v]);
 }
 
-/// The same of given lines: those whose place, and those whose rate is held. Newton's method, each time by the least
+/// The guards of open contacts whose gap others hold at zero: feet beside those on which a body stands. Such a gap is zero but
+/// for roundings as long as the others are closed.
+pub(in crate::hybrid) fn held_by_others<F: Size>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    contacts: &Contacts,
+    state: [&F::Vector; 2],
+) -> Vec<usize> {
+    let states = State::all(contacts, context.discrete());
+    let at = Places::new(kernel, context, contacts, state);
+    let is_at_zero = |&k: &usize| {
+        let contact = &contacts.contacts[k];
+        let (gap, rounding) = at.place(Line::Normal(k));
+        let has_gap = contact.normal.is_some() && !contact.is_ratchet;
+        has_gap && states[k] == State::Open && gap.abs() <= rounding
+    };
+    let mut found: Vec<usize> = (0..states.len()).filter(is_at_zero).collect();
+    if !found.is_empty() {
+        let geometry = Geometry::new(kernel, context, contacts, state);
+        let [places, _] = held_lines(contacts, &states);
+        found.retain(|&k| geometry.depends(Line::Normal(k), &places));
+    }
+    found.into_iter().map(|k| GUARDS * k).collect()
+}
+
+/// Brings given lines back: those whose place, and those whose rate is held. Newton's method, each time by the least
 /// change in the metric of the masses, as long as it comes closer.
 pub(super) fn hold_lines<F: Size>(
     kernel: &ModeKernel<F>,

@@ -7,7 +7,7 @@
 
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::Places;
-use super::many::{Answer, Asked, Friction, answers, to_try};
+use super::many::{Answer, Asked, Friction, all_of_many, answers, to_try};
 use super::{State, Tangent};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::simulation::Simulation;
@@ -78,18 +78,18 @@ impl<'p> Simulation<'p> {
         touching: &[Option<Tangent>],
     ) -> Result<Decision, Reason> {
         self.expand_signals();
-        let mut admitted: Vec<Admitted> = Vec::new();
-        let sets = to_try(choices(contacts, touching), || {
+        let choices = choices(contacts, touching);
+        let sets = to_try(&choices, || {
             self.answers((contacts, geometry), places, touching)
         });
-        for states in sets {
-            let Some(candidate) = self.candidate((contacts, geometry), states) else {
-                continue;
-            };
-            let Some(motion) = self.admit(contacts, geometry, &candidate, touching) else {
-                continue;
-            };
-            admitted.push(Admitted { candidate, motion });
+        let mut judge = |states: Vec<State>| {
+            let candidate = self.candidate((contacts, geometry), states)?;
+            let motion = self.admit(contacts, geometry, &candidate, touching)?;
+            Some(Admitted { candidate, motion })
+        };
+        let mut admitted: Vec<Admitted> = sets.into_iter().filter_map(&mut judge).collect();
+        if admitted.is_empty() {
+            admitted.extend(all_of_many(&choices).filter_map(&mut judge));
         }
         // Between kinetic and static friction both are admissible: what sticks goes on sticking.
         let yields = |a: &Admitted, b: &Admitted| {

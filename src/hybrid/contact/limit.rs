@@ -73,6 +73,11 @@ impl<'p> Simulation<'p> {
         let mut rests = false;
         let touching = (before.iter().enumerate())
             .map(|(k, &state)| {
+                if state == State::Open && contacts.contacts[k].is_ratchet {
+                    let (rate, rounding) = at.rate(Line::Normal(k));
+                    let is_zero = rate <= rounding + within(Line::Normal(k), &unknown);
+                    return is_zero.then_some(Tangent::None);
+                }
                 if state == State::Open {
                     let normal = Line::Normal(k);
                     let is_there = at.place(normal).0.abs() <= within(normal, &of_place)
@@ -107,8 +112,14 @@ impl<'p> Simulation<'p> {
             touching,
             leaves: vec![false; before.len()],
         };
-        self.here.now = limit.at;
-        self.settle_contacts(kernel, contacts, &mut standing)?;
+        let now = std::mem::replace(&mut self.here.now, limit.at);
+        let after = self.settle_contacts(kernel, contacts, &mut standing)?;
+        // What touches beside those that hold it, in the limit where they rest already.
+        if after == before && limit.at.since(now) <= 0.0 {
+            self.here.now = now;
+            self.set_context();
+            return Ok(false);
+        }
         self.here.q.copy_from_slice(&limit.state[..n]);
         self.here.v.copy_from_slice(&limit.state[n..]);
         self.commit("rest", false, self.here.mode)?;

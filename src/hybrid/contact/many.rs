@@ -15,8 +15,12 @@ use super::geometry::{Geometry, Line};
 use crate::model::Contacts;
 use crate::numerics::{Unsolved, solve_complementarity};
 
-/// Most sets of which all are tried: each takes some 20 µs.
-pub(super) const MOST_SETS: usize = 1024;
+/// Most sets of which all are tried at once: each takes some 20 µs.
+const MOST_SETS: usize = 1024;
+
+/// Most sets of which all are tried where none of those is admitted that the pivoting method leaves: of ten contacts with friction.
+/// Those whose lines depend on each other, which are most, take some µs.
+const MOST_IN_ALL: usize = 1 << 20;
 
 /// What is no more than this part of the terms that it is the sum of (√ε) may be zero: then the other choices of the contact are
 /// tried, too.
@@ -209,35 +213,42 @@ struct Pair {
     fixed: Vec<(Line, f64)>,
 }
 
-/// All sets of choices, where those of each contact are given.
-pub(super) fn products<T: Clone>(choices: &[Vec<T>]) -> Vec<Vec<T>> {
-    let mut all = vec![Vec::new()];
-    for own in choices {
-        all = (all.iter())
-            .flat_map(|set: &Vec<T>| {
-                own.iter().map(|choice| {
-                    let mut set = set.clone();
-                    set.push(choice.clone());
-                    set
-                })
+/// All sets of choices, where those of each contact are given; the last contact changes fastest.
+fn products<T: Clone>(choices: &[Vec<T>]) -> impl Iterator<Item = Vec<T>> + '_ {
+    (0..count(choices)).map(move |mut index| {
+        let mut set: Vec<T> = (choices.iter().rev())
+            .map(|own| {
+                let choice = own[index % own.len()].clone();
+                index /= own.len();
+                choice
             })
             .collect();
-    }
-    all
+        set.reverse();
+        set
+    })
+}
+
+/// Number of sets of choices.
+fn count<T>(choices: &[Vec<T>]) -> usize {
+    let sizes = choices.iter().map(Vec::len);
+    sizes.fold(1, usize::saturating_mul)
+}
+
+/// All sets, where more than those are that are tried at first: the pivoting method goes astray where lines depend on each
+/// other, and that there is none is said of all of them.
+pub(super) fn all_of_many<T: Clone>(choices: &[Vec<T>]) -> impl Iterator<Item = Vec<T>> + '_ {
+    let is_many = (MOST_SETS + 1..=MOST_IN_ALL).contains(&count(choices));
+    products(choices).take(if is_many { usize::MAX } else { 0 })
 }
 
 /// The choices to try: all of them where they are few; else those that the answers leave, all of a contact that may do
 /// otherwise, as long as they are few.
 pub(super) fn to_try<T: Clone + PartialEq>(
-    choices: Vec<Vec<T>>,
+    choices: &[Vec<T>],
     answered: impl FnOnce() -> Result<Vec<(Option<T>, bool)>, Unsolved>,
 ) -> Vec<Vec<T>> {
-    let count = |choices: &[Vec<T>]| {
-        let sizes = choices.iter().map(Vec::len);
-        sizes.fold(1_usize, usize::saturating_mul)
-    };
-    if count(&choices) <= MOST_SETS {
-        return products(&choices);
+    if count(choices) <= MOST_SETS {
+        return products(choices).collect();
     }
     let Ok(answered) = answered() else {
         return Vec::new();
@@ -259,7 +270,7 @@ pub(super) fn to_try<T: Clone + PartialEq>(
         }
     }
     match count(&left) <= MOST_SETS {
-        true => products(&left),
+        true => products(&left).collect(),
         false => Vec::new(),
     }
 }

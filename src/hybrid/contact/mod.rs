@@ -27,7 +27,7 @@ mod phase;
 mod singular;
 mod start;
 
-pub(super) use hold::hold;
+pub(super) use hold::{held_by_others, hold};
 pub(super) use singular::Conditioning;
 
 use crate::model::Contacts;

@@ -9,7 +9,7 @@
 
 use super::geometry::{Geometry, Line};
 use super::hold::{Places, ROUNDOFF};
-use super::many::{self, Answer, Asked, answers, to_try};
+use super::many::{self, Answer, Asked, all_of_many, answers, to_try};
 use crate::model::Contacts;
 use crate::numerics::{Dynamic, Lu, Size, Unsolved};
 
@@ -119,11 +119,19 @@ pub(super) struct Outcome {
 impl Phase<'_> {
     /// All outcomes whose rates differ.
     pub fn outcomes(&self) -> Vec<Outcome> {
+        let choices = self.choices();
+        let tried = to_try(&choices, || self.answers());
+        let mut found = self.differing(tried.into_iter());
+        if found.is_empty() {
+            found = self.differing(all_of_many(&choices));
+        }
+        found
+    }
+
+    /// Outcomes with these impulses whose rates differ.
+    fn differing(&self, tried: impl Iterator<Item = Vec<Push>>) -> Vec<Outcome> {
         let mut found: Vec<Outcome> = Vec::new();
-        for pushes in to_try(self.choices(), || self.answers()) {
-            let Some(outcome) = self.attempt(&pushes) else {
-                continue;
-            };
+        for outcome in tried.filter_map(|pushes| self.attempt(&pushes)) {
             if !found.iter().any(|known| known.is_same(&outcome)) {
                 found.push(outcome);
             }

@@ -76,16 +76,19 @@ impl<'p> Simulation<'p> {
         let mut leaves = vec![false; touching.len()];
         for (k, contact) in contacts.contacts.iter().enumerate() {
             if contact.normal.is_some() {
-                let (gap, rounding) = at.place(Line::Normal(k));
-                // What is not a number is no gap.
-                let is_gap = gap >= -rounding;
-                if !is_gap {
+                let ((opening, rounding), of) = match contact.is_ratchet {
+                    false => (at.place(Line::Normal(k)), "gap of contact"),
+                    true => (at.rate(Line::Normal(k)), "rate of ratchet"),
+                };
+                // What is not a number is not positive.
+                let is_admitted = opening >= -rounding;
+                if !is_admitted {
                     let name = contact.name;
                     return Err(refused(format!(
-                        "the gap of contact `{name}` is {gap:e} there; it must not be negative"
+                        "the {of} `{name}` is {opening:e} there; it must not be negative"
                     )));
                 }
-                if gap > rounding {
+                if opening > rounding {
                     continue;
                 }
                 places.push(Line::Normal(k));
@@ -130,7 +133,8 @@ impl<'p> Simulation<'p> {
     }
 
     /// Moves a state to the nearest that constraints admit and no contact penetrates, in the metric of the masses, as far as
-    /// Newton's method comes closer. Contacts that penetrate are brought to a gap of zero, their rates stay.
+    /// Newton's method comes closer. Contacts that penetrate are brought to a gap of zero, their rates stay; negative rates of
+    /// ratchets are brought to zero.
     fn project<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
@@ -138,22 +142,31 @@ impl<'p> Simulation<'p> {
         [q, v]: [&mut F::Vector; 2],
     ) {
         let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
-        let constraints: Vec<Line> = constraints.collect();
-        let mut places = constraints.clone();
+        let mut rates: Vec<Line> = constraints.collect();
+        let mut places = rates.clone();
         loop {
-            let rates = &constraints;
             let state = [&mut *q, &mut *v];
-            hold_lines(kernel, &mut self.context, contacts, [&places, rates], state);
+            let context = &mut self.context;
+            hold_lines(kernel, context, contacts, [&places, &rates], state);
             let at = Places::new(kernel, &self.context, contacts, [q, v]);
-            let penetrates = |k: usize| {
-                let (gap, rounding) = at.place(Line::Normal(k));
-                let known = places.contains(&Line::Normal(k));
-                contacts.contacts[k].normal.is_some() && !known && gap < -rounding
+            let is_ratchet = |k: usize| contacts.contacts[k].is_ratchet;
+            let is_violated = |k: usize| {
+                let line = Line::Normal(k);
+                let (held, (value, rounding)) = match is_ratchet(k) {
+                    false => (&places, at.place(line)),
+                    true => (&rates, at.rate(line)),
+                };
+                contacts.contacts[k].normal.is_some() && !held.contains(&line) && value < -rounding
             };
-            let Some(k) = (0..contacts.contacts.len()).find(|&k| penetrates(k)) else {
+            let Some(k) = (0..contacts.contacts.len()).find(|&k| is_violated(k)) else {
                 return;
             };
-            places.push(Line::Normal(k));
+            let held = if is_ratchet(k) {
+                &mut rates
+            } else {
+                &mut places
+            };
+            held.push(Line::Normal(k));
         }
     }
 

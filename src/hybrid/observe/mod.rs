@@ -118,7 +118,7 @@ impl OfContact {
         contacts.enumerate().find_map(|(k, contact)| {
             let of = name.strip_prefix(contact.name)?;
             match of {
-                ".gap" => Some(OfContact::Gap(k)),
+                ".gap" | ".rate" => Some(OfContact::Gap(k)),
                 ".slip" => Some(OfContact::Slip(k)),
                 _ => None,
             }

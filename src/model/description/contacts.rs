@@ -1,7 +1,7 @@
 //! Contacts and constraints of a mode.
 
 use super::{Read, Reader};
-use crate::model::reader::{At, text};
+use crate::model::reader::{At, text, truth};
 use crate::model::{Constraint, Contact, Contacts, DeclaredContact};
 
 impl Reader<'_> {
@@ -14,6 +14,7 @@ impl Reader<'_> {
             let discrete = |key| at.get(key, |at| at.option(|at| at.index(discretes)));
             Ok(Contact {
                 name: at.get("name", text)?,
+                is_ratchet: at.get("is_ratchet", truth)?,
                 normal: coordinate("normal")?,
                 tangent: coordinate("tangent")?,
                 closed: discrete("closed")?,
