@@ -3,7 +3,8 @@
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Function, Sine};
-use dalembert::record::{Question, Run};
+use dalembert::precision::{Ended, other, unsettled};
+use dalembert::record::{Question, Run, Silent};
 use std::f64::consts::PI;
 
 const METHODS: [Method; 3] = [Method::Auto, Method::Taylor, Method::Radau];
@@ -86,4 +87,26 @@ fn a_condition_beyond_its_error_is_in_no_doubt() {
             }
         }
     }
+}
+
+#[test]
+fn an_event_of_contacts_that_another_tolerance_changes_is_named_with_their_states() {
+    let block = |tilt: f64| {
+        let mut block = problem("rigid_block", &[]);
+        block.set_initial("theta", tilt).unwrap();
+        (block.set_initial("y", 0.6 * tilt.cos() + 0.2 * tilt.sin())).unwrap();
+        block.end.time = 2.0;
+        block
+    };
+    let (one, another) = (block(0.1), block(0.05));
+    let run = run(&one);
+    // In place of one at another tolerance, from whose first event on they differ.
+    let other = other(&another, &Ended::default(), &mut Silent).unwrap();
+    let doubt = unsettled(&one, &run, &run.events, &other).unwrap();
+    assert_eq!(doubt.what, Question::Unsettled);
+    assert!(
+        doubt.mode == "left sticks, right open" || doubt.mode == "left open, right sticks",
+        "{}",
+        doubt.mode
+    );
 }

@@ -18,10 +18,10 @@ use std::ops::ControlFlow;
 const SHARE: u64 = 200;
 
 /// Numbers that look random (Steele, Lea and Flood 2014: SplitMix64).
-struct Random(u64);
+pub struct Random(pub u64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
+    pub fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -29,7 +29,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.next() >> 11) as f64 * 2f64.powi(-53)
     }
 
@@ -38,7 +38,7 @@ impl Random {
     }
 
     /// A number, or one within a range.
-    fn either(&mut self, one: f64, (low, high): (f64, f64)) -> f64 {
+    pub fn either(&mut self, one: f64, (low, high): (f64, f64)) -> f64 {
         let other = self.within(low, high);
         *self.one_of(&[one, other])
     }
