@@ -26,9 +26,14 @@ MISTAKES = (
      'model.friction("a", slip=x, normal=k, kinetic=0.2); model.friction("b", slip=x, normal=k, kinetic=0.2)\n',
      "friction `b`: `a` slips along `x` too"),
     ("two contacts of one name", 'model.contact("a", gap=y); model.contact("a", gap=x)\n',
-     "contact `a`: there is a contact or a friction of this name above"),
+     "contact `a`: there is a contact, a friction or a ratchet of this name above"),
     ("a slip turned back that is none", 'model.contact("floor", gap=y, tangential_restitution=0.5)\n', "but no `slip` that it would turn back"),
     ("a law of a contact that is none", 'model.impact("floor", [(y.rate, -y.rate)])\n', "impact: there is no contact `floor` with a gap above"),
+    ("a ratchet in a place", 'model.ratchet("pawl", rate=x)\n', "ratchet `pawl`: its rate, `x`, does not depend on the rate of any coordinate"),
+    ("a ratchet in a square", 'model.ratchet("pawl", rate=x.rate**2)\n', "is not linear in the rates"),
+    ("a constraint in a square", 'model.constraint("blade", x.rate * y.rate)\n', "is not linear in the rates"),
+    ("a law of a ratchet", 'model.ratchet("pawl", rate=x.rate); model.impact("pawl", [(x.rate, x.rate)])\n',
+     "impact: there is no contact `pawl` with a gap above"),
     ("contacts beside a mode by hand", 'model.contact("a", gap=y)\nmodel.mode("flies")\n', "the model has contacts and modes by hand"),
 )
 

@@ -3,6 +3,7 @@
 use super::multipliers::{check, scenes, sine};
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
+use dalembert::record::Run;
 use serde_json::Value;
 
 /// A problem of two blocks on a shaking table in a scene of a reference.
@@ -96,5 +97,137 @@ fn eight_slabs_slip_one_after_the_other_as_their_friction_says() {
             imbalance.abs() <= 1e-11 * energy.dissipated,
             "{imbalance:e}"
         );
+    }
+}
+
+/// Blocks on each other, which also rock.
+fn stacked(parameters: &[(&str, f64)]) -> Problem {
+    let mut stack = problem("stacked_blocks", parameters);
+    stack.set_initial("y_lower", 0.4).unwrap();
+    stack.set_initial("y_upper", 1.3).unwrap();
+    stack.set_tolerance(1e-13);
+    stack.record.every = Some(0.01);
+    stack.record.columns.outputs = true;
+    stack
+}
+
+/// Columns of a run, and those of another one, are the same.
+fn assert_columns(one: &Run, other: &Run, columns: &[[&str; 2]], within: f64) {
+    for [a, b] in columns {
+        let [i, j] = [(one, a), (other, b)].map(|(run, name)| {
+            let column = run.trajectory.column(name);
+            column.unwrap_or_else(|| panic!("{name}"))
+        });
+        for row in 0..one.trajectory.len() {
+            let (x, y) = (one.trajectory.row(row)[i], other.trajectory.row(row)[j]);
+            assert!((x - y).abs() <= within, "{a} in row {row}: {x} and {y}");
+        }
+    }
+}
+
+#[test]
+fn blocks_on_each_other_that_slide_alone_are_those_of_a_model_without_tilts() {
+    let (g, below, between) = (9.81, 0.2, 0.1);
+    let friction = [
+        ("mu_s_lower", below),
+        ("mu_k_lower", below),
+        ("mu_s_upper", between),
+        ("mu_k_upper", between),
+        ("m_lower", 3.0),
+    ];
+    for method in [Method::Taylor, Method::Radau] {
+        let motion = || sine("4 sin(7 t+0.3)");
+        let mut stack = stacked(&friction);
+        stack.set_input("a_h", motion()).unwrap();
+        let bounds = [("bound_1", below * 4.0 * g), ("bound_2", between * g)];
+        let mut flat = problem("stacked_friction", &bounds);
+        flat.set_input("a_g", motion()).unwrap();
+        flat.set_tolerance(1e-13);
+        flat.record.every = Some(0.01);
+        for problem in [&mut stack, &mut flat] {
+            problem.method = method;
+            problem.end.time = 3.0;
+        }
+        let (stack, flat) = (run(&stack), run(&flat));
+        let names = [["x_lower", "x_1"], ["x_upper", "x_2"]];
+        assert_columns(&stack, &flat, &names, 1e-11);
+        let slips = stack
+            .events
+            .iter()
+            .filter(|e| e.transition.ends_with("sticks"));
+        assert!(slips.count() >= 4);
+    }
+}
+
+#[test]
+fn a_block_on_one_that_stays_rocks_as_on_the_ground() {
+    // The lower one is heavy, wide and does not slip.
+    let of_lower = [
+        ("m_lower", 1e3),
+        ("b_lower", 4.0),
+        ("mu_s_lower", 0.6),
+        ("mu_k_lower", 0.6),
+    ];
+    let motion = || sine("5 sin(9 t+0)");
+    let mut stack = stacked(&of_lower);
+    stack.set_input("a_h", motion()).unwrap();
+    let same = [
+        ("b", 0.2),
+        ("h", 0.5),
+        ("m", 1.0),
+        ("mu_s", 0.6),
+        ("mu_k", 0.5),
+    ];
+    let mut block = problem("rigid_block", &same);
+    block.set_initial("y", 0.5).unwrap();
+    block.set_input("a_h", motion()).unwrap();
+    block.set_tolerance(1e-13);
+    block.record.every = Some(0.01);
+    for problem in [&mut stack, &mut block] {
+        problem.end.time = 0.4;
+    }
+    // The right corner opens, up to before it strikes.
+    let (stack, block) = (run(&stack), run(&block));
+    assert_eq!(transitions(&stack), ["upper_right opens"]);
+    assert_eq!(transitions(&block), ["right opens"]);
+    let names = [["theta_upper", "theta"], ["x_upper", "x"]];
+    assert_columns(&stack, &block, &names, 1e-9);
+}
+
+#[test]
+fn a_stack_that_rocks_and_slides_keeps_all_laws() {
+    for (amplitude, e) in [(4.0, 0.0), (5.0, 0.0), (5.0, 0.2), (8.0, 0.0)] {
+        let mut stack = stacked(&[("e_lower", e), ("e_upper", e)]);
+        let motion = format!("{amplitude} sin(9 t+0)");
+        stack.set_input("a_h", sine(&motion)).unwrap();
+        stack.end.time = 1.5;
+        let run = run(&stack);
+        assert!(run.events.len() >= 10, "{}", run.events.len());
+        let column = |name: &str| run.trajectory.column(name).expect("a column");
+        let impulse = |of: &str| {
+            let contacts = ["lower_left", "lower_right", "upper_left", "upper_right"];
+            contacts.map(|contact| column(&format!("{contact}.{of}")))
+        };
+        let (gaps, normals) = (impulse("gap"), impulse("normal"));
+        let pushes = impulse("normal_impulse");
+        let rates = ["y_lower.rate", "y_upper.rate"].map(column);
+        let first = run.trajectory.row(0);
+        for (k, t) in run.trajectory.t.iter().enumerate() {
+            let row = run.trajectory.row(k);
+            for (gap, normal) in gaps.iter().zip(&normals) {
+                assert!(row[*gap] > -1e-14 && row[*normal] > -1e-12);
+                assert!(row[*normal].abs() < 1e-12 || row[*gap].abs() < 1e-14);
+            }
+            // What the ground pushes, less both weights, is the momentum upwards.
+            let gained: f64 = rates.iter().map(|&i| row[i] - first[i]).sum();
+            let pushed = row[pushes[0]] + row[pushes[1]] - 2.0 * 9.81 * t;
+            // With restitution what the limit of an accumulation holds is not among the impulses.
+            let within = if e == 0.0 { 1e-9 } else { 1e-4 };
+            assert!((gained - pushed).abs() < within, "{t}: {gained} {pushed}");
+        }
+        let energy = run.energy.as_ref().expect("a ledger");
+        let turned_over = energy.initial + energy.dissipated + energy.lost_at_impacts;
+        assert!(energy.imbalance().abs() < 1e-7 * turned_over, "{energy:?}");
+        assert!(energy.lost_at_impacts > 0.0 && energy.dissipated >= 0.0);
     }
 }

@@ -43,6 +43,8 @@ fn no_event_is_missed_or_doubled_at_any_tolerance() {
         let end = match name.as_str() {
             // Chaotic: from 8 s on a difference of 1e-3 is as large as the motion.
             "tank_rocks_and_slides" => 0.5,
+            // Impacts of three contacts follow each other in an order that 1e-3 changes.
+            "stacked_blocks" => 0.35,
             _ => f64::INFINITY,
         };
         let problem = scene(&file, end);
