@@ -41,7 +41,7 @@ const G: f64 = 9.81;
 impl Scene {
     fn random(random: &mut Random) -> Self {
         let count = 2 + (random.next() % 5) as usize;
-        let plane = random.next() % 2 == 0;
+        let plane = random.next().is_multiple_of(2);
         let mu = random.within(0.1, 0.9);
         let e = random.either(0.0, (0.0, 0.6));
         let feet = (0..count)
@@ -70,7 +70,7 @@ impl Scene {
                 }
             })
             .collect();
-        let stands = random.next() % 3 == 0;
+        let stands = random.next().is_multiple_of(3);
         let tilt = if stands {
             0.0
         } else {
