@@ -168,7 +168,10 @@ impl<'p> Simulation<'p> {
 
     /// The jump of the energy from what it was before. The impulse of the ground on the system works
     /// on the velocity of the ground.
-    fn energy_jump(&self, (before, momenta_before): (f64, Vec<(f64, f64)>)) -> EnergyJump {
+    pub(in crate::hybrid) fn energy_jump(
+        &self,
+        (before, momenta_before): (f64, Vec<(f64, f64)>),
+    ) -> EnergyJump {
         let impulses = self.ground_momenta().into_iter().zip(momenta_before);
         let ground_work: f64 = impulses
             .map(|((after, rate), (before, _))| (after - before) * rate)
@@ -197,7 +200,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Momentum along each motion of the ground, with the velocity of that motion.
-    fn ground_momenta(&self) -> Vec<(f64, f64)> {
+    pub(in crate::hybrid) fn ground_momenta(&self) -> Vec<(f64, f64)> {
         let model = &self.problem.model;
         let n = model.coordinates.len();
         let mut momenta = vec![0.0; n + model.motions.len()];

@@ -46,7 +46,6 @@ pub(super) fn land<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     let landing = land_on(method, equations, conditions, guard, crossing, landed)?;
     let rises = matches!(landing, Landing::On { .. })
         && guard.1.condition.is_none()
-        && crossing.kind != Kind::Jump
         && rate_at(equations, guard.0, landed) >= 0.0;
     Ok(
         match rises && is_rounding(equations, conditions, guard, (method.start(), landed)) {

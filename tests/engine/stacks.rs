@@ -184,12 +184,16 @@ fn a_block_on_one_that_stays_rocks_as_on_the_ground() {
     block.set_tolerance(1e-13);
     block.record.every = Some(0.01);
     for problem in [&mut stack, &mut block] {
-        problem.end.time = 0.4;
+        problem.end.time = 2.0;
     }
-    // The right corner opens, up to before it strikes.
     let (stack, block) = (run(&stack), run(&block));
-    assert_eq!(transitions(&stack), ["upper_right opens"]);
-    assert_eq!(transitions(&block), ["right opens"]);
+    let strikes = |run: &Run| {
+        let all = run.events.iter();
+        all.filter(|event| event.transition.ends_with("strikes"))
+            .count()
+    };
+    let counts = [&stack, &block].map(strikes);
+    assert!(counts[0] >= 2 && counts[0] == counts[1], "{counts:?}");
     let names = [["theta_upper", "theta"], ["x_upper", "x"]];
     assert_columns(&stack, &block, &names, 1e-9);
 }
@@ -222,12 +226,12 @@ fn a_stack_that_rocks_and_slides_keeps_all_laws() {
             let gained: f64 = rates.iter().map(|&i| row[i] - first[i]).sum();
             let pushed = row[pushes[0]] + row[pushes[1]] - 2.0 * 9.81 * t;
             // With restitution what the limit of an accumulation holds is not among the impulses.
-            let within = if e == 0.0 { 1e-9 } else { 1e-4 };
+            let within = 1e-9;
             assert!((gained - pushed).abs() < within, "{t}: {gained} {pushed}");
         }
         let energy = run.energy.as_ref().expect("a ledger");
         let turned_over = energy.initial + energy.dissipated + energy.lost_at_impacts;
-        assert!(energy.imbalance().abs() < 1e-7 * turned_over, "{energy:?}");
+        assert!(energy.imbalance().abs() < 1e-11 * turned_over, "{energy:?}");
         assert!(energy.lost_at_impacts > 0.0 && energy.dissipated >= 0.0);
     }
 }

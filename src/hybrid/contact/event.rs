@@ -1,7 +1,7 @@
 //! From the fall of a contact's guard to the set of contact states that follows.
 
 use super::geometry::{Geometry, Line, multiplier, write_states};
-use super::hold::{Places, held_lines, hold, hold_lines};
+use super::hold::{Places, held_lines, held_with, hold, hold_lines};
 use super::impact::{Impact, Impacted};
 use super::{Conditioning, State, Tangent};
 use crate::hybrid::accumulation::Signature;
@@ -9,8 +9,8 @@ use crate::hybrid::advance::MadeBy;
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::{AtZero, Simulation};
 use crate::kernel::{ModeKernel, with_kernel};
-use crate::model::Contacts;
 use crate::model::name::intern;
+use crate::model::{Contact, Contacts};
 use crate::numerics::{Bounded, ORDERS, Size, Vector};
 
 /// Guards of a contact.
@@ -28,6 +28,29 @@ pub(super) struct Standing<F: Size> {
 }
 
 impl<F: Size> Standing<F> {
+    /// The lines along which what touches may push.
+    pub fn lines(&self) -> Vec<Line> {
+        let touches = |line: &Line| match *line {
+            Line::Normal(k) | Line::Tangent(k) => self.touching[k].is_some(),
+            Line::Constraint(_) => true,
+        };
+        self.geometry.all().filter(touches).collect()
+    }
+
+    /// The lines whose place is held, and those whose rate is, by what touches.
+    pub fn held(&self, contacts: &Contacts) -> [Vec<Line>; 2] {
+        let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
+        let touching = || (self.touching.iter().enumerate()).filter_map(|(k, t)| Some((k, (*t)?)));
+        let normals = touching()
+            .filter(|(k, _)| contacts.contacts[*k].normal.is_some())
+            .map(|(k, _)| Line::Normal(k));
+        let places: Vec<Line> = constraints.chain(normals).collect();
+        let still = touching().filter(|(_, t)| *t == Tangent::Still);
+        let rates = (places.iter().copied()).chain(still.map(|(k, _)| Line::Tangent(k)));
+        let rates = rates.collect();
+        [places, rates]
+    }
+
     /// Takes over what an impact of the contacts that touch does.
     fn take(&mut self, contacts: &Contacts, touches: &[bool], impact: Impacted) {
         for (&i, change) in self.geometry.own.iter().zip(&impact.change) {
@@ -119,13 +142,16 @@ impl<'p> Simulation<'p> {
         self.look_for_accumulation()
     }
 
-    /// Brings the state before an event back to what the contacts held there: the end of a step that an event cuts is not.
+    /// Brings the state before an event back to what the contacts held there: the end of a step that an event cuts is not. Its
+    /// positions are those after it, since no event moves them.
     fn hold_before<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         contacts: &Contacts,
     ) -> Stoppable<()> {
         let free = &self.mode().free;
+        let n = self.here.q.len();
+        self.here.q.copy_from_slice(&self.next[..n]);
         let [mut q, mut v, a] = self.here.free(kernel.size(), free);
         hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
         let here = Conditioning::new(kernel, &mut self.context, contacts, [&q, &v]);
@@ -204,8 +230,14 @@ impl<'p> Simulation<'p> {
             let is_still = || rate.abs() <= rounding + within;
             stops == Some(line) || geometry.depends(line, &still) && is_still()
         };
+        // Feet beside those on which a body stands touch too: one of them may carry what comes next.
+        let beside = held_with(contacts, before, &at, || &geometry);
         let touching = (before.iter().zip(&contacts.contacts).enumerate())
             .map(|(k, (&state, contact))| match state {
+                State::Open if beside.contains(&k) => Some(match stops(Line::Tangent(k)) {
+                    true if contact.tangent.is_some() => Tangent::Still,
+                    _ => tangent_at(contact, k, &at),
+                }),
                 State::Open if contact.is_ratchet && stops(Line::Normal(k)) => Some(Tangent::None),
                 _ => tangent_of(state, || stops(Line::Tangent(k))),
             })
@@ -292,13 +324,8 @@ impl<'p> Simulation<'p> {
             // One that opens, and is not the one whose gap has fallen.
             standing.leaves[j] = j != k && rate > rounding;
             touches[j] = is_given || !standing.leaves[j];
-            let (slip, rounding) = places.rate(Line::Tangent(j));
             standing.touching[j] =
-                (!standing.leaves[j]).then_some(match contacts.contacts[j].tangent {
-                    None => Tangent::None,
-                    Some(_) if slip.abs() <= rounding => Tangent::Still,
-                    Some(_) => Tangent::Slips(slip.signum()),
-                });
+                (!standing.leaves[j]).then(|| tangent_at(&contacts.contacts[j], j, &places));
         }
         if !closes {
             return Ok(false);
@@ -317,6 +344,7 @@ impl<'p> Simulation<'p> {
             collisions: self.problem.collisions,
             touches: &touches,
             rests: &rests,
+            tangents: &standing.touching,
         };
         let outcome = impact.outcome().map_err(Box::new)?;
         standing.take(contacts, &touches, outcome);
@@ -349,13 +377,7 @@ impl<'p> Simulation<'p> {
             }
             let is_open = rate > rounding;
             standing.leaves[j] = is_open && !contact.is_ratchet;
-            let (slip, rounding) = places.rate(Line::Tangent(j));
-            let tangent = match contact.tangent {
-                None => Tangent::None,
-                Some(_) if slip.abs() <= rounding => Tangent::Still,
-                Some(_) => Tangent::Slips(slip.signum()),
-            };
-            standing.touching[j] = (!is_open).then_some(tangent);
+            standing.touching[j] = (!is_open).then(|| tangent_at(contact, j, &places));
         }
         Ok(())
     }
@@ -380,6 +402,7 @@ impl<'p> Simulation<'p> {
             collisions: self.problem.collisions,
             touches: &touches,
             rests: &rests,
+            tangents: &standing.touching,
         };
         let asked = self.problem.collisions.without_collision;
         match asked.then(|| impact.without_collision()).flatten() {
@@ -398,17 +421,7 @@ impl<'p> Simulation<'p> {
         contacts: &'p Contacts,
         standing: &mut Standing<F>,
     ) -> Stoppable<Vec<State>> {
-        let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
-        let touching =
-            || (standing.touching.iter().enumerate()).filter_map(|(k, t)| Some((k, (*t)?)));
-        let normals = touching()
-            .filter(|(k, _)| contacts.contacts[*k].normal.is_some())
-            .map(|(k, _)| Line::Normal(k));
-        let places: Vec<Line> = constraints.chain(normals).collect();
-        let still = touching().filter(|(_, t)| *t == Tangent::Still);
-        let rates: Vec<Line> = (places.iter().copied())
-            .chain(still.map(|(k, _)| Line::Tangent(k)))
-            .collect();
+        let [places, rates] = standing.held(contacts);
         let Standing {
             q,
             v,
@@ -474,6 +487,16 @@ impl Simulation<'_> {
                 vanishing: contacts.contacts[k].derivative_of_acceleration(),
             })
             .collect();
+    }
+}
+
+/// What the tangent of a contact that touches does, by its slip rate.
+fn tangent_at(contact: &Contact, k: usize, places: &Places) -> Tangent {
+    let (slip, rounding) = places.rate(Line::Tangent(k));
+    match contact.tangent {
+        None => Tangent::None,
+        Some(_) if slip.abs() <= rounding => Tangent::Still,
+        Some(_) => Tangent::Slips(slip.signum()),
     }
 }
 

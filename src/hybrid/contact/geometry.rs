@@ -136,6 +136,18 @@ impl Geometry {
             .min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
+    /// The volume that some lines span: how well they determine their forces together.
+    pub fn volume(&self, lines: &[Line]) -> f64 {
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let left = |&line: &Line| {
+            let scaled = &self.scaled[self.place(line)];
+            let (part, unit) = left_of(scaled, &basis);
+            basis.push(unit);
+            part * dot(scaled, scaled).sqrt()
+        };
+        lines.iter().map(left).product()
+    }
+
     /// Whether what is left of a line beside those before it points the other way at another place.
     pub fn turns_round(&self, line: Line, lines: &[Line], at: &Geometry) -> bool {
         let left = |geometry: &Geometry| {
@@ -188,6 +200,24 @@ impl Geometry {
     /// The least change of coordinates, weighed by the masses, that changes what some independent lines are about by given
     /// amounts; `None` where they do depend on each other.
     pub fn least_change(&self, lines: &[Line], amounts: &[f64]) -> Option<Vec<f64>> {
+        let mut change = self.pushed(lines, amounts)?;
+        change.truncate(self.own.len());
+        Some(change)
+    }
+
+    /// The impulses along some lines that change rates by this, as far as impulses along them do.
+    pub fn impulses(&self, lines: &[Line], change: &[f64]) -> Vec<(Line, f64)> {
+        let lines = self.independent(lines);
+        let amounts: Vec<f64> = (lines.iter())
+            .map(|&line| dot(self.along(line), change))
+            .collect();
+        let pushed = self.pushed(&lines, &amounts).unwrap_or_default();
+        let impulses = pushed.into_iter().skip(self.own.len());
+        lines.into_iter().zip(impulses).collect()
+    }
+
+    /// The least change, and behind it the pushes along the lines that make it.
+    fn pushed(&self, lines: &[Line], amounts: &[f64]) -> Option<Vec<f64>> {
         let (n, k) = (self.own.len(), lines.len());
         let entry = |i: usize, j: usize| match (i < n, j < n) {
             (true, true) => self.mass[i * n + j],
@@ -196,8 +226,8 @@ impl Geometry {
             (false, false) => 0.0,
         };
         let lu = Lu::<f64, Dynamic>::factorize(entry, &Dynamic(n + k).repeat(1.0)).ok()?;
-        let change = lu.solve(|i| if i < n { 0.0 } else { amounts[i - n] });
-        Some((0..n).map(|i| change[i]).collect())
+        let pushed = lu.solve(|i| if i < n { 0.0 } else { amounts[i - n] });
+        Some((0..n + k).map(|i| pushed[i]).collect())
     }
 }
 
@@ -248,7 +278,8 @@ fn left_of(vector: &[f64], basis: &[Vec<f64>]) -> (f64, Vec<f64>) {
     (left / length, rest)
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Sum of products.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

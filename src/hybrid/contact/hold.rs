@@ -127,6 +127,19 @@ pub(in crate::hybrid) fn held_by_others<F: Size>(
 ) -> Vec<usize> {
     let states = State::all(contacts, context.discrete());
     let at = Places::new(kernel, context, contacts, state);
+    let held = held_with(contacts, &states, &at, || {
+        Geometry::new(kernel, context, contacts, state)
+    });
+    held.into_iter().map(|k| GUARDS * k).collect()
+}
+
+/// The same contacts, where the geometry may be known already.
+pub(super) fn held_with<G: std::borrow::Borrow<Geometry>>(
+    contacts: &Contacts,
+    states: &[State],
+    at: &Places,
+    geometry: impl FnOnce() -> G,
+) -> Vec<usize> {
     let is_at_zero = |&k: &usize| {
         let contact = &contacts.contacts[k];
         let (gap, rounding) = at.place(Line::Normal(k));
@@ -135,11 +148,11 @@ pub(in crate::hybrid) fn held_by_others<F: Size>(
     };
     let mut found: Vec<usize> = (0..states.len()).filter(is_at_zero).collect();
     if !found.is_empty() {
-        let geometry = Geometry::new(kernel, context, contacts, state);
-        let [places, _] = held_lines(contacts, &states);
-        found.retain(|&k| geometry.depends(Line::Normal(k), &places));
+        let geometry = geometry();
+        let [places, _] = held_lines(contacts, states);
+        found.retain(|&k| geometry.borrow().depends(Line::Normal(k), &places));
     }
-    found.into_iter().map(|k| GUARDS * k).collect()
+    found
 }
 
 /// Brings given lines back: those whose place, and those whose rate is held. Newton's method, each time by the least

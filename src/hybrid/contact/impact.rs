@@ -42,6 +42,8 @@ pub(super) struct Impact<'a> {
     pub touches: &'a [bool],
     /// Of those, whether it has no rate by bookkeeping.
     pub rests: &'a [bool],
+    /// What its tangent does, as far as that is known.
+    pub tangents: &'a [Option<Tangent>],
 }
 
 impl Impact<'_> {
@@ -108,7 +110,7 @@ impl Impact<'_> {
             let is_zero = match line {
                 Line::Normal(k) => self.rests[k],
                 Line::Constraint(_) => true,
-                Line::Tangent(_) => false,
+                Line::Tangent(k) => self.tangents[k] == Some(Tangent::Still),
             };
             let (value, error) = match is_zero {
                 true => (0.0, 0.0),

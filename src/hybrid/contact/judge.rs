@@ -6,7 +6,7 @@
 //! count once, whatever the names of their sets.
 
 use super::geometry::{Geometry, Line, write_states};
-use super::hold::Places;
+use super::hold::{Places, held_lines};
 use super::many::{Answer, Asked, Friction, all_of_many, answers, to_try};
 use super::{State, Tangent};
 use crate::hybrid::failure::Reason;
@@ -79,7 +79,11 @@ impl<'p> Simulation<'p> {
     ) -> Result<Decision, Reason> {
         self.expand_signals();
         let choices = choices(contacts, touching);
-        let sets = to_try(&choices, || {
+        let holds = |k: usize, state: &State| {
+            let has_gap = contacts.contacts[k].normal.is_some();
+            (has_gap && state.is_closed()).then_some(Line::Normal(k))
+        };
+        let sets = to_try(&choices, geometry, holds, || {
             self.answers((contacts, geometry), places, touching)
         });
         let mut judge = |states: Vec<State>| {
@@ -105,8 +109,16 @@ impl<'p> Simulation<'p> {
             .collect();
         let mut stays = stays.into_iter();
         admitted.retain(|_| stays.next() == Some(true));
-        // Of equal motions that which holds the most.
-        admitted.sort_by_key(|a| std::cmp::Reverse(a.candidate.holds()));
+        // Of equal motions that which holds the most, and of these that whose contacts are the farthest apart: of feet on a line the
+        // outer two, whatever their order.
+        let spans = |a: &Admitted| {
+            let [places, _] = held_lines(contacts, &a.candidate.states);
+            geometry.volume(&places)
+        };
+        admitted.sort_by(|a, b| {
+            let [of_a, of_b] = [a, b].map(|of| of.candidate.holds());
+            of_b.cmp(&of_a).then_with(|| spans(b).total_cmp(&spans(a)))
+        });
         let names = |states: &[State]| {
             let mut discrete = self.context.discrete().to_vec();
             write_states(contacts, states, &mut discrete);
@@ -256,7 +268,7 @@ impl<'p> Simulation<'p> {
     ) -> Option<Candidate> {
         let mut discrete = self.context.discrete().to_vec();
         write_states(contacts, &states, &mut discrete);
-        let [places, _] = super::hold::held_lines(contacts, &states);
+        let [places, _] = held_lines(contacts, &states);
         if geometry.independent(&places).len() < places.len() {
             return None;
         }

@@ -1,14 +1,15 @@
 //! The set of contact states at the limit of an accumulation: a contact rests where the limit has neither gap nor rate.
 
 use super::event::Standing;
-use super::geometry::{Geometry, Line};
+use super::geometry::{Geometry, Line, multiplier};
 use super::hold::Places;
 use super::{State, Tangent};
 use crate::hybrid::accumulation::Limit;
 use crate::hybrid::failure::Stoppable;
+use crate::hybrid::instant::Instant;
 use crate::hybrid::simulation::Simulation;
 use crate::input::Side;
-use crate::kernel::{ModeKernel, with_kernel};
+use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::Contacts;
 use crate::numerics::Size;
 
@@ -120,9 +121,71 @@ impl<'p> Simulation<'p> {
             self.set_context();
             return Ok(false);
         }
-        self.here.q.copy_from_slice(&limit.state[..n]);
-        self.here.v.copy_from_slice(&limit.state[n..]);
+        self.go_to(kernel, (contacts, &standing), now, &limit)?;
         self.commit("rest", false, self.here.mode)?;
         Ok(true)
+    }
+
+    /// Goes to a limit, from the last event or the one that is not resolved. Up to the limit the motion goes on as it does; all
+    /// impacts that are left happen there, at once: their impulses, and the energy that they lose.
+    fn go_to<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        (contacts, standing): (&Contacts, &Standing<F>),
+        before: Instant,
+        limit: &Limit,
+    ) -> Stoppable<()> {
+        let n = self.here.q.len();
+        let duration = limit.at.since(before);
+        self.here.now = before;
+        let powers = self.powers(kernel)?;
+        let begins = self.here.a.to_vec();
+        for i in 0..n {
+            let (v, a) = (self.here.v[i], begins[i]);
+            self.here.q[i] += duration * (v + 0.5 * duration * a);
+            self.here.v[i] += duration * a;
+        }
+        self.here.now = limit.at;
+        let ends = self.powers(kernel)?;
+        let work = [0, 1].map(|i| 0.5 * duration * (powers[i] + ends[i]));
+        for (i, begins) in begins.iter().enumerate() {
+            let more = self.here.a[i] - begins;
+            self.here.q[i] += duration * duration / 6.0 * more;
+            self.here.v[i] += 0.5 * duration * more;
+        }
+        let geometry = &standing.geometry;
+        let change: Vec<f64> = (geometry.own.iter())
+            .map(|&i| standing.v[i] - self.here.v[i])
+            .collect();
+        let impulses = geometry.impulses(&standing.lines(), &change);
+        for line in geometry.all() {
+            let i = multiplier(contacts, line);
+            let of_line = impulses.iter().find(|(known, _)| *known == line);
+            self.next[n + i] = self.here.v[i] + of_line.map_or(0.0, |(_, impulse)| *impulse);
+        }
+        let energies = (self.observers.ledger.is_some())
+            .then(|| (self.stored_energy(), self.ground_momenta()));
+        self.here.q.copy_from_slice(&limit.state[..n]);
+        self.here.v.copy_from_slice(&limit.state[n..]);
+        self.set_context();
+        let jump = energies.map(|before| self.energy_jump(before));
+        if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, jump) {
+            ledger.add_work(work);
+            ledger.add_jump(jump);
+        }
+        Ok(())
+    }
+
+    /// [dissipated, input] power here, W, after setting the accelerations.
+    fn powers<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<[f64; 2]> {
+        self.set_context();
+        self.set_accelerations(kernel)?;
+        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        Ok(kernel.powers(&self.context, at))
     }
 }

@@ -241,14 +241,52 @@ pub(super) fn all_of_many<T: Clone>(choices: &[Vec<T>]) -> impl Iterator<Item = 
     products(choices).take(if is_many { usize::MAX } else { 0 })
 }
 
-/// The choices to try: all of them where they are few; else those that the answers leave, all of a contact that may do
+/// The sets of choices that hold no gap which the others hold already, in the order of all products; `None` if there are more than
+/// are tried at once. `holds`: the line whose rate a choice of a contact brings to a value, if it does.
+fn independent<T: Clone>(
+    choices: &[Vec<T>],
+    geometry: &Geometry,
+    holds: impl Fn(usize, &T) -> Option<Line>,
+) -> Option<Vec<Vec<T>>> {
+    let is_constraint = |line: &Line| matches!(line, Line::Constraint(_));
+    let constraints = geometry.all().filter(is_constraint).collect();
+    let mut sets: Vec<(Vec<T>, Vec<Line>)> = vec![(Vec::new(), constraints)];
+    for (k, own) in choices.iter().enumerate() {
+        let mut longer = Vec::new();
+        for (set, held) in &sets {
+            for choice in own {
+                let mut held = held.clone();
+                if let Some(line) = holds(k, choice) {
+                    if geometry.depends(line, &held) {
+                        continue;
+                    }
+                    held.push(line);
+                }
+                let set = set.iter().chain([choice]).cloned().collect();
+                longer.push((set, held));
+            }
+        }
+        sets = longer;
+        if sets.len() > MOST_SETS {
+            return None;
+        }
+    }
+    Some(sets.into_iter().map(|(set, _)| set).collect())
+}
+
+/// The choices to try: all where they are few, or where those are that are independent; else those that the answers leave, all of a contact that may do
 /// otherwise, as long as they are few.
 pub(super) fn to_try<T: Clone + PartialEq>(
     choices: &[Vec<T>],
+    geometry: &Geometry,
+    holds: impl Fn(usize, &T) -> Option<Line>,
     answered: impl FnOnce() -> Result<Vec<(Option<T>, bool)>, Unsolved>,
 ) -> Vec<Vec<T>> {
     if count(choices) <= MOST_SETS {
         return products(choices).collect();
+    }
+    if let Some(all) = independent(choices, geometry, holds) {
+        return all;
     }
     let Ok(answered) = answered() else {
         return Vec::new();

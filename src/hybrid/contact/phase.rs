@@ -7,7 +7,7 @@
 //! All outcomes are tried (of many contacts those that a pivoting method finds): each contact pushes more than the least or does
 //! not, and sticks, or slips either way. Outcomes with the same rates count once.
 
-use super::geometry::{Geometry, Line};
+use super::geometry::{Geometry, Line, dot};
 use super::hold::{Places, ROUNDOFF};
 use super::many::{self, Answer, Asked, all_of_many, answers, to_try};
 use crate::model::Contacts;
@@ -120,7 +120,11 @@ impl Phase<'_> {
     /// All outcomes whose rates differ.
     pub fn outcomes(&self) -> Vec<Outcome> {
         let choices = self.choices();
-        let tried = to_try(&choices, || self.answers());
+        let holds = |i: usize, push: &Push| {
+            let normal = Line::Normal(self.members[i].contact);
+            push.more.then_some(normal)
+        };
+        let tried = to_try(&choices, self.geometry, holds, || self.answers());
         let mut found = self.differing(tried.into_iter());
         if found.is_empty() {
             found = self.differing(all_of_many(&choices));
@@ -132,11 +136,33 @@ impl Phase<'_> {
     fn differing(&self, tried: impl Iterator<Item = Vec<Push>>) -> Vec<Outcome> {
         let mut found: Vec<Outcome> = Vec::new();
         for outcome in tried.filter_map(|pushes| self.attempt(&pushes)) {
-            if !found.iter().any(|known| known.is_same(&outcome)) {
+            if !found.iter().any(|known| self.are_same(known, &outcome)) {
                 found.push(outcome);
             }
         }
         found
+    }
+
+    /// Whether two outcomes lead to the same rates, as far as rounding tells: by their own bounds, or by that of elimination in
+    /// the metric of the masses, since the bounds do not see what elimination leaves where a heavy body stays.
+    fn are_same(&self, one: &Outcome, other: &Outcome) -> bool {
+        let pairs = || one.change.iter().zip(&other.change);
+        if pairs().all(|(a, b)| (a.value - b.value).abs() <= a.error + b.error) {
+            return true;
+        }
+        let difference: Vec<f64> = pairs().map(|(a, b)| a.value - b.value).collect();
+        let values = |outcome: &Outcome| outcome.change.iter().map(|a| a.value).collect();
+        let [one, other]: [Vec<f64>; 2] = [values(one), values(other)];
+        let relative = roundings(one.len() + self.members.len()) * ROUNDOFF;
+        let size = self.energy(&one).max(self.energy(&other));
+        self.energy(&difference) <= relative * relative * size
+    }
+
+    /// Twice the kinetic energy of rates.
+    fn energy(&self, rates: &[f64]) -> f64 {
+        let n = rates.len();
+        let row = |i: usize| dot(&self.geometry.mass[i * n..(i + 1) * n], rates);
+        (0..n).map(|i| rates[i] * row(i)).sum()
     }
 
     /// What each contact may do.
@@ -426,12 +452,6 @@ fn held_of(rows: &[Row]) -> Vec<Line> {
 }
 
 impl Outcome {
-    /// Whether it leads to the same rates as another, as far as rounding tells.
-    fn is_same(&self, other: &Outcome) -> bool {
-        let mut pairs = self.change.iter().zip(&other.change);
-        pairs.all(|(a, b)| (a.value - b.value).abs() <= a.error + b.error)
-    }
-
     /// Whether some contact pushes.
     pub fn pushes(&self) -> bool {
         let mut normals = (self.impulses.iter()).filter(|(l, _)| matches!(l, Line::Normal(_)));
