@@ -14,6 +14,7 @@ nor definite; it is the same at all orders of a series. Which set follows an eve
 Signs: λ_N pushes the gap g open; λ_T acts along the slip, whose rate is γ; λ_C acts where φ grows.
 """
 
+import itertools
 import random
 from dataclasses import dataclass, field
 
@@ -155,14 +156,16 @@ def _check_independent(model, constraints):
 
 
 def _rank(model, constraints):
-    """How many constraints are independent: most of several places, drawn at random, all numbers of the order of one."""
+    """How many constraints are independent: most of several places, drawn at random, all numbers of the order of one. Where none
+    of them is in the domain of the constraints, nothing is known against any."""
     places, rates = [ca.vertcat(*[of(c.symbol) for c in model.coordinates if "multiplier" not in c.extra])
                      for of in (lambda q: q, lambda q: q.rate)]
     gradients = ca.vertcat(ca.SX(0, places.numel()), *[c.gradient(places, rates) for c in constraints])
     others = ca.symvar(gradients)
     value, draw = ca.Function("gradients", others, [gradients]), random.Random(0)
-    drawn = [np.array(ca.densify(value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in others])[0])) for _ in range(4)]
-    return max(np.linalg.matrix_rank(place) for place in drawn) if constraints else 0
+    drawn = (np.array(ca.densify(value.call([ca.DM(draw.uniform(0.5, 1.5)) for _ in others])[0])) for _ in range(64))
+    inside = itertools.islice((place for place in drawn if np.isfinite(place).all()), 4)
+    return max((np.linalg.matrix_rank(place) for place in inside), default=len(constraints)) if constraints else 0
 
 
 def _multiplier(model, name, expression, is_rate, meaning, declared, impulse):

@@ -258,3 +258,86 @@ fn andrews_squeezing_mechanism_ends_where_quadruple_precision_does() {
         );
     }
 }
+
+#[test]
+fn a_car_axis_ends_where_quadruple_precision_does() {
+    let exact = numbers(&reference("08_ivp_testset")["reference"]["caraxis"]["own"]);
+    let mut axis = problem("car_axis", &[]);
+    for (name, value) in [
+        ("y_l", 0.5),
+        ("x_r", 1.0),
+        ("y_r", 0.5),
+        ("x_l.rate", -0.5),
+        ("x_r.rate", -0.5),
+        ("phase.rate", 10.0),
+    ] {
+        axis.set_initial(name, value).unwrap();
+    }
+    axis.end.time = 3.0;
+    axis.record.every = Some(3.0);
+    axis.record.columns.outputs = true;
+    axis.set_tolerance(1e-13);
+    for method in [Method::Taylor, Method::Radau] {
+        axis.method = method;
+        let run = run(&axis);
+        let end = run.trajectory.row(run.trajectory.t.len() - 1);
+        let names = ["x_l", "y_l", "x_r", "y_r"];
+        let rates = names.map(|name| format!("{name}.rate"));
+        let forces = ["upright.force", "length.force"].map(str::to_owned);
+        let all = names.map(str::to_owned).into_iter().chain(rates);
+        for (name, exact) in all.chain(forces).zip(&exact) {
+            let value = end[run.trajectory.column(&name).expect("a column")];
+            let off = (value - exact).abs() / exact.abs();
+            assert!(off <= DEMAND, "{method:?}: {name} {off:e}");
+        }
+    }
+}
+
+#[test]
+fn a_pin_with_friction_turns_back_and_sticks_where_quadrature_says() {
+    let reference = &reference("14c_pendulum_pin_friction")["reference"];
+    let turns = reference["turning_points"].as_array().unwrap();
+    let samples = reference["samples"].as_array().unwrap();
+    for method in [Method::Taylor, Method::Radau] {
+        let mut pendulum = problem("pin_friction", &[]);
+        pendulum.set_initial("phi", 1.5).unwrap();
+        pendulum.set_tolerance(1e-14);
+        pendulum.method = method;
+        pendulum.end.time = 100.0;
+        pendulum.record.every = Some(0.5);
+        pendulum.record.event_states = true;
+        let run = run(&pendulum);
+        let expected = [
+            "pin slips",
+            "pin reverses",
+            "pin reverses",
+            "pin reverses",
+            "pin reverses",
+            "pin sticks",
+        ];
+        assert_eq!(transitions(&run), expected, "{method:?}");
+        for (event, turn) in run.events[1..].iter().zip(turns) {
+            let [t, phi] = ["t", "phi"].map(|key| number(&turn[key]));
+            let off = (event.t - t).abs().max((event.after.q[0] - phi).abs());
+            assert!(off <= 1e-13, "{method:?}: {off:e} at {t}");
+        }
+        for sample in samples {
+            let row = (number(&sample["t"]) / 0.5).round() as usize;
+            let row = run.trajectory.row(row);
+            let exact = [&sample["q"], &sample["u"]].map(|of| numbers(of)[0]);
+            // By Radau a rate within a step is that of its dense output, whose order is lower.
+            let within = [
+                1e-13,
+                if method == Method::Taylor {
+                    1e-13
+                } else {
+                    1e-11
+                },
+            ];
+            for ((value, exact), within) in row.iter().zip(exact).zip(within) {
+                let off = (value - exact).abs();
+                assert!(off <= within, "{method:?}: {value} {exact}");
+            }
+        }
+    }
+}

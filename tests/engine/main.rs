@@ -35,6 +35,7 @@ mod paradoxes;
 mod peaks;
 mod pendulum;
 mod random_contacts;
+mod random_linkages;
 mod random_scenes;
 mod ratchets;
 mod refusals;
