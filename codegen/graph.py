@@ -4,6 +4,7 @@ import random
 import struct
 
 import casadi as ca
+import numpy as np
 
 # Operations over which the terms of their operands distribute, and of how many operands.
 _DISTRIBUTES = {
@@ -208,25 +209,23 @@ def without_idle(column, symbols, discretes):
     if not idle:
         return column
     column = ca.densify(column)
-    old = ca.vertcat(*idle)
-    value = ca.Function("value", known, [column])
-    derivative = ca.Function("derivative", known, [ca.densify(ca.jacobian(column, old))])
-    depends = [[False] * len(idle) for _ in range(column.numel())]
+    jacobian = ca.jacobian(column, ca.vertcat(*idle))
+    value = ca.Function("value", known, [column, jacobian])
+    entries = list(zip(*jacobian.sparsity().get_triplet()))
+    depends = np.zeros(len(entries), dtype=bool)
     for _ in range(8):
         point = [draw.choice(values[k.element_hash()]) if k.element_hash() in values else draw.uniform(0.5, 1.5)
                  for k in known]
-        sizes, slopes = value(*point), derivative(*point)
-        for i, row in enumerate(depends):
-            for j in range(len(idle)):
-                # A NaN counts as dependence.
-                if not abs(float(slopes[i, j])) <= 1e-12 * (1.0 + abs(float(sizes[i]))):
-                    row[j] = True
-    rows = []
-    for entry, row in zip(ca.vertsplit(column), depends):
-        gone = [s for s, dependent in zip(idle, row) if not dependent]
-        if gone:
-            entry = ca.substitute(entry, ca.vertcat(*gone), ca.SX.zeros(len(gone)))
-        rows.append(entry)
+        sizes, slopes = (np.array(found.nonzeros()) for found in value(*point))
+        bounds = 1e-12 * (1.0 + np.abs(sizes[[i for i, _ in entries]]))
+        # A NaN counts as dependence.
+        depends |= ~(np.abs(slopes) <= bounds)
+    gone = [[] for _ in range(column.numel())]
+    for (i, j), dependent in zip(entries, depends):
+        if not dependent:
+            gone[i].append(idle[j])
+    rows = [ca.substitute(entry, ca.vertcat(*symbols), ca.SX.zeros(len(symbols))) if symbols else entry
+            for entry, symbols in zip(ca.vertsplit(column), gone)]
     return ca.vertcat(*rows)
 
 
