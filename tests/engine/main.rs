@@ -37,6 +37,7 @@ mod pendulum;
 mod random_contacts;
 mod random_linkages;
 mod random_scenes;
+mod random_stacks;
 mod ratchets;
 mod refusals;
 mod requirements;

@@ -47,7 +47,11 @@ impl Linkage {
             let mut others = [a, b, longest];
             others.rotate_left(turned);
             let lengths = [shortest, others[0], others[1], others[2]];
-            let side = if random.next() % 2 == 0 { 1.0 } else { -1.0 };
+            let side = if random.next().is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            };
             return Linkage { lengths, side };
         }
     }
