@@ -57,7 +57,6 @@ impl Stack {
                 sine(&format!("{amplitude} sin({frequency} t+{phase})")),
             )
             .unwrap();
-        problem.method = Method::Taylor;
         problem.set_tolerance(1e-12);
         problem.end.time = 1.0;
         problem.record.every = Some(0.02);
@@ -137,24 +136,35 @@ fn random_stacks_of_blocks_keep_all_laws() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
     let only = asked("DALEMBERT_RANDOM_SCENE");
-    let (mut events, mut stops) = (0, Vec::new());
+    let (mut events, mut stops) = (0, [const { Vec::new() }; 2]);
     for number in only.map_or(0..share, |n| n..n + 1) {
-        let stack = Stack::random(&mut Random(number));
-        let of = format!("stack {number}");
-        let run = simulate(&stack.problem, &mut Silent).unwrap();
-        if only.is_some() {
-            for event in &run.events {
-                let mode = &run.layout.modes[event.to];
-                println!("{:.15} {} | {mode}", event.t, event.transition);
+        let mut stack = Stack::random(&mut Random(number));
+        // The dense output of Radau's method is of a lower order than its steps.
+        let methods = [
+            (Method::Taylor, [1e-11, 1e-11]),
+            (Method::Radau, [1e-8, 1e-10]),
+        ];
+        for ((method, within), stops) in methods.into_iter().zip(&mut stops) {
+            stack.problem.method = method;
+            let of = format!("stack {number} by {method:?}");
+            let run = simulate(&stack.problem, &mut Silent).unwrap();
+            if only.is_some() {
+                for event in &run.events {
+                    let mode = &run.layout.modes[event.to];
+                    println!("{:.15} {} | {mode}", event.t, event.transition);
+                }
+            }
+            stack.check(&run, &of, within);
+            events += run.events.len();
+            if let Some(failure) = &run.failure {
+                stops.push(format!("{of}: {}", failure.reason));
             }
         }
-        stack.check(&run, &of, [1e-11, 1e-11]);
-        events += run.events.len();
-        if let Some(failure) = &run.failure {
-            stops.push(format!("{of}: {}", failure.reason));
-        }
     }
-    // What stops is told why: events that accumulate in a way that is not known.
-    assert!(20 * stops.len() as u64 <= share, "{stops:#?}");
+    // What stops is told why: events that accumulate in a way that is not known. Of hops as low as rounding Radau's method,
+    // whose errors are larger, knows the way less often.
+    let [by_taylor, by_radau] = &stops;
+    assert!(20 * by_taylor.len() as u64 <= share, "{by_taylor:#?}");
+    assert!(10 * by_radau.len() as u64 <= share, "{by_radau:#?}");
     println!("{events} events; {stops:#?}");
 }

@@ -28,13 +28,20 @@ pub(super) struct Standing<F: Size> {
 }
 
 impl<F: Size> Standing<F> {
-    /// The lines along which what touches may push.
-    pub fn lines(&self) -> Vec<Line> {
+    /// The lines along which contacts may push: what touches, and behind it what else is near.
+    pub fn lines_with(&self, near: &[bool]) -> Vec<Line> {
         let touches = |line: &Line| match *line {
             Line::Normal(k) | Line::Tangent(k) => self.touching[k].is_some(),
             Line::Constraint(_) => true,
         };
-        self.geometry.all().filter(touches).collect()
+        let is_near = |line: &Line| match *line {
+            Line::Normal(k) | Line::Tangent(k) => near[k] && !touches(line),
+            Line::Constraint(_) => false,
+        };
+        let touching = self.geometry.all().filter(touches);
+        touching
+            .chain(self.geometry.all().filter(is_near))
+            .collect()
     }
 
     /// The lines whose place is held, and those whose rate is, by what touches.

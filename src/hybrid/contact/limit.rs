@@ -71,6 +71,13 @@ impl<'p> Simulation<'p> {
         let of_rate = |i: usize| of(accuracy.v_absolute[i], n + i);
         let unknown = |i: usize| limit.uncertainty[n + i];
         let before = State::all(contacts, self.context.discrete());
+        let is_near = |k: usize| {
+            let normal = Line::Normal(k);
+            at.place(normal).0.abs() <= within(normal, &of_place)
+        };
+        let near: Vec<bool> = (0..before.len())
+            .map(|k| contacts.contacts[k].normal.is_some() && is_near(k))
+            .collect();
         let mut rests = false;
         let touching = (before.iter().enumerate())
             .map(|(k, &state)| {
@@ -81,8 +88,8 @@ impl<'p> Simulation<'p> {
                 }
                 if state == State::Open {
                     let normal = Line::Normal(k);
-                    let is_there = at.place(normal).0.abs() <= within(normal, &of_place)
-                        && at.rate(normal).0.abs() <= within(normal, &of_rate);
+                    let is_there =
+                        is_near(k) && at.rate(normal).0.abs() <= within(normal, &of_rate);
                     if !is_there {
                         return None;
                     }
@@ -121,17 +128,18 @@ impl<'p> Simulation<'p> {
             self.set_context();
             return Ok(false);
         }
-        self.go_to(kernel, (contacts, &standing), now, &limit)?;
+        let lines = standing.lines_with(&near);
+        self.go_to(kernel, (contacts, &standing, &lines), now, &limit)?;
         self.commit("rest", false, self.here.mode)?;
         Ok(true)
     }
 
     /// Goes to a limit, from the last event or the one that is not resolved. Up to the limit the motion goes on as it does; all
-    /// impacts that are left happen there, at once: their impulses, and the energy that they lose.
+    /// impacts that are left happen there, at once: their impulses along `lines`, and the energy that they lose.
     fn go_to<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
-        (contacts, standing): (&Contacts, &Standing<F>),
+        (contacts, standing, lines): (&Contacts, &Standing<F>, &[Line]),
         before: Instant,
         limit: &Limit,
     ) -> Stoppable<()> {
@@ -157,7 +165,7 @@ impl<'p> Simulation<'p> {
         let change: Vec<f64> = (geometry.own.iter())
             .map(|&i| standing.v[i] - self.here.v[i])
             .collect();
-        let impulses = geometry.impulses(&standing.lines(), &change);
+        let impulses = geometry.impulses(lines, &change);
         for line in geometry.all() {
             let i = multiplier(contacts, line);
             let of_line = impulses.iter().find(|(known, _)| *known == line);
