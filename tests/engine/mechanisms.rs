@@ -1,7 +1,7 @@
 //! Shipped mechanisms, declared by contacts and constraints alone, against integrals of closed form, second methods and laws.
 
 use crate::common::*;
-use dalembert::hybrid::{Method, Problem};
+use dalembert::hybrid::{ImpactLaw, Method, Problem};
 use dalembert::input::{Interpolation, Outside, Table};
 use dalembert::model::models;
 use dalembert::record::Run;
@@ -211,23 +211,27 @@ fn a_bead_climbs_its_hoop_as_the_integral_of_its_energy_says() {
 }
 
 #[test]
-fn a_woodpecker_pecks_as_matrix_exponentials_say() {
+fn a_woodpecker_pecks_as_matrix_exponentials_say_under_both_laws() {
     let reference = reference("woodpecker");
-    for method in [Method::Taylor, Method::Radau] {
-        let mut woodpecker = problem("woodpecker", &[]);
-        for (name, value) in [
-            ("phi_M", -0.1034),
-            ("phi_S", -0.2788),
-            ("y.rate", -0.3411),
-            ("phi_S.rate", -7.4583),
-        ] {
-            woodpecker.set_initial(name, value).unwrap();
+    let cases = reference["cases"].as_array().unwrap();
+    for (case, method) in cases
+        .iter()
+        .flat_map(|case| [Method::Taylor, Method::Radau].map(|method| (case, method)))
+    {
+        let parameters = ["mu", "e_sleeve"].map(|name| (name, number(&case[name])));
+        let mut woodpecker = problem("woodpecker", &parameters);
+        for (name, value) in case["initial"].as_object().unwrap() {
+            woodpecker.set_initial(name, number(value)).unwrap();
         }
+        woodpecker.collisions.law = match case["law"].as_str().unwrap() {
+            "poisson" => ImpactLaw::Poisson,
+            _ => ImpactLaw::Newton,
+        };
         woodpecker.method = method;
         woodpecker.set_tolerance(TIGHTEST);
-        woodpecker.end.time = 0.45;
+        woodpecker.end.time = number(&case["end"]);
         let run = run(&woodpecker);
-        let exact = reference["events"].as_array().unwrap();
+        let exact = case["events"].as_array().unwrap();
         assert_eq!(run.events.len(), exact.len());
         let demand = if method == Method::Taylor {
             1e-13
