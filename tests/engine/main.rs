@@ -6,6 +6,7 @@ mod common;
 
 mod advance;
 mod bouncing;
+mod chains;
 mod contacts;
 mod coulomb;
 mod derivatives;
