@@ -48,7 +48,7 @@ def describe(name, models, chosen, constants, for_tests):
         "coordinates": [_coordinate(model, c) for c in model.coordinates],
         "motions": [{"name": m.name, "unit": m.unit, "reaction_unit": _reaction_unit(m.unit), "meaning": m.meaning}
                     for m in model.motions],
-        "parameters": [_parameter(p) for p in model.parameters],
+        "parameters": [parameter(p) for p in model.parameters],
         "parameter_sets": [
             {"name": set_name, "meaning": meaning, "values": [[k, _number(v)] for k, v in values.items()]}
             for set_name, meaning, values in model.parameter_sets],
@@ -77,12 +77,21 @@ def _reaction_unit(unit):
     return units.named(units.combine(units.parse("N m"), units.parse(unit), -1), ("N", "N m"))
 
 
+def meant(d):
+    """What every declaration has beside its name."""
+    return {"unit": d.unit, "meaning": d.meaning}
+
+
+def declared_coordinate(c):
+    """What a model file says of a coordinate."""
+    return {**meant(c), "scale": _number(c.scale), "rate_scale": _number(c.rate_scale),
+            "minimum": _fixed_bound(c.minimum), "maximum": _fixed_bound(c.maximum)}
+
+
 def _coordinate(model, c):
     reaction_unit = c.extra.get("multiplier") or _reaction_unit(c.unit)
-    return {"name": c.name, "unit": c.unit, "meaning": c.meaning, "reaction_unit": reaction_unit,
-            "multiplier": "multiplier" in c.extra, "impulse": _impulse(model, c),
-            "scale": _number(c.scale), "rate_scale": _number(c.rate_scale),
-            "minimum": _fixed_bound(c.minimum), "maximum": _fixed_bound(c.maximum)}
+    return {"name": c.name, **declared_coordinate(c), "reaction_unit": reaction_unit,
+            "multiplier": "multiplier" in c.extra, "impulse": _impulse(model, c)}
 
 
 def _impulse(model, c):
@@ -97,7 +106,8 @@ def _fixed_bound(bound):
     return None if bound is None or isinstance(bound, ca.SX) else _number(bound)
 
 
-def _parameter(p):
+def parameter(p):
+    """What a model file says of a parameter."""
     return {"name": p.name, "unit": p.unit, "meaning": p.meaning, "default": _number(p.default),
             "minimum": _number(p.minimum), "minimum_exclusive": bool(p.exclusive), "maximum": _number(p.maximum),
             "at_most": p.at_most}

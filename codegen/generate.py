@@ -2,6 +2,7 @@
 
 import functools
 import hashlib
+import itertools
 import json
 import os
 from dataclasses import dataclass, field
@@ -190,14 +191,29 @@ def _emit_series(source, prefix, variant, slot, function, constants):
 
 
 def check_same_declarations(models):
-    def declared(model):
-        kinds = ("parameters", "coordinates", "motions", "inputs", "discretes", "outputs")
-        return [[(d.name, d.unit) for d in own(model, kind)] for kind in kinds]
-    for model in models[1:]:
-        if declared(model) != declared(models[0]):
+    """All combinations of choices declare the same: a scene, its record and its plots know a name before a choice is made."""
+    kinds = {
+        "parameters": description.parameter,
+        "coordinates": description.declared_coordinate,
+        "motions": description.meant,
+        "inputs": description.meant,
+        "discretes": lambda d: {**description.meant(d), "values": d.values},
+        "outputs": lambda o: {"unit": o.unit},
+    }
+    first = models[0]
+    for (kind, described), model in itertools.product(kinds.items(), models[1:]):
+        known, others = ({d.name: described(d) for d in own(of, kind)} for of in (first, model))
+        if list(known) != list(others):
             raise ModelError(
                 "declarations differ between choices: parameters, coordinates, inputs, discrete"
-                " states, and names and units of outputs must be the same for all of them", models[0].file)
+                " states, and names and units of outputs must be the same for all of them", first.file)
+        for name in known:
+            for what, value in known[name].items():
+                if value != others[name][what]:
+                    options = ", ".join(f"{c[0]} = {c[3]}" for c in model.choices)
+                    raise ModelError(
+                        f"`{name}`: its {what.replace('_', ' ')} differs between choices: {value!r}, but {others[name][what]!r}"
+                        f" with {options}; declare what holds for all of them, or two names", model.locations.get(name, model.file))
 
 
 def _signals(model):

@@ -487,6 +487,7 @@ class Model:
         except units.UnitError as error:
             raise self.error(f"`{name}`: {error}") from None
         self.symbols[name] = ca.SX.sym(name)
+        self.locations[name] = caller_location(self.file)
         return self.symbols[name]
 
     def _declare_motion(self, what, name, unit):

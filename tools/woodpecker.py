@@ -136,11 +136,11 @@ def impulses(u, touching, want, least):
     """The rates after impulses of the contacts that touch, and the normal ones: a normal rate is at least its `want`, an impulse at
     least its `least`, and where it is more the rate is no more; Coulomb's law for impulses, with the rates after them."""
     found = []
-    for states in itertools.product(*[["none", "stick", 1, -1] if k in touching else ["out"] for k in range(3)]):
-        for pressed in itertools.product(*[[False] if s in ("none", "out") else [True, False] if least[k] else [True]
-                                           for k, s in enumerate(states)]):
-            if any(s == "none" and least[k] for k, s in enumerate(states)):
-                continue
+    # What must deliver an impulse has friction; what need not may deliver none.
+    may = [["out"] if k not in touching else ["stick", 1, -1] if least[k] else ["none", "stick", 1, -1] for k in range(3)]
+    for states in itertools.product(*may):
+        rubs = [s not in ("none", "out") for s in states]
+        for pressed in itertools.product(*[[False] if not rubs[k] else [True, False] if least[k] else [True] for k in range(3)]):
             # Unknown: u, then of each contact what its normal impulse is beyond its least, and its tangential one.
             unknown = [("N", k) for k in range(3) if pressed[k]] + [("T", k) for k in range(3) if states[k] == "stick"]
             column = lambda of: WN[of[1]] - mu * states[of[1]] * WT[of[1]] if of[0] == "N" and states[of[1]] in (1, -1) else \
@@ -148,7 +148,7 @@ def impulses(u, touching, want, least):
             big, rhs = zeros(3 + len(unknown)), zeros(3 + len(unknown), 1)
             given = M * u
             for k, s in enumerate(states):
-                if s in ("stick", 1, -1):
+                if rubs[k]:
                     given += least[k] * (WN[k] if s == "stick" else WN[k] - mu * s * WT[k])
             for i in range(3):
                 rhs[i] = given[i]

@@ -32,3 +32,11 @@ class Variants(ScratchTest):
 
 if __name__ == "__main__":
     unittest.main()
+
+    def test_a_coordinate_that_means_something_else_is_refused(self):
+        for given, what in (
+            ('"place" if place == "elongation" else "height"', "meaning differs between choices: 'place', but 'height' with place = height"),
+            ('"place", scale=1.0 if place == "elongation" else 2.0', "scale differs between choices: 1.0, but 2.0 with place = height"),
+        ):
+            with self.subTest(what=what):
+                self.assertIn(f"`x`: its {what}", self.refusal(TEXT.replace('"place")\nmodel.point', given + ")\nmodel.point"), 7))

@@ -10,9 +10,9 @@ arrangement = model.choice("arrangement", ["stack", "row"], "the blocks lie on e
 
 m = model.parameter("m", "kg", 1.0, "mass of a block", above=0)
 w = model.parameter("w", "m", 0.2, "width and height of a block, for drawings", above=0)
-mu_s = model.parameter("mu_s", "1", 0.35, "static friction coefficient on the table", minimum=0)
-mu_k = model.parameter("mu_k", "1", 0.3, "kinetic friction coefficient on the table", minimum=0, at_most=mu_s)
-grading = model.parameter("grading", "1", 0.9, "in a stack, friction of an interface over that beneath it", above=0, maximum=1)
+mu_s = model.parameter("mu_s", "1", 0.35, "static friction coefficient of the first block", minimum=0)
+mu_k = model.parameter("mu_k", "1", 0.3, "kinetic friction coefficient of the first block", minimum=0, at_most=mu_s)
+grading = model.parameter("grading", "1", 0.9, "friction of a block over that of the block before", above=0, maximum=1)
 e = model.parameter("e", "1", 0.5, "in a row, restitution between neighbours", minimum=0, maximum=1)
 g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
 
@@ -22,19 +22,19 @@ model.gravity(g)
 place = 0
 for k in range(BLOCKS):
     block = f"block_{k + 1}"
+    where = "on the table" if k == 0 else f"on block {k} in a stack, clear of block {k} in a row"
+    s = model.coordinate(f"s_{k + 1}", "m", f"block {k + 1}, to the right, {where}")
     if arrangement == "stack":
-        s = model.coordinate(f"s_{k + 1}", "m", f"block {k + 1}, to the right, on what is beneath it")
         place, height = place + s, (k + 0.5) * w
-        slip, carried, share = s, BLOCKS - k, grading**k
+        slip, carried = s, BLOCKS - k
     else:
-        s = model.coordinate(f"s_{k + 1}", "m", "block 1, to the right" if k == 0 else f"clear distance from block {k} to block {k + 1}")
         place, height = place + s + (w if k else 0), 0.5 * w
-        slip, carried, share = place, 1, 1
+        slip, carried = place, 1
         if k:
             model.contact(f"blocks_{k}_{k + 1}", gap=s, restitution=e)
             model.draw(f"between {k} and {k + 1}", [(place - w / 2, height)], kind="contact", of=f"blocks_{k}_{k + 1}", along=[(1, 0)])
     model.point_mass(m, position=(place, height))
-    model.friction(block, slip=slip, normal=carried * m * g, static=share * mu_s, kinetic=share * mu_k)
+    model.friction(block, slip=slip, normal=carried * m * g, static=grading**k * mu_s, kinetic=grading**k * mu_k)
     model.draw(f"block {k + 1}", [(place + x * w / 2, height + y * w / 2) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     model.draw(f"under block {k + 1}", [(place, height - w / 2)], kind="contact", of=block)
 model.draw("table", [(-5 * w, 0), (5 * w, 0)], kind="fixed")

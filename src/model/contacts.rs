@@ -155,6 +155,11 @@ impl Contacts {
 }
 
 impl Contact {
+    /// Whether it has a gap that closes: neither friction alone nor a ratchet does.
+    pub fn has_gap(&self) -> bool {
+        self.normal.is_some() && !self.is_ratchet
+    }
+
     /// Which derivative of what is positive while it is open is an acceleration: the second of a gap, the first of a rate.
     pub fn derivative_of_acceleration(&self) -> usize {
         if self.is_ratchet { 1 } else { 2 }

@@ -9,6 +9,15 @@ use dalembert::record::{Run, Silent};
 /// Stacks in the suite.
 const SHARE: u64 = 30;
 
+/// Those that stop before their end. 4 and 7: events accumulate, and no limit is known. 18: amid hops as low as rounding, Newton's
+/// iteration does not converge in steps of 1e-10 s.
+const STOPS: [&str; 4] = [
+    "stack 4 by Taylor",
+    "stack 4 by Radau",
+    "stack 7 by Radau",
+    "stack 18 by Radau",
+];
+
 const G: f64 = 9.81;
 
 const CONTACTS: [&str; 4] = ["lower_left", "lower_right", "upper_left", "upper_right"];
@@ -111,6 +120,14 @@ impl Stack {
                 );
                 assert!(friction * slip <= 1e-10, "{of}, {t}: friction drives");
             }
+            for (i, push) in pushes.iter().enumerate().filter(|_| k > 0) {
+                let gained = row[*push] - run.trajectory.row(k - 1)[*push];
+                assert!(
+                    gained > -momentum,
+                    "{of}, {t}: {} pulls by {gained:e} N s",
+                    CONTACTS[i]
+                );
+            }
             let gained = |parts: [usize; 2], ground: f64| -> f64 {
                 let pairs = parts.into_iter().zip(self.masses);
                 pairs.map(|(i, m)| m * (row[i] - first[i] + ground)).sum()
@@ -136,7 +153,7 @@ fn random_stacks_of_blocks_keep_all_laws() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
     let only = asked("DALEMBERT_RANDOM_SCENE");
-    let (mut events, mut stops) = (0, [const { Vec::new() }; 2]);
+    let (mut events, mut stops) = (0, Vec::new());
     for number in only.map_or(0..share, |n| n..n + 1) {
         let mut stack = Stack::random(&mut Random(number));
         // The dense output of Radau's method is of a lower order than its steps.
@@ -144,7 +161,7 @@ fn random_stacks_of_blocks_keep_all_laws() {
             (Method::Taylor, [1e-11, 1e-11]),
             (Method::Radau, [1e-8, 1e-10]),
         ];
-        for ((method, within), stops) in methods.into_iter().zip(&mut stops) {
+        for (method, within) in methods {
             stack.problem.method = method;
             let of = format!("stack {number} by {method:?}");
             let run = simulate(&stack.problem, &mut Silent).unwrap();
@@ -157,14 +174,11 @@ fn random_stacks_of_blocks_keep_all_laws() {
             stack.check(&run, &of, within);
             events += run.events.len();
             if let Some(failure) = &run.failure {
+                let is_known = STOPS.contains(&of.as_str());
+                assert!(is_known || number >= SHARE, "{of}: {}", failure.reason);
                 stops.push(format!("{of}: {}", failure.reason));
             }
         }
     }
-    // What stops is told why: events that accumulate in a way that is not known. Of hops as low as rounding Radau's method,
-    // whose errors are larger, knows the way less often.
-    let [by_taylor, by_radau] = &stops;
-    assert!(20 * by_taylor.len() as u64 <= share, "{by_taylor:#?}");
-    assert!(10 * by_radau.len() as u64 <= share, "{by_radau:#?}");
     println!("{events} events; {stops:#?}");
 }

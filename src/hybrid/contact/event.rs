@@ -28,20 +28,20 @@ pub(super) struct Standing<F: Size> {
 }
 
 impl<F: Size> Standing<F> {
-    /// The lines along which contacts may push: what touches, and behind it what else is near.
+    /// The lines along which impulses may have come: first those of what touches, then those of contacts that are near, which
+    /// account only for what the first do not.
     pub fn lines_with(&self, near: &[bool]) -> Vec<Line> {
         let touches = |line: &Line| match *line {
             Line::Normal(k) | Line::Tangent(k) => self.touching[k].is_some(),
             Line::Constraint(_) => true,
         };
         let is_near = |line: &Line| match *line {
-            Line::Normal(k) | Line::Tangent(k) => near[k] && !touches(line),
+            Line::Normal(k) | Line::Tangent(k) => near[k],
             Line::Constraint(_) => false,
         };
-        let touching = self.geometry.all().filter(touches);
-        touching
-            .chain(self.geometry.all().filter(is_near))
-            .collect()
+        let (touching, others): (Vec<_>, Vec<_>) = self.geometry.all().partition(touches);
+        let near = others.into_iter().filter(is_near);
+        touching.into_iter().chain(near).collect()
     }
 
     /// The lines whose place is held, and those whose rate is, by what touches.

@@ -141,10 +141,8 @@ pub(super) fn held_with<G: std::borrow::Borrow<Geometry>>(
     geometry: impl FnOnce() -> G,
 ) -> Vec<usize> {
     let is_at_zero = |&k: &usize| {
-        let contact = &contacts.contacts[k];
         let (gap, rounding) = at.place(Line::Normal(k));
-        let has_gap = contact.normal.is_some() && !contact.is_ratchet;
-        has_gap && states[k] == State::Open && gap.abs() <= rounding
+        contacts.contacts[k].has_gap() && states[k] == State::Open && gap.abs() <= rounding
     };
     let mut found: Vec<usize> = (0..states.len()).filter(is_at_zero).collect();
     if !found.is_empty() {

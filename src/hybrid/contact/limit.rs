@@ -76,7 +76,7 @@ impl<'p> Simulation<'p> {
             at.place(normal).0.abs() <= within(normal, &of_place)
         };
         let near: Vec<bool> = (0..before.len())
-            .map(|k| contacts.contacts[k].normal.is_some() && is_near(k))
+            .map(|k| contacts.contacts[k].has_gap() && is_near(k))
             .collect();
         let mut rests = false;
         let touching = (before.iter().enumerate())
