@@ -5,10 +5,11 @@
 A multiplier is the acceleration of a coordinate on which nothing depends (C. W. Gear 1988: an algebraic variable that is
 replaced by a derivative lowers the index), so its rate is the impulse delivered so far, and the mode's equations are
 
-    r = M q̈ + h − W λ,    c g̈ + (1 − c) λ_N,    s γ̇ + (1 − s) (λ_T + μ_k d λ_N),    φ̈
+    r = M q̈ + h − W λ,    c g̈ + (1 − c) λ_N,    s γ̇ + (1 − s) (λ_T + μ_k d λ_N − l L),    φ̈
 
 where the discrete states of each contact choose its rows: c, whether it is closed; d, the direction in which it slides, 0 where it
-sticks; s = c (1 − d²), but 0 where the tangent is dropped because others hold it already. The matrix of r is neither symmetric
+sticks; s = c (1 − d²), but 0 where the tangent is dropped because others hold it already. Then its friction is not determined:
+it is none, or the most that it can hold, L = μ_s λ_N, in the direction l. The matrix of r is neither symmetric
 nor definite; it is the same at all orders of a series. Which set follows an event is decided in src/hybrid/contact/.
 
 Signs: λ_N pushes the gap g open; λ_T acts along the slip, whose rate is γ; λ_C acts where φ grows.
@@ -58,14 +59,17 @@ class Form:
     tangents: list = field(default_factory=list)
     closed: list = field(default_factory=list)
     directions: list = field(default_factory=list)
+    shares: list = field(default_factory=list)
+    """Of contacts, then of constraints."""
     dropped: list = field(default_factory=list)
+    at_limit: list = field(default_factory=list)
     joined: dict = field(default_factory=dict)
     idle: list = field(default_factory=list)
     """Multipliers that other choices use."""
 
     def discretes(self):
         """The discrete states that choose rows."""
-        all_of_them = [*self.closed, *self.directions, *self.dropped, *self.joined.values()]
+        all_of_them = [*self.closed, *self.directions, *self.shares, *self.dropped, *self.at_limit, *self.joined.values()]
         return [symbol for symbol in all_of_them if symbol is not None]
 
     def equations(self, *arguments):
@@ -114,28 +118,33 @@ def build(model):
             declared.meaning = f"sign of the slip rate of `{contact.name}` when it slides, else 0"
         form.directions.append(contact.direction)
 
-    # Those that people see come first.
-    slipping = [contact for contact in contacts if contact.slip is not None]
-    for contact in contacts:
-        shares = contact.slip is not None and len(slipping) > 1
-        form.dropped.append(model.discrete(
-            f"{contact.name}_shares", (0, 1), f"1 where only the sum of the frictions of `{contact.name}` and of another contact is"
-            " determined, and the other has it") if shares else None)
-        if shares:
+    # Those that people see come first. What sticks may depend on any other line that holds.
+    held = [*contacts, *constraints]
+    is_shared = any(contact.slip is not None for contact in contacts) and len(held) > 1
+    for of in held:
+        form.shares.append(model.discrete(
+            f"{of.name}_shares", (0, 1), f"1 where the forces of `{of.name}` are not determined, but for what they and those of"
+            " others come to together") if is_shared else None)
+        if is_shared:
             model.discretes[-1].extra.update(of_contacts=True)
 
-    def one(name, meaning):
-        symbol = model.discrete(name, (0, 1), meaning)
+    def internal(name, meaning, values=(0, 1)):
+        symbol = model.discrete(name, values, meaning)
         model.discretes[-1].extra.update(internal=True, of_contacts=True)
         return symbol
 
     for contact in contacts:
-        form.closed.append(None if contact.gap is None else one(f"{contact.name}.closed", f"1 where `{contact.name}` is closed"))
+        name, shares = contact.name, is_shared and contact.slip is not None
+        form.closed.append(None if contact.gap is None else internal(f"{name}.closed", f"1 where `{name}` is closed"))
+        form.dropped.append(internal(f"{name}.dropped", f"1 where others hold the slip of `{name}`") if shares else None)
+        form.at_limit.append(internal(
+            f"{name}.at_limit", f"direction of the friction of `{name}` where others hold its slip and it is the most that it can be",
+            (0, 1, -1)) if shares else None)
     for i, first in enumerate(contacts):
         for j, second in enumerate(contacts):
             if i != j and first.slip is not None and second.slip is not None:
-                form.joined[i, j] = one(f"{first.name}.holds.{second.name}",
-                                        f"1 where the friction of `{second.name}` is part of that of `{first.name}`")
+                form.joined[i, j] = internal(f"{first.name}.holds.{second.name}",
+                                             f"1 where the friction of `{second.name}` is part of that of `{first.name}`")
     mode = model._mode("moves", "all sets of contact states, by multipliers", [], [])
     mode.location = (model.contacts + model.constraints)[0].location
     mode.form = form
@@ -206,6 +215,7 @@ class Terms:
     closed: ca.SX
     direction: ca.SX
     sticks: ca.SX
+    at_limit: ca.SX
 
 
 class MultiplierEquations(derive.ModeEquations):
@@ -229,7 +239,7 @@ class MultiplierEquations(derive.ModeEquations):
                 loaded, powers = self._push(loaded, along, of.normal), powers + of.normal * ca.dot(along, rates)
             if form.tangents[k] is not None:
                 along = self._along(form.contacts[k].slip_rate_of(x), x.v)
-                free = of.tangent + of.kinetic * of.direction * of.normal
+                free = of.tangent + of.kinetic * of.direction * of.normal - of.at_limit * self._limit(k)
                 rows[name(form.tangents[k])] = of.sticks * of.slip_acceleration + (1 - of.sticks) * free
                 loaded = self._push(loaded, along, of.tangent)
                 powers += of.tangent * (ca.dot(along, rates) - of.slip_rate)
@@ -285,10 +295,11 @@ class MultiplierEquations(derive.ModeEquations):
         normal = given(contact.normal) if contact.gap is None else form.normals[k].acceleration
         closed = one if contact.gap is None else form.closed[k]
         direction = zero if contact.slip is None else form.directions[k]
-        dropped = zero if form.dropped[k] is None else form.dropped[k]
+        dropped, at_limit = (zero if of[k] is None else of[k] for of in (form.dropped, form.at_limit))
         return Terms(
             *gap, *slip, normal, zero if contact.slip is None else form.tangents[k].acceleration, given(contact.static),
-            given(contact.kinetic), given(contact.restitution), given(contact.tangential_restitution), closed, direction, closed * (1 - direction ** 2) * (1 - dropped))
+            given(contact.kinetic), given(contact.restitution), given(contact.tangential_restitution), closed, direction,
+            closed * (1 - direction ** 2) * (1 - dropped), at_limit)
 
     def _limit(self, k):
         """What friction can hold at most at a contact, and at those whose friction is part of its own."""
@@ -350,9 +361,12 @@ class MultiplierEquations(derive.ModeEquations):
         return {
             "contacts": [{
                 "name": contact.name, "is_ratchet": contact.is_ratchet, "normal": coordinate(form.normals[k]), "tangent": coordinate(form.tangents[k]),
-                "closed": discrete(form.closed[k]), "direction": discrete(form.directions[k]), "dropped": discrete(form.dropped[k]),
+                "closed": discrete(form.closed[k]), "direction": discrete(form.directions[k]),
+                "shares": discrete(form.shares[k]), "dropped": discrete(form.dropped[k]), "at_limit": discrete(form.at_limit[k]),
                 "joined": [discrete(form.joined.get((k, j))) for j in range(count)],
                 "law": [coordinate(symbol) for symbol, _ in contact.law],
             } for k, contact in enumerate(form.contacts)],
-            "constraints": [{"name": c.name, "multiplier": coordinate(c.multiplier)} for c in form.constraints],
+            "constraints": [{
+                "name": c.name, "multiplier": coordinate(c.multiplier), "shares": discrete(form.shares[count + k]),
+            } for k, c in enumerate(form.constraints)],
         }

@@ -107,17 +107,12 @@ impl<'p> Simulation<'p> {
 
     /// Makes `next` the present state, in mode `target`, and records the event.
     pub fn commit(&mut self, name: &'static str, impact: bool, target: usize) -> Stoppable<()> {
-        let n = self.here.q.len();
         let from = self.here.shown;
         let states = self.problem.record.event_states;
         let before = states.then(|| self.snapshot());
         let energies_before = (self.observers.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
-        let left = [&*self.here.q, &self.here.v, self.context.discrete()];
-        self.visited.leave(left);
-        copy_few(&self.next[..n], &mut self.here.q);
-        copy_few(&self.next[n..2 * n], &mut self.here.v);
-        copy_few(&self.next[2 * n..], self.context.discrete_mut());
+        self.leave_for_next();
         self.here.mode = target;
         self.here.shown = self.shown();
         self.here.j += 1;
@@ -152,6 +147,29 @@ impl<'p> Simulation<'p> {
         } else {
             self.observers.recording.event(&jump, None);
         }
+        self.arrive(name, from)
+    }
+
+    /// Makes `next` the present state, in the same mode: nothing that anybody sees happens.
+    pub fn take_silently(&mut self, name: &'static str) -> Stoppable<()> {
+        self.leave_for_next();
+        self.arrive(name, self.here.shown)
+    }
+
+    /// Leaves the present state for `next`.
+    #[inline(always)]
+    fn leave_for_next(&mut self) {
+        let n = self.here.q.len();
+        let left = [&*self.here.q, &self.here.v, self.context.discrete()];
+        self.visited.leave(left);
+        copy_few(&self.next[..n], &mut self.here.q);
+        copy_few(&self.next[n..2 * n], &mut self.here.v);
+        copy_few(&self.next[2 * n..], self.context.discrete_mut());
+    }
+
+    /// A state that comes back without time to pass is a cycle.
+    #[inline(always)]
+    fn arrive(&mut self, name: &'static str, from: usize) -> Stoppable<()> {
         let state = [&*self.here.q, &self.here.v, self.context.discrete()];
         let step = (name, from, self.here.shown);
         match self.visited.arrive(step, state) {

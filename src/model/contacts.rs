@@ -57,8 +57,12 @@ pub struct Contact {
     pub closed: Option<usize>,
     /// The one that is the sign of its slip rate where it slides, else 0.
     pub direction: Option<usize>,
-    /// The one that is 1 where its friction is part of that of another contact.
+    /// The one that is 1 where its forces are not determined, but for what they and those of others come to together.
+    pub shares: Option<usize>,
+    /// The one that is 1 where others hold its slip.
     pub dropped: Option<usize>,
+    /// The one that is, there, the direction of its friction where this is the most that it can hold; 0 where it is none.
+    pub at_limit: Option<usize>,
     /// Of each contact, the one that is 1 where the friction of that contact is part of its own.
     pub joined: Box<[Option<usize>]>,
     /// The coordinates whose rates after its impacts the model states; empty where the general law holds.
@@ -72,6 +76,8 @@ pub struct Constraint {
     pub name: &'static str,
     /// Its multiplier.
     pub multiplier: usize,
+    /// The discrete state that is 1 where its force is not determined, but for what it and those of others come to together.
+    pub shares: Option<usize>,
 }
 
 impl Contacts {

@@ -47,6 +47,7 @@ mod rest;
 mod rocking;
 mod roots_cases;
 mod roots_properties;
+mod shares;
 mod shipped;
 mod sin_cos;
 mod sizes;

@@ -119,10 +119,7 @@ impl Geometry {
     /// least, and that part; `None` of no lines. What becomes shorter than all others is determined as little as what becomes
     /// parallel to them.
     pub fn least_determined(&self, lines: &[Line]) -> Option<(Line, f64)> {
-        let length = |line: &Line| {
-            let scaled = &self.scaled[self.place(*line)];
-            dot(scaled, scaled).sqrt()
-        };
+        let length = |line: &Line| self.strength(*line);
         let longest = lines.iter().map(length).fold(0.0, f64::max);
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let determined = |&line: &Line| {
@@ -197,6 +194,46 @@ impl Geometry {
         left.iter().flat_map(row).collect()
     }
 
+    /// How much a unit force along a line moves.
+    pub fn strength(&self, line: Line) -> f64 {
+        let scaled = &self.scaled[self.place(line)];
+        dot(scaled, scaled).sqrt()
+    }
+
+    /// Changes of some forces that together have no effect, as many as are independent. A force is a sum of parts along lines.
+    pub fn without_effect(&self, forces: &[Vec<(Line, f64)>]) -> Vec<Vec<f64>> {
+        // Each vector of the basis with its own parts of the forces.
+        let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        let mut found = Vec::new();
+        for (i, pushes) in forces.iter().enumerate() {
+            let mut left = vec![0.0; self.own.len()];
+            for &(line, part) in pushes {
+                let along = &self.scaled[self.place(line)];
+                left.iter_mut().zip(along).for_each(|(x, a)| *x += part * a);
+            }
+            let length = dot(&left, &left).sqrt();
+            let mut parts = vec![0.0; forces.len()];
+            parts[i] = 1.0;
+            for _ in 0..2 {
+                for (unit, of) in &basis {
+                    let along = dot(&left, unit);
+                    left.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
+                    parts.iter_mut().zip(of).for_each(|(p, o)| *p -= along * o);
+                }
+            }
+            let rest = dot(&left, &left).sqrt();
+            match rest > DEPENDENT * length {
+                true => {
+                    left.iter_mut().for_each(|x| *x /= rest);
+                    parts.iter_mut().for_each(|p| *p /= rest);
+                    basis.push((left, parts));
+                }
+                false => found.push(parts),
+            }
+        }
+        found
+    }
+
     /// The least change of coordinates, weighed by the masses, that changes what some independent lines are about by given
     /// amounts; `None` where they do depend on each other.
     pub fn least_change(&self, lines: &[Line], amounts: &[f64]) -> Option<Vec<f64>> {
@@ -231,7 +268,7 @@ impl Geometry {
     }
 }
 
-/// The discrete states of contacts that do so, none of whose friction is part of that of another.
+/// The discrete states of contacts that do so, all of whose forces are determined.
 pub(super) fn write_states(contacts: &Contacts, states: &[State], discrete: &mut [f64]) {
     for (contact, &state) in contacts.contacts.iter().zip(states) {
         let mut set = |index: Option<usize>, value: f64| {
@@ -247,9 +284,13 @@ pub(super) fn write_states(contacts: &Contacts, states: &[State], discrete: &mut
                 _ => 0.0,
             },
         );
-        set(contact.dropped, 0.0);
+        for of_share in [contact.shares, contact.dropped, contact.at_limit] {
+            set(of_share, 0.0);
+        }
         (contact.joined.iter()).for_each(|&joined| set(joined, 0.0));
     }
+    let of_constraints = contacts.constraints.iter().filter_map(|c| c.shares);
+    of_constraints.for_each(|shares| discrete[shares] = 0.0);
 }
 
 /// What is left of a vector beside an orthonormal basis, of the length 1; `None` if nothing is.

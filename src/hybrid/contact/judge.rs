@@ -7,20 +7,20 @@
 
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, held_lines};
-use super::many::{Answer, Asked, Friction, all_of_many, answers, to_try};
+use super::many::{all_of_many, to_try};
+use super::share::{Dropped, Forces, Sharing};
 use super::{State, Tangent};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::simulation::Simulation;
 use crate::jets::{ORDERS, Point};
 use crate::model::{Contact, Contacts, Mode, Row};
-use crate::numerics::Unsolved;
 
 /// Which of the results of the tape of decisions.
 const PUSH: usize = 0;
-const GAP: usize = 1;
-const FORWARDS: usize = 2;
-const BACKWARDS: usize = 3;
-const SLIP: usize = 4;
+pub(super) const GAP: usize = 1;
+pub(super) const FORWARDS: usize = 2;
+pub(super) const BACKWARDS: usize = 3;
+pub(super) const SLIP: usize = 4;
 
 /// A set of contact states that may follow.
 #[derive(Debug)]
@@ -86,23 +86,22 @@ impl<'p> Simulation<'p> {
         let sets = to_try(&choices, geometry, holds, || {
             self.answers((contacts, geometry), places, touching)
         });
-        let mut judge = |states: Vec<State>| {
-            let candidate = self.candidate((contacts, geometry), states)?;
-            let motion = self.admit(contacts, geometry, &candidate, touching)?;
-            Some(Admitted { candidate, motion })
-        };
+        let mut judge =
+            |states: Vec<State>| self.admitted((contacts, geometry), places, touching, states);
         let mut admitted: Vec<Admitted> = sets.into_iter().filter_map(&mut judge).collect();
         if admitted.is_empty() {
             admitted.extend(all_of_many(&choices).filter_map(&mut judge));
         }
-        // Between kinetic and static friction both are admissible: what sticks goes on sticking.
+        // Between kinetic and static friction both are admissible: what sticks goes on sticking, and what it held stays closed.
         let yields = |a: &Admitted, b: &Admitted| {
-            let pairs = || a.candidate.states.iter().zip(&b.candidate.states);
-            let sticks = |(k, (a, b)): (usize, (&State, &State))| {
-                let could = matches!((a, b), (State::Slides(_), State::Sticks));
-                a == b || could && places.static_friction(k) > places.kinetic(k)
+            let pairs = || (a.candidate.states.iter().zip(&b.candidate.states)).enumerate();
+            let could = |(k, (a, b)): (usize, (&State, &State))| {
+                let sticks = matches!((a, b), (State::Slides(_), State::Sticks));
+                sticks && places.static_friction(k) > places.kinetic(k)
             };
-            pairs().any(|(a, b)| a != b) && pairs().enumerate().all(sticks)
+            let opens = |a: &State, b: &State| a.is_closed() != b.is_closed();
+            let differ = |(k, (a, b))| a == b || opens(a, b) || could((k, (a, b)));
+            pairs().any(could) && pairs().all(differ)
         };
         let stays: Vec<bool> = (admitted.iter())
             .map(|a| !admitted.iter().any(|b| yields(a, b)))
@@ -149,148 +148,65 @@ impl<'p> Simulation<'p> {
         })
     }
 
-    /// What a pivoting method says that contacts do, on their accelerations.
-    fn answers(
+    /// A set with the motion that it leads to, if it may go on: with some share of the forces that are not determined.
+    fn admitted(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &Places,
         touching: &[Option<Tangent>],
-    ) -> Result<Vec<(Option<State>, bool)>, Unsolved> {
-        let without_forces: Vec<State> = (contacts.contacts.iter().zip(touching))
-            .map(|(contact, tangent)| match (contact.normal, tangent) {
-                (Some(_), _) => State::Open,
-                (None, Some(Tangent::Slips(direction))) => State::Slides(*direction),
-                (None, _) => State::Slides(1.0),
-            })
-            .collect();
-        let mut discrete = self.context.discrete().to_vec();
-        write_states(contacts, &without_forces, &mut discrete);
+        states: Vec<State>,
+    ) -> Option<Admitted> {
+        let sharing = Sharing::new(contacts, geometry, places, &states)?;
+        let present = self.context.discrete().to_vec();
+        let candidate = |dropped: &Dropped| {
+            let mut discrete = present.clone();
+            write_states(contacts, &states, &mut discrete);
+            sharing.write(contacts, dropped, &mut discrete);
+            let states = states.clone();
+            Candidate { states, discrete }
+        };
+        let first = candidate(&sharing.without_friction(geometry));
+        if let Some(motion) = self.admit(contacts, geometry, &first, touching) {
+            let candidate = first;
+            return Some(Admitted { candidate, motion });
+        }
+        if sharing.is_determined() {
+            return None;
+        }
+        let forces = self.forces(contacts, &first)?;
+        let corners = sharing.corners(geometry, places, &forces);
+        corners.iter().map(candidate).find_map(|candidate| {
+            let motion = self.admit(contacts, geometry, &candidate, touching)?;
+            Some(Admitted { candidate, motion })
+        })
+    }
+
+    /// The forces of a candidate; `None` if they are not known.
+    fn forces(&mut self, contacts: &'p Contacts, candidate: &Candidate) -> Option<Vec<Forces>> {
         let mode = self.mode();
         let n = self.here.q.len();
         let (q, rest) = self.next.split_at(n);
-        let (v, discrete) = (&rest[..n], &*discrete);
-        let at = Point { q, v, discrete };
+        let at = Point {
+            q,
+            v: &rest[..n],
+            discrete: &candidate.discrete,
+        };
         let tape = &contacts.decisions;
         self.expansion.begin(mode, at, None);
         self.expansion.expand(mode, tape, 0);
-        let value = |k: usize, what: usize| {
-            self.expansion.result(tape, k * Contacts::DECISIONS + what)[0].value
-        };
-        // Friction without a gap acts there already, as what slides forwards; it is taken out again.
-        let bare = |k: usize| contacts.contacts[k].normal.is_none();
-        let frictions: Vec<(Line, f64)> = (0..touching.len())
-            .filter(|&k| bare(k) && touching[k] == Some(Tangent::Still))
-            .map(|k| {
-                let force = 0.5 * (value(k, BACKWARDS) - value(k, FORWARDS));
-                (Line::Tangent(k), force)
-            })
-            .collect();
-        let constraints: Vec<Line> = (0..contacts.constraints.len())
-            .map(Line::Constraint)
-            .collect();
-        let lines: Vec<Line> = geometry.all().collect();
-        let compliance = geometry.compliance(&lines, &constraints);
-        let taken_out = |of: Line| -> f64 {
-            let place = |line: Line| lines.iter().position(|known| *known == line);
-            let at = |of: Line, line: Line| Some(place(of)? * lines.len() + place(line)?);
-            let parts = frictions.iter();
-            parts
-                .filter_map(|&(line, force)| Some(compliance[at(of, line)?] * force))
-                .sum()
-        };
-        // Static friction, until one is seen to slip.
-        let mut slips = vec![false; touching.len()];
-        loop {
-            let mut asked = Vec::new();
-            for (k, contact) in contacts.contacts.iter().enumerate() {
-                let Some(tangent) = touching[k] else { continue };
-                let coefficient = match slips[k] {
-                    true => places.kinetic(k),
-                    false => places.static_friction(k),
-                };
-                let friction = match tangent {
-                    Tangent::None => Friction::None,
-                    Tangent::Slips(direction) => Friction::Slips {
-                        direction,
-                        coefficient: places.kinetic(k),
-                    },
-                    Tangent::Still => {
-                        let limit = 0.5 * (value(k, FORWARDS) + value(k, BACKWARDS));
-                        let part = match coefficient == places.static_friction(k) {
-                            true => 1.0,
-                            false => coefficient / places.static_friction(k),
-                        };
-                        Friction::Still {
-                            slip: value(k, SLIP) - taken_out(Line::Tangent(k)),
-                            coefficient,
-                            bound: if bare(k) { limit * part } else { 0.0 },
-                        }
-                    }
-                };
-                if bare(k) && tangent != Tangent::Still {
-                    continue;
-                }
-                let normal = value(k, GAP) - taken_out(Line::Normal(k));
-                asked.push(Asked {
-                    contact: k,
-                    normal: contact.normal.map(|_| [normal, 0.0]),
-                    friction,
-                });
-            }
-            let answers = answers(contacts, geometry, &asked)?;
-            let mut goes_on = false;
-            let mut found: Vec<(Option<State>, bool)> = vec![(None, false); touching.len()];
-            for (asked, (answer, open)) in asked.iter().zip(answers) {
-                let k = asked.contact;
-                let state = match (answer, touching[k]) {
-                    (Answer::Opens, _) => State::Open,
-                    (_, Some(Tangent::Slips(direction))) => State::Slides(direction),
-                    (_, Some(Tangent::None)) => State::Closed,
-                    (Answer::Slips(direction), _) => State::Slides(direction),
-                    (Answer::Holds, _) => State::Sticks,
-                };
-                let starts = matches!(answer, Answer::Slips(_));
-                goes_on |= starts && !slips[k] && places.kinetic(k) != places.static_friction(k);
-                slips[k] |= starts;
-                found[k] = (Some(state), open);
-            }
-            if !goes_on {
-                return Ok(found);
-            }
-        }
-    }
-
-    /// The discrete states of a set; `None` if its lines depend on each other in a way that leaves its forces undetermined.
-    fn candidate(
-        &self,
-        (contacts, geometry): (&Contacts, &Geometry),
-        states: Vec<State>,
-    ) -> Option<Candidate> {
-        let mut discrete = self.context.discrete().to_vec();
-        write_states(contacts, &states, &mut discrete);
-        let [places, _] = held_lines(contacts, &states);
-        if geometry.independent(&places).len() < places.len() {
-            return None;
-        }
-        let mut held = places;
-        for k in (0..states.len()).filter(|&k| states[k] == State::Sticks) {
-            let line = Line::Tangent(k);
-            if !geometry.depends(line, &held) {
-                held.push(line);
-                continue;
-            }
-            let holds = |&other: &usize| {
-                held.contains(&Line::Tangent(other))
-                    && geometry.are_parallel(line, Line::Tangent(other))
+        let of = |k: usize| {
+            let value = |what: usize| {
+                let known = self.expansion.result(tape, k * Contacts::DECISIONS + what)[0];
+                known.error.is_finite().then_some(known.value)
             };
-            discrete[contacts.contacts[k].dropped?] = 1.0;
-            // Its friction is part of that of another one along the same line; beside several lines that hold it together its
-            // own force is not determined, and is none (a disc that rests in a wedge).
-            if let Some(holder) = (0..k).find(holds) {
-                discrete[contacts.contacts[holder].joined[k]?] = 1.0;
-            }
-        }
-        Some(Candidate { states, discrete })
+            let (forwards, backwards) = (value(FORWARDS)?, value(BACKWARDS)?);
+            Some(Forces {
+                normal: value(PUSH)?,
+                friction: 0.5 * (backwards - forwards),
+                limit: 0.5 * (backwards + forwards),
+            })
+        };
+        (0..contacts.contacts.len()).map(of).collect()
     }
 
     /// The motion of a candidate, if it may go on.

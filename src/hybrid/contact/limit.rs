@@ -1,8 +1,8 @@
 //! The set of contact states at the limit of an accumulation: a contact rests where the limit has neither gap nor rate.
 
-use super::event::Standing;
 use super::geometry::{Geometry, Line, multiplier};
 use super::hold::Places;
+use super::standing::Standing;
 use super::{State, Tangent};
 use crate::hybrid::accumulation::Limit;
 use crate::hybrid::failure::Stoppable;

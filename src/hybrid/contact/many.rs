@@ -24,7 +24,7 @@ const MOST_IN_ALL: usize = 1 << 20;
 
 /// What is no more than this part of the terms that it is the sum of (√ε) may be zero: then the other choices of the contact are
 /// tried, too.
-const MAY_BE_ZERO: f64 = 1.5e-8;
+pub(super) const MAY_BE_ZERO: f64 = 1.5e-8;
 
 /// What is asked of a contact.
 #[derive(Debug, Clone, Copy)]
@@ -61,7 +61,12 @@ pub(super) enum Answer {
     Holds,
     /// It pushes, and begins to slip in this direction.
     Slips(f64),
+    /// It pushes, with as much friction against this direction as it can hold, and may stick or begin to slip.
+    Yields(f64),
 }
+
+/// Of each contact a choice, if one is known, and whether it may be another.
+pub(super) type Answers<T> = Vec<(Option<T>, bool)>;
 
 /// What the contacts do, and of each whether that may be otherwise, as far as rounding tells.
 pub(super) fn answers(
@@ -179,10 +184,15 @@ pub(super) fn answers(
         let rows = [Kind::Normal, Kind::Forwards, Kind::Backwards].map(|kind| of_pair(i, kind));
         let is_open = rows[0].is_some_and(|row| !solution.basic[row]);
         let open = rows.iter().flatten().any(|&row| may_be_zero(row));
+        // The slip acceleration of what is at the limit of its friction is the other of the pair.
+        let at_limit = |row: usize, direction: f64| match may_be_zero(row) {
+            true => Answer::Yields(direction),
+            false => Answer::Slips(direction),
+        };
         let answer = match (is_open, rows[1], rows[2]) {
             (true, ..) => Answer::Opens,
-            (_, Some(forwards), _) if !solution.basic[forwards] => Answer::Slips(1.0),
-            (_, _, Some(backwards)) if solution.basic[backwards] => Answer::Slips(-1.0),
+            (_, Some(forwards), _) if !solution.basic[forwards] => at_limit(forwards, 1.0),
+            (_, _, Some(backwards)) if solution.basic[backwards] => at_limit(backwards, -1.0),
             _ => Answer::Holds,
         };
         // Of a contact that opens its friction says nothing.
@@ -280,7 +290,7 @@ pub(super) fn to_try<T: Clone + PartialEq>(
     choices: &[Vec<T>],
     geometry: &Geometry,
     holds: impl Fn(usize, &T) -> Option<Line>,
-    answered: impl FnOnce() -> Result<Vec<(Option<T>, bool)>, Unsolved>,
+    answered: impl FnOnce() -> Result<Vec<Answers<T>>, Unsolved>,
 ) -> Vec<Vec<T>> {
     if count(choices) <= MOST_SETS {
         return products(choices).collect();
@@ -288,10 +298,14 @@ pub(super) fn to_try<T: Clone + PartialEq>(
     if let Some(all) = independent(choices, geometry, holds) {
         return all;
     }
-    let Ok(answered) = answered() else {
-        return Vec::new();
-    };
-    let mut left: Vec<Vec<T>> = (choices.iter().zip(&answered))
+    let answered = answered().unwrap_or_default();
+    let left = answered.iter().map(|answers| left_by(choices, answers));
+    left.flatten().collect()
+}
+
+/// The choices that answers leave: all of a contact that may do otherwise, as long as they are few.
+fn left_by<T: Clone + PartialEq>(choices: &[Vec<T>], answered: &Answers<T>) -> Vec<Vec<T>> {
+    let mut left: Vec<Vec<T>> = (choices.iter().zip(answered))
         .map(|(all, (answer, _))| match answer {
             Some(answer) if all.contains(answer) => vec![answer.clone()],
             _ => all.clone(),

@@ -8,9 +8,11 @@
 //! - `hold`: positions and rates brought back to where they are held, to rounding.
 //! - `singular`: how well the forces are determined that hold them.
 //! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
-//! - `many`: which of them are tried where these are too many.
+//! - `share`: how those that stick share forces that are not determined.
+//! - `many`: which of them are tried where these are too many; `pivoting`: what the accelerations say of that.
 //! - `impact`: what an impact does, under the law of the scene.
 //! - `phase`: all outcomes of one phase of it, each tried on its impulses and rates.
+//! - `standing`: what touches at an instant, and what of it has no rate.
 //! - `event`: from the fall of a guard to the next set.
 //! - `start`: the set that a run starts in; `equilibrium`: where it starts at rest.
 //! - `limit`: the set at the limit of an accumulation.
@@ -24,7 +26,10 @@ mod judge;
 mod limit;
 mod many;
 mod phase;
+mod pivoting;
+mod share;
 mod singular;
+mod standing;
 mod start;
 
 pub(super) use hold::{held_by_others, hold};

@@ -9,7 +9,7 @@
 
 use super::geometry::{Geometry, Line, dot};
 use super::hold::{Places, ROUNDOFF};
-use super::many::{self, Answer, Asked, all_of_many, answers, to_try};
+use super::many::{self, Answer, Answers, Asked, all_of_many, answers, to_try};
 use crate::model::Contacts;
 use crate::numerics::{Dynamic, Lu, Size, Unsolved};
 
@@ -189,7 +189,7 @@ impl Phase<'_> {
     }
 
     /// What a pivoting method says that the contacts do.
-    fn answers(&self) -> Result<Vec<(Option<Push>, bool)>, Unsolved> {
+    fn answers(&self) -> Result<Vec<Answers<Push>>, Unsolved> {
         let asked = |member: &Member| {
             let k = member.contact;
             let [normal, tangent] =
@@ -215,7 +215,9 @@ impl Phase<'_> {
             let has_friction = !matches!(asked.friction, many::Friction::None);
             let tangent = match (has_friction, answer) {
                 (false, _) => Friction::Absent,
-                (_, Answer::Slips(direction)) => Friction::Slips(direction),
+                (_, Answer::Slips(direction) | Answer::Yields(direction)) => {
+                    Friction::Slips(direction)
+                }
                 _ => Friction::Sticks,
             };
             let push = match answer {
@@ -232,7 +234,7 @@ impl Phase<'_> {
             };
             (push, may_be_otherwise)
         };
-        Ok(answers.iter().zip(&asked).map(push).collect())
+        Ok(vec![answers.iter().zip(&asked).map(push).collect()])
     }
 
     /// The outcome with these impulses, if it agrees with itself.

@@ -1,8 +1,8 @@
 //! The set of contact states that a run starts in.
 
-use super::event::Standing;
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, hold_lines};
+use super::standing::Standing;
 use super::{State, Tangent};
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::limits::check_bounds;

@@ -19,7 +19,9 @@ impl Reader<'_> {
                 tangent: coordinate("tangent")?,
                 closed: discrete("closed")?,
                 direction: discrete("direction")?,
+                shares: discrete("shares")?,
                 dropped: discrete("dropped")?,
+                at_limit: discrete("at_limit")?,
                 joined: at.get("joined", |at| {
                     at.list_of(count, |at| at.option(|at| at.index(discretes)))
                 })?,
@@ -30,6 +32,7 @@ impl Reader<'_> {
             Ok(Constraint {
                 name: at.get("name", text)?,
                 multiplier: at.get("multiplier", |at| at.index(coordinates))?,
+                shares: at.get("shares", |at| at.option(|at| at.index(discretes)))?,
             })
         };
         Ok(Contacts {

@@ -1,0 +1,187 @@
+//! The contacts as they stand at an instant: what touches, and what of it has no rate.
+
+use super::geometry::{Geometry, Line, multiplier};
+use super::hold::{Places, held_lines, held_with, hold_lines};
+use super::impact::Impacted;
+use super::{State, Tangent};
+use crate::hybrid::simulation::Simulation;
+use crate::kernel::ModeKernel;
+use crate::model::{Contact, Contacts};
+use crate::numerics::Size;
+
+/// What is known of the contacts at an instant.
+pub(super) struct Standing<F: Size> {
+    pub q: F::Vector,
+    pub v: F::Vector,
+    pub geometry: Geometry,
+    /// Of each contact that touches without a rate, what its tangent does.
+    pub touching: Vec<Option<Tangent>>,
+    /// Of each contact, whether it leaves its gap with a rate.
+    pub leaves: Vec<bool>,
+}
+
+impl<F: Size> Standing<F> {
+    /// The lines along which impulses may have come: first those of what touches, then those of contacts that are near, which
+    /// account only for what the first do not.
+    pub fn lines_with(&self, near: &[bool]) -> Vec<Line> {
+        let touches = |line: &Line| match *line {
+            Line::Normal(k) | Line::Tangent(k) => self.touching[k].is_some(),
+            Line::Constraint(_) => true,
+        };
+        let is_near = |line: &Line| match *line {
+            Line::Normal(k) | Line::Tangent(k) => near[k],
+            Line::Constraint(_) => false,
+        };
+        let (touching, others): (Vec<_>, Vec<_>) = self.geometry.all().partition(touches);
+        let near = others.into_iter().filter(is_near);
+        touching.into_iter().chain(near).collect()
+    }
+
+    /// The lines whose place is held, and those whose rate is, by what touches.
+    pub fn held(&self, contacts: &Contacts) -> [Vec<Line>; 2] {
+        let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
+        let touching = || (self.touching.iter().enumerate()).filter_map(|(k, t)| Some((k, (*t)?)));
+        let normals = touching()
+            .filter(|(k, _)| contacts.contacts[*k].normal.is_some())
+            .map(|(k, _)| Line::Normal(k));
+        let places: Vec<Line> = constraints.chain(normals).collect();
+        let still = touching().filter(|(_, t)| *t == Tangent::Still);
+        let rates = (places.iter().copied()).chain(still.map(|(k, _)| Line::Tangent(k)));
+        let rates = rates.collect();
+        [places, rates]
+    }
+
+    /// Takes over what an impact of the contacts that touch does.
+    pub fn take(&mut self, contacts: &Contacts, touches: &[bool], impact: Impacted) {
+        for (&i, change) in self.geometry.own.iter().zip(&impact.change) {
+            self.v[i] += change;
+        }
+        for &(line, impulse) in &impact.impulses {
+            self.v[multiplier(contacts, line)] += impulse;
+        }
+        self.leaves = (touches.iter().zip(&impact.touching))
+            .zip(&contacts.contacts)
+            .map(|((touches, after), of)| *touches && after.is_none() && !of.is_ratchet)
+            .collect();
+        self.touching = impact.touching;
+    }
+}
+
+impl Simulation<'_> {
+    /// The contacts as they stand where none closes; `stops`: the slip rate, or the rate of a ratchet, that has come to zero, and with
+    /// it all that depend on it.
+    pub(super) fn standing<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        (stops, before): (Option<Line>, &[State]),
+    ) -> Standing<F> {
+        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+        let [places, mut still] = held_lines(contacts, before);
+        still.extend(stops);
+        let context = &mut self.context;
+        hold_lines(
+            kernel,
+            context,
+            contacts,
+            [&places, &still],
+            [&mut q, &mut v],
+        );
+        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        let accuracy = &self.accuracy;
+        // Of two belts with speeds of their own one alone stops, although their lines are the same: what depends on a line that is
+        // still has stopped too if the tolerances do not tell its rate from zero.
+        let stops = |line: Line| {
+            let (rate, rounding) = at.rate(line);
+            let within: f64 = (geometry.along(line).iter().zip(&geometry.own))
+                .map(|(along, &i)| {
+                    along.abs() * (accuracy.v_absolute[i] + accuracy.relative * v[i].abs())
+                })
+                .sum();
+            let is_still = || rate.abs() <= rounding + within;
+            stops == Some(line) || geometry.depends(line, &still) && is_still()
+        };
+        // Feet beside those on which a body stands touch too: one of them may carry what comes next.
+        let beside = held_with(contacts, before, &at, || &geometry);
+        let touching = (before.iter().zip(&contacts.contacts).enumerate())
+            .map(|(k, (&state, contact))| match state {
+                State::Open if beside.contains(&k) => Some(match stops(Line::Tangent(k)) {
+                    true if contact.tangent.is_some() => Tangent::Still,
+                    _ => tangent_at(contact, k, &at),
+                }),
+                State::Open if contact.is_ratchet && stops(Line::Normal(k)) => Some(Tangent::None),
+                _ => tangent_of(state, || stops(Line::Tangent(k))),
+            })
+            .collect();
+        Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves: vec![false; before.len()],
+        }
+    }
+
+    /// The contacts as they stand where one closes, and with it all whose gap is zero within its rounding: these are on
+    /// their gaps, with the rates that they come with.
+    pub(super) fn closing<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        (k, before): (usize, &[State]),
+    ) -> Standing<F> {
+        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+        let context = &mut self.context;
+        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        let closes = |j: usize| {
+            let (gap, rounding) = at.place(Line::Normal(j));
+            let is_open = before[j] == State::Open && !contacts.contacts[j].is_ratchet;
+            is_open && (j == k || gap <= rounding)
+        };
+        let [mut places, rates] = held_lines(contacts, before);
+        places.extend((0..before.len()).filter(|&j| closes(j)).map(Line::Normal));
+        hold_lines(
+            kernel,
+            context,
+            contacts,
+            [&places, &rates],
+            [&mut q, &mut v],
+        );
+        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        let touching = (before.iter().enumerate())
+            .map(|(j, &state)| match closes(j) {
+                true => Some(Tangent::None),
+                false => tangent_of(state, || false),
+            })
+            .collect();
+        Standing {
+            q,
+            v,
+            geometry,
+            touching,
+            leaves: vec![false; before.len()],
+        }
+    }
+}
+
+/// What the tangent of a contact that touches does, by its slip rate.
+pub(super) fn tangent_at(contact: &Contact, k: usize, places: &Places) -> Tangent {
+    let (slip, rounding) = places.rate(Line::Tangent(k));
+    match contact.tangent {
+        None => Tangent::None,
+        Some(_) if slip.abs() <= rounding => Tangent::Still,
+        Some(_) => Tangent::Slips(slip.signum()),
+    }
+}
+
+/// What the tangent of a contact in a state does; `stops`: whether the slip rate of one that slides has come to zero.
+fn tangent_of(state: State, stops: impl FnOnce() -> bool) -> Option<Tangent> {
+    match state {
+        State::Open => None,
+        State::Closed => Some(Tangent::None),
+        State::Sticks => Some(Tangent::Still),
+        State::Slides(_) if stops() => Some(Tangent::Still),
+        State::Slides(direction) => Some(Tangent::Slips(direction)),
+    }
+}
