@@ -11,6 +11,7 @@
 
 mod cache;
 mod check;
+mod checkpoints;
 mod compare;
 mod describe;
 mod folders;

@@ -1,11 +1,13 @@
 //! What `dalembert run` makes of a run while it goes on.
 
 use std::ops::ControlFlow;
+use std::time::Duration;
 
+use super::checkpoints::Checkpoints;
 use super::interrupt;
-use crate::hybrid::{Observer, Reason, Replay};
+use crate::hybrid::{Checkpoint, Observer, Problem, check_row};
 use crate::record::{
-    Earlier, Event, Jump, Layout, OutputFolder, ReadError, Sketch, Snapshot, Stream,
+    Earlier, Event, Jump, Kept, Layout, OutputFolder, ReadError, Sketch, Snapshot, Stream, Tally,
 };
 
 /// The files of a run, what its pictures are drawn from, and its transitions, each where it is wanted.
@@ -16,15 +18,8 @@ pub struct Outputs {
     window: Option<(f64, f64)>,
     jumps: Vec<Jump>,
     /// So many transitions are kept.
-    kept: usize,
-}
-
-/// Why an earlier run cannot be gone on with.
-pub enum NotReplayed {
-    /// It cannot be read.
-    Unread(ReadError),
-    /// It is not one of this problem.
-    Other(Reason),
+    compared: usize,
+    pub checkpoints: Checkpoints,
 }
 
 impl Outputs {
@@ -41,7 +36,8 @@ impl Outputs {
             sketch: (folder.is_some() || page).then(|| Sketch::new(layout)),
             window,
             jumps: Vec::new(),
-            kept: compared,
+            compared,
+            checkpoints: Checkpoints::new(),
         }
     }
 
@@ -51,35 +47,51 @@ impl Outputs {
         self.jumps.iter().map(event).collect()
     }
 
-    /// Takes the rows and transitions of a run that is to go on.
+    /// Time that writing files took so far.
+    pub fn spent(&self) -> Duration {
+        let stream = self.stream.as_ref();
+        stream.map_or(Duration::ZERO, Stream::spent)
+    }
+
+    /// Takes the rows and transitions of a run before the checkpoint from which it goes on, if it has one; gives the tally of
+    /// these transitions. All rows but the last, which is where the run has ended, must be where the problem has them.
     pub fn replay(
         &mut self,
+        problem: &Problem,
         earlier: &mut Earlier,
-        replay: &mut Replay,
-    ) -> Result<(), NotReplayed> {
-        if let Some(sketch) = &mut self.sketch {
+        kept: Option<&Kept>,
+    ) -> Result<Tally, ReadError> {
+        let (rows, events) = kept.map_or((0, 0), |kept| (kept.rows, kept.events));
+        if let (Some(sketch), Some(_)) = (&mut self.sketch, kept) {
             sketch.lacks_points();
         }
-        let mut other = None;
-        let rows = earlier.rows(|t, mode, values| {
-            replay.row((t, mode, values), self).map_err(|reason| {
-                let words = reason.to_string();
-                other = Some(reason);
-                words
-            })
-        });
-        match (rows, other) {
-            (_, Some(reason)) => return Err(NotReplayed::Other(reason)),
-            (rows, None) => rows.map_err(NotReplayed::Unread)?,
-        }
-        replay.end(self);
-        let events = earlier.events(|jump, sides| self.event(jump, Some(sides)));
-        events.map_err(NotReplayed::Unread)
+        let (mut row, mut before) = (0, None);
+        earlier.rows(|t, mode, values| {
+            if let Some(before) = before.replace(t) {
+                check_row(problem, row - 1, before).map_err(|reason| reason.to_string())?;
+            }
+            if row < rows {
+                // Nothing is simulated yet that could end here.
+                let _ = self.row(t, mode, values);
+            }
+            row += 1;
+            Ok(())
+        })?;
+        let (mut event, mut tally) = (0, Tally::default());
+        earlier.events(|jump, sides| {
+            if event < events {
+                self.event(jump, Some(sides));
+                tally.note(jump);
+            }
+            event += 1;
+        })?;
+        Ok(tally)
     }
 }
 
 impl Observer for Outputs {
     fn row(&mut self, t: f64, mode: usize, values: &[f64]) -> ControlFlow<()> {
+        self.checkpoints.rows += 1;
         if let Some(stream) = &mut self.stream {
             stream.row(t, mode, values);
         }
@@ -90,6 +102,20 @@ impl Observer for Outputs {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
+    }
+
+    /// Of a run without files there is nothing to go on with.
+    fn keeps_checkpoints(&self) -> bool {
+        self.stream.is_some()
+    }
+
+    fn wants_checkpoint(&mut self) -> bool {
+        self.checkpoints.is_due()
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) {
+        let spent = self.spent();
+        self.checkpoints.take(checkpoint, spent);
     }
 
     /// Without files and pictures nobody does.
@@ -113,13 +139,14 @@ impl Observer for Outputs {
 
     fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
         let sides = sides.map(|[before, after]| [before, after]);
+        self.checkpoints.events += 1;
         if let Some(stream) = &mut self.stream {
             stream.event(jump, sides);
         }
         if let Some(sketch) = &mut self.sketch {
             sketch.event(jump, sides);
         }
-        if self.jumps.len() < self.kept {
+        if self.jumps.len() < self.compared {
             self.jumps.push(*jump);
         }
     }

@@ -3,21 +3,22 @@
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread;
-use std::time::Duration;
 
 use super::folders::{self, Needs};
 use super::interrupt::{self, Interruptible};
 use super::outcome::{Failure, Outcome, Result};
-use super::outputs::{NotReplayed, Outputs};
+use super::outputs::Outputs;
 use super::page::{command_line, write_page};
 use super::pictures::{PictureArguments, WindowArguments, refuse_without_plots};
 use super::{print, room, warnings, watch};
-use crate::hybrid::{Invalid, Reason, Replay, check_same, resume_with, simulate_with};
+use crate::hybrid::{Invalid, Problem, Reason, check_same, simulate_from, simulate_with};
 use crate::model::Models;
 use crate::page::{Told, run_page};
 use crate::precision::{COMPARED, Ended, estimate, other, unsettled};
 use crate::record::plot::Look;
-use crate::record::{Earlier, OutputFolder, ProgressLine, Report, Silent, Sketch, Stream};
+use crate::record::{
+    Doubt, Earlier, OutputFolder, ProgressLine, Question, Report, Run, Silent, Sketch,
+};
 use crate::scene::{Disk, Files, Scene};
 
 #[derive(Debug, clap::Args)]
@@ -29,10 +30,10 @@ nothing is written.
 --resume continues the run in DIR, whether it was interrupted or reached its end, to the end of \
 the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, inputs, \
 initial state, accuracy, method, frozen coordinates, columns and the grid of the samples must be those of the \
-run, and its files as they were written; what does not fit is named. The integrator starts anew at \
-the last state, so the result is that of an uninterrupted run up to the accuracy, not to the bit. Pictures \
-have straight lines between the rows of what was there before; where nothing is left to run the folder stays \
-as it is.
+run, and its files as they were written; what does not fit is named. It goes on from the last checkpoint of the run, \
+of which one is taken every second or so; a shorter run is done again from its start. So the result is, to the last bit, that \
+of a run that was never left. Pictures have straight lines between the rows before the checkpoint; where nothing is left to run the \
+folder stays as it is.
 
 A second run at a tenth of its tolerance goes beside a run, on another core, of which the first 4000 events alone are kept: \
 where another event follows there, the report says so under `uncertain`. It ends with the run at the latest; \
@@ -90,7 +91,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     if arguments.error_estimate && arguments.resume.is_some() {
         return Err(Failure::wrong_input(
             "--error-estimate and --resume cannot be given together: the estimate compares a run with \
-             a better one from the start, and a resumed run starts anew on the way; run the scene from \
+             a better one from the start, of which a resumed run has not all events at hand; run the scene from \
              its start, without --resume",
         ));
     }
@@ -133,39 +134,41 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         false => COMPARED,
     };
     let mut outputs = Outputs::new(&layout, folder.as_ref(), (page, look.window), compared);
-    let earlier = match earlier {
-        Some((folder, mut earlier)) => {
-            let mut replay = Replay::new(problem);
-            let replayed = outputs.replay(&mut earlier, &mut replay);
-            replayed.map_err(|error| match error {
-                NotReplayed::Unread(error) => Failure::wrong_input(error),
-                NotReplayed::Other(reason) => other_run(&scene, folder, &reason),
-            })?;
-            Some((earlier.run, replay))
+    let mut from = None;
+    if let Some((folder, mut earlier)) = earlier {
+        let kept = earlier.checkpoint().map_err(Failure::wrong_input)?;
+        let replayed = outputs.replay(problem, &mut earlier, kept.as_ref());
+        let tally = replayed.map_err(Failure::wrong_input)?;
+        // Pictures are drawn from the dense output of the steps, and an earlier run has left no more of it than rows: where nothing is
+        // left to run the folder stays as it is.
+        let stays = !page && arguments.out.is_none() && look == Look::default();
+        if stays && has_ended(problem, &earlier.run) {
+            print::output(&Report::new(&earlier.run).in_units(&look.units))?;
+            return Ok(Outcome::Done);
         }
-        None => None,
-    };
-    let spent = |outputs: &Outputs| {
-        outputs
-            .stream
-            .as_ref()
-            .map_or(Duration::ZERO, Stream::spent)
-    };
-    let before = spent(&outputs);
-    let steps_before = (earlier.as_ref()).map(|(run, _)| run.solver.steps);
+        if let Some(kept) = kept {
+            let checkpoint = kept.checkpoint.clone();
+            outputs.checkpoints.go_on(kept);
+            from = Some((folder, earlier.run, checkpoint, tally));
+        }
+    }
+    let before = outputs.spent();
     interrupt::listen()?;
     let mut progress = Interruptible(ProgressLine::new(problem.end.time));
     let ended = Ended::default();
     let other = || other(problem, &ended, &mut Interruptible(Silent));
     // Of a run that goes on with an earlier one the first events are not at hand; what was in doubt there is told again.
-    let is_judged = arguments.resume.is_none();
+    let is_judged = from.is_none();
     // The other run takes nobody's time on a core of its own.
     let at_once = is_judged && thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
     let (run, other) = thread::scope(|scope| {
         let beside = at_once.then(|| scope.spawn(other));
-        let run = match earlier {
+        let run = match &from {
             None => simulate_with(problem, &mut outputs, &mut progress),
-            Some((run, replay)) => resume_with(problem, run, replay, &mut outputs, &mut progress),
+            Some((_, _, checkpoint, tally)) => {
+                let from = (checkpoint, tally.clone());
+                simulate_from(problem, from, &mut outputs, &mut progress)
+            }
         };
         let end = run.as_ref().map_or(f64::NEG_INFINITY, |run| run.end.t);
         ended.at(end);
@@ -176,8 +179,20 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         (run, other)
     });
     drop(progress);
-    let mut run = run.map_err(|reason| refusal(&scene, &reason))?;
-    run.wall = run.wall.saturating_sub(spent(&outputs) - before);
+    let mut run = run.map_err(|reason| match (&reason, &from) {
+        (Reason::Checkpoint(_), Some((folder, ..))) => other_run(&scene, folder, &reason),
+        _ => refusal(&scene, &reason),
+    })?;
+    run.wall = run.wall.saturating_sub(outputs.spent() - before);
+    if let Some((_, earlier, checkpoint, _)) = &from {
+        run.wall += outputs.checkpoints.before();
+        let unsettled =
+            |doubt: &&Doubt| doubt.what == Question::Unsettled && doubt.t <= checkpoint.time();
+        let doubts = earlier.uncertain.first.iter().filter(unsettled);
+        doubts
+            .cloned()
+            .for_each(|doubt| run.uncertain.add_earlier(doubt));
+    }
     let doubt = other.and_then(|other| unsettled(problem, &run, &outputs.events(), &other));
     doubt
         .into_iter()
@@ -196,11 +211,15 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     let report = Report::new(&run).in_units(&look.units);
     print::output(&report)?;
     warnings::after(report.summary());
-    let Outputs { stream, sketch, .. } = outputs;
-    // A run that had nothing left leaves its folder as it is: pictures are drawn from the dense output of the steps, and an earlier
-    // run has left no more of it than rows.
-    let is_idle = steps_before == Some(run.solver.steps);
-    let stream = stream.filter(|_| !is_idle || arguments.out.is_some() || look != Look::default());
+    let Outputs {
+        mut stream,
+        sketch,
+        checkpoints,
+        ..
+    } = outputs;
+    if let Some(stream) = &mut stream {
+        stream.checkpoint = checkpoints.kept;
+    }
     let sketch = sketch.unwrap_or_else(|| Sketch::new(&layout));
     let written = stream.map(|stream| stream.finish(&run, &sketch, &look));
     if let Some(page) = &arguments.html {
@@ -231,6 +250,13 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
             Ok(Outcome::StoppedEarly)
         }
     }
+}
+
+/// Whether a run has come to the end of a problem.
+fn has_ended(problem: &Problem, run: &Run) -> bool {
+    let after = problem.end.after;
+    run.end.t >= problem.end.time
+        || after.is_some_and(|(name, count)| run.tally.count(name) as u64 >= count)
 }
 
 /// Why a run cannot be continued with a scene, pointing at the line of it that does not fit.

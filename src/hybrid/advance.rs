@@ -146,7 +146,7 @@ impl Simulation<'_> {
             self.pause.knot = time;
             self.smooth_until = f64::NEG_INFINITY;
         }
-        let outcome = self.go_on(to_event, progress);
+        let outcome = self.go_on((to_event, false), progress);
         self.count_work();
         outcome.map_err(|reason| {
             self.stage = Stage::Failed(reason.clone());
@@ -154,10 +154,28 @@ impl Simulation<'_> {
         })
     }
 
-    /// Does one thing after the other until an advance ends.
-    fn go_on(&mut self, to_event: bool, progress: &mut dyn Progress) -> Stoppable<Stopped> {
+    /// Goes on to the end of the run.
+    pub fn go_on_to_end(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
+        self.pause.never();
+        let outcome = self.go_on((false, true), progress);
+        self.count_work();
+        outcome.map(drop).map_err(|reason| *reason)
+    }
+
+    /// Does one thing after the other until an advance ends. `stays`: events that lead to the same mode again are passed
+    /// in one.
+    fn go_on(
+        &mut self,
+        (to_event, stays): (bool, bool),
+        progress: &mut dyn Progress,
+    ) -> Stoppable<Stopped> {
         let transitions = self.here.j;
         loop {
+            if self.observers.recording.wants_checkpoint() && !self.stage.is_ended() {
+                self.count_work();
+                let checkpoint = self.checkpoint(self.here.now.seconds())?;
+                self.observers.recording.checkpoint(checkpoint);
+            }
             let now = self.here.now.seconds();
             let (is_there, is_beyond) = (now >= self.pause.at, now > self.pause.at);
             match self.stage {
@@ -188,7 +206,7 @@ impl Simulation<'_> {
                 }
                 Stage::Entered | Stage::Between => {
                     let mode = self.mode();
-                    let stop = with_kernel!(&mode.kernels, k => self.advance(k, false, progress))?;
+                    let stop = with_kernel!(&mode.kernels, k => self.advance(k, stays, progress))?;
                     self.stage = match stop {
                         Stop::Pause => Stage::Between,
                         stop => Stage::Pending(stop),

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Version of what a checkpoint holds; another one is refused.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A run in parts, at an instant: see [`super::Simulator::snapshot`]. It can be kept by serde, in any format that keeps
 /// texts; numbers of the run are in it by their bits.
@@ -81,7 +81,7 @@ impl Checkpoint {
         self.time
     }
 
-    fn new(problem: &Problem, time: f64, words: &[u64]) -> Self {
+    fn new(problem: &Problem, (time, extremes): (f64, bool), words: &[u64]) -> Self {
         let words = words.iter().fold(String::new(), |mut text, word| {
             let _ = write!(text, "{word:016x}");
             text
@@ -91,7 +91,7 @@ impl Checkpoint {
             model: problem.model.name.into(),
             time,
             digests: digests(problem),
-            watched: watched(problem).into(),
+            watched: watched(problem, extremes).into(),
             parameters: parameters(problem),
             digest: digest(&words),
             words,
@@ -99,7 +99,7 @@ impl Checkpoint {
     }
 
     /// The words, if this is a whole checkpoint of the problem.
-    pub(super) fn words(&self, problem: &Problem) -> Result<Vec<u64>, Misfit> {
+    fn words(&self, problem: &Problem, extremes: bool) -> Result<Vec<u64>, Misfit> {
         if self.version != VERSION {
             let found = self.version;
             return Err(Misfit::Version { found });
@@ -121,7 +121,7 @@ impl Checkpoint {
                 return other(&format!("`{name}`"), &value(now), &value(then));
             }
         }
-        for ((part, now), (_, then)) in watched(problem).iter().zip(&self.watched) {
+        for ((part, now), (_, then)) in watched(problem, extremes).iter().zip(&self.watched) {
             if now != then {
                 return other(part, now, then);
             }
@@ -155,17 +155,15 @@ impl Checkpoint {
 }
 
 /// Of what is watched and recorded that of which a run remembers something, in words.
-fn watched(problem: &Problem) -> [(String, String); 4] {
+fn watched(problem: &Problem, extremes: bool) -> [(String, String); 5] {
     let Problem {
         record,
         limits,
         end,
         ..
     } = problem;
-    let energies = match record.ledger || record.columns.energies {
-        true => "kept",
-        false => "not kept",
-    };
+    let kept = |is_kept: bool| if is_kept { "kept" } else { "not kept" };
+    let energies = kept(record.ledger || record.columns.energies);
     let samples = match record.every {
         Some(every) => format!("every {every} s"),
         None => "every step".into(),
@@ -190,6 +188,7 @@ fn watched(problem: &Problem) -> [(String, String); 4] {
     let after = end.after.map_or("none", |(name, _)| name);
     [
         ("the energy balance", energies.into()),
+        ("the list of extremes", kept(extremes).into()),
         ("the interval of samples", samples),
         ("the list of limits", format!("[{}]", limits.join("; "))),
         ("the transition that ends the run", after.into()),
@@ -216,11 +215,21 @@ impl<'p> Simulation<'p> {
         let mut words = Vec::new();
         let written = self.persist(&mut Memory::Write(&mut words));
         written.expect("memory that is written takes everything");
-        Ok(Checkpoint::new(self.problem, time, &words))
+        let extremes = self.observers.watch_extremes();
+        Ok(Checkpoint::new(self.problem, (time, extremes), &words))
     }
 
-    /// Goes to where a checkpoint was taken, by its words. `None`: they do not fit, and the run is to be rewound.
-    pub fn take_over(&mut self, words: &[u64]) -> Option<()> {
+    /// Goes to where a checkpoint was taken, of a run of this problem.
+    ///
+    /// # Errors
+    /// [`Misfit`] with what differs; the run is where it was, or, where the words of the checkpoint do not fit, to be rewound.
+    pub fn restore(&mut self, from: &Checkpoint) -> Result<(), Misfit> {
+        let words = from.words(self.problem, self.observers.watch_extremes())?;
+        let why = "its words do not fit the model";
+        self.take_over(&words).ok_or(Misfit::Damaged { why })
+    }
+
+    fn take_over(&mut self, words: &[u64]) -> Option<()> {
         let mut memory = Memory::Read(words);
         self.persist(&mut memory)?;
         matches!(memory, Memory::Read([])).then_some(())?;
@@ -229,6 +238,7 @@ impl<'p> Simulation<'p> {
         self.context.forget_signals();
         self.signs.start();
         self.set_context();
+        self.observers.represent_mode(self.mode());
         Some(())
     }
 

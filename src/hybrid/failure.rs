@@ -1,5 +1,6 @@
 //! Why a simulation stops before its end.
 
+use super::checkpoint::Misfit;
 use super::problem::ImpactLaw;
 use super::validate::Invalid;
 use crate::integrate::{Singular, StepError};
@@ -19,6 +20,9 @@ impl From<StepError> for Box<Reason> {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
+    /// A run does not go on from a checkpoint.
+    #[error(transparent)]
+    Checkpoint(#[from] Misfit),
     /// The integrator found no acceptable step.
     #[error("no step could be taken: {0}")]
     Step(#[from] StepError),

@@ -119,7 +119,11 @@ impl Simulation<'_> {
 
         loop {
             // 1. The step.
-            if let Err(error) = method.step(&mut equations, until) {
+            let report = method.step(&mut equations, until);
+            if report.is_ok_and(|report| report.is_near_end) && last >= problem.end.time {
+                self.observers.recording.nears_end();
+            }
+            if let Err(error) = report {
                 if chooses && is_explicit {
                     // What no series reaches the other method may.
                     stiffness.explicit_failure();
@@ -345,7 +349,8 @@ impl Simulation<'_> {
             if chooses && stiffness.prefers_implicit() == is_explicit {
                 return Ok(Stop::Method);
             }
-            if self.here.now.seconds() >= self.pause.at {
+            let pauses = self.here.now.seconds() >= self.pause.at;
+            if pauses || self.observers.recording.wants_checkpoint() {
                 self.pause.keep_start(&mode.free, &began);
                 return Ok(Stop::Pause);
             }

@@ -175,20 +175,6 @@ impl<'p> Margins<'p> {
             validity,
         }
     }
-
-    /// Takes over what a run that is continued has reached. A limit at which it ends does so again.
-    pub fn go_on(&mut self, reached: &Reached) {
-        let names = self.variant.limits.iter().map(|l| l.name);
-        let conditions = self.variant.valid_motion.iter().map(|v| v.condition);
-        let own = self.own.iter().map(|l| l.name.as_str());
-        let known = names.chain(conditions).chain(own);
-        for ((of, name), ends) in self.reached.iter_mut().zip(known).zip(&self.ends) {
-            let state = reached.limit_states.iter().find(|s| s.name == name);
-            let left = reached.validity.iter().find(|l| l.condition == name);
-            let t = state.map(|s| s.t).or(left.and_then(|l| l.t));
-            *of = t.filter(|_| !ends);
-        }
-    }
 }
 
 impl Problem {

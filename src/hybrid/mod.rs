@@ -2,8 +2,8 @@
 //!
 //! [`simulate`] runs a [`Problem`]. `simulation` holds the loop; `enter` starts a segment, `segment`
 //! and `follow` integrate it to its first crossing, which `roots` isolates and `locate` lands on; `fire` applies
-//! the transition; `accumulation` recognises where infinitely many of them end; `observe` records. [`resume`] goes on with
-//! a run that was interrupted.
+//! the transition; `accumulation` recognises where infinitely many of them end; `observe` records. [`simulate_from`] goes on
+//! from a checkpoint.
 
 mod accumulation;
 mod advance;
@@ -61,7 +61,7 @@ pub use problem::{
     Accuracy, Collisions, End, ImpactLaw, ImpactOrder, Initial, Limits, Method, Observed, OwnLimit,
     Problem, Record,
 };
-pub use resume::{Replay, check_same, resume, resume_with};
+pub use resume::{check_row, check_same, simulate_from};
 pub use simulate::{simulate, simulate_member, simulate_with};
 pub use simulator::Simulator;
 pub use validate::{Exceeds, Invalid, Unknown, check_limits_of_parameters};

@@ -1,141 +1,48 @@
-//! Going on with a run that was interrupted or has ended.
+//! Going on with a run from a checkpoint that was taken on its way.
 
+use super::checkpoint::Checkpoint;
 use super::failure::Reason;
-use super::instant::Instant;
-use super::observe::{Collected, Observer, sample_time};
+use super::observe::{Observer, sample_time};
 use super::outputs::OwnOutput;
 use super::problem::{Collisions, Method, Problem};
+use super::simulate::subject;
 use super::simulation::Simulation;
 use crate::run::digest;
-use crate::run::{Event, Progress, Recorder, Run};
+use crate::run::{Progress, Run, Tally};
 use std::time::Instant as WallClock;
 
-/// Continues a run from its end to the end of the problem, and gives the whole: tables, counters
-/// and ledger go on where they were.
-///
-/// The integrator starts anew at the last state, in the mode the run was in; so the result is that
-/// of an uninterrupted run up to the accuracy, not to the last bit. Two things are not remembered:
-/// the intervals of an accumulation that had begun, which is recognised again from those that
-/// follow, and the digits of t beyond a double.
+/// Simulates a problem from a checkpoint on, as [`super::simulate_with`] does from the start: to the last bit the rows,
+/// transitions and results are those of a run that was never left. `before` is the tally of the transitions before it, of which,
+/// as of the rows, the observer was told.
 ///
 /// # Errors
-/// [`Reason::OtherRun`] if the run is not one of this problem.
-pub fn resume(problem: &Problem, run: Run, progress: &mut dyn Progress) -> Result<Run, Reason> {
-    check_rows(problem, &run)?;
-    go_on(problem, run, None, progress)
-}
-
-/// The same; rows and transitions go to an observer as they come. It was told of those of the earlier run already
-/// ([`Replay`]), of which `run` holds none.
-///
-/// # Errors
-/// As [`resume`].
-pub fn resume_with(
+/// [`Reason::Checkpoint`] if it is not one of this problem; else as [`super::simulate`].
+pub fn simulate_from(
     problem: &Problem,
-    run: Run,
-    replayed: Replay,
+    (checkpoint, before): (&Checkpoint, Tally),
     observer: &mut dyn Observer,
     progress: &mut dyn Progress,
 ) -> Result<Run, Reason> {
-    go_on(problem, run, Some((replayed, observer)), progress)
-}
-
-fn go_on<'p>(
-    problem: &'p Problem,
-    run: Run,
-    told: Option<(Replay, &'p mut dyn Observer)>,
-    progress: &mut dyn Progress,
-) -> Result<Run, Reason> {
     let clock = WallClock::now();
-    check_same(problem, &run)?;
-    let wall = run.wall;
-    let projected = run.subject.projected.clone();
-    let (replayed, observer) = match told {
-        Some((replayed, observer)) => (Some(replayed), Some(observer)),
-        None => (None, None),
-    };
-    let mut simulation = Simulation::observed(problem, observer)?;
-    simulation.restore(run, replayed)?;
-    let outcome = simulation.run(progress);
-    let subject = super::simulate::subject(problem);
-    let mut run = simulation.finish(outcome.err(), subject, clock);
-    run.subject.projected = projected;
-    run.wall += wall;
-    Ok(run)
+    let mut simulation = Simulation::observed(problem, Some(observer))?;
+    simulation.begin()?;
+    simulation.restore(checkpoint)?;
+    simulation.observers.recording.go_on(before);
+    let outcome = simulation.go_on_to_end(progress);
+    Ok(simulation.finish(outcome.err(), subject(problem), clock))
 }
 
-/// Hands the rows of an earlier run to an observer, all but a last one that is off the grid of the samples: it is where
-/// that run has ended, and not this one.
-#[derive(Debug)]
-pub struct Replay {
-    every: Option<f64>,
-    /// How many were handed on.
-    rows: u64,
-    last: Option<f64>,
-    /// The next one, with its mode.
-    held: Option<(f64, usize)>,
-    values: Vec<f64>,
-}
-
-impl Replay {
-    /// Nothing yet of a run of this problem.
-    pub fn new(problem: &Problem) -> Self {
-        Replay {
-            every: problem.record.every,
-            rows: 0,
-            last: None,
-            held: None,
-            values: Vec::new(),
-        }
-    }
-
-    /// Takes a row: time, mode, values.
-    ///
-    /// # Errors
-    /// [`Reason::OtherRun`] if the one before is not on the grid.
-    pub fn row(
-        &mut self,
-        (t, mode, values): (f64, usize, &[f64]),
-        observer: &mut dyn Observer,
-    ) -> Result<(), Reason> {
-        if let Some((before, _)) = self.held {
-            check_row(self.every, self.rows, before)?;
-            self.hand_on(observer);
-        }
-        self.held = Some((t, mode));
-        self.values.clear();
-        self.values.extend_from_slice(values);
-        Ok(())
-    }
-
-    /// There are no more.
-    pub fn end(&mut self, observer: &mut dyn Observer) {
-        let on_grid = |(t, _): &(f64, usize)| is_on_grid(self.every, self.rows, *t);
-        if self.held.as_ref().is_some_and(on_grid) {
-            self.hand_on(observer);
-        }
-    }
-
-    fn hand_on(&mut self, observer: &mut dyn Observer) {
-        if let Some((t, mode)) = self.held.take() {
-            // Nothing is simulated yet that could end here.
-            let _ = observer.row(t, mode, &self.values);
-            self.rows += 1;
-            self.last = Some(t);
-        }
-    }
-}
-
-fn is_on_grid(every: Option<f64>, row: u64, t: f64) -> bool {
-    every.is_none() || t == sample_time(every, row)
-}
-
-/// A row, counted from 0, must be where the grid of the samples has it.
-fn check_row(every: Option<f64>, row: u64, t: f64) -> Result<(), Reason> {
-    if is_on_grid(every, row, t) {
+/// Refuses a row of an earlier run, counted from 0, that is not where the grid of the samples has it.
+///
+/// # Errors
+/// [`Reason::OtherRun`].
+pub fn check_row(problem: &Problem, row: u64, t: f64) -> Result<(), Reason> {
+    let every = problem.record.every;
+    let now = sample_time(every, row);
+    if every.is_none() || t == now {
         return Ok(());
     }
-    let (now, row) = (sample_time(every, row), row + 1);
+    let row = row + 1;
     let why = format!("row {row} of the trajectory would be at {now} s and is at {t} s");
     let path = "record.every".into();
     Err(Reason::OtherRun { path, why })
@@ -169,13 +76,6 @@ pub fn check_same(problem: &Problem, run: &Run) -> Result<(), Reason> {
         }
     }
     Ok(())
-}
-
-/// The rows of a run must be on the grid, but for the last: it is where the run ended.
-fn check_rows(problem: &Problem, run: &Run) -> Result<(), Reason> {
-    let rows = run.trajectory.t.iter().zip(0..);
-    let mut grid = rows.take(run.trajectory.len().saturating_sub(1));
-    grid.try_for_each(|(&t, i)| check_row(problem.record.every, i, t))
 }
 
 /// Digests of the model and of what a run is simulated with, but for its end and what is recorded: as (part, digest),
@@ -256,83 +156,6 @@ fn put_lists(lists: &[&Vec<f64>], put: &mut dyn FnMut(f64)) {
     for list in lists {
         put(list.len() as f64);
         list.iter().copied().for_each(&mut *put);
-    }
-}
-
-impl Simulation<'_> {
-    /// Goes to the end of a run, and takes over what it has recorded, or what of it was replayed to the observer.
-    fn restore(&mut self, run: Run, replayed: Option<Replay>) -> Result<(), Reason> {
-        let Run {
-            mut trajectory,
-            events,
-            tally,
-            end,
-            solver,
-            energy,
-            peaks,
-            uncertain,
-            reached,
-            ..
-        } = run;
-        self.margins.go_on(&reached);
-        self.here.now = Instant::new(end.t);
-        self.here.j = end.j;
-        self.here.shown = end.mode;
-        self.here.mode = match self.modes[0].contacts {
-            Some(_) => 0,
-            None => end.mode,
-        };
-        self.here.q[..end.state.q.len()].copy_from_slice(&end.state.q);
-        self.here.v[..end.state.v.len()].copy_from_slice(&end.state.v);
-        // Multipliers are behind the coordinates. Nothing depends on them but the outputs that are their rates, the impulses:
-        // these go on where they are recorded.
-        let coordinates = self.problem.model.coordinates.iter();
-        for (coordinate, rate) in coordinates.zip(self.here.v.iter_mut()) {
-            let recorded = coordinate.impulse.and_then(|i| end.state.outputs.get(i));
-            if let Some(&impulse) = recorded {
-                *rate = impulse;
-            }
-        }
-        self.context.discrete_mut()[..end.state.discrete.len()]
-            .copy_from_slice(&end.state.discrete);
-        if self.modes[0].contacts.is_some() {
-            self.resume_contacts(end.mode)?;
-        }
-        self.observers.go_on(energy.as_ref(), &peaks);
-        self.doubts.go_on(solver.steps, uncertain);
-        self.solver = solver;
-        if let Some((name, _)) = self.problem.end.after {
-            self.counted = tally.count(name) as u64;
-        }
-        let every = self.problem.record.every;
-        let recording = &mut self.observers.recording;
-        let rows = match replayed {
-            Some(replayed) => {
-                recording.continue_told(tally, replayed.last);
-                replayed.rows
-            }
-            None => {
-                if let Some(last) = trajectory.len().checked_sub(1)
-                    && !is_on_grid(every, last as u64, trajectory.t[last])
-                {
-                    trajectory.truncate(last);
-                }
-                let (rows, last) = (trajectory.len() as u64, trajectory.t.last().copied());
-                let to_come = every.map_or(0, |every| {
-                    Recorder::grid_rows(self.problem.end.time - end.t, every)
-                });
-                let jumps = events.iter().map(Event::jump).collect();
-                let sides = match self.problem.record.event_states {
-                    true => events.into_iter().map(|e| [e.before, e.after]).collect(),
-                    false => Vec::new(),
-                };
-                let collected = Collected::continuing(trajectory, to_come, jumps, sides);
-                recording.continue_with(collected, last);
-                rows
-            }
-        };
-        self.observers.samples.go_to(rows);
-        Ok(())
     }
 }
 

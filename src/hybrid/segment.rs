@@ -179,9 +179,9 @@ impl<'p> Simulation<'p> {
                         return Ok(Stop::Fired);
                     }
                     has_accelerations = needs_accelerations;
-                    if stay.chooses
-                        && self.stiffness[self.here.mode].prefers_implicit() == is_explicit
-                    {
+                    let changes = stay.chooses
+                        && self.stiffness[self.here.mode].prefers_implicit() == is_explicit;
+                    if changes || self.observers.recording.wants_checkpoint() {
                         return Ok(Stop::Fired);
                     }
                 }

@@ -384,14 +384,8 @@ impl<'p> Simulation<'p> {
 
     /// Simulates from here to the end.
     pub fn run(&mut self, progress: &mut dyn Progress) -> Result<(), Reason> {
-        let mut run = || -> Stoppable<()> {
-            self.check_energy()?;
-            while self.settle()? && self.advance_to_event(true, progress)? {}
-            Ok(())
-        };
-        let outcome = run().map_err(|reason| *reason);
-        self.count_work();
-        outcome
+        self.stage = Stage::Start;
+        self.go_on_to_end(progress)
     }
 
     /// Adds the work that the methods have done since it was last counted.
@@ -406,15 +400,10 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// From an admissible mode through the next event, or, where it `stays`, the next that does not lead to
-    /// the same mode again; false at the end of the run.
-    pub fn advance_to_event(
-        &mut self,
-        stays: bool,
-        progress: &mut dyn Progress,
-    ) -> Stoppable<bool> {
+    /// From an admissible mode through the next event; false at the end of the run.
+    pub fn advance_to_event(&mut self, progress: &mut dyn Progress) -> Stoppable<bool> {
         let mode = self.mode();
-        let stop = with_kernel!(&mode.kernels, k => self.advance(k, stays, progress))?;
+        let stop = with_kernel!(&mode.kernels, k => self.advance(k, false, progress))?;
         self.pass(stop)
     }
 

@@ -266,11 +266,11 @@ impl<'p> Simulator<'p> {
     /// [`Misfit`] with what differs; the run is then where it was, or, if a checkpoint is damaged that has its digest
     /// nevertheless, at its start.
     pub fn restore(&mut self, from: &Checkpoint) -> Result<(), Misfit> {
-        let words = from.words(self.simulation.problem)?;
-        if self.simulation.take_over(&words).is_none() {
-            self.rewind();
-            let why = "its words do not fit the model";
-            return Err(Misfit::Damaged { why });
+        if let Err(misfit) = self.simulation.restore(from) {
+            if let Misfit::Damaged { .. } = misfit {
+                self.rewind();
+            }
+            return Err(misfit);
         }
         self.view.t = from.time();
         self.look();

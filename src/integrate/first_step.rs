@@ -8,7 +8,7 @@ use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Weights};
 use crate::numerics::{Lu, Size};
 
-/// Proposes a length that does not exceed `h_max`.
+/// Proposes a length that does not exceed `h_max`, and says whether that has made it what it is.
 ///
 /// The motion is taken to change on the time scale T in which q or v changes by a typical size of
 /// its own (absolute ÷ relative tolerance, plus its present size): at the present velocity, at the
@@ -28,7 +28,7 @@ pub(super) fn estimate<const S: usize, F: Size, Y: System<F>>(
     weights: &Weights<F>,
     newton: &Newton<S, F>,
     counters: &mut Counters,
-) -> f64
+) -> (f64, bool)
 where
     RadauIia<S>: Coefficients<S>,
 {
@@ -42,7 +42,7 @@ where
     let fastest = per_size(&start.v, &weights.q).max(per_size(&start.a, &weights.v));
     let ahead = (factor / fastest).min(h_max);
     if !ahead.is_finite() {
-        return ahead;
+        return (ahead, false);
     }
     let mut r = size.zeros();
     let q = size.vector(|i| start.q[i] + (start.v[i] + start.a[i] * (0.5 * ahead)) * ahead);
@@ -52,11 +52,12 @@ where
     let Linearization { m, c, k } = &newton.matrices;
     let entry = |i, j| m[(i, j)] + (c[(i, j)] + k[(i, j)] * ahead) * ahead;
     let Ok(change) = Lu::<f64, F>::factorize(entry, control.row_scale()) else {
-        return ahead; // the step itself finds out what is singular
+        return (ahead, ahead == h_max); // the step itself finds out what is singular
     };
     let change = change.solve(|i| r[i]);
     let change = size.vector(|i| change[i]);
     let jerk = per_size(&change, &weights.v) / ahead;
     let scale = f64::min(1.0 / fastest, (2.0 / jerk).sqrt());
-    (factor * scale).min(h_max)
+    let h = (factor * scale).min(h_max);
+    (h, ahead == h_max || h == h_max)
 }

@@ -252,26 +252,31 @@ where
             _ => None,
         };
         let remaining = (t_end - origin.t) - self.lost.t;
-        let mut h = match self.proposal {
-            Some(h) => h,
+        let (mut h, mut is_near_end) = match self.proposal {
+            Some(h) => (h, false),
             None => {
                 if self.linearization.is_none() {
                     self.linearize(system, &origin);
                 }
-                let h_max = h_max.min(remaining);
+                let most = h_max.min(remaining);
                 let Radau {
                     control,
                     newton,
                     counters,
                     ..
                 } = self;
-                first_step::estimate(system, &origin, h_max, control, &weights, newton, counters)
+                let (h, is_most) = first_step::estimate(
+                    system, &origin, most, control, &weights, newton, counters,
+                );
+                (h, is_most && remaining <= h_max)
             }
         };
         let proposed = h;
         let mut discarded = 0;
         loop {
+            let free = h.min(h_max);
             h = fit(h, remaining, h_max);
+            is_near_end |= h != free;
             let end = match h == remaining {
                 true => (t_end, 0.0),
                 false => add(origin.t, h, self.lost.t),
@@ -296,7 +301,11 @@ where
                     let cut = discarded == 0 && h < proposed;
                     self.proposal = Some(if cut { next.max(proposed) } else { next });
                     self.counters.steps += 1;
-                    return Ok(self.report(error, iterations, discarded));
+                    let report = self.report(error, iterations, discarded);
+                    return Ok(StepReport {
+                        is_near_end,
+                        ..report
+                    });
                 }
                 Err(failure) => {
                     discarded += 1;
@@ -513,6 +522,7 @@ where
             error,
             iterations,
             discarded,
+            is_near_end: false,
         }
     }
 }

@@ -51,6 +51,8 @@ pub struct StepReport {
     pub iterations: u32,
     /// Attempts discarded on the way.
     pub discarded: u32,
+    /// Whether the step might have been another one with a later end of the integration.
+    pub is_near_end: bool,
 }
 
 /// Why no step could be taken. The state is that of the last accepted step.

@@ -12,10 +12,12 @@
 //! | `phase.svg` | phase portraits, where a coordinate moves |
 //!
 //! Numbers have the fewest digits that read back to the same bits. The same run gives the
-//! same bytes, but for `wall_seconds` in the summary.
+//! same bytes, but for `wall_seconds` in the summary, and for the checkpoint of a run that took more than a second, by which it
+//! goes on.
 
 mod digest;
 pub mod folder;
+mod kept;
 mod looks;
 mod number;
 #[cfg(feature = "plots")]
@@ -34,6 +36,7 @@ mod units;
 
 pub use crate::run::*;
 pub use folder::{FolderError, OutputFolder, StagedFile, Staging};
+pub use kept::Kept;
 pub(crate) use looks::Looks;
 #[cfg(feature = "plots")]
 pub(crate) use number::{exact, rounded};

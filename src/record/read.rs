@@ -10,6 +10,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use super::folder::check;
+use super::kept::{CHECKPOINT, Kept};
 use super::summary::{FORMAT, SUMMARY};
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
 use crate::model::{Model, Variant};
@@ -174,6 +175,23 @@ impl Earlier {
             transitions: transitions(variant),
             impacts: written.impacts,
         })
+    }
+
+    /// The last checkpoint of the run, if it took so long that it has one; compared with its digest.
+    pub fn checkpoint(&self) -> Result<Option<Kept>, ReadError> {
+        let path = self.folder.join(CHECKPOINT);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let error = |reason| ReadError {
+            path: path.clone(),
+            reason,
+        };
+        check(&self.folder, CHECKPOINT).map_err(error)?;
+        let text = read_to_string(&path).map_err(|e| error(e.to_string()))?;
+        let kept = serde_json::from_str(&text);
+        kept.map(Some)
+            .map_err(|e| error(format!("not a checkpoint of a run: {e}")))
     }
 
     /// Hands on the rows of the trajectory: time, mode, values.

@@ -4,11 +4,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::folder::{StagedFile, Staging, io_error};
+use super::kept::CHECKPOINT;
 use super::plot::{Look, overview_of, phase_portraits_of};
 use super::sketch::Sketch;
 use super::summary::SUMMARY;
 use super::table::{EVENTS, EventsTable, METADATA, TRAJECTORY, TrajectoryTable, write_metadata};
-use super::{FolderError, Layout, OutputFolder, Summary};
+use super::{FolderError, Kept, Layout, OutputFolder, Summary};
 use crate::run::{Jump, Run, Snapshot};
 
 /// Name of the picture of everything over time, without the format.
@@ -33,6 +34,8 @@ pub struct Stream {
     jumps: Vec<Jump>,
     states: Vec<f64>,
     spent: Duration,
+    /// The last checkpoint of the run, by which it can be gone on with.
+    pub checkpoint: Option<Kept>,
 }
 
 /// The tables, which are written at the same time.
@@ -55,6 +58,7 @@ impl Stream {
             jumps: Vec::new(),
             states: Vec::new(),
             spent: Duration::ZERO,
+            checkpoint: None,
         }
     }
 
@@ -138,6 +142,9 @@ impl Stream {
         staging.close(events.map_err(io_error("write", Path::new(EVENTS)))?)?;
         staging.file(METADATA, |out| write_metadata(run, out))?;
         staging.file(SUMMARY, |out| Summary::new(run).write(out))?;
+        if let Some(kept) = &self.checkpoint {
+            staging.file(CHECKPOINT, |out| Ok(serde_json::to_writer(out, kept)?))?;
+        }
         staging.picture(OVERVIEW, &overview_of(run, sketch, look), look.formats())?;
         if let Some(portraits) = phase_portraits_of(run, sketch, look) {
             staging.picture(PHASE, &portraits, look.formats())?;

@@ -24,16 +24,6 @@ impl Recorder {
         }
     }
 
-    /// A recorder that appends to a trajectory, with room for so many rows more.
-    pub fn continuing(mut trajectory: Trajectory, rows: usize) -> Recorder {
-        let width = trajectory.columns.len();
-        // What there is no room for now grows later, as far as it comes.
-        let _ = trajectory.t.try_reserve(rows);
-        let _ = trajectory.mode.try_reserve(rows);
-        let _ = trajectory.values.try_reserve(rows.saturating_mul(width));
-        Recorder { trajectory }
-    }
-
     /// Forgets all rows, and keeps the room.
     pub fn clear(&mut self) {
         self.trajectory.truncate(0);

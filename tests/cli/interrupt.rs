@@ -12,19 +12,19 @@ fn table(path: &Path) -> Vec<Vec<String>> {
     reader.records().map(record).collect()
 }
 
-/// Compares two tables: texts exactly, numbers to a tolerance.
-fn agree(one: &Path, other: &Path, tolerance: f64) {
-    let (one, other) = (table(one), table(other));
-    assert_eq!(one.len(), other.len());
-    for (i, (a, b)) in one.iter().zip(&other).enumerate() {
-        assert_eq!(a.len(), b.len());
-        for (a, b) in a.iter().zip(b) {
-            match (a.parse::<f64>(), b.parse::<f64>()) {
-                (Ok(a), Ok(b)) => assert!((a - b).abs() <= tolerance, "row {i}: {a} and {b}"),
-                _ => assert_eq!(a, b, "row {i}"),
-            }
-        }
+/// Two folders hold the same run, to the last bit.
+fn same(one: &Path, other: &Path) {
+    for file in ["trajectory.csv", "events.csv"] {
+        let [one, other] = [one, other].map(|folder| fs::read(folder.join(file)).unwrap());
+        assert!(one == other, "{file}");
     }
+    let [one, other] = [one, other].map(|folder| {
+        let mut summary = json(&folder.join("summary.json"));
+        summary["solver"]["wall_seconds"].take();
+        summary["wall_seconds"].take();
+        summary
+    });
+    assert_eq!(one, other);
 }
 
 #[test]
@@ -38,20 +38,9 @@ fn a_run_in_two_parts_is_that_in_one() {
     // Off the grid of the samples, so that the row of the end must not stay.
     run(&["--set", "end=0.7503", "--out", "first"]);
     run(&["--resume", "first", "--out", "both"]);
-    for file in ["trajectory.csv", "events.csv"] {
-        // Positions to 1e-10 of their size; reactions, up to 600 N, amplify that by the stiffness.
-        agree(&path("whole").join(file), &path("both").join(file), 1e-6);
-    }
-    let [whole, both] = ["whole", "both"].map(|name| json(&path(name).join("summary.json")));
-    assert_eq!(whole["events"], both["events"]);
-    assert_eq!(
-        json(&path("first").join("summary.json"))["end"]["t"],
-        0.7503
-    );
-    let work = |summary: &serde_json::Value| summary["energy"]["input_work"].as_f64().unwrap();
-    assert!((work(&whole) - work(&both)).abs() < 1e-6 * work(&whole));
-    let steps = |summary: &serde_json::Value| summary["solver"]["steps"].as_u64().unwrap();
-    assert!(steps(&both) * 10 > steps(&whole) * 9, "the counters go on");
+    same(&path("whole"), &path("both"));
+    let first = json(&path("first").join("summary.json"));
+    assert_eq!(first["end"]["t"], 0.7503);
 }
 
 #[test]
@@ -338,6 +327,47 @@ mod signals {
         let summary = json(&home.path().join("out/summary.json"));
         assert_eq!(summary["end"]["t"].as_f64(), Some(t + 1.0));
         assert!(summary["failure"].is_null());
+    }
+
+    #[test]
+    fn a_long_run_goes_on_from_its_last_checkpoint_to_the_bit() {
+        let home = tempfile::tempdir().unwrap();
+        let scene = scene("tank_full_plate");
+        let endless = ["run", &scene, "--set", "record.every=0.1"];
+        let first = [&endless[..], &["--set", "end=1e6", "--out", "out"]].concat();
+        let begun = Instant::now();
+        // A checkpoint is taken after a second.
+        let output = interrupted_when(home.path(), &first, || begun.elapsed().as_secs() >= 2);
+        assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+        let [out, whole] = ["out", "whole"].map(|name| home.path().join(name));
+        let ended = json(&out.join("summary.json"))["end"]["t"]
+            .as_f64()
+            .unwrap();
+        let kept = json(&out.join(".dalembert-checkpoint"));
+        let [rows, events] = ["rows", "events"].map(|key| kept[key].as_u64().unwrap());
+        assert!(rows > 100 && events > 100, "{rows} {events}");
+        // It is the mark that the run goes on from it: what is before is taken as it is.
+        let until = format!("end={}", ended + 0.5);
+        let longer = [&endless[..], &["--set", &until]].concat();
+        ends_with(0, home.path(), &[&longer[..], &["--out", "whole"]].concat());
+        let resumed = [&longer[..], &["--resume", "out"]].concat();
+        ends_with(0, home.path(), &resumed);
+        same(&whole, &out);
+        // A checkpoint that was changed is refused, and one of another list of limits.
+        let path = out.join(".dalembert-checkpoint");
+        let text = fs::read_to_string(&path).unwrap();
+        let later = format!("end={}", ended + 1.0);
+        let resumed = [&endless[..], &["--set", &later, "--resume", "out"]].concat();
+        fs::write(&path, text.replacen("\"rows\":", "\"rows\":1", 1)).unwrap();
+        let output = ends_with(2, home.path(), &resumed);
+        let said = stderr(&output);
+        assert!(said.contains("is not what the run has written"), "{said}");
+        fs::write(&path, text).unwrap();
+        let limits = ["--set", "limits.far.theta.above=10"];
+        let output = ends_with(2, home.path(), &[&resumed[..], &limits].concat());
+        let said = stderr(&output);
+        assert!(said.contains("the list of limits is"), "{said}");
+        ends_with(0, home.path(), &resumed);
     }
 
     #[test]

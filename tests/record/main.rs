@@ -3,6 +3,7 @@
 
 #[path = "../browser/mod.rs"]
 mod browser;
+mod going_on;
 mod killed;
 mod observers;
 mod pages;

@@ -170,29 +170,6 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Finds the set of contact states at the end of a run that goes on, whose coordinates, rates and directions are here: what
-    /// was closed stays so, and what is joined to what is decided anew.
-    pub(in crate::hybrid) fn resume_contacts(&mut self, shown: usize) -> Result<(), Reason> {
-        let mode = self.mode();
-        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
-        contacts.write_set(shown, self.context.discrete_mut());
-        self.set_context();
-        with_kernel!(&mode.kernels, k => self.resume_contacts_by(k, contacts)).map_err(|why| *why)
-    }
-
-    fn resume_contacts_by<F: Size>(
-        &mut self,
-        kernel: &ModeKernel<F>,
-        contacts: &'p Contacts,
-    ) -> Stoppable<()> {
-        let states = State::all(contacts, self.context.discrete());
-        write_states(contacts, &states, self.context.discrete_mut());
-        let mut standing = self.standing(kernel, contacts, (None, &states));
-        self.settle_contacts(kernel, contacts, &mut standing)?;
-        self.take_next();
-        Ok(())
-    }
-
     /// What was decided is the state here.
     fn take_next(&mut self) {
         let n = self.here.q.len();

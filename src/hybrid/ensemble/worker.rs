@@ -308,7 +308,7 @@ impl<'a, const W: usize> Worker<'a, W> {
                 return;
             }
             alone = false;
-            passed = simulation.advance_to_event(false, &mut self.stop);
+            passed = simulation.advance_to_event(&mut self.stop);
         };
         *state = State::Free;
         // One that was stopped has not come to its end.

@@ -1,6 +1,7 @@
 //! Largest and smallest values of what a run records, and when it first takes them.
 
 use super::interpolants::{Interpolants, place};
+use crate::numerics::{Memory, Persist};
 use crate::run::{Group, Layout, Peak};
 use std::ops::Range;
 
@@ -13,6 +14,22 @@ pub struct Extremes {
     pub energies: Range<usize>,
     /// By column; a column without a value yet has the times NaN.
     peaks: Box<[Peak]>,
+}
+
+impl Persist for Extremes {
+    fn persist(&mut self, memory: &mut Memory) -> Option<()> {
+        self.peaks.iter_mut().try_for_each(|peak| {
+            let Peak {
+                max,
+                t_max,
+                min,
+                t_min,
+            } = peak;
+            [max, t_max, min, t_min]
+                .into_iter()
+                .try_for_each(|x| x.persist(memory))
+        })
+    }
 }
 
 impl Extremes {
@@ -36,13 +53,6 @@ impl Extremes {
     /// Those of a column so far.
     pub fn peak(&self, column: usize) -> Peak {
         self.peaks[column]
-    }
-
-    /// Takes over those of a run that goes on.
-    pub fn go_on(&mut self, peaks: &[(usize, Peak)]) {
-        for &(column, peak) in peaks {
-            self.peaks[column] = peak;
-        }
     }
 
     /// A column has a value at time `t`, s. One that is not a number is passed over.

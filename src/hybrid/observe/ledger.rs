@@ -57,17 +57,6 @@ impl RunningLedger {
         }
     }
 
-    /// The ledger of a run that goes on.
-    pub fn continuing(ledger: &Ledger) -> Self {
-        let sum = |total| Sum { total, lost: 0.0 };
-        RunningLedger {
-            initial: ledger.initial,
-            input_work: sum(ledger.input_work),
-            dissipated: sum(ledger.dissipated),
-            lost_at_impacts: sum(ledger.lost_at_impacts),
-        }
-    }
-
     /// Adds [dissipated, input] energy, J.
     #[inline]
     pub fn add_work(&mut self, [dissipated, input]: [f64; 2]) {

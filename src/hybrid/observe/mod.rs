@@ -28,7 +28,7 @@ use crate::integrate::Motion;
 use crate::model::{Contacts, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
-use crate::run::{Layout, Ledger, Peak};
+use crate::run::{Layout, Peak};
 use extremes::Extremes;
 use interpolants::{Interpolants, MOST};
 use ledger::RunningLedger;
@@ -71,7 +71,7 @@ pub(super) struct Observers<'o> {
     joined: bool,
 }
 
-/// All but extremes, which a run in parts is not watched for, and but rows and transitions that are past.
+/// All but rows and transitions that are past.
 impl Persist for Observers<'_> {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
         self.recording.persist(memory)?;
@@ -79,6 +79,9 @@ impl Persist for Observers<'_> {
         self.ledger
             .iter_mut()
             .try_for_each(|ledger| ledger.persist(memory))?;
+        self.extremes
+            .iter_mut()
+            .try_for_each(|extremes| extremes.persist(memory))?;
         self.interpolants.persist(memory)?;
         self.energy.persist(memory)?;
         self.joined.persist(memory)
@@ -292,6 +295,22 @@ impl<'o> Observers<'o> {
     /// A segment starts here.
     pub fn enter(&mut self, mode: &Mode, here: &Here) {
         self.joined = false;
+        self.represent_mode(mode);
+        let Some(extremes) = &mut self.extremes else {
+            return;
+        };
+        // What the mode holds moves along a straight line at most.
+        let t = here.now.seconds();
+        extremes.note_state(t, [&here.q, &here.v]);
+        if !extremes.reactions.is_empty() {
+            for &i in &self.functions.columns[..self.functions.free] {
+                extremes.note(extremes.reactions.start + i, t, 0.0);
+            }
+        }
+    }
+
+    /// What is represented is that of a mode.
+    pub fn represent_mode(&mut self, mode: &Mode) {
         let Some(extremes) = &mut self.extremes else {
             return;
         };
@@ -316,14 +335,6 @@ impl<'o> Observers<'o> {
         columns.extend(extremes.outputs.clone());
         *stored = !extremes.energies.is_empty();
         columns.extend(stored.then_some(extremes.energies.start));
-        // What the mode holds moves along a straight line at most.
-        let t = here.now.seconds();
-        extremes.note_state(t, [&here.q, &here.v]);
-        if !extremes.reactions.is_empty() {
-            for &i in own {
-                extremes.note(extremes.reactions.start + i, t, 0.0);
-            }
-        }
     }
 
     /// The state is another one: after a transition, and where the run begins and ends. `reactions` and `outputs` are those
@@ -345,14 +356,6 @@ impl<'o> Observers<'o> {
     pub fn begin(&mut self, stored: f64) {
         if let Some(ledger) = &mut self.ledger {
             *ledger = RunningLedger::starting_with(stored);
-        }
-    }
-
-    /// Takes over ledger and extremes of a run that goes on.
-    pub fn go_on(&mut self, ledger: Option<&Ledger>, peaks: &[(usize, Peak)]) {
-        self.ledger = ledger.map(RunningLedger::continuing);
-        if let Some(extremes) = &mut self.extremes {
-            extremes.go_on(peaks);
         }
     }
 

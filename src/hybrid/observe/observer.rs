@@ -1,5 +1,6 @@
 //! What is told of a run while it is computed, and to whom.
 
+use super::super::checkpoint::Checkpoint;
 use super::super::problem::Problem;
 use crate::run::{Jump, Layout, Recorder, Snapshot, Trajectory};
 use std::ops::ControlFlow;
@@ -41,6 +42,19 @@ pub trait Observer {
 
     /// A step that was made.
     fn step(&mut self, _step: &mut MadeStep) {}
+
+    /// Whether [`Observer::wants_checkpoint`] is to be called; asked once, before the run.
+    fn keeps_checkpoints(&self) -> bool {
+        false
+    }
+
+    /// Whether a checkpoint is wanted; asked between steps, until one is taken.
+    fn wants_checkpoint(&mut self) -> bool {
+        false
+    }
+
+    /// A checkpoint: the rows and transitions that were told so far are those before it.
+    fn checkpoint(&mut self, _checkpoint: Checkpoint) {}
 }
 
 /// Fills in coordinates and velocities at a time.
@@ -89,6 +103,15 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn step(&mut self, step: &mut MadeStep) {
         (**self).step(step);
     }
+    fn keeps_checkpoints(&self) -> bool {
+        (**self).keeps_checkpoints()
+    }
+    fn wants_checkpoint(&mut self) -> bool {
+        (**self).wants_checkpoint()
+    }
+    fn checkpoint(&mut self, checkpoint: Checkpoint) {
+        (**self).checkpoint(checkpoint);
+    }
 }
 
 /// Keeps all rows and transitions in memory.
@@ -109,20 +132,6 @@ impl Collected {
             recorder: Recorder::new(layout, rows + 1),
             jumps: Vec::new(),
             sides: Vec::new(),
-        }
-    }
-
-    /// Rows and transitions of a run that goes on, with room for so many rows more.
-    pub(in crate::hybrid) fn continuing(
-        trajectory: Trajectory,
-        rows: usize,
-        jumps: Vec<Jump>,
-        sides: Vec<[Snapshot; 2]>,
-    ) -> Self {
-        Collected {
-            recorder: Recorder::continuing(trajectory, rows),
-            jumps,
-            sides,
         }
     }
 

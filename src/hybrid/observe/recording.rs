@@ -1,6 +1,7 @@
 //! Where rows and transitions go.
 
 use super::super::accumulation::Accumulation;
+use super::super::checkpoint::Checkpoint;
 use super::super::problem::Problem;
 use super::observer::{Collected, MadeStep, Observer};
 use crate::model::name::intern;
@@ -23,6 +24,10 @@ pub(in crate::hybrid) struct Recording<'o> {
     pub sees_rows: bool,
     pub sees_steps: bool,
     pub sees_points: bool,
+    /// Whether it is asked for wanting checkpoints.
+    keeps_checkpoints: bool,
+    /// Whether the run is so near its end that one with a later end would not be the same here.
+    is_near_end: bool,
     /// The window of time that it looks at closely, s.
     pub window: Option<[f64; 2]>,
     /// Room for a row.
@@ -63,6 +68,7 @@ impl<'o> Recording<'o> {
             sees_rows: observer.sees_rows(),
             sees_steps: observer.sees_steps(),
             sees_points: observer.sees_points(),
+            keeps_checkpoints: observer.keeps_checkpoints(),
             window: observer.window(),
             ..Self::new(To::Observer(Box::new(observer)), layout)
         }
@@ -74,6 +80,8 @@ impl<'o> Recording<'o> {
             sees_rows: true,
             sees_steps: false,
             sees_points: false,
+            keeps_checkpoints: false,
+            is_near_end: false,
             window: None,
             row: vec![0.0; layout.columns().len()].into(),
             last: None,
@@ -82,16 +90,32 @@ impl<'o> Recording<'o> {
         }
     }
 
-    /// Goes on where an earlier run has ended whose rows and transitions are in memory; the last row was at this time.
-    pub fn continue_with(&mut self, collected: Collected, last: Option<f64>) {
-        self.to = To::Collected(collected);
-        self.last = last;
+    /// Goes on after transitions of which the observer was told.
+    pub fn go_on(&mut self, tally: Tally) {
+        self.tally = tally;
     }
 
-    /// Goes on where one has ended whose rows and transitions the observer was told of.
-    pub fn continue_told(&mut self, tally: Tally, last: Option<f64>) {
-        self.tally = tally;
-        self.last = last;
+    /// A step is shaped by the end of the run.
+    pub fn nears_end(&mut self) {
+        self.is_near_end = true;
+    }
+
+    /// Whether the observer wants a checkpoint, and one would be that of a run with a later end, too.
+    #[inline(always)]
+    pub fn wants_checkpoint(&mut self) -> bool {
+        self.keeps_checkpoints
+            && !self.is_near_end
+            && match &mut self.to {
+                To::Collected(_) => false,
+                To::Observer(observer) => observer.wants_checkpoint(),
+            }
+    }
+
+    /// A checkpoint.
+    pub fn checkpoint(&mut self, checkpoint: Checkpoint) {
+        if let To::Observer(observer) = &mut self.to {
+            observer.checkpoint(checkpoint);
+        }
     }
 
     /// Forgets what is in memory.
@@ -101,6 +125,7 @@ impl<'o> Recording<'o> {
         }
         self.recent.clear();
         self.last = None;
+        self.is_near_end = false;
     }
 
     /// A row, which `fill` fills.

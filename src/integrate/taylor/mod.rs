@@ -298,14 +298,20 @@ impl<F: Size> Taylor<F> {
         }
         self.expand(system, order)?;
         self.length = self.accurate_length();
+        let mut is_near_end = false;
         if let Some(lower) = self.lower
             && lower < self.dense.known
-            && self.length * length::MANY < remaining.min(horizon)
+            && self.length * length::MANY < horizon
         {
-            self.lower_order(lower);
-            self.length = self.accurate_length();
+            is_near_end = self.length * length::MANY >= remaining;
+            if !is_near_end {
+                self.lower_order(lower);
+                self.length = self.accurate_length();
+            }
         }
-        let h = fit(self.length, remaining, h_max.min(horizon));
+        let h_max = h_max.min(horizon);
+        let h = fit(self.length, remaining, h_max);
+        is_near_end |= h != self.length.min(h_max);
         if from + h == from {
             return Err(StepError::Tolerance {
                 t: from,
@@ -318,7 +324,11 @@ impl<F: Size> Taylor<F> {
         self.finish(h, t);
         self.dense.h = h;
         self.counters.steps += 1;
-        Ok(self.report())
+        let report = self.report();
+        Ok(StepReport {
+            is_near_end,
+            ..report
+        })
     }
 
     /// Shortens the last step to the length `h`, or makes a step of it right after a restart. The
@@ -570,6 +580,7 @@ impl<F: Size> Taylor<F> {
             error: f64::NAN,
             iterations: 0,
             discarded: 0,
+            is_near_end: false,
         }
     }
 }
