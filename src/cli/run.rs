@@ -143,7 +143,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         // left to run the folder stays as it is.
         let stays = !page && arguments.out.is_none() && look == Look::default();
         if stays && has_ended(problem, &earlier.run) {
-            print::output(&Report::new(&earlier.run).in_units(&look.units))?;
+            print::output(Report::new(&earlier.run).in_units(&look.units))?;
             return Ok(Outcome::Done);
         }
         if let Some(kept) = kept {

@@ -366,6 +366,10 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     end: f64,
 ) -> Stoppable<Option<(usize, State<F>)>> {
     let start = method.start().t;
+    if end <= start {
+        // The event of the other guard leaves nothing of the step.
+        return Ok(None);
+    }
     let mut at_end = None;
     for (i, &watched) in watched.iter().enumerate() {
         let found = &signs.found[i];
@@ -401,12 +405,15 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         };
         let state = loop {
             let tau = (start + length).min(end);
-            if method.end() != tau {
-                method.step_exactly(equations, tau - start)?;
-            }
-            let state = method.state();
-            if has_fallen(equations, state) || tau >= end {
-                break state.clone();
+            // A length that rounding does not tell from nothing grows.
+            if tau > start {
+                if method.end() != tau {
+                    method.step_exactly(equations, tau - start)?;
+                }
+                let state = method.state();
+                if has_fallen(equations, state) || tau >= end {
+                    break state.clone();
+                }
             }
             length *= 2.0;
         };

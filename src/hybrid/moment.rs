@@ -82,7 +82,7 @@ impl<'s> Moment<'s> {
     /// Name of the mode; where contacts make it, of the set of their states: `left sticks, right open`.
     pub fn mode(&self) -> &'static str {
         match &self.mode.contacts {
-            Some(contacts) => intern(&contacts.name(contacts.set(self.discrete()))),
+            Some(contacts) => intern(&contacts.sets().name(contacts.set(self.discrete()))),
             None => self.mode.name,
         }
     }

@@ -377,7 +377,7 @@ impl<'p> Simulation<'p> {
     /// The name of what is recorded as a mode.
     pub fn name_of(&self, shown: usize) -> String {
         match &self.mode().contacts {
-            Some(contacts) => contacts.name(shown),
+            Some(contacts) => contacts.sets().name(shown),
             None => self.modes[shown].name.into(),
         }
     }

@@ -36,6 +36,8 @@ pub struct Contacts {
     pub contacts: Box<[Contact]>,
     /// The constraints, one an equation.
     pub constraints: Box<[Constraint]>,
+    /// What the contacts can do.
+    pub(super) sets: ContactSets,
     /// What decides whether a set of states may go on, [`Contacts::DECISIONS`] a contact: λ_N, g̈, what is left before it slips
     /// forwards and backwards, γ̇.
     pub decisions: Tape,
@@ -97,32 +99,15 @@ impl Contacts {
             || self.constraints.iter().any(|c| c.multiplier == coordinate)
     }
 
-    /// Number of sets of contact states.
-    pub fn sets(&self) -> usize {
-        self.contacts.iter().map(|c| c.words().len()).product()
+    /// The sets of contact states.
+    pub fn sets(&self) -> &ContactSets {
+        &self.sets
     }
 
-    /// The set of contact states that discrete states say, by its index.
+    /// The set of contact states that discrete states say, by its number.
     pub fn set(&self, discrete: &[f64]) -> usize {
-        self.contacts.iter().fold(0, |set, contact| {
-            let words = contact.words().len();
-            set * words + contact.state(discrete)
-        })
-    }
-
-    /// Discrete states of a set of contact states, by its index; directions are what they are.
-    pub fn write_set(&self, mut set: usize, discrete: &mut [f64]) {
-        for contact in self.contacts.iter().rev() {
-            let words = contact.words();
-            let word = words[set % words.len()];
-            set /= words.len();
-            if let Some(i) = contact.closed {
-                discrete[i] = f64::from(u8::from(!matches!(word, "open" | "free")));
-            }
-            if let (Some(i), true) = (contact.direction, word != "slides") {
-                discrete[i] = 0.0;
-            }
-        }
+        let states = self.contacts.iter().map(|contact| contact.state(discrete));
+        self.sets.of(states)
     }
 
     /// Names of all that can happen.
@@ -143,13 +128,42 @@ impl Contacts {
         };
         self.contacts.iter().flat_map(of_contact).collect()
     }
+}
 
-    /// Name of a set of contact states, by its index: `left sticks, right open`.
+/// All sets of contact states, by their numbers: they are counted, and never listed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ContactSets {
+    /// Of each contact its name, and what it can do.
+    words: Box<[(&'static str, &'static [&'static str])]>,
+}
+
+impl ContactSets {
+    /// Those of some contacts.
+    pub(super) fn new(contacts: &[Contact]) -> Self {
+        let words = contacts
+            .iter()
+            .map(|contact| (contact.name, contact.words()));
+        ContactSets {
+            words: words.collect(),
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.words.iter().map(|(_, words)| words.len()).product()
+    }
+
+    /// The number of a set, by what each contact does.
+    fn of(&self, states: impl Iterator<Item = usize>) -> usize {
+        let pairs = states.zip(&self.words);
+        pairs.fold(0, |set, (state, (_, words))| set * words.len() + state)
+    }
+
+    /// The name of a set: `left sticks, right open`.
     pub fn name(&self, mut set: usize) -> String {
         let mut names = Vec::new();
-        for contact in self.contacts.iter().rev() {
-            let words = contact.words();
-            names.push(format!("{} {}", contact.name, words[set % words.len()]));
+        for (name, words) in self.words.iter().rev() {
+            names.push(format!("{name} {}", words[set % words.len()]));
             set /= words.len();
         }
         names.reverse();
@@ -157,6 +171,22 @@ impl Contacts {
             true => "moves".into(),
             false => names.join(", "),
         }
+    }
+
+    /// The number of a name.
+    pub fn number(&self, name: &str) -> Option<usize> {
+        if self.words.is_empty() {
+            return (name == "moves").then_some(0);
+        }
+        let said: Vec<&str> = name.split(", ").collect();
+        let state = |(said, (name, words)): (&&str, &(&str, &[&str]))| {
+            let word = said.strip_prefix(name)?.strip_prefix(' ')?;
+            words.iter().position(|known| *known == word)
+        };
+        let states: Option<Vec<usize>> = said.iter().zip(&self.words).map(state).collect();
+        let states =
+            states.filter(|states| states.len() == said.len() && said.len() == self.words.len())?;
+        Some(self.of(states.into_iter()))
     }
 }
 
@@ -189,5 +219,44 @@ impl Contact {
             true => 0,
             false => usize::from(self.closed.is_some()) + usize::from(slides),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_of_contact_states_are_named_and_found_by_their_names() {
+        let words: [(&str, &[&str]); 3] = [
+            ("left", &["open", "sticks", "slides"]),
+            ("clutch", &["free", "engaged"]),
+            ("left heel", &["open", "closed"]),
+        ];
+        let sets = ContactSets {
+            words: words.into(),
+        };
+        assert_eq!(sets.count(), 12);
+        assert_eq!(sets.name(0), "left open, clutch free, left heel open");
+        assert_eq!(
+            sets.name(7),
+            "left sticks, clutch engaged, left heel closed"
+        );
+        assert!((0..12).all(|set| sets.number(&sets.name(set)) == Some(set)));
+        for other in [
+            "",
+            "moves",
+            "left open",
+            "left open, clutch free, left heel opens",
+            "left open, clutch free, heel open",
+        ] {
+            assert_eq!(sets.number(other), None, "{other}");
+        }
+        // As many as sixteen contacts have are counted in no time.
+        let many = ContactSets {
+            words: vec![words[0]; 16].into(),
+        };
+        assert_eq!(many.count(), 43_046_721);
+        assert_eq!(many.number(&many.name(31_415_926)), Some(31_415_926));
     }
 }

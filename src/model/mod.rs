@@ -16,7 +16,7 @@ mod tests;
 
 pub use bounds::Bounds;
 pub(crate) use bounds::shown;
-pub use contacts::{Constraint, Contact, Contacts, DeclaredContact};
+pub use contacts::{Constraint, Contact, ContactSets, Contacts, DeclaredContact};
 pub use registry::{FolderRefused, FromFolder, Models, SameName, models};
 pub use tape::{Instruction, JET_ORDERS, Name, Pick, Tape};
 pub(crate) use tape::{Operands, Row};

@@ -16,8 +16,8 @@ const MOST_MARKS: usize = 4_000;
 pub(super) struct Motion {
     /// First and last time, s.
     span: [f64; 2],
-    /// Names of the modes.
-    modes: Vec<String>,
+    /// Names of the modes that the run was in, by their numbers.
+    modes: BTreeMap<usize, String>,
     /// From when to when the run was in which mode.
     visits: Vec<(f64, f64, usize)>,
     /// Times and names of transitions.
@@ -56,7 +56,9 @@ impl Motion {
         let (visits, events) = marks(run, sketch, span, &mut notes);
         Motion {
             span,
-            modes: run.layout.modes.clone(),
+            modes: (visits.iter())
+                .map(|&(.., mode)| (mode, run.layout.modes.name(mode).into_owned()))
+                .collect(),
             visits,
             events,
             frames: drawing.as_ref().map(|drawing| frames(run, sketch, drawing)),

@@ -123,7 +123,7 @@ pub fn unsettled(problem: &Problem, run: &Run, events: &[Event], other: &Other) 
     })?;
     Some(Doubt {
         t: found.until,
-        mode: run.layout.modes[event.from].clone(),
+        mode: run.layout.modes.name(event.from).into_owned(),
         guard: event.transition.to_owned(),
         what: Question::Unsettled,
         value: found.apart,

@@ -331,7 +331,7 @@ fn end(end: &End, layout: &Layout) -> Result<Place, String> {
 }
 
 fn mode(layout: &Layout, name: &str) -> Result<usize, String> {
-    let found = layout.modes.iter().position(|mode| mode == name);
+    let found = layout.modes.number(name);
     found.ok_or_else(|| format!("the model has no mode `{name}`"))
 }
 

@@ -432,7 +432,7 @@ mod tests {
             coordinates: quantity("x"),
             velocities: quantity("x.rate"),
             energies: vec![Quantity::new("energy.stored", "J", "")],
-            modes: vec!["a".into(), "b".into()],
+            modes: crate::run::ModeNames::listed(vec!["a".into(), "b".into()]),
             ..Layout::default()
         }
     }

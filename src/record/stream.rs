@@ -172,7 +172,7 @@ impl Run {
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         let mut stream = Stream::new(folder, &self.layout);
         for (i, &t) in self.trajectory.t.iter().enumerate() {
-            let mode = usize::from(self.trajectory.mode[i]);
+            let mode = self.trajectory.mode[i];
             stream.row(t, mode, self.trajectory.row(i));
         }
         for event in &self.events {

@@ -288,7 +288,7 @@ fn point(run: &Run, place: &Place) -> Point {
     Point {
         t: place.t,
         j: place.j,
-        mode: run.layout.modes[place.mode].clone(),
+        mode: run.layout.modes.name(place.mode).into_owned(),
         q: named(&run.layout.coordinates, &place.state.q),
         v: named(&run.layout.velocities, &place.state.v),
         discrete: named(&run.layout.discretes, &place.state.discrete),

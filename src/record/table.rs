@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::number::push_exact;
 use crate::run::Layout;
+use crate::run::ModeNames;
 use crate::run::{Column, EnergyJump, Group, Jump, Run};
 
 /// File name of the samples.
@@ -34,7 +35,7 @@ pub(super) fn events_header(layout: &Layout) -> Vec<String> {
 /// The table of samples on its way: `t`, every column of the trajectory by name, `mode` by name.
 pub(super) struct TrajectoryTable<W: Write> {
     rows: Rows<W>,
-    modes: Vec<String>,
+    modes: Named,
 }
 
 impl<W: Write> TrajectoryTable<W> {
@@ -44,7 +45,7 @@ impl<W: Write> TrajectoryTable<W> {
             rows.text(name)?;
         }
         rows.end()?;
-        let modes = layout.modes.clone();
+        let modes = Named::new(&layout.modes);
         Ok(TrajectoryTable { rows, modes })
     }
 
@@ -53,7 +54,7 @@ impl<W: Write> TrajectoryTable<W> {
         for &value in values {
             self.rows.number(value)?;
         }
-        self.rows.text(&self.modes[mode])?;
+        self.rows.text(self.modes.name(mode))?;
         self.rows.end()
     }
 
@@ -62,12 +63,32 @@ impl<W: Write> TrajectoryTable<W> {
     }
 }
 
+/// Names of modes; that of the last one, which is often asked for again, is kept.
+struct Named {
+    names: ModeNames,
+    last: Option<(usize, String)>,
+}
+
+impl Named {
+    fn new(names: &ModeNames) -> Self {
+        let names = names.clone();
+        Named { names, last: None }
+    }
+
+    fn name(&mut self, mode: usize) -> &str {
+        let names = &self.names;
+        let last = self.last.take().filter(|(known, _)| *known == mode);
+        let last = last.unwrap_or_else(|| (mode, names.name(mode).into_owned()));
+        &self.last.insert(last).1
+    }
+}
+
 /// The table of transitions on its way: `t,j,transition,from,to`, the state before (`theta.before`, …) and
 /// after, reactions and discrete states included, and the jump of the energy: `lost`,
 /// `ground_work`, 0 where the transition is no impact.
 pub(super) struct EventsTable<W: Write> {
     rows: Rows<W>,
-    modes: Vec<String>,
+    modes: Named,
 }
 
 impl<W: Write> EventsTable<W> {
@@ -77,7 +98,7 @@ impl<W: Write> EventsTable<W> {
             rows.text(&name)?;
         }
         rows.end()?;
-        let modes = layout.modes.clone();
+        let modes = Named::new(&layout.modes);
         Ok(EventsTable { rows, modes })
     }
 
@@ -87,8 +108,8 @@ impl<W: Write> EventsTable<W> {
         rows.number(jump.t)?;
         rows.text(&jump.j.to_string())?;
         rows.text(jump.transition)?;
-        rows.text(&self.modes[jump.from])?;
-        rows.text(&self.modes[jump.to])?;
+        rows.text(self.modes.name(jump.from))?;
+        rows.text(self.modes.name(jump.to))?;
         for &value in states {
             rows.number(value)?;
         }
@@ -107,7 +128,7 @@ impl<W: Write> EventsTable<W> {
 pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
     let mut table = TrajectoryTable::new(out, &run.layout)?;
     for (i, &t) in run.trajectory.t.iter().enumerate() {
-        let mode = usize::from(run.trajectory.mode[i]);
+        let mode = run.trajectory.mode[i];
         table.row(t, mode, run.trajectory.row(i))?;
     }
     table.finish().map(drop)

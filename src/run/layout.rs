@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::modes::ModeNames;
 use super::result::{Column, Group};
 use crate::model::{InputKind, Model, Variant};
 
@@ -52,7 +53,7 @@ pub struct Layout {
     /// `a.velocity` and `a.displacement`. Empty where they are not recorded.
     pub inputs: Vec<Quantity>,
     /// Names of the modes.
-    pub modes: Vec<String>,
+    pub modes: ModeNames,
 }
 
 impl Quantity {
@@ -92,10 +93,7 @@ impl Layout {
             discretes: (model.own_discretes().iter())
                 .map(|d| Quantity::new(d.name, "1", d.meaning))
                 .collect(),
-            modes: match &variant.modes[0].contacts {
-                Some(contacts) => (0..contacts.sets()).map(|set| contacts.name(set)).collect(),
-                None => variant.modes.iter().map(|m| m.name.to_owned()).collect(),
-            },
+            modes: ModeNames::of(variant),
             ..Layout::default()
         };
         if recorded.reactions {

@@ -5,6 +5,7 @@
 
 mod digest;
 mod layout;
+mod modes;
 mod peaks;
 mod progress;
 mod reached;
@@ -15,6 +16,7 @@ mod uncertain;
 
 pub(crate) use digest::{digest, hexadecimal};
 pub use layout::{Layout, Quantity, Recorded};
+pub use modes::ModeNames;
 pub use peaks::Peak;
 pub use progress::{Progress, Silent, Until};
 pub use reached::{Left, LimitState, Reached};

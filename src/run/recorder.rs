@@ -40,9 +40,7 @@ impl Recorder {
         let trajectory = &mut self.trajectory;
         let start = trajectory.values.len();
         trajectory.t.push(t);
-        trajectory
-            .mode
-            .push(u16::try_from(mode).expect("a model has far fewer than 65,536 modes"));
+        trajectory.mode.push(mode);
         trajectory
             .values
             .resize(start + trajectory.columns.len(), 0.0);

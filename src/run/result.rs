@@ -91,7 +91,7 @@ pub struct Trajectory {
     /// Time of each row (s).
     pub t: Vec<f64>,
     /// Mode of each row, an index into [`Layout::modes`].
-    pub mode: Vec<u16>,
+    pub mode: Vec<usize>,
     /// Row-major, `columns.len()` values a row.
     pub values: Vec<f64>,
 }

@@ -431,3 +431,44 @@ fn models_of_many_free_coordinates_run() {
         assert!(taylor.len() > 2 && taylor.last() != taylor.first());
     }
 }
+
+/// Sixteen contacts have 43 million sets of states, which nothing lists.
+#[test]
+fn a_body_lands_on_sixteen_feet() {
+    let place = Place::new();
+    fs::create_dir(place.path("slab")).unwrap();
+    let model = r#""""A slab that falls on sixteen feet."""
+
+from codegen.model import *
+
+model = Model("Slab on sixteen feet", source="test")
+m = model.parameter("m", "kg", 1.0, "mass", above=0)
+w = model.parameter("w", "m", 0.1, "from foot to foot", above=0)
+g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
+x = model.coordinate("x", "m", "centre, to the right")
+y = model.coordinate("y", "m", "centre, height")
+theta = model.coordinate("theta", "rad", "tilt")
+model.gravity(g)
+model.rigid_body(m, inertia=m * w**2, position=(x, y), angle=theta)
+for k in range(16):
+    s = (k - 7.5) * w
+    model.contact(f"foot_{k}", gap=y + s * sin(theta), slip=x + s * cos(theta), kinetic=0.3)
+"#;
+    fs::write(place.path("slab/model.py"), model).unwrap();
+    let scene = r#"{ "model": "./slab", "initial": { "y": 0.5, "theta": 0.1 }, "end": 0.5, "record": { "every": 0.05 } }"#;
+    fs::write(place.path("scene.json"), scene).unwrap();
+    place.run(
+        0,
+        &["run", "scene.json", "--out", "out", "--html", "page.html"],
+    );
+    // It lies, and says so by names that are read back.
+    for name in ["y", "theta", "x.rate", "y.rate", "theta.rate"] {
+        assert_eq!(*place.column("out", name).last().unwrap(), 0.0, "{name}");
+    }
+    place.run(
+        0,
+        &["run", "scene.json", "--resume", "out", "--set", "end=0.6"],
+    );
+    let rows = place.column("out", "y");
+    assert_eq!((rows.len(), rows[12]), (13, 0.0));
+}

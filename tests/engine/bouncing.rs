@@ -30,7 +30,7 @@ fn a_dropped_ball_comes_to_rest_at_the_limit_of_its_bounces() {
                 "e = {e}: {} {exact}",
                 rest[0]
             );
-            assert_eq!(run.layout.modes[run.end.mode], "rests");
+            assert_eq!(run.layout.modes.name(run.end.mode), "rests");
             assert_eq!((at_end(&run, "h"), at_end(&run, "h.rate")), (0.0, 0.0));
         }
     });

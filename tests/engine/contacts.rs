@@ -69,7 +69,7 @@ fn a_ball_by_its_contact_bounces_and_rests_as_the_one_by_hand() {
             &[("floor strikes", "impact"), ("rest", "rest")],
             1e-12,
         );
-        assert_eq!(runs[0].layout.modes[runs[0].end.mode], "floor closed");
+        assert_eq!(runs[0].layout.modes.name(runs[0].end.mode), "floor closed");
     }
 }
 

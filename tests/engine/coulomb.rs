@@ -239,8 +239,8 @@ fn a_mass_that_is_pressed_rests_against_its_stop() {
                 let run = run(&problem);
                 let last = run.trajectory.row(run.trajectory.len() - 1);
                 let value = |column: &str| last[run.trajectory.column(column).unwrap()];
-                let mode = usize::from(run.trajectory.mode[run.trajectory.len() - 1]);
-                assert_eq!(run.layout.modes[mode], name, "e = {e}");
+                let mode = run.trajectory.mode[run.trajectory.len() - 1];
+                assert_eq!(run.layout.modes.name(mode), name, "e = {e}");
                 assert_eq!(
                     [value("x"), value("x.rate")],
                     [direction * 0.5, 0.0],

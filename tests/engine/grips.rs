@@ -23,7 +23,7 @@ fn a_pinched_capsule_moves_exactly_not_at_all() {
             let run = run(&capsule);
             assert!(run.events.is_empty());
             assert_eq!(
-                run.layout.modes[run.end.mode],
+                run.layout.modes.name(run.end.mode),
                 "jaw sticks, finger_tip sticks"
             );
             let first = run.trajectory.row(0)[..4].to_vec();

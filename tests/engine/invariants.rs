@@ -140,7 +140,12 @@ fn assert_friction(problem: &Problem, run: &Run, coordinate: &str) {
     for i in 0..trajectory.len() {
         let (t, row) = (trajectory.t[i], trajectory.row(i));
         assert!(row[normal] > 0.0, "N = {} at {t}", row[normal]);
-        if run.layout.modes[usize::from(trajectory.mode[i])].ends_with("sticks") {
+        if run
+            .layout
+            .modes
+            .name(trajectory.mode[i])
+            .ends_with("sticks")
+        {
             assert_eq!(row[rate], 0.0);
             assert!(
                 row[shear].abs() <= mu_s * row[normal],

@@ -242,7 +242,7 @@ fn a_woodpecker_pecks_as_matrix_exponentials_say_under_both_laws() {
             assert!(off.abs() <= demand, "{method:?}, {}: {off:e}", event.t);
             assert_eq!(event.transition, exact["transition"].as_str().unwrap());
             assert_eq!(
-                run.layout.modes[event.to],
+                run.layout.modes.name(event.to),
                 exact["mode_after"].as_str().unwrap()
             );
             // The stiff spring at the light sleeve: rates up to 10 rad/s, accelerations up to 1e6 rad/s².
@@ -297,7 +297,7 @@ fn a_rod_slides_or_lifts_as_the_reaction_of_its_end_says() {
         rod.record.columns.outputs = true;
         let run = run(&rod);
         let (mode, force) = (run.trajectory.mode[0], column(&run, "lower.normal"));
-        let name = &run.layout.modes[usize::from(mode)];
+        let name = &run.layout.modes.name(mode);
         let expected = match class {
             "unique detachment" => "lower open, upper open",
             _ => "lower slides, upper open",

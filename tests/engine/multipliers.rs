@@ -46,7 +46,7 @@ pub fn sine(text: &str) -> Function {
 
 /// The words of a reference for what contacts do, of names of modes and their directions.
 fn words(run: &Run, mode: usize, discrete: &[f64]) -> String {
-    let name = &run.layout.modes[mode];
+    let name = &run.layout.modes.name(mode);
     let parts =
         name.split(", ")
             .enumerate()

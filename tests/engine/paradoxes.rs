@@ -48,7 +48,7 @@ fn a_block_that_slides_on_a_corner_has_one_motion_or_none_or_several() {
             };
             assert_eq!(found, expected, "{case} {method:?}");
             if let Ok(run) = outcome {
-                let name = &run.layout.modes[run.end.mode];
+                let name = &run.layout.modes.name(run.end.mode);
                 let wanted = case["smooth_modes"][0].as_str().unwrap();
                 let wanted = match wanted {
                     "open/open" => "left open, right open",

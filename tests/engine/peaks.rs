@@ -192,7 +192,7 @@ fn the_reaction_of_a_shaken_table_has_its_peaks_between_rows() {
             problem.end.time = 1.5;
             record_all(&mut problem, every);
             let run = run(&problem);
-            assert_eq!(run.layout.modes[run.end.mode], "sticks");
+            assert_eq!(run.layout.modes.name(run.end.mode), "sticks");
             let reaction = peak(&run, "reaction.gap");
             close(reaction.max, 2.0 * (9.81 + 7.0), 30.0, "largest reaction");
             close(reaction.min, 2.0 * (9.81 - 7.0), 30.0, "least reaction");

@@ -263,7 +263,7 @@ fn random_scenes_of_several_contacts_keep_all_laws() {
                     event.t,
                     event.transition,
                     &event.after.outputs[..8],
-                    run.layout.modes[event.to]
+                    run.layout.modes.name(event.to)
                 );
             }
         }

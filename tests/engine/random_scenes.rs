@@ -144,7 +144,7 @@ fn fault(problem: &Problem, run: &Run) -> Option<String> {
     for (i, coordinate) in problem.model.coordinates.iter().enumerate() {
         let [place, rate] = [coordinate.name, &format!("{}.rate", coordinate.name)].map(column);
         for row in 0..run.trajectory.len() {
-            let mode = &problem.variant().modes[usize::from(run.trajectory.mode[row])];
+            let mode = &problem.variant().modes[run.trajectory.mode[row]];
             let (t, row) = (run.trajectory.t[row], run.trajectory.row(row));
             let name = coordinate.name;
             if coordinate

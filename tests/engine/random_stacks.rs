@@ -167,7 +167,7 @@ fn random_stacks_of_blocks_keep_all_laws() {
             let run = simulate(&stack.problem, &mut Silent).unwrap();
             if only.is_some() {
                 for event in &run.events {
-                    let mode = &run.layout.modes[event.to];
+                    let mode = &run.layout.modes.name(event.to);
                     println!("{:.15} {} | {mode}", event.t, event.transition);
                 }
             }

@@ -59,7 +59,7 @@ fn a_pawl_holds_the_mass_where_it_would_turn_round() {
         for (k, &t) in run.trajectory.t.iter().enumerate() {
             let row = run.trajectory.row(k);
             let is_engaged = t > PI;
-            let mode = &run.layout.modes[usize::from(run.trajectory.mode[k])];
+            let mode = &run.layout.modes.name(run.trajectory.mode[k]);
             let expected = if is_engaged { "engaged" } else { "free" };
             assert_eq!(*mode, format!("pawl {expected}"), "{t}");
             let held = if is_engaged { 1.0 } else { 0.0 };
@@ -186,7 +186,7 @@ fn an_overrunning_clutch_takes_part_in_an_impact_that_would_turn_it_round() {
                     _ => after,
                 };
                 assert_near(&rates, &expected, 8.0 * f64::EPSILON);
-                let at_end = &run.layout.modes[run.end.mode];
+                let at_end = &run.layout.modes.name(run.end.mode);
                 assert_eq!(at_end, mode, "{order:?} {before:?}");
                 let lost = run.events[0].energy.expect("an impact").lost;
                 let energy = |v: [f64; 3]| v.iter().map(|v| v * v / 2.0).sum::<f64>();
@@ -311,7 +311,7 @@ fn of_two_slips_along_one_line_one_stops() {
         // The belt pulls with 10 N, the weight with 5 N against it; then the belt holds against the weight.
         assert_eq!(transitions(&run), ["belt sticks"]);
         assert_near(&[run.events[0].t], &[0.2], 1e-16);
-        let at_end = &run.layout.modes[run.end.mode];
+        let at_end = &run.layout.modes.name(run.end.mode);
         assert_eq!(at_end, "belt sticks, weight slides");
         assert_near(
             &[crate::common::at_end(&run, "x.rate")],

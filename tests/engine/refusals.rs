@@ -240,3 +240,22 @@ fn states_that_fit_no_mode_and_scenes_that_freeze_too_much_are_refused() {
     };
     assert_eq!(frozen, "theta_1");
 }
+
+/// Found by fuzzing: steps of 1e-25 s, of which the event of one guard left nothing to search for another.
+#[test]
+fn an_absurd_acceleration_of_the_ground_ends_with_a_reason() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tank_doughnut.json");
+    let overrides = [
+        "inputs.ground_acceleration.sine.amplitude=855555555555555555555555555555555555555551.0",
+        "inputs.ground_acceleration.sine.frequency=3.0",
+    ]
+    .map(String::from);
+    let scene =
+        dalembert::scene::Scene::load(&path, &overrides, dalembert::model::models()).unwrap();
+    let (_, failure) = stopped(&scene.problem);
+    assert!(
+        failure.reason.contains("leave the ground"),
+        "{}",
+        failure.reason
+    );
+}

@@ -51,7 +51,7 @@ fn forty_impacts_and_the_accumulation_of_a_damped_block() {
             "{} instead of {exact}",
             rest[0]
         );
-        assert_eq!(run.layout.modes[run.end.mode], "stands");
+        assert_eq!(run.layout.modes.name(run.end.mode), "stands");
         assert_eq!(at_end(&run, "theta"), 0.0);
         let before = run.events[0].before.v[0];
         let speed = number(&case["reference"]["impact_speed_before_first"]);

@@ -101,7 +101,7 @@ fn a_triple_root_is_crossed_once() {
 fn a_pole_is_no_crossing() {
     with_each_method(|| {
         let run = runner("pole", 0.6, 0.0);
-        assert_eq!(run.layout.modes[run.end.mode], "outside");
+        assert_eq!(run.layout.modes.name(run.end.mode), "outside");
         assert_eq!(transitions(&run).len(), 0);
     });
 }
@@ -128,7 +128,7 @@ fn an_event_at_the_start_is_told_from_a_departure() {
         assert!(relative(impacts[1], number(&item["t_down"])) < 1e-14);
         let rest = ball_at_the_floor(0.0);
         assert_eq!(transitions(&rest), ["rest"]);
-        assert_eq!(rest.layout.modes[rest.end.mode], "rests");
+        assert_eq!(rest.layout.modes.name(rest.end.mode), "rests");
     });
 }
 
@@ -314,7 +314,7 @@ fn a_stop_at_the_instant_of_a_touch_is_no_impact() {
             problem.set_parameter(friction, 2.0).unwrap();
         }
         let run = run(&problem);
-        assert_eq!(run.layout.modes[run.end.mode], "sticks");
+        assert_eq!(run.layout.modes.name(run.end.mode), "sticks");
         assert!((at_end(&run, "x") - number(&item["x"])).abs() < 1e-14);
         assert!((run.events[0].t - number(&item["t"])).abs() < 1e-8);
         assert!(run.energy.as_ref().unwrap().lost_at_impacts.abs() < 1e-15);

@@ -3,6 +3,7 @@
 use super::multipliers::{check, scenes};
 use crate::common::*;
 use dalembert::hybrid::Method;
+use dalembert::record::ModeNames;
 
 #[test]
 fn a_disc_in_a_wedge_strikes_both_sides_in_turn_up_to_its_rest() {
@@ -25,9 +26,12 @@ fn a_disc_in_a_wedge_strikes_both_sides_in_turn_up_to_its_rest() {
             let mut run = run(&disc);
             if of("mu") == 0.0 {
                 // Without friction there is no difference between what sticks and what slides.
-                for mode in &mut run.layout.modes {
-                    *mode = mode.replace("sticks", "closed").replace("slides", "closed");
-                }
+                let names = run.layout.modes.clone();
+                let closed = |mode: usize| {
+                    let name = names.name(mode);
+                    name.replace("sticks", "closed").replace("slides", "closed")
+                };
+                run.layout.modes = ModeNames::listed((0..names.count()).map(closed).collect());
                 let is_of_a_slip = |name: &str| {
                     let verbs = [" sticks", " slips", " reverses"];
                     verbs.iter().any(|verb| name.ends_with(verb))

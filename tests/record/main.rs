@@ -15,7 +15,8 @@ use std::path::Path;
 use dalembert::record::plot::{Chart, Curve, Dimension, Style, overview, phase_portraits};
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
 use dalembert::record::{
-    Event, Failure, Group, OutputFolder, Place, Quantity, Recorder, Report, Run, Snapshot, Summary,
+    Event, Failure, Group, ModeNames, OutputFolder, Place, Quantity, Recorder, Report, Run,
+    Snapshot, Summary,
 };
 use proptest::prelude::*;
 use synthetic::{bouncing_ball, tank_like};
@@ -89,7 +90,7 @@ fn the_metadata_describe_every_column() {
 #[test]
 fn names_with_separators_are_quoted() {
     let mut run = bouncing_ball(1.0, 1, 2);
-    run.layout.modes[0] = "flies, \"freely\"".into();
+    run.layout.modes = ModeNames::listed(vec!["flies, \"freely\"".into(), "rests".into()]);
     let table = text(|out| write_trajectory(&run, out));
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     assert_eq!(

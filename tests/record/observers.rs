@@ -74,7 +74,7 @@ fn same(run: &Run, told: &Told) {
     assert_eq!(run.trajectory.len(), told.rows.len());
     for (i, (t, mode, values)) in told.rows.iter().enumerate() {
         assert_eq!(run.trajectory.t[i], *t, "row {i}");
-        assert_eq!(usize::from(run.trajectory.mode[i]), *mode, "row {i}");
+        assert_eq!(run.trajectory.mode[i], *mode, "row {i}");
         assert_eq!(run.trajectory.row(i), values, "row {i}");
     }
     assert_eq!(run.events.len(), told.events.len());

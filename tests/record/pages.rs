@@ -3,7 +3,7 @@
 use super::browser::in_browser;
 use super::*;
 use dalembert::page::{Told, run_page};
-use dalembert::record::{Jump, Sketch, Units};
+use dalembert::record::{Jump, ModeNames, Sketch, Units};
 
 /// A drawing whose only point is at (0, y), with a contact.
 const DRAWING: &str = r#"{"symbols":["y"],"registers":2,"outputs":4,
@@ -42,7 +42,7 @@ fn names_are_text_wherever_they_come_from() {
     run.subject
         .parameters
         .push((format!("parameter {HOSTILE}"), 1.0));
-    run.layout.modes = vec![format!("flies {HOSTILE}"), "rests".into()];
+    run.layout.modes = ModeNames::listed(vec![format!("flies {HOSTILE}"), "rests".into()]);
     for quantity in [
         &mut run.layout.velocities[0],
         &mut run.layout.reactions[0],

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use dalembert::record::{
-    EnergyJump, Event, Group, Layout, Ledger, Peak, Place, Quantity, Reached, Recorder, Run,
-    Snapshot, Solver, Subject, Tally, Uncertain,
+    EnergyJump, Event, Group, Layout, Ledger, ModeNames, Peak, Place, Quantity, Reached, Recorder,
+    Run, Snapshot, Solver, Subject, Tally, Uncertain,
 };
 
 const G: f64 = 9.81;
@@ -34,7 +34,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             "kinetic and potential energy",
         )],
         inputs: vec![],
-        modes: vec!["flies".into(), "rests".into()],
+        modes: ModeNames::listed(vec!["flies".into(), "rests".into()]),
     };
     let snapshot = |y: f64, v: f64, side: f64| Snapshot {
         q: vec![y],
@@ -226,14 +226,16 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             "m/s^2",
             "of the ground, to the right",
         )],
-        modes: [
-            "stands_sticks",
-            "stands_slides",
-            "rocks_sticks",
-            "rocks_slides",
-        ]
-        .map(String::from)
-        .into(),
+        modes: ModeNames::listed(
+            [
+                "stands_sticks",
+                "stands_slides",
+                "rocks_sticks",
+                "rocks_slides",
+            ]
+            .map(String::from)
+            .into(),
+        ),
     };
     let end = 2.0;
     let state = |t: f64, mode: usize| {

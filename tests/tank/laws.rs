@@ -29,7 +29,12 @@ fn contact_and_friction_hold_at_every_instant() {
             let (t, row) = (trajectory.t[i], trajectory.row(i));
             assert!(row[normal] > 0.0, "{name}, t = {t}: N = {}", row[normal]);
             worst[0] = worst[0].max(-row[theta]);
-            if run.layout.modes[usize::from(trajectory.mode[i])].ends_with("sticks") {
+            if run
+                .layout
+                .modes
+                .name(trajectory.mode[i])
+                .ends_with("sticks")
+            {
                 assert_eq!(row[rate], 0.0, "{name}, t = {t}");
                 worst[1] = worst[1].max(row[shear].abs() / (tank.mu_s * row[normal]) - 1.0);
                 assert_eq!(row[shear], row[base]);
@@ -103,8 +108,8 @@ fn no_stick_row_is_outside_the_friction_cone_where_nearly_all_mass_is_impulsive(
                 let [shear, normal] =
                     ["reaction.x", "reaction.y"].map(|name| run.trajectory.column(name).unwrap());
                 for i in 0..run.trajectory.len() {
-                    let mode = usize::from(run.trajectory.mode[i]);
-                    if run.layout.modes[mode].ends_with("sticks") {
+                    let mode = run.trajectory.mode[i];
+                    if run.layout.modes.name(mode).ends_with("sticks") {
                         let row = run.trajectory.row(i);
                         let ratio = row[shear].abs() / (mu * row[normal]);
                         let (t, total) = (run.trajectory.t[i], run.uncertain.total);

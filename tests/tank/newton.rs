@@ -103,7 +103,12 @@ fn reactions_are_the_rates_of_the_momenta() {
             for (worst, error) in worst.iter_mut().zip(error) {
                 *worst = worst.max(error.abs() / weight);
             }
-            if run.layout.modes[usize::from(run.trajectory.mode[row])].starts_with("stands") {
+            if run
+                .layout
+                .modes
+                .name(run.trajectory.mode[row])
+                .starts_with("stands")
+            {
                 let motion = rows.motion(row);
                 let x_i = rows.rate(row, |r| rows.value(r, "x_I.rate"));
                 let u = rows.rate(row, |r| {

@@ -51,7 +51,7 @@ fn stopped(run: &Run, failure: &Failure) -> String {
         failure.reason,
         rounded(failure.at.t, DIGITS),
         failure.at.j,
-        layout.modes[failure.at.mode],
+        layout.modes.name(failure.at.mode),
         state.join(", ")
     )
 }

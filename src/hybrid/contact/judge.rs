@@ -118,10 +118,11 @@ impl<'p> Simulation<'p> {
             let [of_a, of_b] = [a, b].map(|of| of.candidate.holds());
             of_b.cmp(&of_a).then_with(|| spans(b).total_cmp(&spans(a)))
         });
+        let present = self.context.discrete().to_vec();
         let names = |states: &[State]| {
-            let mut discrete = self.context.discrete().to_vec();
+            let mut discrete = present.clone();
             write_states(contacts, states, &mut discrete);
-            contacts.name(contacts.set(&discrete))
+            contacts.sets().name(contacts.set(&discrete))
         };
         let touch = || {
             let all = (touching.iter().zip(&contacts.contacts)).filter(|(t, _)| t.is_some());
@@ -130,10 +131,15 @@ impl<'p> Simulation<'p> {
         let Some(first) = admitted.first() else {
             return Err(Reason::NoMotion { contacts: touch() });
         };
-        let differs = |other: &&Admitted| {
-            !are_equal(&first.motion.accelerations, &other.motion.accelerations)
+        let mut differs = |other: &&Admitted| {
+            let [one, two] = [&first.motion, &other.motion].map(|m| &m.accelerations[..]);
+            // Where the state is exact; and where it is known to its rounding.
+            !are_equal(one, two) && {
+                let [one, two] = [first, other].map(|a| self.accelerations(geometry, &a.candidate));
+                !are_equal(&one, &two)
+            }
         };
-        if let Some(other) = admitted.iter().find(differs) {
+        if let Some(other) = admitted.iter().find(&mut differs) {
             let motions = [first, other].map(|a| names(&a.candidate.states));
             return Err(Reason::SeveralMotions {
                 contacts: touch(),
@@ -179,6 +185,26 @@ impl<'p> Simulation<'p> {
             let motion = self.admit(contacts, geometry, &candidate, touching)?;
             Some(Admitted { candidate, motion })
         })
+    }
+
+    /// The accelerations of a candidate, from a state that is known to its rounding.
+    fn accelerations(&mut self, geometry: &Geometry, candidate: &Candidate) -> Vec<Row> {
+        let mode = self.mode();
+        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
+        let n = self.here.q.len();
+        let (q, rest) = self.next.split_at(n);
+        let at = Point {
+            q,
+            v: &rest[..n],
+            discrete: &candidate.discrete,
+        };
+        let sizes = [&*self.sizes, &*self.rate_sizes];
+        self.expansion.begin(mode, at, Some(sizes));
+        for order in 0..ORDERS {
+            self.expansion.expand(mode, &contacts.decisions, order);
+        }
+        let own = geometry.own.iter();
+        own.map(|&i| *self.expansion.acceleration(i)).collect()
     }
 
     /// The forces of a candidate; `None` if they are not known.

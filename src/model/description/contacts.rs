@@ -2,7 +2,7 @@
 
 use super::{Read, Reader};
 use crate::model::reader::{At, text, truth};
-use crate::model::{Constraint, Contact, Contacts, DeclaredContact};
+use crate::model::{Constraint, Contact, ContactSets, Contacts, DeclaredContact};
 
 impl Reader<'_> {
     /// The contacts of a mode with so many guards, three of each.
@@ -35,8 +35,10 @@ impl Reader<'_> {
                 shares: at.get("shares", |at| at.option(|at| at.index(discretes)))?,
             })
         };
+        let contacts: Box<[Contact]> = at.get("contacts", |at| at.list_of(count, contact))?;
         Ok(Contacts {
-            contacts: at.get("contacts", |at| at.list_of(count, contact))?,
+            sets: ContactSets::new(&contacts),
+            contacts,
             constraints: at.get("constraints", |at| at.list(constraint))?,
             decisions: at.get("decisions", |at| self.tape(at, Contacts::DECISIONS * count))?,
         })

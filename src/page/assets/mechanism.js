@@ -5,12 +5,11 @@ let now = first;
 
 // ---- modes and events, under the curves of plots over time -------------------------------------
 const tint = (mode, alpha) => `hsla(${(mode * 137.5 + 205) % 360}, 55%, 55%, ${alpha})`;
-motion.modes.forEach((name, i) => {
-  if (!motion.visits.some(([, , mode]) => mode === i)) return;
+for (const [i, name] of Object.entries(motion.modes)) {
   const swatch = element("span", { className: "swatch" });
   swatch.style.background = tint(i, 0.45);
   byId("modes").append(swatch, name);
-});
+}
 plots.under = (u, plot) => {
   if (!plot.spec.time) return;
   const { left, top, width, height } = u.bbox;

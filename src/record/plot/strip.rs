@@ -46,7 +46,7 @@ impl Strip {
         modes.sort_unstable();
         modes.dedup();
         let entry = |&mode: &usize| Entry {
-            label: run.layout.modes[mode].clone(),
+            label: run.layout.modes.name(mode).into_owned(),
             colour: area(mode),
             filled: true,
         };
