@@ -54,7 +54,7 @@ def _idle_multiplier(model, of):
     for mode in model.modes:
         if mode.form is None:
             mode.held[of.name] = ca.SX(0)
-        else:
+        elif not any(known is symbol for known in mode.form.idle):
             mode.form.idle.append(symbol)
     return Declaration(of.name, of.unit, of.meaning, symbol, dict(of.extra))
 

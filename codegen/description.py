@@ -197,7 +197,7 @@ def _mode(variant, i, equations, tables):
 def _guard(variant, i, g, functions, tables):
     model, equations = variant.model, variant.modes[i]
     expression, transitions = equations.guards[g]
-    is_contact = equations.mode.form is not None
+    is_contact = equations.mode.form is not None and g < 3 * len(equations.form.contacts)
     return {
         "name": " / ".join(dict.fromkeys(t.name for t in transitions)) if not is_contact
         else equations.form.contacts[g // 3].name,

@@ -407,15 +407,14 @@ def _check_smooth(expression, what, location, parameters):
 
 
 def _guards(model, equations):
-    """Transitions of a mode grouped by guard: a list of (expression, transitions). Those of contacts have no transitions: what
-    follows is decided where they fall."""
-    if equations.mode.form is not None:
-        return [(guard, []) for guard in equations.contact_guards()]
+    """Transitions of a mode grouped by guard: a list of (expression, transitions). Those of contacts, which come first, have no
+    transitions: what follows is decided where they fall."""
+    of_contacts = [] if equations.mode.form is None else [(guard, []) for guard in equations.contact_guards()]
     groups = {}
     for transition in model.transitions:
         if transition.source is equations.mode:
             groups.setdefault(graph.structure(transition.guard), (transition.guard, []))[1].append(transition)
-    return list(groups.values())
+    return of_contacts + list(groups.values())
 
 
 def _reset(model, source, target, transition):

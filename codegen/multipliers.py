@@ -1,4 +1,5 @@
-"""Contacts, friction and constraints by multipliers: one mode serves all sets of contact states.
+"""Contacts, friction and constraints by multipliers: one mode serves all sets of contact states. Of a model with modes by hand each of
+them does, with its own forces and transitions.
 
     M q̈ + h = W_N λ_N + W_T λ_T + Gᵀ λ_C
 
@@ -78,10 +79,11 @@ class Form:
 
 
 def build(model):
-    """Adds the mode of a model whose contacts and constraints are held by multipliers."""
-    if model.modes:
-        raise ModelError("the model has contacts or constraints and modes by hand; these make all modes: leave `model.mode(…)` out,"
-                         " or write all of it by hand", model.modes[0].location)
+    """Adds contacts and constraints that are held by multipliers to each mode of a model, or to the one that it needs."""
+    for mode in model.modes:
+        if mode.held:
+            raise ModelError(f"mode `{mode.name}` freezes `{next(iter(mode.held))}`: beside contacts and constraints all coordinates are free;"
+                             " what holds one is a contact, a friction or a constraint, too", mode.location)
     for contact in model.contacts:
         if contact.permanent:
             contact.hold(model)
@@ -145,12 +147,14 @@ def build(model):
             if i != j and first.slip is not None and second.slip is not None:
                 form.joined[i, j] = internal(f"{first.name}.holds.{second.name}",
                                              f"1 where the friction of `{second.name}` is part of that of `{first.name}`")
-    mode = model._mode("moves", "all sets of contact states, by multipliers", [], [])
-    mode.location = (model.contacts + model.constraints)[0].location
-    mode.form = form
-    for contact in contacts:
-        if contact.gap is None and not limits.is_of_parameters(model, contact.normal):
-            mode.requirements.append((contact.normal, f"the normal force of `{contact.name}` would pull", contact.location))
+    if not model.modes:
+        mode = model._mode("moves", "all sets of contact states, by multipliers", [], [])
+        mode.location = (model.contacts + model.constraints)[0].location
+    for mode in model.modes:
+        mode.form = form
+        for contact in contacts:
+            if contact.gap is None and not limits.is_of_parameters(model, contact.normal):
+                mode.requirements.append((contact.normal, f"the normal force of `{contact.name}` would pull", contact.location))
 
 
 def _check_independent(model, constraints):
@@ -219,7 +223,7 @@ class Terms:
 
 
 class MultiplierEquations(derive.ModeEquations):
-    """The equations of the one mode."""
+    """The equations of a mode."""
 
     def __init__(self, form, model, mode, residual, held, absent=()):
         super().__init__(model, mode, residual, held, absent)

@@ -27,10 +27,8 @@ def expand(model):
         if model.switched_off and not model.modes:
             model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
         return
-    if model.modes:
-        raise ModelError("the model has contacts and modes by hand; contacts make all modes: leave `model.mode(…)` out, or write"
-                         " all of it by hand", model.modes[0].location)
-    if not _reduce(model):
+    # Modes by hand have all sets of contact states each.
+    if model.modes or not _reduce(model):
         multipliers.build(model)
     contact_outputs.add(model)
 

@@ -34,7 +34,7 @@ MISTAKES = (
     ("a constraint in a square", 'model.constraint("blade", x.rate * y.rate)\n', "is not linear in the rates"),
     ("a law of a ratchet", 'model.ratchet("pawl", rate=x.rate); model.impact("pawl", [(x.rate, x.rate)])\n',
      "impact: there is no contact `pawl` with a gap above"),
-    ("contacts beside a mode by hand", 'model.contact("a", gap=y)\nmodel.mode("flies")\n', "the model has contacts and modes by hand"),
+    ("a mode that freezes beside contacts", 'model.contact("a", gap=y)\nmodel.mode("lies", freeze=[x])\n', "mode `lies` freezes `x`"),
 )
 
 

@@ -26,6 +26,16 @@ class Documentation(unittest.TestCase):
         model = self.built(declared + hand)
         self.assert_holds_the_block(model, model.modes[0])
 
+    def test_modes_beside_contacts(self):
+        contacts, beside = self.blocks()[0], next(block for block in self.blocks() if "drives.force" in block)
+        declared = contacts[:contacts.index("m = model.parameter(")] + "\n".join([
+            *[f'{name} = model.parameter("{name}", "{unit}", 1.0, "a number")' for name, unit in (
+                ("m", "kg"), ("mu", "1"), ("pull", "N"), ("slow", "m/s"), ("fast", "m/s"), ("kick", "m/s"))],
+            *[f'{name} = model.coordinate("{name}", "m", "a place")' for name in "xy"],
+            "model.point_mass(m, position=(x, y))", ""])
+        model = self.built(declared + beside)
+        self.assertEqual([mode.name for mode in model.modes], ["coasts", "drives"])
+
     @staticmethod
     def blocks():
         return re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)

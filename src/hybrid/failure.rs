@@ -250,6 +250,14 @@ pub enum Reason {
         /// The law.
         law: ImpactLaw,
     },
+    /// A reset by hand leads to a state that contacts or constraints do not admit.
+    #[error("transition `{name}` leads to a state that is not admitted: {why}")]
+    Reset {
+        /// The transition.
+        name: &'static str,
+        /// What is wrong there.
+        why: String,
+    },
     /// Something of the problem is not admissible.
     #[error(transparent)]
     Invalid(#[from] Invalid),

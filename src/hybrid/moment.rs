@@ -79,10 +79,17 @@ impl<'s> Moment<'s> {
         self.view.t
     }
 
-    /// Name of the mode; where contacts make it, of the set of their states: `left sticks, right open`.
+    /// Name of the mode; where contacts make it, of the set of their states: `left sticks, right open`, with a mode by
+    /// hand before them.
     pub fn mode(&self) -> &'static str {
         match &self.mode.contacts {
-            Some(contacts) => intern(&contacts.sets().name(contacts.set(self.discrete()))),
+            Some(contacts) => {
+                let set = contacts.sets().name(contacts.set(self.discrete()));
+                match self.problem.variant().modes.len() {
+                    1 => intern(&set),
+                    _ => intern(&format!("{}, {set}", self.mode.name)),
+                }
+            }
             None => self.mode.name,
         }
     }

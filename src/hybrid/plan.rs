@@ -2,7 +2,7 @@
 
 use super::failure::Reason;
 use super::problem::Problem;
-use crate::model::{Guard, Rest};
+use crate::model::{Contacts, Guard, Rest};
 
 /// Modes and guards that are left after the scene's `freeze`.
 #[derive(Debug)]
@@ -54,11 +54,12 @@ impl Plan {
             conditional: false,
         };
         let watched = (modes.iter())
-            .map(|m| match m.contacts {
-                Some(_) => (0..m.guards.len()).map(of_contact).collect(),
-                None => (0..m.guards.len())
-                    .flat_map(|g| watched(g, &m.guards[g], &allowed))
-                    .collect(),
+            .map(|m| {
+                let contacts = m.contacts.as_ref().map_or(0, |c| c.contacts.len());
+                let of_contacts = 0..Contacts::GUARDS * contacts;
+                let by_hand = of_contacts.end..m.guards.len();
+                let by_hand = by_hand.flat_map(|g| watched(g, &m.guards[g], &allowed));
+                of_contacts.map(of_contact).chain(by_hand).collect()
             })
             .collect();
         let rests = (problem.variant().rests.iter().copied())

@@ -369,17 +369,17 @@ impl<'p> Simulation<'p> {
     /// What is recorded as the mode.
     pub fn shown(&self) -> usize {
         match &self.mode().contacts {
-            Some(contacts) => contacts.set(self.context.discrete()),
+            Some(contacts) => {
+                let set = contacts.set(self.context.discrete());
+                self.here.mode * contacts.sets().count() + set
+            }
             None => self.here.mode,
         }
     }
 
     /// The name of what is recorded as a mode.
     pub fn name_of(&self, shown: usize) -> String {
-        match &self.mode().contacts {
-            Some(contacts) => contacts.sets().name(shown),
-            None => self.modes[shown].name.into(),
-        }
+        self.observers.layout.modes.name(shown).into_owned()
     }
 
     /// Simulates from here to the end.

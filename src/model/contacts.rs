@@ -30,7 +30,8 @@ pub struct DeclaredContact {
 /// The contacts and constraints of a mode.
 #[derive(Debug)]
 pub struct Contacts {
-    /// The contacts, ratchets and friction without a gap, in the order of the file. Each has three guards, one behind the other: what
+    /// The contacts, ratchets and friction without a gap, in the order of the file. Each has three guards, one behind the other,
+    /// before those of transitions by hand: what
     /// pushes, or the gap (of a ratchet the rate) where it is open; what is left before it slips forwards, or its slip rate along its direction where it
     /// slides; what is left before it slips backwards.
     pub contacts: Box<[Contact]>,
@@ -83,6 +84,9 @@ pub struct Constraint {
 }
 
 impl Contacts {
+    /// Guards of each contact, which come before those of transitions by hand.
+    pub const GUARDS: usize = 3;
+
     /// Results of the tape of decisions for each contact.
     pub const DECISIONS: usize = 5;
 

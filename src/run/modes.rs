@@ -4,7 +4,7 @@ use crate::model::{ContactSets, Variant};
 use std::borrow::Cow;
 
 /// The names of the modes of a run, by their numbers; where contacts make them these are all sets of contact states, which are
-/// too many to be listed.
+/// too many to be listed, behind the mode by hand where there are several.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ModeNames {
     modes: Vec<String>,
@@ -29,7 +29,7 @@ impl ModeNames {
     pub fn count(&self) -> usize {
         match &self.sets {
             None => self.modes.len(),
-            Some(sets) => sets.count(),
+            Some(sets) => self.modes.len() * sets.count(),
         }
     }
 
@@ -40,7 +40,13 @@ impl ModeNames {
     pub fn name(&self, mode: usize) -> Cow<'_, str> {
         match &self.sets {
             None => Cow::Borrowed(&*self.modes[mode]),
-            Some(sets) => Cow::Owned(sets.name(mode)),
+            Some(sets) => {
+                let set = sets.name(mode % sets.count());
+                Cow::Owned(match &*self.modes {
+                    [_] => set,
+                    modes => format!("{}, {set}", modes[mode / sets.count()]),
+                })
+            }
         }
     }
 
@@ -48,7 +54,14 @@ impl ModeNames {
     pub fn number(&self, name: &str) -> Option<usize> {
         match &self.sets {
             None => self.modes.iter().position(|mode| mode == name),
-            Some(sets) => sets.number(name),
+            Some(sets) => {
+                let [_] = &*self.modes else {
+                    let (mode, set) = name.split_once(", ")?;
+                    let mode = self.modes.iter().position(|known| known == mode)?;
+                    return Some(mode * sets.count() + sets.number(set)?);
+                };
+                sets.number(name)
+            }
         }
     }
 }

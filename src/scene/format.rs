@@ -479,10 +479,11 @@ fn record() -> Object {
     )
 }
 
-/// The names of the modes of some variants, each once, but for one of all sets of contact states: it says nothing.
+/// The names of the modes of some variants, each once, but for the only one, of all sets of contact states: it says nothing.
 pub(crate) fn mode_names(variants: &[Variant]) -> Vec<&'static str> {
-    let modes = variants.iter().flat_map(|v| &v.modes);
-    unique(modes.filter(|m| m.contacts.is_none()).map(|m| m.name))
+    let says = |v: &&Variant| v.modes.len() > 1 || v.modes[0].contacts.is_none();
+    let modes = variants.iter().filter(says).flat_map(|v| &v.modes);
+    unique(modes.map(|m| m.name))
 }
 
 /// The names of the transitions of some variants, each once.

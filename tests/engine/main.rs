@@ -5,6 +5,7 @@
 mod common;
 
 mod advance;
+mod beside_contacts;
 mod bouncing;
 mod chains;
 mod contacts;

@@ -15,14 +15,18 @@ use crate::model::name::intern;
 use crate::numerics::{Bounded, ORDERS, Size, Vector};
 
 /// Guards of a contact.
-pub(super) const GUARDS: usize = 3;
+pub(super) const GUARDS: usize = Contacts::GUARDS;
 
 impl<'p> Simulation<'p> {
     /// Takes what follows the fall of a guard of the mode of all sets.
     pub(in crate::hybrid) fn contact_event(&mut self, guard: usize) -> Stoppable<()> {
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
-        with_kernel!(&mode.kernels, k => self.contact_event_by(k, contacts, guard))
+        let is_by_hand = guard >= GUARDS * contacts.contacts.len();
+        with_kernel!(&mode.kernels, k => match is_by_hand {
+            true => self.take_by_hand(k, contacts, guard),
+            false => self.contact_event_by(k, contacts, guard),
+        })
     }
 
     fn contact_event_by<F: Size>(
@@ -104,9 +108,18 @@ impl<'p> Simulation<'p> {
         kernel: &'p ModeKernel<F>,
         contacts: &Contacts,
     ) -> Stoppable<()> {
-        let free = &self.mode().free;
         let n = self.here.q.len();
         self.here.q.copy_from_slice(&self.next[..n]);
+        self.hold_here(kernel, contacts)
+    }
+
+    /// Brings the present state to what the contacts hold.
+    pub(super) fn hold_here<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &Contacts,
+    ) -> Stoppable<()> {
+        let free = &self.mode().free;
         let [mut q, mut v, a] = self.here.free(kernel.size(), free);
         hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
         let here = Conditioning::new(kernel, &mut self.context, contacts, [&q, &v]);
@@ -124,7 +137,7 @@ impl<'p> Simulation<'p> {
     /// moves its gap by a rounding.
     fn is_unresolved<F: Size>(
         &self,
-        kernel: &ModeKernel<F>,
+        kernel: &'p ModeKernel<F>,
         contacts: &Contacts,
         k: usize,
         standing: &Standing<F>,
@@ -242,7 +255,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// Where no motion goes on: an impact without collision, if the scene asks for it and there is one; else the reason.
-    fn jam<F: Size>(
+    pub(super) fn jam<F: Size>(
         &self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,

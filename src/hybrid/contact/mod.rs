@@ -1,7 +1,7 @@
 //! Contacts, friction and constraints that hold by multipliers: which set of contact states follows an event.
 //!
-//! A mode of all sets is integrated as any other; the discrete states choose its rows (`codegen/multipliers.py`). What touches,
-//! and what of it has no rate, is known by bookkeeping: a closed contact stays on its gap, a sticking one has no slip rate, an
+//! Each mode by hand, or the only one, is of all sets. A mode of all sets is integrated as any other; the discrete states choose
+//! its rows (`codegen/multipliers.py`). What touches, and what of it has no rate, is known by bookkeeping: a closed contact stays on its gap, a sticking one has no slip rate, an
 //! impact says which rates it leaves. The values of these numbers are roundings, and nothing is decided by them.
 //!
 //! - `geometry`: masses, and the lines along which contacts and constraints push.
@@ -14,9 +14,11 @@
 //! - `phase`: all outcomes of one phase of it, each tried on its impulses and rates.
 //! - `standing`: what touches at an instant, and what of it has no rate.
 //! - `event`: from the fall of a guard to the next set.
+//! - `by_hand`: transitions by hand beside contacts.
 //! - `start`: the set that a run starts in; `equilibrium`: where it starts at rest.
 //! - `limit`: the set at the limit of an accumulation.
 
+mod by_hand;
 mod equilibrium;
 mod event;
 mod geometry;

@@ -15,6 +15,9 @@ impl<'p> Simulation<'p> {
     /// Finds the set of contact states of the initial state: a contact touches where its gap is zero within its rounding, and
     /// rests there where its rate is. One that closes with a rate strikes at once.
     pub(in crate::hybrid) fn start_contacts(&mut self, parameters: &[f64]) -> Result<(), Reason> {
+        if let Some(mode) = self.initial.mode {
+            self.here.mode = mode;
+        }
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
         if !self.plan.allowed[self.here.mode] {
@@ -52,11 +55,36 @@ impl<'p> Simulation<'p> {
                 .map_err(|why| Box::new(Reason::NoRest { why }))?;
             write_states(contacts, &open, self.context.discrete_mut());
         }
-        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
-        let refused = |why: String| {
+        let standing = self.standing_of(kernel, contacts, [q, v]);
+        let mut standing = standing.map_err(|why| {
             let mode = self.mode().name;
             Box::new(Reason::Initial { mode, why })
-        };
+        })?;
+        match self.settle_contacts(kernel, contacts, &mut standing) {
+            // The first event is the impact: with all that touches open, a gap falls at once.
+            Err(reason)
+                if self.problem.collisions.without_collision
+                    && matches!(*reason, Reason::NoMotion { .. }) =>
+            {
+                self.leave_open(contacts, &standing);
+            }
+            settled => drop(settled?),
+        }
+        self.take_next();
+        match self.problem.at_rest {
+            true => self.check_rest(kernel, contacts),
+            false => Ok(()),
+        }
+    }
+
+    /// The contacts as they stand in a state, by their gaps and rates alone; why it is not admitted, in words.
+    pub(super) fn standing_of<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        [mut q, mut v]: [F::Vector; 2],
+    ) -> Result<Standing<F>, String> {
+        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
         let mut places = Vec::new();
         for (c, constraint) in contacts.constraints.iter().enumerate() {
             let line = Line::Constraint(c);
@@ -65,9 +93,9 @@ impl<'p> Simulation<'p> {
                 let is_zero = value.abs() <= rounding;
                 if !is_zero {
                     let name = constraint.name;
-                    return Err(refused(format!(
+                    return Err(format!(
                         "{of}constraint `{name}` is {value:e} there, not zero"
-                    )));
+                    ));
                 }
             }
             places.push(line);
@@ -84,9 +112,9 @@ impl<'p> Simulation<'p> {
                 let is_admitted = opening >= -rounding;
                 if !is_admitted {
                     let name = contact.name;
-                    return Err(refused(format!(
+                    return Err(format!(
                         "the {of} `{name}` is {opening:e} there; it must not be negative"
-                    )));
+                    ));
                 }
                 if opening > rounding {
                     continue;
@@ -108,28 +136,13 @@ impl<'p> Simulation<'p> {
         let context = &mut self.context;
         hold_lines(kernel, context, contacts, [&places, &[]], [&mut q, &mut v]);
         let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
-        let mut standing = Standing {
+        Ok(Standing {
             q,
             v,
             geometry,
             touching,
             leaves,
-        };
-        match self.settle_contacts(kernel, contacts, &mut standing) {
-            // The first event is the impact: with all that touches open, a gap falls at once.
-            Err(reason)
-                if self.problem.collisions.without_collision
-                    && matches!(*reason, Reason::NoMotion { .. }) =>
-            {
-                self.leave_open(contacts, &standing);
-            }
-            settled => drop(settled?),
-        }
-        self.take_next();
-        match self.problem.at_rest {
-            true => self.check_rest(kernel, contacts),
-            false => Ok(()),
-        }
+        })
     }
 
     /// Moves a state to the nearest that constraints admit and no contact penetrates, in the metric of the masses, as far as

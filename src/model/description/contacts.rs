@@ -5,10 +5,16 @@ use crate::model::reader::{At, text, truth};
 use crate::model::{Constraint, Contact, ContactSets, Contacts, DeclaredContact};
 
 impl Reader<'_> {
-    /// The contacts of a mode with so many guards, three of each.
+    /// The contacts of a mode with so many guards: first three of each contact, then those of transitions by hand.
     pub(super) fn contacts(&self, at: &At, guards: usize) -> Read<Contacts> {
         let (coordinates, discretes) = (self.dimensions.coordinates, self.dimensions.discretes);
-        let count = guards / 3;
+        let count = at.get("contacts", |at| {
+            let count = at.list(|_| Ok(()))?.len();
+            match Contacts::GUARDS * count <= guards {
+                true => Ok(count),
+                false => Err(at.wrong(format!("contacts with three of {guards} guards each"))),
+            }
+        })?;
         let contact = |at: &At| {
             let coordinate = |key| at.get(key, |at| at.option(|at| at.index(coordinates)));
             let discrete = |key| at.get(key, |at| at.option(|at| at.index(discretes)));

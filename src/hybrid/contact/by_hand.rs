@@ -1,0 +1,97 @@
+//! Transitions by hand beside contacts: which one is taken, and what the contacts do after its reset.
+
+use crate::hybrid::accumulation::Signature;
+use crate::hybrid::failure::{Reason, Stoppable};
+use crate::hybrid::simulation::Simulation;
+use crate::kernel::{ModeKernel, with_kernel};
+use crate::model::{Contacts, Transition};
+use crate::numerics::Size;
+
+use super::State;
+
+impl<'p> Simulation<'p> {
+    /// Takes the first transition of a guard whose condition holds.
+    pub(super) fn take_by_hand<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &'p Contacts,
+        guard: usize,
+    ) -> Stoppable<()> {
+        self.set_context();
+        self.hold_here(kernel, contacts)?;
+        let fired = &self.mode().guards[guard];
+        let Some(t) = self.choose(kernel, guard) else {
+            // Every condition fails at the very state where the guard is crossed.
+            let cycle = format!("{} (no condition holds)", fired.name);
+            return Err(Box::new(Reason::Cycle { cycle }));
+        };
+        let transition = &fired.transitions[t];
+        self.doubts.happened(fired);
+        if self
+            .problem
+            .end
+            .after
+            .is_some_and(|(name, _)| name == transition.name)
+        {
+            self.counted += 1;
+        }
+        self.accumulation.compare([&self.here.q, &self.here.v]);
+        self.settle_after_reset(transition)?;
+        self.commit(transition.name, transition.impact, transition.target)?;
+        let signature = Signature {
+            guard,
+            transition: t,
+            mode: self.here.shown,
+        };
+        self.accumulation
+            .push(signature.key(), self.here.now, &self.next);
+        self.look_for_accumulation()
+    }
+
+    /// Finds what contacts do in the state that a reset has left in `next`. What closes with a rate strikes at the instant, as the
+    /// event that follows.
+    fn settle_after_reset(&mut self, transition: &'p Transition) -> Stoppable<()> {
+        let n = self.here.q.len();
+        let stays = self.next[..n] == *self.here.q && self.next[n..2 * n] == *self.here.v;
+        let (mode, discrete) = (self.here.mode, self.context.discrete().to_vec());
+        self.here.mode = transition.target;
+        self.context
+            .discrete_mut()
+            .copy_from_slice(&self.next[2 * n..]);
+        let target = self.mode();
+        let contacts = target.contacts.as_ref().expect("a mode of all sets");
+        let settled = with_kernel!(&target.kernels, k => self.settle_after_reset_by(k, contacts, (transition.name, stays)));
+        self.here.mode = mode;
+        self.context.discrete_mut().copy_from_slice(&discrete);
+        settled
+    }
+
+    fn settle_after_reset_by<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &'p Contacts,
+        (name, stays): (&'static str, bool),
+    ) -> Stoppable<()> {
+        let mut standing = match stays {
+            // What rests goes on resting by bookkeeping.
+            true => {
+                let states = State::all(contacts, self.context.discrete());
+                self.standing(kernel, contacts, (None, &states))
+            }
+            false => {
+                let (n, free, size) = (self.here.q.len(), &self.mode().free, kernel.size());
+                let state = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
+                self.standing_of(kernel, contacts, state)
+                    .map_err(|why| Box::new(Reason::Reset { name, why }))?
+            }
+        };
+        match self.settle_contacts(kernel, contacts, &mut standing) {
+            Err(reason) if matches!(*reason, Reason::NoMotion { .. }) => {
+                self.jam(kernel, contacts, &mut standing, reason)?;
+                self.settle_contacts(kernel, contacts, &mut standing)?;
+            }
+            settled => drop(settled?),
+        }
+        Ok(())
+    }
+}
