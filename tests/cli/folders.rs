@@ -461,6 +461,29 @@ for k in range(16):
         0,
         &["run", "scene.json", "--out", "out", "--html", "page.html"],
     );
+    // However the steps were made, and on its outer feet, or all but the one that it has come down on.
+    for (method, tolerance) in [("radau", "1e-10"), ("radau", "1e-14"), ("taylor", "1e-14")] {
+        let [method, relative] = [
+            format!("method={method}"),
+            format!("accuracy.relative={tolerance}"),
+        ];
+        place.run(
+            0,
+            &[
+                "run",
+                "scene.json",
+                "--set",
+                &method,
+                "--set",
+                &relative,
+                "--out",
+                "other",
+            ],
+        );
+        for name in ["y", "theta", "x.rate", "y.rate", "theta.rate"] {
+            assert_eq!(*place.column("other", name).last().unwrap(), 0.0, "{name}");
+        }
+    }
     // It lies, and says so by names that are read back.
     for name in ["y", "theta", "x.rate", "y.rate", "theta.rate"] {
         assert_eq!(*place.column("out", name).last().unwrap(), 0.0, "{name}");

@@ -67,17 +67,18 @@ impl<'p> Simulation<'p> {
         }
         let mut strikes = match closes {
             true => self.strike(kernel, contacts, (k, &before), &mut standing)?,
-            false => false,
+            false => None,
         };
         let after = match self.settle_contacts(kernel, contacts, &mut standing) {
             Err(reason) if matches!(*reason, Reason::NoMotion { .. }) => {
                 self.jam(kernel, contacts, &mut standing, reason)?;
-                strikes = true;
+                strikes = Some(k);
                 self.settle_contacts(kernel, contacts, &mut standing)?
             }
             settled => settled?,
         };
         let name = verb(contacts, (k, strikes), &before, &after);
+        let strikes = strikes.is_some();
         self.hold_before(kernel, contacts)?;
         self.doubts.happened(&self.mode().guards[guard]);
         let n = self.here.q.len();
@@ -164,19 +165,20 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// What contacts that have just closed do: an impact, if one of them comes with a rate; whether there was one.
+    /// What contacts that have just closed do: an impact, if one of them comes with a rate; by which contact it is
+    /// named, if there was one: the first that closes, whichever guard rounding lets fall first.
     fn strike<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
         (k, before): (usize, &[State]),
         standing: &mut Standing<F>,
-    ) -> Stoppable<bool> {
+    ) -> Stoppable<Option<usize>> {
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
         let mut touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
         let mut rests = touches.clone();
-        let mut closes = false;
+        let mut closes = None;
         // Of the initial state it is not known whether what opens has left its gap.
         let is_given = self.here.j == 0;
         for j in 0..touches.len() {
@@ -191,7 +193,7 @@ impl<'p> Simulation<'p> {
                 continue;
             }
             let (rate, rounding) = places.rate(Line::Normal(j));
-            closes |= rate < -rounding;
+            closes = closes.or((rate < -rounding).then_some(j));
             rests[j] = rate.abs() <= rounding;
             // One that opens, and is not the one whose gap has fallen.
             standing.leaves[j] = j != k && rate > rounding;
@@ -199,15 +201,15 @@ impl<'p> Simulation<'p> {
             standing.touching[j] =
                 (!standing.leaves[j]).then(|| tangent_at(&contacts.contacts[j], j, &places));
         }
-        if !closes {
-            return Ok(false);
+        if closes.is_none() {
+            return Ok(None);
         }
         if !contacts.contacts[k].law.is_empty() {
             for (i, rate) in places.stated(contacts, k) {
                 standing.v[i] = rate;
             }
             self.stand_after_own_law(kernel, contacts, (k, &touches), standing)?;
-            return Ok(true);
+            return Ok(Some(k));
         }
         let impact = Impact {
             contacts,
@@ -220,7 +222,7 @@ impl<'p> Simulation<'p> {
         };
         let outcome = impact.outcome().map_err(Box::new)?;
         standing.take(contacts, &touches, outcome);
-        Ok(true)
+        Ok(closes)
     }
 
     /// How contacts stand where the model's own law has said the rates after an impact of one of them.
@@ -362,16 +364,16 @@ impl Simulation<'_> {
     }
 }
 
-/// Name of what has happened: of the contact whose guard fell, or of the first that does something else.
+/// Name of what has happened: of the contact that `strikes`, of that whose guard fell, or of the first that does something else.
 fn verb(
     contacts: &Contacts,
-    (k, strikes): (usize, bool),
+    (k, strikes): (usize, Option<usize>),
     before: &[State],
     after: &[State],
 ) -> &'static str {
     let named = |k: usize, verb: &str| intern(&format!("{} {verb}", contacts.contacts[k].name));
-    if strikes {
-        return named(k, "strikes");
+    if let Some(first) = strikes {
+        return named(first, "strikes");
     }
     let others = (0..before.len()).filter(|&j| j != k);
     let changed = std::iter::once(k).chain(others);
