@@ -461,7 +461,7 @@ for k in range(16):
         0,
         &["run", "scene.json", "--out", "out", "--html", "page.html"],
     );
-    // However the steps were made, and on its outer feet, or all but the one that it has come down on.
+    // However the steps were made.
     for (method, tolerance) in [("radau", "1e-10"), ("radau", "1e-14"), ("taylor", "1e-14")] {
         let [method, relative] = [
             format!("method={method}"),
@@ -481,7 +481,9 @@ for k in range(16):
             ],
         );
         for name in ["y", "theta", "x.rate", "y.rate", "theta.rate"] {
-            assert_eq!(*place.column("other", name).last().unwrap(), 0.0, "{name}");
+            // To the rounding of a height of 0.5 m.
+            let end = *place.column("other", name).last().unwrap();
+            assert!(end.abs() <= 1e-16, "{name}: {end:e}");
         }
     }
     // It lies, and says so by names that are read back.
