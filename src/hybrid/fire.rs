@@ -23,6 +23,15 @@ impl<'p> Simulation<'p> {
     }
 
     fn fire_by<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<()> {
+        let t = self.chosen(kernel, guard)?;
+        let transition = &self.mode().guards[guard].transitions[t];
+        self.commit(transition.name, transition.impact, transition.target)?;
+        self.remember(guard, t)
+    }
+
+    /// Index of the transition of a guard that happens, and is noted; its reset is left in `next`.
+    #[inline(always)]
+    pub fn chosen<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<usize> {
         let chosen = self.choose(kernel, guard);
         let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
@@ -30,19 +39,17 @@ impl<'p> Simulation<'p> {
             let cycle = format!("{} (no condition holds)", fired.name);
             return Err(Box::new(Reason::Cycle { cycle }));
         };
-        let transition = &fired.transitions[t];
         self.doubts.happened(fired);
-        if self
-            .problem
-            .end
-            .after
-            .is_some_and(|(name, _)| name == transition.name)
-        {
-            self.counted += 1;
-        }
+        self.count(fired.transitions[t].name);
         self.accumulation.compare([&self.here.q, &self.here.v]);
-        self.commit(transition.name, transition.impact, transition.target)?;
-        self.remember(guard, t)
+        Ok(t)
+    }
+
+    /// Counts an event, if it is of those that end the run.
+    #[inline(always)]
+    pub fn count(&mut self, name: &str) {
+        let after = self.problem.end.after;
+        self.counted += u64::from(after.is_some_and(|(counted, _)| counted == name));
     }
 
     /// Takes a transition of a guard. Gives whether it has led to the same mode again, which goes on: with
@@ -234,11 +241,11 @@ impl<'p> Simulation<'p> {
 
     /// Remembers the event, and goes to the limit of an accumulation if there is one.
     #[inline(always)]
-    fn remember(&mut self, guard: usize, transition: usize) -> Stoppable<()> {
+    pub fn remember(&mut self, guard: usize, transition: usize) -> Stoppable<()> {
         let signature = Signature {
             guard,
             transition,
-            mode: self.here.mode,
+            mode: self.here.shown,
         };
         // What the reset has written is the state now.
         let key = signature.key();

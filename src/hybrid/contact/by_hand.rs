@@ -1,6 +1,5 @@
 //! Transitions by hand beside contacts: which one is taken, and what the contacts do after its reset.
 
-use crate::hybrid::accumulation::Signature;
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
 use crate::kernel::{ModeKernel, with_kernel};
@@ -19,33 +18,11 @@ impl<'p> Simulation<'p> {
     ) -> Stoppable<()> {
         self.set_context();
         self.hold_here(kernel, contacts)?;
-        let fired = &self.mode().guards[guard];
-        let Some(t) = self.choose(kernel, guard) else {
-            // Every condition fails at the very state where the guard is crossed.
-            let cycle = format!("{} (no condition holds)", fired.name);
-            return Err(Box::new(Reason::Cycle { cycle }));
-        };
-        let transition = &fired.transitions[t];
-        self.doubts.happened(fired);
-        if self
-            .problem
-            .end
-            .after
-            .is_some_and(|(name, _)| name == transition.name)
-        {
-            self.counted += 1;
-        }
-        self.accumulation.compare([&self.here.q, &self.here.v]);
+        let t = self.chosen(kernel, guard)?;
+        let transition = &self.mode().guards[guard].transitions[t];
         self.settle_after_reset(transition)?;
         self.commit(transition.name, transition.impact, transition.target)?;
-        let signature = Signature {
-            guard,
-            transition: t,
-            mode: self.here.shown,
-        };
-        self.accumulation
-            .push(signature.key(), self.here.now, &self.next);
-        self.look_for_accumulation()
+        self.remember(guard, t)
     }
 
     /// Finds what contacts do in the state that a reset has left in `next`. What closes with a rate strikes at the instant, as the

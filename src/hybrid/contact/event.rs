@@ -86,9 +86,7 @@ impl<'p> Simulation<'p> {
             // Only how friction is shared that is not determined.
             return self.take_silently(name);
         }
-        if self.problem.end.after.is_some_and(|(of, _)| of == name) {
-            self.counted += 1;
-        }
+        self.count(name);
         self.accumulation.compare([&self.here.q, &self.here.v]);
         self.commit(name, strikes, self.here.mode)?;
         let signature = Signature {
@@ -138,7 +136,7 @@ impl<'p> Simulation<'p> {
     /// moves its gap by a rounding.
     fn is_unresolved<F: Size>(
         &self,
-        kernel: &'p ModeKernel<F>,
+        kernel: &ModeKernel<F>,
         contacts: &Contacts,
         k: usize,
         standing: &Standing<F>,

@@ -191,13 +191,7 @@ impl<'p> Simulation<'p> {
     fn accelerations(&mut self, geometry: &Geometry, candidate: &Candidate) -> Vec<Row> {
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
-        let n = self.here.q.len();
-        let (q, rest) = self.next.split_at(n);
-        let at = Point {
-            q,
-            v: &rest[..n],
-            discrete: &candidate.discrete,
-        };
+        let at = point(&self.next, self.here.q.len(), &candidate.discrete);
         let sizes = [&*self.sizes, &*self.rate_sizes];
         self.expansion.begin(mode, at, Some(sizes));
         for order in 0..ORDERS {
@@ -210,13 +204,7 @@ impl<'p> Simulation<'p> {
     /// The forces of a candidate; `None` if they are not known.
     fn forces(&mut self, contacts: &'p Contacts, candidate: &Candidate) -> Option<Vec<Forces>> {
         let mode = self.mode();
-        let n = self.here.q.len();
-        let (q, rest) = self.next.split_at(n);
-        let at = Point {
-            q,
-            v: &rest[..n],
-            discrete: &candidate.discrete,
-        };
+        let at = point(&self.next, self.here.q.len(), &candidate.discrete);
         let tape = &contacts.decisions;
         self.expansion.begin(mode, at, None);
         self.expansion.expand(mode, tape, 0);
@@ -245,13 +233,7 @@ impl<'p> Simulation<'p> {
     ) -> Option<Motion> {
         let mode: &Mode = self.mode();
         let asked = asked(contacts, candidate, touching);
-        let n = self.here.q.len();
-        let (q, rest) = self.next.split_at(n);
-        let at = Point {
-            q,
-            v: &rest[..n],
-            discrete: &candidate.discrete,
-        };
+        let at = point(&self.next, self.here.q.len(), &candidate.discrete);
         let tape = &contacts.decisions;
         let expansion = &mut self.expansion;
         expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
@@ -298,6 +280,13 @@ impl<'p> Simulation<'p> {
             orders,
         })
     }
+}
+
+/// The state `next` of so many coordinates, with discrete states in place of its own.
+pub(super) fn point<'a>(next: &'a [f64], coordinates: usize, discrete: &'a [f64]) -> Point<'a> {
+    let (q, rest) = next.split_at(coordinates);
+    let v = &rest[..coordinates];
+    Point { q, v, discrete }
 }
 
 impl Candidate {

@@ -2,11 +2,10 @@
 
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::Places;
-use super::judge::{BACKWARDS, FORWARDS, GAP, SLIP};
+use super::judge::{BACKWARDS, FORWARDS, GAP, SLIP, point};
 use super::many::{Answer, Answers, Asked, Friction, answers};
 use super::{State, Tangent};
 use crate::hybrid::simulation::Simulation;
-use crate::jets::Point;
 use crate::model::Contacts;
 use crate::numerics::Unsolved;
 
@@ -29,10 +28,7 @@ impl<'p> Simulation<'p> {
         let mut discrete = self.context.discrete().to_vec();
         write_states(contacts, &without_forces, &mut discrete);
         let mode = self.mode();
-        let n = self.here.q.len();
-        let (q, rest) = self.next.split_at(n);
-        let (v, discrete) = (&rest[..n], &*discrete);
-        let at = Point { q, v, discrete };
+        let at = point(&self.next, self.here.q.len(), &discrete);
         let tape = &contacts.decisions;
         self.expansion.begin(mode, at, None);
         self.expansion.expand(mode, tape, 0);

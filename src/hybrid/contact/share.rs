@@ -1,11 +1,11 @@
 //! How the friction of contacts that stick is shared, where their lines depend on each other: only what the forces come to together
 //! is determined then.
 //!
-//! Of contacts whose slips are one line the first has the friction of all. Beside these, a set of contacts sticks as long as *some*
-//! share of forces keeps each of them within what it can hold (the theorem of limit analysis: D. C. Drucker 1954). The shares that
-//! do are a polytope without a line in it, so that it has a corner if it is not empty: there as many contacts as forces are left
-//! undetermined push with the most friction that they can hold. Such a corner is what a mode can say, and the contacts stick until no
-//! corner is left.
+//! Of contacts whose slips are one line the first has the friction of all. Beside these, a set of contacts may stick as long as *some*
+//! share of forces keeps each of them within what it can hold: Coulomb's law asks no more of what sticks. (That nothing else may happen
+//! does not follow from it, D. C. Drucker 1954: other sets are judged by themselves.) The shares that do are a polytope without a line
+//! in it, so that it has a corner if it is not empty: there as many contacts as forces are left undetermined push with the most friction
+//! that they can hold. Such a corner is what a mode can say, and the contacts stick until no corner is left.
 
 use super::State;
 use super::geometry::{DEPENDENT, Geometry, Line};
@@ -128,84 +128,79 @@ impl Sharing {
         if self.changes.len() != count {
             return Vec::new();
         }
-        // Each force with its parts: itself, then how it changes with each of the changes.
-        let parts = |line: Line| {
-            let place = self.unknown.iter().position(|known| *known == line);
-            let change = |c: &Vec<f64>| place.map_or(0.0, |p| c[p]);
-            self.changes.iter().map(change).collect::<Vec<f64>>()
-        };
-        let limit = |k: usize| {
-            let mut sum = vec![0.0; count];
-            let also = self.joined.iter().filter(|(_, of)| *of == k);
-            for of in also.map(|(of, _)| *of).chain([k]) {
-                let normal = parts(Line::Normal(of));
-                let coefficient = at.static_friction(of);
-                (sum.iter_mut().zip(normal)).for_each(|(s, n)| *s += coefficient * n);
-            }
-            sum
-        };
-        let friction: Vec<(usize, Vec<f64>, Vec<f64>)> = (self.first.iter())
-            .map(|&k| (k, parts(Line::Tangent(k)), limit(k)))
-            .collect();
-        let normals: Vec<(f64, Vec<f64>)> = (0..forces.len())
+        let normals: Vec<Share> = (0..forces.len())
             .filter(|&k| self.places.contains(&Line::Normal(k)))
-            .map(|k| (forces[k].normal, parts(Line::Normal(k))))
+            .map(|k| self.share(forces[k].normal, &[(Line::Normal(k), 1.0)]))
             .collect();
-        let largest = forces.iter().fold(0.0_f64, |most, of| {
-            let all = [of.normal, of.friction, of.limit];
-            all.iter().fold(most, |most, force| most.max(force.abs()))
-        });
-        let keeps = |shares: &[f64]| {
-            let moved = |value: f64, parts: &[f64]| {
-                let terms = || parts.iter().zip(shares).map(|(p, s)| p * s);
-                let size = terms().fold(largest, |most, term| most.max(term.abs()));
-                (value + terms().sum::<f64>(), MAY_BE_ZERO * size)
-            };
-            let pushes = normals.iter().all(|(value, parts)| {
-                let (force, rounding) = moved(*value, parts);
+        let frictions: Vec<Friction> = (self.first.iter())
+            .map(|&k| self.friction(k, at, &forces[k]))
+            .collect();
+        let all = || {
+            forces
+                .iter()
+                .flat_map(|of| [of.normal, of.friction, of.limit])
+        };
+        let largest = all().fold(0.0, |most, force| f64::max(most, force.abs()));
+        let keeps = |changes: &[f64]| {
+            let pushes = |normal: &Share| {
+                let (force, rounding) = normal.after(changes, largest);
                 force >= -rounding
-            });
-            pushes
-                && friction.iter().all(|(k, of_friction, of_limit)| {
-                    let (held, rounding) = moved(forces[*k].friction, of_friction);
-                    let (limit, more) = moved(forces[*k].limit, of_limit);
-                    held.abs() <= limit + rounding + more
-                })
+            };
+            let holds = |of: &Friction| {
+                let (held, rounding) = of.held.after(changes, largest);
+                let (limit, more) = of.limit.after(changes, largest);
+                held.abs() <= limit + rounding + more
+            };
+            normals.iter().all(pushes) && frictions.iter().all(holds)
         };
         let mut found = Vec::new();
-        let sets = (0..1_u32 << friction.len()).filter(|set| set.count_ones() as usize == count);
+        let sets = (0..1_u32 << frictions.len()).filter(|set| set.count_ones() as usize == count);
         for set in sets {
-            let is_dropped = |i: &usize| set >> i & 1 == 1;
-            let dropped: Vec<usize> = (0..friction.len()).filter(is_dropped).collect();
-            let mut held = self.places.clone();
-            let others = (0..friction.len()).filter(|i| !is_dropped(i));
-            held.extend(others.map(|i| Line::Tangent(friction[i].0)));
+            let (mut held, mut dropped) = (self.places.clone(), Vec::new());
+            for (i, friction) in frictions.iter().enumerate() {
+                match set >> i & 1 == 1 {
+                    true => dropped.push(friction),
+                    false => held.push(Line::Tangent(friction.contact)),
+                }
+            }
             if geometry.independent(&held).len() < held.len() {
                 continue;
             }
             for signs in 0..1_u32 << count {
                 let sign = |i: usize| if signs >> i & 1 == 1 { -1.0 } else { 1.0 };
-                // At its limit: friction − sign · limit = 0.
-                let entry = |i: usize, j: usize| {
-                    let (_, of_friction, of_limit) = &friction[dropped[i]];
-                    of_friction[j] - sign(i) * of_limit[j]
-                };
-                let amount = |i: usize| {
-                    let of = forces[friction[dropped[i]].0];
-                    sign(i) * of.limit - of.friction
-                };
-                let ones = Dynamic(count).repeat(1.0);
-                let Ok(lu) = Lu::<f64, Dynamic>::factorize(entry, &ones) else {
-                    continue;
-                };
-                let shares = lu.solve(amount);
-                if keeps(&shares[..count]) {
-                    let at_limit = |(i, &d): (usize, &usize)| (friction[d].0, sign(i));
-                    found.push(dropped.iter().enumerate().map(at_limit).collect());
-                }
+                let corner = at_limits(&dropped, sign).filter(|changes| keeps(changes));
+                let at_limit = (0..count).map(|i| (dropped[i].contact, sign(i)));
+                found.extend(corner.map(|_| at_limit.collect()));
             }
         }
         found
+    }
+
+    /// A force that is so much in the share that is known, and the sum of parts of those along lines.
+    fn share(&self, value: f64, of: &[(Line, f64)]) -> Share {
+        let slope = |change: &Vec<f64>| {
+            let place = |line: Line| self.unknown.iter().position(|known| *known == line);
+            let parts = of
+                .iter()
+                .map(|&(line, part)| place(line).map_or(0.0, |p| part * change[p]));
+            parts.sum()
+        };
+        let slopes = self.changes.iter().map(slope).collect();
+        Share { value, slopes }
+    }
+
+    /// The friction of the first contact of a line.
+    fn friction(&self, contact: usize, at: &Places, forces: &Forces) -> Friction {
+        let joined = self.joined.iter().filter(|(_, first)| *first == contact);
+        let all = joined.map(|(of, _)| *of).chain([contact]);
+        let limit: Vec<_> = all
+            .map(|k| (Line::Normal(k), at.static_friction(k)))
+            .collect();
+        Friction {
+            contact,
+            held: self.share(forces.friction, &[(Line::Tangent(contact), 1.0)]),
+            limit: self.share(forces.limit, &limit),
+        }
     }
 
     /// Writes which contacts are dropped, and whose forces are not determined.
@@ -227,6 +222,44 @@ impl Sharing {
             set(shares(contacts, line), 1.0);
         }
     }
+}
+
+/// A force in one share of all, and how it changes from there.
+struct Share {
+    value: f64,
+    /// With each of the changes that have no effect.
+    slopes: Vec<f64>,
+}
+
+impl Share {
+    /// The force after these changes, and what it may be off by: a part of the largest term, or of what is `largest` else.
+    fn after(&self, changes: &[f64], largest: f64) -> (f64, f64) {
+        let terms = || {
+            self.slopes
+                .iter()
+                .zip(changes)
+                .map(|(slope, by)| slope * by)
+        };
+        let size = terms().fold(largest, |most, term| most.max(term.abs()));
+        (self.value + terms().sum::<f64>(), MAY_BE_ZERO * size)
+    }
+}
+
+/// The friction of a contact that sticks, and the most that it can hold.
+struct Friction {
+    contact: usize,
+    held: Share,
+    limit: Share,
+}
+
+/// The changes after which contacts, as many as there are changes, have as much friction as they can hold, each in a direction;
+/// `None` if no changes do that, or many.
+fn at_limits(all: &[&Friction], sign: impl Fn(usize) -> f64) -> Option<Vec<f64>> {
+    let count = all.len();
+    let entry = |i: usize, j: usize| all[i].held.slopes[j] - sign(i) * all[i].limit.slopes[j];
+    let lu = Lu::<f64, Dynamic>::factorize(entry, &Dynamic(count).repeat(1.0)).ok()?;
+    let changes = lu.solve(|i| sign(i) * all[i].limit.value - all[i].held.value);
+    Some((0..count).map(|i| changes[i]).collect())
 }
 
 /// The discrete state that says that a force is not determined.
