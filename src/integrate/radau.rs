@@ -276,7 +276,7 @@ where
         loop {
             let free = h.min(h_max);
             h = fit(h, remaining, h_max);
-            is_near_end |= h != free;
+            is_near_end |= h == remaining || h != free;
             let end = match h == remaining {
                 true => (t_end, 0.0),
                 false => add(origin.t, h, self.lost.t),

@@ -311,7 +311,7 @@ impl<F: Size> Taylor<F> {
         }
         let h_max = h_max.min(horizon);
         let h = fit(self.length, remaining, h_max);
-        is_near_end |= h != self.length.min(h_max);
+        is_near_end |= h == remaining || h != self.length.min(h_max);
         if from + h == from {
             return Err(StepError::Tolerance {
                 t: from,
