@@ -13,6 +13,8 @@ const SHARE: u32 = 100;
 
 /// The last checkpoint of a run, and what has come since its start.
 pub struct Checkpoints {
+    /// When the run is to end, s.
+    end: f64,
     begun: Instant,
     /// What it took to come to where it was begun, in an earlier run.
     before: Duration,
@@ -26,10 +28,11 @@ pub struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// None yet, of a run that begins now.
-    pub fn new() -> Self {
+    /// None yet, of a run to this end (s) that begins now.
+    pub fn new(end: f64) -> Self {
         let now = Instant::now();
         Checkpoints {
+            end,
             begun: now,
             before: Duration::ZERO,
             last: now,
@@ -66,6 +69,7 @@ impl Checkpoints {
         self.kept = Some(Kept {
             rows: self.rows,
             events: self.events,
+            end: self.end,
             wall_seconds: wall.as_secs_f64(),
             checkpoint,
         });

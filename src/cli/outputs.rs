@@ -23,10 +23,10 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Outputs to a folder, where there is one; a sketch for that, of which pictures show a `window` of time (s), or for a
+    /// Outputs of a run to this end (s) to a folder, where there is one; a sketch for that, of which pictures show a `window` of time (s), or for a
     /// `page`; the first transitions, as many as are `compared`.
     pub fn new(
-        layout: &Layout,
+        (layout, end): (&Layout, f64),
         folder: Option<&OutputFolder>,
         (page, window): (bool, Option<(f64, f64)>),
         compared: usize,
@@ -37,7 +37,7 @@ impl Outputs {
             window,
             jumps: Vec::new(),
             compared,
-            checkpoints: Checkpoints::new(),
+            checkpoints: Checkpoints::new(end),
         }
     }
 

@@ -31,7 +31,7 @@ nothing is written.
 the scene: `dalembert run SCENE --resume out --set end=10`. Model, choices, parameters, inputs, \
 initial state, accuracy, method, frozen coordinates, columns and the grid of the samples must be those of the \
 run, and its files as they were written; what does not fit is named. It goes on from the last checkpoint of the run, \
-of which one is taken every second or so; a shorter run is done again from its start. So the result is, to the last bit, that \
+of which one is taken every second or so; a shorter run, and one whose end is earlier now than it was, is done again from its start. So the result is, to the last bit, that \
 of a run that was never left. Pictures have straight lines between the rows before the checkpoint; where nothing is left to run the \
 folder stays as it is.
 
@@ -133,10 +133,16 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         true => usize::MAX,
         false => COMPARED,
     };
-    let mut outputs = Outputs::new(&layout, folder.as_ref(), (page, look.window), compared);
+    let mut outputs = Outputs::new(
+        (&layout, problem.end.time),
+        folder.as_ref(),
+        (page, look.window),
+        compared,
+    );
     let mut from = None;
     if let Some((folder, mut earlier)) = earlier {
         let kept = earlier.checkpoint().map_err(Failure::wrong_input)?;
+        let kept = kept.filter(|kept| kept.end <= problem.end.time);
         let replayed = outputs.replay(problem, &mut earlier, kept.as_ref());
         let tally = replayed.map_err(Failure::wrong_input)?;
         // Pictures are drawn from the dense output of the steps, and an earlier run has left no more of it than rows: where nothing is

@@ -14,6 +14,9 @@ pub struct Kept {
     pub rows: u64,
     /// Transitions.
     pub events: u64,
+    /// When the run was to end, s: it is a checkpoint of a run with that end or a later one. Steps of one with an earlier end might be
+    /// shaped by that.
+    pub end: f64,
     /// What it took to come there, s.
     pub wall_seconds: f64,
     /// The checkpoint.

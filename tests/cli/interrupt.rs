@@ -333,31 +333,32 @@ mod signals {
     fn a_long_run_goes_on_from_its_last_checkpoint_to_the_bit() {
         let home = tempfile::tempdir().unwrap();
         let scene = scene("tank_full_plate");
-        let endless = ["run", &scene, "--set", "record.every=0.1"];
-        let first = [&endless[..], &["--set", "end=1e6", "--out", "out"]].concat();
+        let tank = ["run", &scene, "--set", "record.every=0.1"];
+        let first = [&tank[..], &["--set", "end=6000", "--out", "out"]].concat();
         let begun = Instant::now();
         // A checkpoint is taken after a second.
         let output = interrupted_when(home.path(), &first, || begun.elapsed().as_secs() >= 2);
         assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
-        let [out, whole] = ["out", "whole"].map(|name| home.path().join(name));
+        let [out, whole, both] = ["out", "whole", "both"].map(|name| home.path().join(name));
         let ended = json(&out.join("summary.json"))["end"]["t"]
             .as_f64()
             .unwrap();
         let kept = json(&out.join(".dalembert-checkpoint"));
         let [rows, events] = ["rows", "events"].map(|key| kept[key].as_u64().unwrap());
         assert!(rows > 100 && events > 100, "{rows} {events}");
-        // It is the mark that the run goes on from it: what is before is taken as it is.
-        let until = format!("end={}", ended + 0.5);
-        let longer = [&endless[..], &["--set", &until]].concat();
-        ends_with(0, home.path(), &[&longer[..], &["--out", "whole"]].concat());
-        let resumed = [&longer[..], &["--resume", "out"]].concat();
-        ends_with(0, home.path(), &resumed);
-        same(&whole, &out);
+        // To the same end it goes on from there. A run with an earlier end is done again: its last steps are shaped by that.
+        for end in [ended + 0.5, 6000.0] {
+            let until = format!("end={end}");
+            let until = [&tank[..], &["--set", &until]].concat();
+            ends_with(0, home.path(), &[&until[..], &["--out", "whole"]].concat());
+            let resumed = ["--resume", "out", "--out", "both"];
+            ends_with(0, home.path(), &[&until[..], &resumed].concat());
+            same(&whole, &both);
+        }
         // A checkpoint that was changed is refused, and one of another list of limits.
         let path = out.join(".dalembert-checkpoint");
         let text = fs::read_to_string(&path).unwrap();
-        let later = format!("end={}", ended + 1.0);
-        let resumed = [&endless[..], &["--set", &later, "--resume", "out"]].concat();
+        let resumed = [&tank[..], &["--set", "end=6001", "--resume", "out"]].concat();
         fs::write(&path, text.replacen("\"rows\":", "\"rows\":1", 1)).unwrap();
         let output = ends_with(2, home.path(), &resumed);
         let said = stderr(&output);
