@@ -1,13 +1,12 @@
-"""Contacts and constraints that only some choices have: coordinates, discrete states and outputs are those of all choices.
+"""Contacts and constraints that only some choices have: coordinates and discrete states are those of all choices.
 
 A multiplier that a combination of choices does not use is idle: its acceleration is zero, or a mode of the reduced form holds it.
-An output of a contact that is not there is zero.
+Outputs are those of the contacts that are there.
 """
 
 import casadi as ca
 
 from .declarations import Declaration
-from .outputs import Output
 
 
 KINDS = {
@@ -24,10 +23,10 @@ def own(model, kind):
 
 
 def align(models):
-    """Gives all combinations of choices of a model the multipliers, discrete states and outputs of each."""
+    """Gives all combinations of choices of a model the multipliers and discrete states of each."""
     if len(models) < 2:
         return
-    for kind, make in (("coordinates", _idle_multiplier), ("discretes", _idle_discrete), ("outputs", _zero)):
+    for kind, make in (("coordinates", _idle_multiplier), ("discretes", _idle_discrete)):
         is_of_contacts, union = KINDS[kind], {}
         for model in models:
             for entry in getattr(model, kind):
@@ -62,10 +61,6 @@ def _idle_multiplier(model, of):
 def _idle_discrete(model, of):
     symbol = model.discrete(of.name, of.extra["values"], of.meaning)
     declaration = model.discretes.pop()
-    declaration.extra.update(of.extra)
+    declaration.extra.update(of.extra, idle=True)
     assert declaration.symbol is symbol
     return declaration
-
-
-def _zero(model, of):
-    return Output(of.name, of.unit, of.meaning, ca.SX(0), of.location, of.text or "0", lambda equations: ca.SX(0))

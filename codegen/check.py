@@ -47,8 +47,8 @@ def _expressions(model):
         for k, (coordinate, *parts) in enumerate(mode.forces):
             for part in parts:
                 yield part, f"force on `{coordinate.name()}` in mode `{mode.name}`", model.location(mode.forces, k)
-        for requirement, _, location in mode.requirements:
-            yield requirement, "requirement", location
+        for requirement in mode.requirements:
+            yield requirement.expression, "requirement", requirement.location
     for t in model.transitions:
         yield t.guard, f"guard of `{t.name}`", t.location
         if t.condition is not None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from . import arguments, derive, graph, limits, multipliers, units
+from .declarations import Requirement
 from .errors import caller_location
 
 OPEN, CLOSED, STICKS, SLIDES = "open", "closed", "sticks", "slides"
@@ -64,6 +65,8 @@ class Contact:
     is_ratchet: bool = False
     law: list = field(default_factory=list)
     """The rates after its impacts that the model states, as (coordinate, rate)."""
+    held_law: list = field(default_factory=list)
+    """The same where all that touch stick before, if they are others then."""
     held: list = field(default_factory=list)
     """Of a permanent contact in the form with multipliers, the constraints that hold it: its gap, its slip rate."""
 
@@ -94,6 +97,12 @@ class Contact:
         if self.slip is not None:
             rate = self.slip_rate_of(derive.configuration(model))
             self.held.append(multipliers.Constraint(f"{self.name}.slip", rate, self.location, True, force=f"{self.name}.friction"))
+
+    def require_normal(self, mode):
+        """Friction without a gap ends where its normal force pulls; one of parameters alone is what it is."""
+        if self.gap is None and not limits.is_of_parameters(mode.model, self.normal):
+            mode.requirements.append(Requirement(
+                self.normal, f"the normal force of `{self.name}` would pull", self.location, may_vanish=True))
 
     def is_reducible(self):
         """Whether its gap and its slip are coordinates, and its impacts are Newton's without a slip that turns back."""
@@ -203,7 +212,7 @@ def _is_of_rates(model, what, expression):
     return not slopes.is_zero()
 
 
-def declare_impact(model, name, rates):
+def declare_impact(model, name, rates, held):
     """Adds a law of the model's own for the impacts of a contact; see `Model.impact`."""
     with_gap = [c for c in model.contacts if c.gap is not None and not c.is_ratchet]
     contact = next((c for c in with_gap if c.name == name), None)
@@ -212,33 +221,45 @@ def declare_impact(model, name, rates):
         raise model.error(f"impact: there is no contact `{name}` with a gap above (contacts: {known})")
     if contact is not None and contact.law:
         raise model.error(f"impact of `{name}`: its law is stated twice")
+    law = _law(model, f"impact of `{name}`", "its rates", rates)
+    if not law:
+        raise model.error(f"impact of `{name}`: it lists no rates")
+    held_law = [] if held is None else _law(model, f"impact of `{name}` while others stick", "`held`", held)
+    # A contact that is switched off, or held for good, has no impacts.
+    if contact is not None and not contact.permanent:
+        contact.law, contact.held_law = law, law if held is None else held_law
+
+
+def _law(model, of, what, rates):
+    """Rates after an impact, as (coordinate, value)."""
     law = []
     declared = {c.symbol.rate.element_hash(): c for c in model.coordinates}
     places = [s for c in model.coordinates + model.motions for s in (c.symbol, c.symbol.rate)]
-    allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters)]}
-    for rate, value in arguments.pairs(model, f"impact of `{name}`: its rates", rates, "(rate, value just after)"):
-        of = declared.get(rate.element_hash()) if isinstance(rate, ca.SX) else None
-        if of is None:
-            raise model.error(f"impact of `{name}`: {arguments.shown(rate)} is not the rate of a coordinate")
-        what = f"impact of `{name}`: `{of.name}.rate`"
-        value = arguments.expression(model, what, value)
+    allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters), *_by_hand(model)]}
+    for rate, value in arguments.pairs(model, f"{of}: {what}", rates, "(rate, value just after)"):
+        coordinate = declared.get(rate.element_hash()) if isinstance(rate, ca.SX) else None
+        if coordinate is None:
+            raise model.error(f"{of}: {arguments.shown(rate)} is not the rate of a coordinate")
+        entry = f"{of}: `{coordinate.name}.rate`"
+        value = arguments.expression(model, entry, value)
         for symbol in ca.symvar(value):
             if symbol.element_hash() not in allowed:
-                raise model.error(f"{what} depends on `{symbol.name()}`; it depends on coordinates, rates, motions of the ground and"
-                                  " parameters alone")
+                raise model.error(f"{entry} depends on `{symbol.name()}`; it depends on coordinates, rates, motions of the ground,"
+                                  " discrete states and parameters alone")
         operation = graph.non_smooth_operation(value, [p.symbol for p in model.parameters])
         if operation:
-            raise model.error(f"{what}: `{operation}` is not smooth")
+            raise model.error(f"{entry}: `{operation}` is not smooth")
         try:
             units.dimension_of(value - rate, model.dimensions)
         except units.UnitError as error:
-            raise model.error(f"{what}: {error}") from None
-        law.append((of.symbol, value))
-    if not law:
-        raise model.error(f"impact of `{name}`: it lists no rates")
-    # A contact that is switched off, or held for good, has no impacts.
-    if contact is not None and not contact.permanent:
-        contact.law = law
+            raise model.error(f"{entry}: {error}") from None
+        law.append((coordinate.symbol, value))
+    return law
+
+
+def _by_hand(model):
+    """The discrete states that the model declares: only its transitions change them."""
+    return [d.symbol for d in model.discretes if "of_contacts" not in d.extra]
 
 
 def declare_constraint(model, name, expressions, switch):
@@ -261,14 +282,14 @@ def declare_constraint(model, name, expressions, switch):
 
 
 def _of_motion(model, what, expression, rates):
-    """An expression in coordinates, motions of the ground and parameters, and in `rates` where these are allowed."""
+    """An expression in coordinates, motions of the ground, discrete states and parameters, and in `rates` where these are allowed."""
     places = [c.symbol for c in model.coordinates + model.motions]
-    allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters)]}
+    allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters), *_by_hand(model)]}
     allowed |= {s.rate.element_hash() for s in places} if rates else set()
     for symbol in ca.symvar(expression):
         if symbol.element_hash() not in allowed:
             raise model.error(f"{what}, `{units.short(expression)}`, depends on `{symbol.name()}`; it depends on coordinates"
-                              f"{', rates' if rates else ''}, motions of the ground and parameters alone")
+                              f"{', rates' if rates else ''}, motions of the ground, discrete states and parameters alone")
     operation = graph.non_smooth_operation(expression, [p.symbol for p in model.parameters])
     if operation:
         raise model.error(f"{what}, `{units.short(expression)}`: `{operation}` is not smooth; declare one contact or constraint for each"

@@ -45,6 +45,16 @@ class Body:
 
 
 @dataclass
+class Requirement:
+    """An expression that a mode requires to be positive, or, of what `may_vanish`, not to be negative."""
+
+    expression: ca.SX
+    failure: str
+    location: str
+    may_vanish: bool = False
+
+
+@dataclass
 class Falls:
     """A guard: the mode is inadmissible once `expression` falls through zero."""
 
@@ -63,3 +73,5 @@ class Transition:
     reset: list
     impact: bool
     location: str
+    is_chart: bool = False
+    """Whether it leads to the same state in other coordinates; see `Model.chart`."""

@@ -54,7 +54,7 @@ def describe(name, models, chosen, constants, for_tests):
             for set_name, meaning, values in model.parameter_sets],
         "inputs": list(_inputs(model)),
         "discretes": [{"name": d.name, "values": [_number(v) for v in d.values], "meaning": d.meaning,
-                       "internal": "internal" in d.extra}
+                       "given": _is_given(variants, d.name)}
                       for d in model.discretes],
         "choices": [{"name": c[0], "options": list(c[1]), "meaning": c[2]} for c in model.choices],
         "combinations": [[c[3] for c in m.choices] for m in models],
@@ -91,14 +91,7 @@ def declared_coordinate(c):
 def _coordinate(model, c):
     reaction_unit = c.extra.get("multiplier") or _reaction_unit(c.unit)
     return {"name": c.name, **declared_coordinate(c), "reaction_unit": reaction_unit,
-            "multiplier": "multiplier" in c.extra, "impulse": _impulse(model, c)}
-
-
-def _impulse(model, c):
-    """Which output the rate of a multiplier is; other choices may leave it out, so that it is told by its name."""
-    if "impulse" not in c.extra:
-        return None
-    return next(i for i, output in enumerate(model.outputs) if output.name == c.impulse.name)
+            "multiplier": "multiplier" in c.extra}
 
 
 def _fixed_bound(bound):
@@ -129,8 +122,27 @@ def _held_at(value):
     return {"number": _number(value)} if value.is_constant() else {"expression": units.short(value)}
 
 
-def _variant(variant, tables):
+def _is_given(variants, name):
+    """Whether a scene may give a discrete state: not one of contacts whose states say all."""
+    declared = ((variant, d) for variant in variants for d in variant.model.discretes if d.name == name)
+    return any("of_contacts" not in d.extra or "idle" not in d.extra and variant.model.modes[0].form is None for variant, d in declared)
+
+
+def _is_seen(variant, discrete):
+    """Whether people see a discrete state: one that says more than other states do, and that something depends on."""
+    if "internal" in discrete.extra or "idle" in discrete.extra:
+        return False
+    if "of_contacts" in discrete.extra:
+        return True
+    own = [f.expression for slot, f in variant.functions.items() if slot[1] != "reset"]
+    set_by_hand = any(symbol is discrete.symbol for t in variant.model.transitions for symbol, _ in t.reset)
+    return set_by_hand or any(ca.depends_on(expression, discrete.symbol) for expression in own)
+
+
+def _variant(variant, tables, seen=None):
     model, lean = variant.model, variant.lean
+    if seen is None:
+        seen = [i for i, d in enumerate(model.discretes) if _is_seen(variant, d)]
     barred = [k for k, i in enumerate(model.inputs) for m in model.motions if m.name == i.motion and not m.available]
     index = {m.name: k for k, m in enumerate(model.modes)}
     validity = [(limits.is_of_parameters(model, entry.margin), {"condition": entry.text, "sentence": entry.sentence})
@@ -145,6 +157,7 @@ def _variant(variant, tables):
         "contacts": contact_outputs.described(model),
         "limits": [{"name": limit.name, "message": limit.message, "text": limit.text, "ends": bool(limit.ends)}
                    for limit in model.limits],
+        "discretes": seen,
         "outputs": [{"name": o.name, "unit": o.unit, "meaning": o.meaning, "text": o.text or units.short(o.expression, 200)}
                     for o in model.outputs],
         "valid_motion": [entry for of_parameters, entry in validity if not of_parameters],
@@ -154,7 +167,7 @@ def _variant(variant, tables):
         "declared": {"function": tables.value(variant.declared), "count": limits.of_parameters(model).numel()},
         "lean": None if lean is None else {
             "without": [k for k, i in enumerate(model.inputs) if i.motion in [m.name for m in lean.modes[0].absent]],
-            "variant": _variant(lean, tables)},
+            "variant": _variant(lean, tables, seen)},
     }
 
 
@@ -179,8 +192,8 @@ def _mode(variant, i, equations, tables):
         "drifts": [c.name in mode.drift for c in model.coordinates],
         "guards": [_guard(variant, i, g, functions, tables) for g in range(len(equations.guards))],
         "requirements": [
-            {"text": units.short(requirement, 200), "failure": failure, "unit": _unit(model, requirement)}
-            for requirement, failure, _ in mode.requirements],
+            {"text": units.short(r.expression, 200), "failure": r.failure, "unit": _unit(model, r.expression),
+             "may_vanish": r.may_vanish} for r in mode.requirements],
         "margins": [
             None if analysis.is_constant(model, equations, margin) else analysis.shape(model, equations, margin)
             for margin in equations.margins],
@@ -214,7 +227,7 @@ def _transition(variant, i, g, t, functions, tables):
     return {
         "name": transition.name,
         "target": [m.name for m in variant.model.modes].index(transition.target.name),
-        "changes": list(transition.changes), "impact": bool(transition.impact),
+        "changes": list(transition.changes), "impact": bool(transition.impact), "is_chart": bool(transition.is_chart),
         "reset": tables.value(reset.symbol), "stays": bool(reset.stays),
         "condition": condition and {"function": tables.value(condition.symbol), "count": condition.output.numel()},
         "conditions": variant.tapes[i, "conditions", g, t],

@@ -53,8 +53,8 @@ def check(model):
             _check_unit(value, table.get(symbol.name()), table,
                         f"transition `{transition.name}`: reset of `{symbol.name()}`", transition.location)
     for mode in model.modes:
-        for requirement, _, location in mode.requirements:
-            _check_unit(requirement, None, table, "requirement", location)
+        for requirement in mode.requirements:
+            _check_unit(requirement.expression, None, table, "requirement", requirement.location)
     for of in (limits, outputs):
         of.check_units(model, lambda expression, want, what, location: _check_unit(expression, want, table, what, location))
 

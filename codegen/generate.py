@@ -351,7 +351,7 @@ def _mode_functions(variant, equations, slot, prefix):
         reactions[i] = reaction
     equations.margins = limits.margins(equations)
     requirements = ca.vertcat(
-        *[equations.place(r[0], r[2]) for r in equations.mode.requirements], *equations.margins)
+        *[equations.place(r.expression, r.location) for r in equations.mode.requirements], *equations.margins)
     for what, output in (
         ("residual", equations.r),
         ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),

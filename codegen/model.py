@@ -14,7 +14,7 @@ from casadi import atan2, cos, exp, pi, sin, sqrt, tan  # noqa: F401  (for model
 
 from . import arguments, contacts, drawing, limits, outputs, units
 from .context import CONTEXT
-from .declarations import Body, Coordinate, Declaration, Discrete, Falls, Transition
+from .declarations import Body, Coordinate, Declaration, Discrete, Falls, Requirement, Transition
 from .errors import ModelError, caller_location
 from .graph import structure  # noqa: F401  (for model files)
 
@@ -99,6 +99,7 @@ class Model:
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
         self.contacts, self.constraints, self.switched_off, self.by_multipliers = [], [], [], False
+        self.charts = []
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -275,10 +276,11 @@ class Model:
         contacts."""
         contacts.declare(self, name, None, slip, normal, static, kinetic, 0, 0, switch)
 
-    def impact(self, contact, rates):
+    def impact(self, contact, rates, *, held=None):
         """A law of the model's own for what happens when a contact, by its name, strikes, in place of the general one: a list of
-        (rate, value just after), in terms of the state just before. What it does not list stays. No gap may close after it."""
-        contacts.declare_impact(self, contact, rates)
+        (rate, value just after), in terms of the state just before. What it does not list stays. No gap may close after it.
+        `held` is such a list for where all friction of what touched before sticks, if that is another."""
+        contacts.declare_impact(self, contact, rates, held)
 
     def multipliers(self):
         """Contacts are held by multipliers, even where coordinates would do: as for a law of impact other than Newton's, which
@@ -343,16 +345,31 @@ class Model:
         what = f"transition `{name}`"
         arguments.mode(self, f"{what}: its source", source)
         arguments.mode(self, f"{what}: its target", target)
-        if not isinstance(when, Falls):
-            raise self.error(f"{what}: `when` must be falls(…) or rises(…)")
+        guard, resets = self._guard_and_resets(what, when, reset)
         conditions = [] if provided is None else provided if isinstance(provided, (list, tuple)) else [provided]
         conditions = [arguments.expression(self, f"{what}: a condition", c) for c in conditions]
-        resets = arguments.pairs(self, f"{what}: `reset`", reset, "(coordinate, rate or discrete state, value)")
         self.transitions.append(Transition(
-            name, source, target, arguments.expression(self, f"{what}: its guard", when.expression),
-            ca.vertcat(*conditions) if conditions else None,
-            [(symbol, arguments.expression(self, f"{what}: what {arguments.shown(symbol)} is reset to", value))
-             for symbol, value in resets], impact, caller_location(self.file)))
+            name, source, target, guard, ca.vertcat(*conditions) if conditions else None, resets, impact, caller_location(self.file)))
+
+    def chart(self, name, *, when, reset):
+        """Other coordinates of the same state, where those so far end, of a model with contacts: when the guard falls through zero,
+        in every mode, what `reset` lists is set, in terms of the values before.
+
+        Nothing moves by it, and it is no event: it is neither recorded nor counted. Gaps and slips must be the same before
+        and after, and energies, but for their rounding; a discrete state says which coordinates they are. (A tank that rocks about one
+        of two edges: an uplift angle, the place of the present edge, and which edge that is.)
+        """
+        arguments.name(self, "chart", name)
+        guard, resets = self._guard_and_resets(f"chart `{name}`", when, reset)
+        self.charts.append((name, guard, resets, caller_location(self.file)))
+
+    def _guard_and_resets(self, what, when, reset):
+        if not isinstance(when, Falls):
+            raise self.error(f"{what}: `when` must be falls(…) or rises(…)")
+        resets = arguments.pairs(self, f"{what}: `reset`", reset, "(coordinate, rate or discrete state, value)")
+        return arguments.expression(self, f"{what}: its guard", when.expression), [
+            (symbol, arguments.expression(self, f"{what}: what {arguments.shown(symbol)} is reset to", value))
+            for symbol, value in resets]
 
     def rest(self, source, target):
         """A mode at the limit of infinitely many events in finite time, some of which lead to `source`.
@@ -376,7 +393,7 @@ class Model:
         """Stops the run with the reason `failure` where `positive` is not > 0."""
         arguments.mode(self, "what a requirement is of", mode)
         arguments.text(self, "requirement: what its failure means", failure)
-        mode.requirements.append((self._expression("requirement", positive), failure, caller_location(self.file)))
+        mode.requirements.append(Requirement(self._expression("requirement", positive), failure, caller_location(self.file)))
 
     def limit(self, name, message, *, when, ends=True, modes=None):
         """A limit state: reached where the comparison `when`, such as `theta > pi / 2`, first holds.

@@ -142,8 +142,8 @@ class _Check:
         for mode in model.modes:
             for k, (coordinate, force, _) in enumerate(mode.forces):
                 refuse(mode, force, f"force on `{coordinate.name()}` in mode `{mode.name}`", model.location(mode.forces, k))
-            for requirement, _, location in mode.requirements:
-                refuse(mode, requirement, "requirement", location)
+            for requirement in mode.requirements:
+                refuse(mode, requirement.expression, "requirement", requirement.location)
         for t in model.transitions:
             refuse(t.source, t.guard, f"guard of `{t.name}`", t.location)
             for condition in ca.vertsplit(t.condition) if t.condition is not None else ():

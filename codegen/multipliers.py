@@ -24,7 +24,7 @@ import casadi as ca
 import numpy as np
 
 from . import derive, graph, limits, units
-from .declarations import Declaration
+from .declarations import Declaration, Transition
 from .errors import ModelError
 from .outputs import Output
 
@@ -152,9 +152,10 @@ def build(model):
         mode.location = (model.contacts + model.constraints)[0].location
     for mode in model.modes:
         mode.form = form
+        for name, guard, resets, location in model.charts:
+            model.transitions.append(Transition(name, mode, mode, guard, None, resets, False, location, is_chart=True))
         for contact in contacts:
-            if contact.gap is None and not limits.is_of_parameters(model, contact.normal):
-                mode.requirements.append((contact.normal, f"the normal force of `{contact.name}` would pull", contact.location))
+            contact.require_normal(mode)
 
 
 def _check_independent(model, constraints):
@@ -334,14 +335,15 @@ class MultiplierEquations(derive.ModeEquations):
 
     def places(self):
         """Ten a contact: g, ġ, γ, μ_s, μ_k, e, e_T, and what times the unit roundoff bounds the rounding of the first three; four
-        a constraint: φ, φ̇ and the same of these; the rates after impacts that the model states."""
+        a constraint: φ, φ̇ and the same of these; the rates after impacts that the model states, of each contact those and those where
+        all that touch stick."""
         columns = [ca.SX(0, 1)]
         for of in self.terms:
             three = [of.gap, of.gap_rate, of.slip_rate]
             columns += [*three, of.static, of.kinetic, of.restitution, of.tangential_restitution, *[graph.running_error(e) for e in three]]
         for value, rate, _ in self.held_terms:
             columns += [value, rate, graph.running_error(value), graph.running_error(rate)]
-        columns += [self.freeze(value) for contact in self.form.contacts for _, value in contact.law]
+        columns += [self.freeze(value) for contact in self.form.contacts for law in (contact.law, contact.held_law) for _, value in law]
         return ca.vertcat(*columns)
 
     def inertia(self):
@@ -362,13 +364,17 @@ class MultiplierEquations(derive.ModeEquations):
         coordinate = lambda symbol: None if symbol is None else next(i for i, c in enumerate(model.coordinates) if c.symbol is symbol)
         discrete = lambda symbol: None if symbol is None else next(i for i, d in enumerate(model.discretes) if d.symbol is symbol)
         form, count = self.form, len(self.form.contacts)
+        ground = ca.vertcat(ca.SX(0, 1), *[s for m in model.motions for s in (m.symbol, m.symbol.rate)])
+        places = [c.gap_expression for c in form.contacts if c.gap is not None] + [c.expression for c in form.constraints]
         return {
+            "moved": any(ca.depends_on(place, ground) for place in places) if ground.numel() else False,
             "contacts": [{
                 "name": contact.name, "is_ratchet": contact.is_ratchet, "normal": coordinate(form.normals[k]), "tangent": coordinate(form.tangents[k]),
                 "closed": discrete(form.closed[k]), "direction": discrete(form.directions[k]),
                 "shares": discrete(form.shares[k]), "dropped": discrete(form.dropped[k]), "at_limit": discrete(form.at_limit[k]),
                 "joined": [discrete(form.joined.get((k, j))) for j in range(count)],
                 "law": [coordinate(symbol) for symbol, _ in contact.law],
+                "held_law": [coordinate(symbol) for symbol, _ in contact.held_law],
             } for k, contact in enumerate(form.contacts)],
             "constraints": [{
                 "name": c.name, "multiplier": coordinate(c.multiplier), "shares": discrete(form.shares[count + k]),

@@ -24,11 +24,14 @@ class NotReducible(ModelError):
 def expand(model):
     """Adds the modes, transitions and rests of a model with contacts or constraints; those of any other stay as they are."""
     if not model.contacts and not model.constraints:
+        if model.charts:
+            name, _, _, location = model.charts[0]
+            raise ModelError(f"chart `{name}`: the model has no contacts; a change of coordinates by hand is a transition", location)
         if model.switched_off and not model.modes:
             model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
         return
     # Modes by hand have all sets of contact states each.
-    if model.modes or not _reduce(model):
+    if model.modes or model.charts or not _reduce(model):
         multipliers.build(model)
     contact_outputs.add(model)
 
@@ -104,14 +107,9 @@ class Expansion:
                 mode.friction(contact.slip.coordinate, normal=contact.normal_force(mode), coefficient=contact.kinetic,
                               direction=contact.slip.sign * contact.direction, against=contact.slip.value())
                 model.locations[id(mode.forces), len(mode.forces) - 1] = contact.location
-            if contact.gap is None and not contact.permanent:
-                self._require_normal(mode, contact)
+            if not contact.permanent:
+                contact.require_normal(mode)
         return mode
-
-    def _require_normal(self, mode, contact):
-        """Friction without a gap ends where its normal force pulls; one of parameters alone is what it is."""
-        if not limits.is_of_parameters(self.model, contact.normal):
-            mode.requirements.append((contact.normal, f"the normal force of `{contact.name}` would pull", contact.location))
 
     def _add(self, contact, verb, states, target, when, reset=(), provided=None, impact=False):
         target = self.modes.get(tuple(target))

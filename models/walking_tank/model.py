@@ -21,15 +21,21 @@ rules = model.choice(
     "rules", ("reactions", "paper") if equations == "derived" else ("paper",),
     "what starts rocking and slipping, and the normal force of the kinetic friction: the reactions, or"
     " the paper's conditions (5)-(9) and force (4)")
+may_fly = equations == "derived" and rules == "reactions"
 landing = model.choice(
-    "landing", ("momenta", "velocities") if equations == "derived" else ("velocities",),
-    "what a landing keeps of the other motions: their momenta, or their velocities",
+    "landing",
+    ("momenta", "velocities", "contact") if may_fly else ("momenta", "velocities") if equations == "derived" else ("velocities",),
+    "what a landing does: the uplift rate is turned back, and the other motions keep their momenta, or their velocities; or an edge"
+    " strikes as any contact does",
     default="momenta" if rules == "reactions" else "velocities")
+edges = model.choice(
+    "edges", ("contacts",) if landing == "contact" else ("modes", "contacts") if may_fly else ("modes",),
+    "how the edges stand on the ground: by modes written by hand, or each by a contact")
 
 # Masses, first moments and inertias of the full plate; the doughnut is a parameter set.
 M_0 = model.parameter("M_0", "kg", 50.3, "mass of the contents", above=0)
 M_I = model.parameter("M_I", "kg", 0.782 * 50.3, "effective mass of liquid for bulging", above=0, at_most=M_0)
-M_E = model.parameter("M_E", "kg", 50.3, "effective mass of liquid for rocking", above=0)
+M_E = model.parameter("M_E", "kg", 50.3, "effective mass of liquid for rocking", above=0, at_most=M_0)
 M_rb = model.parameter("M_rb", "kg", 0.782 * 50.3, "effective mass of liquid for rocking-bulging interaction", minimum=0, at_most=M_I)
 M_S = model.parameter("M_S", "kg", 7.477, "mass of shell and bottom plate", above=0)
 I_E = model.parameter("I_E", "kg m^2", 5.198, "moment of inertia of M_E about the pivot edge", above=0)
@@ -45,6 +51,7 @@ damping = model.parameter("damping", "1", 0.05, "damping ratio of bulging", mini
 mu_s = model.parameter("mu_s", "1", 0.2, "static friction coefficient", minimum=0)
 mu_k = model.parameter("mu_k", "1", 0.19, "kinetic friction coefficient", minimum=0, at_most=mu_s)
 e = model.parameter("e", "1", 0.6, "restitution of the uplift rate at a landing", minimum=0, maximum=1)
+e_edge = model.parameter("e_edge", "1", 0, "with landing = contact: restitution of an edge", minimum=0, maximum=1)
 g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
 B_plate = model.parameter(
     "B_plate", "N m", 309.0, "flexural rigidity of the bottom plate; tells whether it is rigid and acts on nothing else", above=0)
@@ -73,7 +80,10 @@ model.point_mass(  # bulging liquid that rocks with the tank
     mass=M_rb,
     position=(x + side * R_I * sin(alpha_I - theta) + x_I * cos(theta),
               y + R_I * cos(alpha_I - theta) + side * x_I * sin(theta)))
-model.point_mass(mass=M_I - M_rb, position=(x + x_I, y))  # bulging liquid that does not rock
+# Liquid that does not rock stands on the ground. The modes by hand, which hold y, let it move with y, so that the reaction of y is
+# the normal force of all.
+level = y if edges == "modes" else 0 * y
+model.point_mass(mass=M_I - M_rb, position=(x + x_I, level))  # bulging liquid that does not rock
 model.rigid_body(  # shell and bottom plate
     mass=M_S, inertia=I_S - M_S * R_S**2, angle=side * theta,
     position=(x + side * R_S * sin(alpha_S - theta), y + R_S * cos(alpha_S - theta)))
@@ -82,20 +92,18 @@ model.rigid_body(  # shell and bottom plate
 # and vertical momentum. It moves with the base, y, and with the ground.
 moment = M_E * R_0 * cos(alpha_0 - theta) - M_rb * R_I * cos(alpha_I - theta)
 moment_rate = (M_E * R_0 * sin(alpha_0 - theta) - M_rb * R_I * sin(alpha_I - theta)) * theta.rate
-rest = M_0 - M_I
+rest = M_0 - M_I if edges == "modes" else M_E - M_rb
 rise = y.rate + z_v.rate
 model.kinetic((I_E - M_rb * R_I**2) * theta.rate**2 / 2 + moment_rate * rise + rest * rise**2 / 2)
 model.potential(g * moment + rest * g * (y + z_v))
+if edges == "contacts":
+    still = M_0 - M_I - rest
+    model.kinetic(still * z_v.rate**2 / 2)
+    model.potential(still * g * z_v)
 
 omega = 2 * pi * frequency
 model.potential(M_I * omega**2 * x_I**2 / 2)
 model.dissipation(damping * M_I * omega * x_I.rate**2)
-
-stands_sticks = model.mode("stands_sticks", "on the whole base, held by friction", freeze=[(theta, 0), x, (y, 0)])
-rocks_sticks = model.mode("rocks_sticks", "about one edge, held by friction", freeze=[x, (y, 0)])
-stands_slides = model.mode("stands_slides", "on the whole base, slipping", freeze=[(theta, 0), (y, 0)])
-rocks_slides = model.mode("rocks_slides", "about one edge, slipping", freeze=[(y, 0)])
-
 
 def printed(number, moduli=(), slipped_unit=1):
     """The value of an equation of the paper in the symbols of this model, as printed or, with
@@ -144,71 +152,108 @@ if equations != "derived":
         model.by_hand(coordinate, printed(number), check_units=False)
 
 
-def base_shear(mode):
-    return mode.reaction(x) if rules == "reactions" else printed("8")
+def by_hand():
+    stands_sticks = model.mode("stands_sticks", "on the whole base, held by friction", freeze=[(theta, 0), x, (y, 0)])
+    rocks_sticks = model.mode("rocks_sticks", "about one edge, held by friction", freeze=[x, (y, 0)])
+    stands_slides = model.mode("stands_slides", "on the whole base, slipping", freeze=[(theta, 0), (y, 0)])
+    rocks_slides = model.mode("rocks_slides", "about one edge, slipping", freeze=[(y, 0)])
+
+    def base_shear(mode):
+        return mode.reaction(x) if rules == "reactions" else printed("8")
 
 
-def normal_force(mode):
-    return mode.reaction(y) if rules == "reactions" else printed("9")
+    def normal_force(mode):
+        return mode.reaction(y) if rules == "reactions" else printed("9")
 
 
-# Slip and stick. Both directions have a guard of their own, since |R_x| is not smooth.
-for sticks, slides in ((stands_sticks, stands_slides), (rocks_sticks, rocks_slides)):
-    if rules == "reactions":
-        slides.friction(x, normal=slides.reaction(y), coefficient=mu_k, direction=slip)
-    else:
-        slides.force(x, -printed("4"))
-    held = [mu_s * normal_force(sticks) + base_shear(sticks), mu_s * normal_force(sticks) - base_shear(sticks)]
-    stops = falls(slip * x.rate)
-    model.transition("stick", slides, sticks, when=stops, provided=held)
-    if rules == "reactions":
-        for direction, margin in ((+1, held[0]), (-1, held[1])):
-            model.transition("slip", sticks, slides, when=falls(margin), reset=[(slip, direction)])
-        model.transition("reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)])
-    else:
-        # Conditions (7) and force (4) come from other sums than the equations of motion: where (7)
-        # holds but (4) would stop any slip at once, the tank sticks.
-        for direction, margin in ((+1, held[0]), (-1, held[1])):
-            model.transition(
-                "slip", sticks, slides, when=falls(margin), reset=[(slip, direction)],
-                provided=direction * x.acceleration)
-        model.transition(
-            "reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)],
-            provided=slip * x.acceleration)
-        model.transition("stick", slides, sticks, when=stops)
-
-# Lift-off about either edge, landing, and rest at the limit of an accumulation of landings.
-for stands, rocks, conserved in (
-    (stands_sticks, rocks_sticks, [x_I]),
-    (stands_slides, rocks_slides, [x_I, x]),
-):
-    if rules == "reactions":
-        for edge in (+1, -1):
-            model.transition("lift_off", stands, rocks, reset=[(side, edge)], when=falls(stands.reaction(theta, side=edge)))
-    else:
-        # Condition (5), one smooth guard for each sign of its moduli; (6) decides the pivot. The
-        # condition overstates the overturning moment, so uplift also needs (1) to lift the edge.
-        onsets = {structure(onset): onset for onset in (-printed("5", signs) for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)))}
-        for onset in onsets.values():
-            for edge, rule in ((+1, printed("6a", (), M_E * R_0)), (-1, -printed("6b", (), M_E * R_0))):
+    # Slip and stick. Both directions have a guard of their own, since |R_x| is not smooth.
+    for sticks, slides in ((stands_sticks, stands_slides), (rocks_sticks, rocks_slides)):
+        if rules == "reactions":
+            slides.friction(x, normal=slides.reaction(y), coefficient=mu_k, direction=slip)
+        else:
+            slides.force(x, -printed("4"))
+        held = [mu_s * normal_force(sticks) + base_shear(sticks), mu_s * normal_force(sticks) - base_shear(sticks)]
+        stops = falls(slip * x.rate)
+        model.transition("stick", slides, sticks, when=stops, provided=held)
+        if rules == "reactions":
+            for direction, margin in ((+1, held[0]), (-1, held[1])):
+                model.transition("slip", sticks, slides, when=falls(margin), reset=[(slip, direction)])
+            model.transition("reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)])
+        else:
+            # Conditions (7) and force (4) come from other sums than the equations of motion: where (7)
+            # holds but (4) would stop any slip at once, the tank sticks.
+            for direction, margin in ((+1, held[0]), (-1, held[1])):
                 model.transition(
-                    "lift_off", stands, rocks, when=falls(onset), reset=[(side, edge)],
-                    provided=[theta.acceleration, rule])
-    rate_after = -e * theta.rate if equations == "derived" else printed("10")
-    if landing == "momenta":
-        others = model.impact_velocities(
-            before=[], after=[(side, -side)], prescribed=[(theta, rate_after)], conserve=conserved)
-    else:
-        others = [(theta.rate, rate_after)]
-    if landing == "momenta" and rocks is rocks_slides:
-        # The horizontal momentum that rocking gives up may turn the slip round.
-        _, x_rate_after = others[-1]
-        others.append((slip, slip * (1 - 2 * (slip * x_rate_after < 0))))
-    model.transition("landing", rocks, rocks, when=falls(theta), impact=True, reset=[(theta, 0), (side, -side)] + others)
-    model.rest(rocks, stands)
+                    "slip", sticks, slides, when=falls(margin), reset=[(slip, direction)],
+                    provided=direction * x.acceleration)
+            model.transition(
+                "reversal", slides, slides, when=stops, reset=[(slip, -slip), (x.rate, 0)],
+                provided=slip * x.acceleration)
+            model.transition("stick", slides, sticks, when=stops)
 
-for mode in model.modes:
-    model.requires(mode, mode.reaction(y), "the normal force is not positive: the tank would leave the ground")
+    # Lift-off about either edge, landing, and rest at the limit of an accumulation of landings.
+    for stands, rocks, conserved in (
+        (stands_sticks, rocks_sticks, [x_I]),
+        (stands_slides, rocks_slides, [x_I, x]),
+    ):
+        if rules == "reactions":
+            for edge in (+1, -1):
+                model.transition("lift_off", stands, rocks, reset=[(side, edge)], when=falls(stands.reaction(theta, side=edge)))
+        else:
+            # Condition (5), one smooth guard for each sign of its moduli; (6) decides the pivot. The
+            # condition overstates the overturning moment, so uplift also needs (1) to lift the edge.
+            onsets = {structure(onset): onset for onset in (-printed("5", signs) for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)))}
+            for onset in onsets.values():
+                for edge, rule in ((+1, printed("6a", (), M_E * R_0)), (-1, -printed("6b", (), M_E * R_0))):
+                    model.transition(
+                        "lift_off", stands, rocks, when=falls(onset), reset=[(side, edge)],
+                        provided=[theta.acceleration, rule])
+        rate_after = -e * theta.rate if equations == "derived" else printed("10")
+        if landing == "momenta":
+            others = model.impact_velocities(
+                before=[], after=[(side, -side)], prescribed=[(theta, rate_after)], conserve=conserved)
+        else:
+            others = [(theta.rate, rate_after)]
+        if landing == "momenta" and rocks is rocks_slides:
+            # The horizontal momentum that rocking gives up may turn the slip round.
+            _, x_rate_after = others[-1]
+            others.append((slip, slip * (1 - 2 * (slip * x_rate_after < 0))))
+        model.transition("landing", rocks, rocks, when=falls(theta), impact=True, reset=[(theta, 0), (side, -side)] + others)
+        model.rest(rocks, stands)
+
+    for mode in model.modes:
+        model.requires(mode, mode.reaction(y), "the normal force is not positive: the tank would leave the ground")
+    return stands_sticks, rocks_sticks, stands_slides, rocks_slides
+
+
+def by_contacts():
+    """Two edges that touch and slide, and the liquid that does not rock, which stands on the ground and slides with the base."""
+    # Half of the width with which the weight of all that rocks turns about either edge by as much, whatever edge the coordinates
+    # are about: R sin α is the same for all parts but for the digits that are printed.
+    half = (M_E * R_0 * sin(alpha_0) + M_S * R_S * sin(alpha_S)) / (M_E + M_S)
+    core = M_0 - M_E
+    moves = model.mode("moves", "all that the edges can do")
+    for name, edge in (("left", +1), ("right", -1)):
+        other = 1 - edge * side
+        model.contact(
+            name, gap=y + other * half * sin(theta), slip=x - other * side * half * (1 - cos(theta)),
+            static=mu_s, kinetic=mu_k, restitution=e_edge)
+        if landing != "contact":
+            rates = [(theta, e * theta.rate), (y, -other * half * e * theta.rate * cos(theta))]
+            law = lambda conserve: model.impact_velocities(
+                before=[], after=[], prescribed=rates, conserve=conserve if landing == "momenta" else [])
+            model.impact(name, law([x_I, x]), held=law([x_I]))
+    model.friction("core", slip=x, normal=core * (g + z_v.acceleration), static=mu_s, kinetic=mu_k)
+    # At θ = 0 the other edge becomes that which the coordinates are about.
+    model.chart("edge", when=falls(theta), reset=[
+        (side, -side), (theta, -theta), (theta.rate, -theta.rate),
+        (y, y + 2 * half * sin(theta)), (y.rate, y.rate + 2 * half * cos(theta) * theta.rate)])
+    if landing != "contact":
+        model.requires(moves, moves.reaction(z_v) - core * (g + z_v.acceleration),
+                       "the normal force is not positive: the tank would leave the ground, for which this landing says nothing")
+
+
+modes = by_hand() if edges == "modes" else by_contacts()
 
 # Width and height of the tank are those that the centre of its contents, R_0 and alpha_0, says; the pivot edge is half a
 # width to the left or right of where the centre of the base has slipped to.
@@ -234,10 +279,15 @@ levels = [(part * height, sin(part * pi / 2) * x_I * side) for part in (0, 0.25,
 model.draw("liquid", [place(bulge, up) for up, bulge in levels]
            + [place(2 * half_width + bulge, up) for up, bulge in reversed(levels)], kind="liquid")
 model.draw("shell", [place(0, height), place(0, 0), place(2 * half_width, 0), place(2 * half_width, height)], kind="line")
-sticking, sliding = (stands_sticks, rocks_sticks), (stands_slides, rocks_slides)
-model.draw("pivot", [place(0, 0)], kind="contact", force=(z_h, y),
-           states=[(mode, "sticks") for mode in sticking] + [(mode, "slides") for mode in sliding])
-model.draw("other edge", [place(2 * half_width, 0)], kind="contact", states=[(stands_sticks, "sticks"), (stands_slides, "slides")])
+if edges == "modes":
+    stands_sticks, rocks_sticks, stands_slides, rocks_slides = modes
+    model.draw("pivot", [place(0, 0)], kind="contact", force=(z_h, y),
+               states=[(mode, "sticks") for mode in (stands_sticks, rocks_sticks)]
+               + [(mode, "slides") for mode in (stands_slides, rocks_slides)])
+    model.draw("other edge", [place(2 * half_width, 0)], kind="contact", states=[(stands_sticks, "sticks"), (stands_slides, "slides")])
+else:
+    for name, edge in (("left", +1), ("right", -1)):
+        model.draw(name, [place((1 - edge * side) * half_width, 0)], kind="contact", of=name)
 
 # Where the weight of tank and rocking liquid turns about the pivot edge the other way.
 weight_moment = M_E * R_0 * sin(alpha_0 - theta) + M_S * R_S * sin(alpha_S - theta)

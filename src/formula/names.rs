@@ -51,8 +51,8 @@ impl Names {
             let reaction = Read::Reaction(model.reaction(i));
             add(&format!("reaction.{name}"), reaction, unit);
         }
-        for (i, d) in model.own_discretes().iter().enumerate() {
-            add(d.name, Read::Discrete(i), "1");
+        for &i in &variant.discretes {
+            add(model.discretes[i].name, Read::Discrete(i), "1");
         }
         for input in &model.inputs {
             add(input.name, Read::Signal(input.signal), input.unit);

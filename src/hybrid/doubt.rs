@@ -181,6 +181,10 @@ impl Doubts {
         }
         let left = std::mem::take(&mut self.left);
         for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
+            if step.mode.guards[watched.guard].is_chart() {
+                // In either coordinates the motion is the same.
+                continue;
+            }
             let mut guard = step.guard(watched, equations, conditions);
             let end = method.state().clone();
             if !found.resolved {
@@ -258,6 +262,9 @@ impl Doubts {
     ) -> Option<Doubt> {
         let fallen = step.found.iter().position(|f| f.crossing.is_some())?;
         let watched = step.watched[fallen];
+        if step.mode.guards[watched.guard].is_chart() {
+            return None;
+        }
         let error = self.errors[step.index].get(fallen);
         // What it moves by, or has risen to, is by far more, as it mostly is.
         let enough = 2.0 * tolerances(1) * error.copied().unwrap_or(f64::INFINITY);

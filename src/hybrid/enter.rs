@@ -1,6 +1,6 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
-use super::contact::held_by_others;
+use super::contact::{Guarded, guarded_by_contacts, held_by_others};
 use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, watched_value};
@@ -9,7 +9,7 @@ use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
 use crate::integrate::{Size, Vector, determinant_sign};
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::model::{Guard, GuardShape};
+use crate::model::{Contacts, Guard, GuardShape};
 use crate::numerics::{Lu, Matrix};
 
 /// An acceleration is evidence at once where it is more than this part of the sum of its terms, the square root of the unit
@@ -60,6 +60,15 @@ impl<'p> Simulation<'p> {
             Some(contacts) => held_by_others(kernel, &mut self.context, contacts, [&q, &v]),
             None => Vec::new(),
         };
+        let guarded = match &mode.contacts {
+            Some(_) => {
+                let guards = self.at_zero.iter().map(|zero| zero.guard);
+                let opening: Vec<usize> = guards.filter(|g| g % Contacts::GUARDS == 0).collect();
+                let of = (mode, self.accuracy, &*opening);
+                guarded_by_contacts(kernel, &mut self.context, of, [&q, &v])
+            }
+            None => Vec::new(),
+        };
         for w in 0..self.plan.watched[self.here.mode].len() {
             let watched = self.plan.watched[self.here.mode][w];
             let guard = &mode.guards[watched.guard];
@@ -75,6 +84,20 @@ impl<'p> Simulation<'p> {
             };
             let context = &mut self.context;
             let own = watched_value(kernel, context, &mut conditions, guard, watched, at);
+            if let Some((_, told)) = guarded.iter().find(|(guard, _)| *guard == watched.guard) {
+                match *told {
+                    Guarded::Held => self.signs.remember(Watch::Dormant, f64::INFINITY),
+                    Guarded::Rises(contact) => self.signs.remember_as(contact),
+                    Guarded::Falls(_) => {
+                        self.signs.remember(Watch::Violated, 0.0);
+                        violation = violation.or(Some(Violation {
+                            guard: watched.guard,
+                            rests: false,
+                        }));
+                    }
+                }
+                continue;
+            }
             let zero = self.at_zero.iter().find(|zero| zero.guard == watched.guard);
             let vanishing = zero.map_or(0, |zero| zero.vanishing);
             if held.contains(&watched.guard) {
@@ -139,7 +162,10 @@ impl<'p> Simulation<'p> {
             }
         }
         self.signs.start();
-        self.at_zero.clear();
+        // A chart keeps them.
+        if violation.is_none() {
+            self.at_zero.clear();
+        }
         if violation.is_none() {
             let at = Free {
                 q: &q,

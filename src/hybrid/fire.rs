@@ -163,6 +163,21 @@ impl<'p> Simulation<'p> {
         self.arrive(name, self.here.shown)
     }
 
+    /// Makes `next`, the present state in other coordinates, the present state. Should the energies of a model tell the
+    /// coordinates apart, that is in the ledger, as what an impact loses.
+    pub fn take_chart(&mut self, name: &'static str) -> Stoppable<()> {
+        let before = (self.observers.ledger.is_some()).then(|| (self.stored_energy(), self.ground_momenta()));
+        self.leave_for_next();
+        if let Some(before) = before {
+            self.set_context();
+            let jump = self.energy_jump(before);
+            if let Some(ledger) = &mut self.observers.ledger {
+                ledger.add_jump(jump);
+            }
+        }
+        self.arrive(name, self.here.shown)
+    }
+
     /// Leaves the present state for `next`.
     #[inline(always)]
     fn leave_for_next(&mut self) {

@@ -13,7 +13,7 @@ use super::roots::{Isolation, Kind, Search, Watch};
 use super::search::{Coefficients, search_function, search_polynomial};
 use crate::integrate::{Motion, OneStep, Series, State};
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::model::{GuardShape, Mode};
+use crate::model::{GuardShape, Mode, Requirement};
 use crate::numerics::Size;
 
 /// Why a run ends at the end of a step.
@@ -22,11 +22,6 @@ pub(super) enum Ended {
     Unmet(Box<Reason>),
     /// A limit state.
     Limit,
-}
-
-/// Whether something that is required holds. Not where it is not a number.
-fn is_met(value: f64) -> bool {
-    value > 0.0
 }
 
 /// Whether a margin tells that something is reached.
@@ -114,7 +109,9 @@ impl Margins<'_> {
     /// Notes what the values tell to be reached at `t` (s), unless something that is required does not hold.
     fn judge(&mut self, mode: &Mode, t: f64) -> Stoppable<()> {
         let required = &self.values[..mode.requirements.len()];
-        if let Some(index) = required.iter().position(|value| !is_met(*value)) {
+        let is_met = |(requirement, value): (&Requirement, &f64)| requirement.is_met(*value);
+        let first_unmet = (mode.requirements.iter().zip(required)).position(|of| !is_met(of));
+        if let Some(index) = first_unmet {
             return Err(unmet(mode, index, required[index]));
         }
         for margin in 0..self.ends.len() {
@@ -147,7 +144,7 @@ impl Margins<'_> {
         let mut holds = true;
         for row in 0..required + self.ends.len() {
             let row_holds = match row.checked_sub(required) {
-                None => is_met(self.values[row]),
+                None => mode.requirements[row].is_met(self.values[row]),
                 Some(margin) if !self.is_pending(margin) => true,
                 Some(margin) if margin < of_model => self.values[row] >= 0.0,
                 Some(margin) => self.own_holds(mode, margin, series, tau),
@@ -317,7 +314,7 @@ impl Margins<'_> {
         let margin = row.checked_sub(mode.requirements.len());
         let (holds, shape) = match margin {
             None => (
-                is_met(begins),
+                mode.requirements[row].is_met(begins),
                 Some(GuardShape::General {
                     accelerations: true,
                     signals: true,

@@ -500,11 +500,12 @@ impl<'p> Simulation<'p> {
             });
         }
         let layout = &self.observers.layout;
-        let (n, discretes) = (layout.coordinates.len(), layout.discretes.len());
+        let n = layout.coordinates.len();
+        let seen = self.problem.variant().discretes.iter();
         Snapshot {
             q: self.here.q[..n].to_vec(),
             v: self.here.v[..n].to_vec(),
-            discrete: self.context.discrete()[..discretes].to_vec(),
+            discrete: seen.map(|&i| self.context.discrete()[i]).collect(),
             reactions,
             outputs,
         }

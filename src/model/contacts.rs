@@ -37,6 +37,8 @@ pub struct Contacts {
     pub contacts: Box<[Contact]>,
     /// The constraints, one an equation.
     pub constraints: Box<[Constraint]>,
+    /// Whether a gap or a constraint depends on how the ground moves.
+    pub moved: bool,
     /// What the contacts can do.
     pub(super) sets: ContactSets,
     /// What decides whether a set of states may go on, [`Contacts::DECISIONS`] a contact: λ_N, g̈, what is left before it slips
@@ -70,6 +72,8 @@ pub struct Contact {
     pub joined: Box<[Option<usize>]>,
     /// The coordinates whose rates after its impacts the model states; empty where the general law holds.
     pub law: Box<[usize]>,
+    /// The same where all friction of what touched before sticks.
+    pub held_law: Box<[usize]>,
 }
 
 /// One equation of a constraint.

@@ -73,8 +73,6 @@ pub struct Coordinate {
     pub reaction_unit: &'static str,
     /// Whether its acceleration is the force of a contact or a constraint, and its rate the impulse delivered so far.
     pub multiplier: bool,
-    /// Of a multiplier, the output that its rate is.
-    pub impulse: Option<usize>,
     /// Typical magnitude, in `unit`; the default absolute tolerance is relative tolerance × scale.
     pub scale: f64,
     /// Typical magnitude of the velocity, in `unit/s`.
@@ -165,8 +163,8 @@ pub struct Discrete {
     pub values: Box<[f64]>,
     /// Meaning.
     pub meaning: &'static str,
-    /// Whether it chooses rows of equations (`left.closed`) and says nothing that people do not see elsewhere.
-    pub internal: bool,
+    /// Whether a scene may say what it is at the start; that of a contact may follow from the rest of the state.
+    pub given: bool,
 }
 
 /// A modelling choice of a scene (a top-level key of the scene file).
@@ -200,7 +198,10 @@ pub struct Variant {
     pub contacts: Box<[DeclaredContact]>,
     /// Limit states.
     pub limits: Box<[Limit]>,
-    /// Outputs; names and units are the same under all options.
+    /// The discrete states that people see, by their indices: not those that choose rows of equations (`left.closed`), and none
+    /// that nothing depends on under these options.
+    pub discretes: Box<[usize]>,
+    /// Outputs. Those that the model declares are the same under all options, those of contacts are of the contacts that are there.
     pub outputs: Box<[Output]>,
     /// Under which conditions on the motion the model is meant.
     pub valid_motion: Box<[Validity]>,
@@ -335,6 +336,11 @@ impl Guard {
     pub fn is_general(&self) -> bool {
         matches!(self.shape, GuardShape::General { .. })
     }
+
+    /// Whether its fall leads to the same state in other coordinates, which is no event.
+    pub fn is_chart(&self) -> bool {
+        self.transitions.iter().any(|transition| transition.is_chart)
+    }
 }
 
 /// How a guard depends on the state.
@@ -378,13 +384,15 @@ pub struct Transition {
     pub changes: Box<[&'static str]>,
     /// Whether it is an impact: velocities may jump and energy may be lost.
     pub impact: bool,
+    /// Whether it leads to the same state in other coordinates, which is no event.
+    pub is_chart: bool,
     /// Its conditions, in the target mode; none if it is unconditional.
     pub conditions: Tape,
     /// The generated reset.
     pub kernel: TransitionKernel,
 }
 
-/// Something that must stay positive for the mode to mean anything (N > 0).
+/// Something that must stay positive for the mode to mean anything (N > 0), or of what `may_vanish` must not become negative.
 #[derive(Debug)]
 pub struct Requirement {
     /// The requirement as text.
@@ -393,6 +401,15 @@ pub struct Requirement {
     pub failure: &'static str,
     /// Unit.
     pub unit: &'static str,
+    /// Whether it holds where it is zero.
+    pub may_vanish: bool,
+}
+
+impl Requirement {
+    /// Whether it holds at a value, or at a bound of it. Not where this is not a number.
+    pub fn is_met(&self, value: f64) -> bool {
+        value > 0.0 || self.may_vanish && value == 0.0
+    }
 }
 
 impl Model {
@@ -413,10 +430,9 @@ impl Model {
         &all[..all.iter().filter(|c| !c.multiplier).count()]
     }
 
-    /// The discrete states that people see, which come first.
-    pub fn own_discretes(&self) -> &[Discrete] {
-        let all = &self.discretes;
-        &all[..all.iter().filter(|d| !d.internal).count()]
+    /// The discrete states that people see under the options of a variant.
+    pub fn seen_discretes<'m>(&'m self, variant: &'m Variant) -> impl Iterator<Item = &'m Discrete> {
+        variant.discretes.iter().map(|&i| &self.discretes[i])
     }
 
     /// Index of a reaction among those of all coordinates and motions of the ground, by its index among those that people see.

@@ -90,7 +90,7 @@ impl Layout {
                     Quantity::new(format!("{}.rate", c.name), rate_unit(c.unit), meaning)
                 })
                 .collect(),
-            discretes: (model.own_discretes().iter())
+            discretes: (model.seen_discretes(variant))
                 .map(|d| Quantity::new(d.name, "1", d.meaning))
                 .collect(),
             modes: ModeNames::of(variant),

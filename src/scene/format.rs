@@ -371,12 +371,7 @@ fn initial(model: Option<&Model>) -> Object {
         let rate = format!("velocity of {}", c.name);
         keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
     }
-    // Where all modes are sets of contact states, the state says in which way a contact slips.
-    let discretes = match by_multipliers {
-        true => &[],
-        false => model.own_discretes(),
-    };
-    for d in discretes {
+    for d in model.discretes.iter().filter(|d| d.given) {
         let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values.clone()));
         key.default = d.values.first().map(|&v| v.into());
         keys.push(key);

@@ -8,7 +8,7 @@ use super::interpret::under;
 use super::wording::{listing, shown};
 use crate::hybrid::Initial;
 use crate::kernel::{Context, with_kernel};
-use crate::model::{HeldAt, Mode, Model, Variant};
+use crate::model::{Discrete, HeldAt, Mode, Model, Variant};
 
 /// The coordinates to freeze, increasing. Each must be held still by some mode, or no equations
 /// without it exist.
@@ -140,6 +140,14 @@ pub(crate) fn initial(
         }
     }
 
+    let idle = |d: &Discrete| model.seen_discretes(variant).all(|seen| seen.name != d.name);
+    for d in model.discretes.iter().filter(|d| idle(d)) {
+        if let Some(given) = entry(d.name) {
+            let message = format!("nothing depends on `{}` under the choices of this scene", d.name);
+            let error = SceneError::new(SceneErrorKind::State { message }, &given.place);
+            errors.push(error.help("leave it out"));
+        }
+    }
     let q = model
         .coordinates
         .iter()

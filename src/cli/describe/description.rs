@@ -251,7 +251,7 @@ impl Description {
                     meaning: c.meaning,
                 })
                 .collect(),
-            discrete: (model.own_discretes().iter())
+            discrete: (model.seen_discretes(variant))
                 .map(|d| Discrete {
                     name: d.name,
                     values: d.values.clone(),

@@ -7,6 +7,9 @@ use crate::model::{Contacts, Transition};
 use crate::numerics::Size;
 
 use super::State;
+use super::event::GUARDS;
+use super::geometry::Line;
+use super::hold::{Places, hold};
 
 impl<'p> Simulation<'p> {
     /// Takes the first transition of a guard whose condition holds.
@@ -17,12 +20,57 @@ impl<'p> Simulation<'p> {
         guard: usize,
     ) -> Stoppable<()> {
         self.set_context();
+        if let Some(k) = self.closed_already(kernel, contacts) {
+            return self.contact_event(GUARDS * k);
+        }
         self.hold_here(kernel, contacts)?;
+        if self.mode().guards[guard].is_chart() {
+            return self.take_chart_by(kernel, contacts, guard);
+        }
         let t = self.chosen(kernel, guard)?;
         let transition = &self.mode().guards[guard].transitions[t];
         self.settle_after_reset(transition)?;
         self.commit(transition.name, transition.impact, transition.target)?;
         self.remember(guard, t)
+    }
+
+    /// Goes over to other coordinates, in which the contacts do what they did.
+    fn take_chart_by<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        contacts: &'p Contacts,
+        guard: usize,
+    ) -> Stoppable<()> {
+        let chosen = self.choose(kernel, guard);
+        assert_eq!(chosen, Some(0), "a chart has no conditions");
+        let (n, free, size) = (self.here.q.len(), &self.mode().free, kernel.size());
+        let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
+        let discrete = self.context.discrete().to_vec();
+        (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
+        hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
+        self.context.discrete_mut().copy_from_slice(&discrete);
+        for (i, &of) in free.iter().enumerate() {
+            (self.next[of], self.next[n + of]) = (q[i], v[i]);
+        }
+        self.take_chart(self.mode().guards[guard].transitions[0].name)
+    }
+
+    /// A contact that is open and whose gap is not positive any more: what closes at the instant of a transition comes before it.
+    fn closed_already<F: Size>(
+        &self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+    ) -> Option<usize> {
+        let [q, v, _] = self.here.free(kernel.size(), &self.mode().free);
+        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
+        let states = State::all(contacts, self.context.discrete());
+        (0..states.len()).find(|&k| {
+            let line = Line::Normal(k);
+            let opens_now = self.at_zero.iter().any(|zero| zero.guard == GUARDS * k);
+            let is_open = states[k] == State::Open && contacts.contacts[k].has_gap() && !opens_now;
+            let (rate, rounding) = at.rate(line);
+            is_open && at.place(line).0 <= 0.0 && rate < -rounding
+        })
     }
 
     /// Finds what contacts do in the state that a reset has left in `next`. What closes with a rate strikes at the instant, as the

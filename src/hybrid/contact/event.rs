@@ -203,10 +203,12 @@ impl<'p> Simulation<'p> {
             return Ok(None);
         }
         if !contacts.contacts[k].law.is_empty() {
-            for (i, rate) in places.stated(contacts, k) {
+            let slides = before.iter().any(|state| matches!(state, State::Slides(_)));
+            let sticks = before.contains(&State::Sticks) && !slides;
+            for (i, rate) in places.stated(contacts, k, sticks) {
                 standing.v[i] = rate;
             }
-            self.stand_after_own_law(kernel, contacts, (k, &touches), standing)?;
+            self.stand_after_own_law(kernel, contacts, (k, before, &touches), (&places, standing))?;
             return Ok(Some(k));
         }
         let impact = Impact {
@@ -228,11 +230,27 @@ impl<'p> Simulation<'p> {
         &self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        (k, touches): (usize, &[bool]),
-        standing: &mut Standing<F>,
+        (k, before, touches): (usize, &[State], &[bool]),
+        (came, standing): (&Places, &mut Standing<F>),
     ) -> Stoppable<()> {
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
+        // What has stuck, as the state that came is held to, and is not set in motion.
+        let still: Vec<Line> = (0..touches.len())
+            .filter(|&j| before[j] == State::Sticks)
+            .map(Line::Tangent)
+            .filter(|&line| {
+                let ((before, _), (after, rounding)) = (came.rate(line), places.rate(line));
+                after == before || after.abs() <= rounding
+            })
+            .collect();
+        let tangent = |j: usize| {
+            let at = (&standing.geometry, &places, &standing.v);
+            match self.is_still_with(&still, Line::Tangent(j), at) {
+                true => Tangent::Still,
+                false => tangent_at(&contacts.contacts[j], j, &places),
+            }
+        };
         for j in (0..touches.len()).filter(|&j| touches[j]) {
             let contact = &contacts.contacts[j];
             let (rate, rounding) = match contact.normal {
@@ -248,8 +266,12 @@ impl<'p> Simulation<'p> {
                 }));
             }
             let is_open = rate > rounding;
+            let touching = (!is_open).then(|| match contact.tangent {
+                Some(_) => tangent(j),
+                None => Tangent::None,
+            });
             standing.leaves[j] = is_open && !contact.is_ratchet;
-            standing.touching[j] = (!is_open).then(|| tangent_at(contact, j, &places));
+            standing.touching[j] = touching;
         }
         Ok(())
     }

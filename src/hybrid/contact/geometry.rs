@@ -164,6 +164,26 @@ impl Geometry {
         self.independent(&all).len() < all.len()
     }
 
+    /// How a coordinate, by its index in the mode, moves with what another line is about, while the places of some lines stay; zero
+    /// where they hold it. `None` where more than these decides.
+    pub fn moves(&self, coordinate: usize, lines: &[Line], with: Option<Line>) -> Option<f64> {
+        let along: Vec<f64> = (self.own.iter())
+            .map(|&i| f64::from(i == coordinate))
+            .collect();
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for &line in lines {
+            basis.extend(beside(&self.scaled[self.place(line)], &basis));
+        }
+        let scaled = forward(&cholesky(&self.mass, self.own.len()), &along);
+        let Some(rest) = beside(&scaled, &basis) else {
+            return Some(0.0);
+        };
+        let unit = beside(&self.scaled[self.place(with?)], &basis)?;
+        let moves = dot(&rest, &unit);
+        basis.push(unit);
+        beside(&scaled, &basis).is_none().then_some(moves)
+    }
+
     /// Whether two lines are the same but for their sign.
     pub fn are_parallel(&self, one: Line, other: Line) -> bool {
         let [a, b] = [one, other].map(|line| &self.scaled[self.place(line)]);

@@ -57,17 +57,25 @@ impl Places {
         }
     }
 
-    /// The rates after an impact of a contact that the model states, by their coordinates.
+    /// The rates after an impact of a contact that the model states, by their coordinates; `sticks`: whether all friction of what
+    /// touched before does.
     pub fn stated<'c>(
         &'c self,
         contacts: &'c Contacts,
         k: usize,
+        sticks: bool,
     ) -> impl Iterator<Item = (usize, f64)> + 'c {
-        let before = contacts.contacts[..k].iter().map(|c| c.law.len());
+        let before = contacts.contacts[..k].iter();
+        let own = &contacts.contacts[k];
+        let (law, skipped) = match sticks {
+            true => (&own.held_law, own.law.len()),
+            false => (&own.law, 0),
+        };
         let begin = self.contacts * Contacts::PLACES
             + contacts.constraints.len() * Contacts::HELD
-            + before.sum::<usize>();
-        let law = contacts.contacts[k].law.iter().copied();
+            + before.map(|c| c.law.len() + c.held_law.len()).sum::<usize>()
+            + skipped;
+        let law = law.iter().copied();
         law.zip(self.values[begin..].iter().copied())
     }
 

@@ -14,7 +14,7 @@
 //! - `phase`: all outcomes of one phase of it, each tried on its impulses and rates.
 //! - `standing`: what touches at an instant, and what of it has no rate.
 //! - `event`: from the fall of a guard to the next set.
-//! - `by_hand`: transitions by hand beside contacts.
+//! - `by_hand`: transitions by hand beside contacts; `guarded`: those of their guards that contacts hold, or have held until now.
 //! - `start`: the set that a run starts in; `equilibrium`: where it starts at rest.
 //! - `limit`: the set at the limit of an accumulation.
 
@@ -22,6 +22,7 @@ mod by_hand;
 mod equilibrium;
 mod event;
 mod geometry;
+mod guarded;
 mod hold;
 mod impact;
 mod judge;
@@ -34,6 +35,7 @@ mod singular;
 mod standing;
 mod start;
 
+pub(super) use guarded::{Guarded, guarded_by_contacts};
 pub(super) use hold::{held_by_others, hold};
 pub(super) use singular::Conditioning;
 

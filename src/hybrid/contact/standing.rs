@@ -7,7 +7,7 @@ use super::{State, Tangent};
 use crate::hybrid::simulation::Simulation;
 use crate::kernel::ModeKernel;
 use crate::model::{Contact, Contacts};
-use crate::numerics::Size;
+use crate::numerics::{Size, Vector};
 
 /// What is known of the contacts at an instant.
 pub(super) struct Standing<F: Size> {
@@ -89,18 +89,8 @@ impl Simulation<'_> {
         );
         let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
         let at = Places::new(kernel, context, contacts, [&q, &v]);
-        let accuracy = &self.accuracy;
-        // Of two belts with speeds of their own one alone stops, although their lines are the same: what depends on a line that is
-        // still has stopped too if the tolerances do not tell its rate from zero.
         let stops = |line: Line| {
-            let (rate, rounding) = at.rate(line);
-            let within: f64 = (geometry.along(line).iter().zip(&geometry.own))
-                .map(|(along, &i)| {
-                    along.abs() * (accuracy.v_absolute[i] + accuracy.relative * v[i].abs())
-                })
-                .sum();
-            let is_still = || rate.abs() <= rounding + within;
-            stops == Some(line) || geometry.depends(line, &still) && is_still()
+            stops == Some(line) || self.is_still_with(&still, line, (&geometry, &at, &v))
         };
         // Feet beside those on which a body stands touch too: one of them may carry what comes next.
         let beside = held_with(contacts, before, &at, || &geometry);
@@ -121,6 +111,24 @@ impl Simulation<'_> {
             touching,
             leaves: vec![false; before.len()],
         }
+    }
+
+    /// Whether a line is still with some others, which are. Of two belts with speeds of their own one alone stops, although their
+    /// lines are the same: what depends on a line that is still has stopped too if the tolerances do not tell its rate from zero.
+    pub(super) fn is_still_with<V: Vector>(
+        &self,
+        others: &[Line],
+        line: Line,
+        (geometry, at, v): (&Geometry, &Places, &V),
+    ) -> bool {
+        let accuracy = &self.accuracy;
+        let (rate, rounding) = at.rate(line);
+        let within: f64 = (geometry.along(line).iter().zip(&geometry.own))
+            .map(|(along, &i)| {
+                along.abs() * (accuracy.v_absolute[i] + accuracy.relative * v[i].abs())
+            })
+            .sum();
+        geometry.depends(line, others) && rate.abs() <= rounding + within
     }
 
     /// The contacts as they stand where one closes, and with it all whose gap is zero within its rounding: these are on

@@ -57,6 +57,8 @@ pub(super) struct Observers<'o> {
     points: Points,
     /// When the run ends, if not before, s.
     end: f64,
+    /// The discrete states that are recorded, by their indices.
+    discretes: Box<[usize]>,
     /// Evaluates outputs, where they are recorded.
     pub outputs: Outputs,
     /// The energy ledger, where it is kept.
@@ -226,6 +228,7 @@ impl<'o> Observers<'o> {
             samples: Samples::new(record.every, recording.sees_rows),
             recording,
             end: problem.end.time,
+            discretes: problem.variant().discretes.clone(),
             outputs: Outputs::new(problem),
             ledger: (record.ledger || record.columns.energies).then(RunningLedger::default),
             interpolants: match extremes.is_some() || record.ledger || record.columns.energies {

@@ -24,6 +24,8 @@ pub(super) struct Row<'a> {
     pub layout: &'a Layout,
     pub q: &'a [f64],
     pub v: &'a [f64],
+    /// The discrete states that are recorded, by their indices.
+    pub discretes: &'a [usize],
     /// Evaluates outputs, with the mode.
     pub outputs: (&'a mut Outputs, &'a Mode),
     /// Stored energy is filled in here; the rest of the ledger is given.
@@ -49,7 +51,9 @@ impl Row<'_> {
                 .reactions(kernel, context, at, &mut row[reactions]);
         }
         let discrete = self.layout.range(Group::Discrete);
-        row[discrete.clone()].copy_from_slice(&context.discrete()[..discrete.len()]);
+        for (into, &i) in row[discrete].iter_mut().zip(self.discretes) {
+            *into = context.discrete()[i];
+        }
         let outputs = self.layout.range(Group::Output);
         if !outputs.is_empty() {
             let (of, mode) = &mut self.outputs;
@@ -309,6 +313,7 @@ impl Observers<'_> {
                 layout: &self.layout,
                 q: &here.q,
                 v: &here.v,
+                discretes: &self.discretes,
                 outputs: (&mut self.outputs, mode),
                 ledger: row_of(self.ledger.as_ref(), work),
             };
@@ -350,6 +355,7 @@ impl Observers<'_> {
             layout: &self.layout,
             q: &here.q,
             v: &here.v,
+            discretes: &self.discretes,
             outputs: (&mut self.outputs, mode),
             ledger: row_of(self.ledger.as_ref(), [0.0; 2]),
         };
@@ -400,6 +406,7 @@ impl Simulation<'_> {
             layout: &observers.layout,
             q: &here.q,
             v: &here.v,
+            discretes: &observers.discretes,
             outputs: (&mut observers.outputs, mode),
             ledger: row_of(observers.ledger.as_ref(), [0.0; 2]),
         };

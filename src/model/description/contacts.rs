@@ -32,6 +32,7 @@ impl Reader<'_> {
                     at.list_of(count, |at| at.option(|at| at.index(discretes)))
                 })?,
                 law: at.get("law", |at| at.list(|at| at.index(coordinates)))?,
+                held_law: at.get("held_law", |at| at.list(|at| at.index(coordinates)))?,
             })
         };
         let constraint = |at: &At| {
@@ -43,6 +44,7 @@ impl Reader<'_> {
         };
         let contacts: Box<[Contact]> = at.get("contacts", |at| at.list_of(count, contact))?;
         Ok(Contacts {
+            moved: at.get("moved", truth)?,
             sets: ContactSets::new(&contacts),
             contacts,
             constraints: at.get("constraints", |at| at.list(constraint))?,

@@ -158,6 +158,9 @@ impl Reader<'_> {
             defaults: at.get("defaults", |at| at.list_of(choices, truth))?,
             drawing: at.get("drawing", text)?,
             barred: at.get("barred", |at| at.list(|at| at.index(inputs)))?,
+            discretes: at.get("discretes", |at| {
+                at.list(|at| at.index(self.dimensions.discretes))
+            })?,
             modes: at.get("modes", |at| at.list(|at| self.mode(at, modes)))?,
             rests: at.get("rests", |at| {
                 at.list(|at| {
@@ -282,6 +285,7 @@ impl Reader<'_> {
             conditional: condition.is_some(),
             changes: at.get("changes", |at| at.list(text))?,
             impact: at.get("impact", truth)?,
+            is_chart: at.get("is_chart", truth)?,
             conditions: at.get("conditions", |at| self.tape(at, count))?,
             kernel: TransitionKernel {
                 dimensions: self.dimensions.clone(),
@@ -320,7 +324,6 @@ fn coordinate(at: &At) -> Read<Coordinate> {
         meaning: at.get("meaning", text)?,
         reaction_unit: at.get("reaction_unit", text)?,
         multiplier: at.get("multiplier", truth)?,
-        impulse: at.get("impulse", |at| at.option(count))?,
         scale: at.get("scale", number)?,
         rate_scale: at.get("rate_scale", number)?,
         minimum: at.get("minimum", |at| at.option(number))?,
@@ -384,7 +387,7 @@ fn discrete(at: &At) -> Read<Discrete> {
             values if values.is_empty() => Err(at.wrong("values")),
             values => Ok(values),
         })?,
-        internal: at.get("internal", truth)?,
+        given: at.get("given", truth)?,
         meaning: at.get("meaning", text)?,
     })
 }
@@ -427,5 +430,6 @@ fn requirement(at: &At) -> Read<Requirement> {
         text: at.get("text", text)?,
         failure: at.get("failure", text)?,
         unit: at.get("unit", text)?,
+        may_vanish: at.get("may_vanish", truth)?,
     })
 }

@@ -1,0 +1,70 @@
+//! Guards by hand that are coordinates which contacts hold at zero, or have held until now.
+
+use super::State;
+use super::event::GUARDS;
+use super::geometry::{Geometry, Line};
+use super::hold::held_lines;
+use crate::hybrid::problem::Accuracy;
+use crate::kernel::{Context, ModeKernel};
+use crate::model::{GuardShape, Mode};
+use crate::numerics::Size;
+
+/// What is known of such a guard from the contacts, whatever rounding makes of its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::hybrid) enum Guarded {
+    /// It is zero as long as they are closed.
+    Held,
+    /// It rises from zero, as the gap of a contact does that opens now, by its guard.
+    Rises(usize),
+    /// It falls below zero with it.
+    Falls(usize),
+}
+
+/// The guards by hand of which contacts tell what they do, by their indices. `opening`: the guards of the contacts that leave
+/// their gaps now. Where the ground moves gaps, nothing is held.
+pub(in crate::hybrid) fn guarded_by_contacts<F: Size>(
+    kernel: &ModeKernel<F>,
+    context: &mut Context,
+    (mode, accuracy, opening): (&Mode, &Accuracy, &[usize]),
+    state: [&F::Vector; 2],
+) -> Vec<(usize, Guarded)> {
+    let contacts = mode.contacts.as_ref().expect("a mode of all sets");
+    let by_hand = GUARDS * contacts.contacts.len()..mode.guards.len();
+    // A coordinate that the tolerances do not tell from zero, and the sign of its factor.
+    let coordinate = |guard: usize| match mode.guards[guard].shape {
+        GuardShape::Linear {
+            index,
+            rate: false,
+            offset: false,
+            factor,
+            discrete,
+        } => {
+            let factor = factor * discrete.map_or(1.0, |d| context.discrete()[d]);
+            let is_zero = state[0][index].abs() <= accuracy.q_absolute[mode.free[index]];
+            is_zero.then_some((guard, index, factor))
+        }
+        _ => None,
+    };
+    let found: Vec<(usize, usize, f64)> = by_hand.filter_map(coordinate).collect();
+    if contacts.moved || found.is_empty() {
+        return Vec::new();
+    }
+    let states = State::all(contacts, context.discrete());
+    let [places, _] = held_lines(contacts, &states);
+    let geometry = Geometry::new(kernel, context, contacts, state);
+    let of = |(guard, index, factor): (usize, usize, f64)| {
+        if geometry.moves(index, &places, None) == Some(0.0) {
+            return Some((guard, Guarded::Held));
+        }
+        opening.iter().find_map(|&opens| {
+            let line = Line::Normal(opens / GUARDS);
+            let moves = factor * geometry.moves(index, &places, Some(line))?;
+            let told = match moves > 0.0 {
+                true => Guarded::Rises(opens),
+                false => Guarded::Falls(opens),
+            };
+            Some((guard, told))
+        })
+    };
+    found.into_iter().filter_map(of).collect()
+}
