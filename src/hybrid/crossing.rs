@@ -82,11 +82,6 @@ impl Signs {
         self.waits |= away > 0.0;
     }
 
-    /// Adds the same as that of another, by its index.
-    pub fn remember_as(&mut self, index: usize) {
-        self.remember(self.watches[index], self.away[index]);
-    }
-
     /// Local time until which one that was zero at the start of the segment is known to be positive; 0 of others.
     pub fn positive_until(&self, index: usize) -> f64 {
         self.away[index]

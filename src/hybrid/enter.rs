@@ -84,11 +84,15 @@ impl<'p> Simulation<'p> {
             };
             let context = &mut self.context;
             let own = watched_value(kernel, context, &mut conditions, guard, watched, at);
-            if let Some((_, told)) = guarded.iter().find(|(guard, _)| *guard == watched.guard) {
+            let told = guarded.iter().find(|(guard, _)| *guard == watched.guard);
+            if let Some((_, told)) = told.filter(|_| !watched.conditional) {
                 match *told {
                     Guarded::Held => self.signs.remember(Watch::Dormant, f64::INFINITY),
-                    Guarded::Rises(contact) => self.signs.remember_as(contact),
-                    Guarded::Falls(_) => {
+                    Guarded::Rises(contact) => {
+                        let until = self.signs.positive_until(contact);
+                        self.signs.remember(Watch::of(own), until);
+                    }
+                    Guarded::Falls => {
                         self.signs.remember(Watch::Violated, 0.0);
                         violation = violation.or(Some(Violation {
                             guard: watched.guard,

@@ -166,7 +166,8 @@ impl<'p> Simulation<'p> {
     /// Makes `next`, the present state in other coordinates, the present state. Should the energies of a model tell the
     /// coordinates apart, that is in the ledger, as what an impact loses.
     pub fn take_chart(&mut self, name: &'static str) -> Stoppable<()> {
-        let before = (self.observers.ledger.is_some()).then(|| (self.stored_energy(), self.ground_momenta()));
+        let before = (self.observers.ledger.is_some())
+            .then(|| (self.stored_energy(), self.ground_momenta()));
         self.leave_for_next();
         if let Some(before) = before {
             self.set_context();

@@ -339,7 +339,9 @@ impl Guard {
 
     /// Whether its fall leads to the same state in other coordinates, which is no event.
     pub fn is_chart(&self) -> bool {
-        self.transitions.iter().any(|transition| transition.is_chart)
+        self.transitions
+            .iter()
+            .any(|transition| transition.is_chart)
     }
 }
 
@@ -431,7 +433,10 @@ impl Model {
     }
 
     /// The discrete states that people see under the options of a variant.
-    pub fn seen_discretes<'m>(&'m self, variant: &'m Variant) -> impl Iterator<Item = &'m Discrete> {
+    pub fn seen_discretes<'m>(
+        &'m self,
+        variant: &'m Variant,
+    ) -> impl Iterator<Item = &'m Discrete> {
         variant.discretes.iter().map(|&i| &self.discretes[i])
     }
 

@@ -31,7 +31,7 @@ pub(crate) fn freeze(
             errors.push(SceneError::new(kind, &name.place));
         } else if variant.modes.iter().all(|mode| mode.free.contains(&i)) {
             let kind = SceneErrorKind::NeverFrozen { coordinate };
-            let held = model.coordinates.iter().enumerate();
+            let held = model.own_coordinates().iter().enumerate();
             let held = held.filter(|(i, _)| variant.modes.iter().any(|m| !m.free.contains(i)));
             let held = listing(held.map(|(_, c)| c.name));
             errors
@@ -140,10 +140,17 @@ pub(crate) fn initial(
         }
     }
 
-    let idle = |d: &Discrete| model.seen_discretes(variant).all(|seen| seen.name != d.name);
+    let idle = |d: &Discrete| {
+        model
+            .seen_discretes(variant)
+            .all(|seen| seen.name != d.name)
+    };
     for d in model.discretes.iter().filter(|d| idle(d)) {
         if let Some(given) = entry(d.name) {
-            let message = format!("nothing depends on `{}` under the choices of this scene", d.name);
+            let message = format!(
+                "nothing depends on `{}` under the choices of this scene",
+                d.name
+            );
             let error = SceneError::new(SceneErrorKind::State { message }, &given.place);
             errors.push(error.help("leave it out"));
         }

@@ -75,7 +75,7 @@ pub fn times(run: &Run, transition: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Value of a coordinate, rate or discrete state at the end of a run.
+/// Value of a coordinate, rate, discrete state or output at the end of a run.
 pub fn at_end(run: &Run, name: &str) -> f64 {
     let layout = &run.layout;
     let state = &run.end.state;
@@ -85,6 +85,7 @@ pub fn at_end(run: &Run, name: &str) -> f64 {
     find(&layout.coordinates, &state.q)
         .or_else(|| find(&layout.velocities, &state.v))
         .or_else(|| find(&layout.discretes, &state.discrete))
+        .or_else(|| find(&layout.outputs, &state.outputs))
         .unwrap_or_else(|| panic!("no `{name}`"))
 }
 

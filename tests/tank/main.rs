@@ -5,6 +5,7 @@ mod common;
 
 mod agreement;
 mod body;
+mod edges;
 mod free;
 mod landings;
 mod laws;

@@ -51,13 +51,21 @@ fn arithmetic() {
 #[test]
 fn names_stand_for_numbers_of_the_model() {
     let tank = tank();
-    let n = tank.coordinates.len();
+    let n = tank.own_coordinates().len();
     let parameters: Vec<f64> = tank.parameters.iter().map(|p| p.default).collect();
+    // Those of the multipliers, which nobody sees, stand between those of the coordinates and of the ground.
+    let of_multipliers = vec![0.0; tank.coordinates.len() - n];
+    let reactions = [
+        &[13.0, 14.0, 15.0, 16.0][..],
+        &of_multipliers,
+        &[17.0, 18.0],
+    ]
+    .concat();
     let given = Given {
         q: &[1.0, 2.0, 3.0, 4.0],
         v: &[5.0, 6.0, 7.0, 8.0],
         a: &[9.0, 10.0, 11.0, 12.0],
-        reactions: &[13.0, 14.0, 15.0, 16.0, 17.0, 18.0],
+        reactions: &reactions,
         discrete: &[-1.0, 1.0],
         signals: &[19.0, 20.0, 21.0, 22.0, 23.0, 24.0],
         parameters: &parameters,

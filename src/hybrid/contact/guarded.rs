@@ -16,8 +16,8 @@ pub(in crate::hybrid) enum Guarded {
     Held,
     /// It rises from zero, as the gap of a contact does that opens now, by its guard.
     Rises(usize),
-    /// It falls below zero with it.
-    Falls(usize),
+    /// It falls below zero as one opens.
+    Falls,
 }
 
 /// The guards by hand of which contacts tell what they do, by their indices. `opening`: the guards of the contacts that leave
@@ -61,7 +61,7 @@ pub(in crate::hybrid) fn guarded_by_contacts<F: Size>(
             let moves = factor * geometry.moves(index, &places, Some(line))?;
             let told = match moves > 0.0 {
                 true => Guarded::Rises(opens),
-                false => Guarded::Falls(opens),
+                false => Guarded::Falls,
             };
             Some((guard, told))
         })

@@ -73,7 +73,9 @@ impl Places {
         };
         let begin = self.contacts * Contacts::PLACES
             + contacts.constraints.len() * Contacts::HELD
-            + before.map(|c| c.law.len() + c.held_law.len()).sum::<usize>()
+            + before
+                .map(|c| c.law.len() + c.held_law.len())
+                .sum::<usize>()
             + skipped;
         let law = law.iter().copied();
         law.zip(self.values[begin..].iter().copied())

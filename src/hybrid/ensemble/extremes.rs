@@ -78,7 +78,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         let Some(extremes) = &mut self.extremes else {
             return;
         };
-        let columns = columns(&self.mode.free, self.past.coordinates);
+        let columns = columns(&self.mode.free, from.layout.coordinates.len());
         for (own, column) in extremes.chunks_exact_mut(4).zip(columns) {
             let Peak {
                 min,
@@ -97,7 +97,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         let Some(extremes) = &self.extremes else {
             return;
         };
-        let columns = columns(&self.mode.free, self.past.coordinates);
+        let columns = columns(&self.mode.free, into.layout.coordinates.len());
         for (own, column) in extremes.chunks_exact(4).zip(columns) {
             let [min, max, t_min, t_max] = [0, 1, 2, 3].map(|k| own[k].0[lane]);
             into.note(column, t_min, min);
@@ -124,7 +124,7 @@ fn may_exceed(c: &[f64; ORDERS], [least, greatest]: [f64; 2]) -> bool {
     !is_inside && c[1].abs() <= slopes
 }
 
-/// Columns of free coordinates, then of their rates, among so many coordinates.
+/// Columns of free coordinates, then of their rates, among so many coordinates that are recorded.
 fn columns(free: &[usize], coordinates: usize) -> impl Iterator<Item = usize> {
     free.iter()
         .copied()

@@ -396,7 +396,7 @@ fn an_input_that_the_options_do_not_know() {
         r#""rules": "paper", "inputs": { "vertical_acceleration": { "constant": 1 }, "#,
     );
     let message = "input `vertical_acceleration` has no effect under equations = derived, rules = paper, \
-                   landing = velocities, and may not be given";
+                   landing = velocities, edges = modes, and may not be given";
     expect(
         &error,
         message,

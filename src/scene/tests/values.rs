@@ -27,9 +27,11 @@ fn smallest_scene_takes_every_default() {
     assert_eq!(
         scene.initial,
         Initial {
-            q: vec![0.0; 4],
-            v: vec![0.0; 4],
-            discrete: vec![1.0, 1.0],
+            q: vec![0.0; scene.model.coordinates.len()],
+            v: vec![0.0; scene.model.coordinates.len()],
+            discrete: (scene.model.discretes.iter())
+                .map(|d| d.values[0])
+                .collect(),
             mode: None
         }
     );
@@ -81,7 +83,7 @@ fn every_key_is_read() {
         (scene.initial.q[theta], scene.initial.v[theta]),
         (0.02, -0.1)
     );
-    assert_eq!(scene.initial.discrete, [-1.0, 1.0]);
+    assert_eq!(scene.initial.discrete[..2], [-1.0, 1.0]);
     assert_eq!(scene.freeze, [coordinate(&scene, "x")]);
     assert_eq!(
         scene.end,
