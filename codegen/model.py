@@ -361,6 +361,8 @@ class Model:
         """
         arguments.name(self, "chart", name)
         guard, resets = self._guard_and_resets(f"chart `{name}`", when, reset)
+        if not resets:
+            raise self.error(f"chart `{name}`: `reset` is empty; it lists what the other coordinates of the same state are")
         self.charts.append((name, guard, resets, caller_location(self.file)))
 
     def _guard_and_resets(self, what, when, reset):

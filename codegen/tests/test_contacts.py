@@ -34,6 +34,14 @@ MISTAKES = (
     ("a constraint in a square", 'model.constraint("blade", x.rate * y.rate)\n', "is not linear in the rates"),
     ("a law of a ratchet", 'model.ratchet("pawl", rate=x.rate); model.impact("pawl", [(x.rate, x.rate)])\n',
      "impact: there is no contact `pawl` with a gap above"),
+    ("a chart without contacts", 'model.chart("other", when=falls(x), reset=[(x, -x)])\n', "chart `other`: the model has no contacts"),
+    ("a chart that changes nothing", 'model.contact("a", gap=y + x); model.chart("other", when=falls(x), reset=[])\n',
+     "chart `other`: `reset` is empty"),
+    ("a chart of no guard", 'model.contact("a", gap=y + x); model.chart("other", when=x, reset=[(x, -x)])\n',
+     "chart `other`: `when` must be falls(…) or rises(…)"),
+    ("a law for what sticks that is no list of rates",
+     'model.contact("a", gap=y); model.impact("a", [(y.rate, -y.rate)], held=[(x, x)])\n',
+     "impact of `a` while others stick: `x` is not the rate of a coordinate"),
     ("a mode that freezes beside contacts", 'model.contact("a", gap=y)\nmodel.mode("lies", freeze=[x])\n', "mode `lies` freezes `x`"),
 )
 
@@ -90,6 +98,21 @@ class Contacts(ScratchTest):
         text = TWO + 'model.contact("floor", gap=y)\nmodel.impact("floor", [(y.rate, -y.rate / 2)])\n'
         contact, = self.described(text)["variants"][0]["modes"][0]["contacts"]["contacts"]
         self.assertEqual(contact["law"], [1])
+
+    def test_charts_lead_back_to_each_mode_and_gaps_depend_on_discrete_states(self):
+        text = TWO + ('side = model.discrete("side", (1, -1), "")\n'
+                      'model.contact("a", gap=y + (1 - side) * x)\n'
+                      'one, two = model.mode("one"), model.mode("two")\n'
+                      'model.chart("other", when=falls(x), reset=[(side, -side), (x, -x), (y, y + 2 * x)])\n')
+        model, = self.loaded(text)
+        self.assertEqual(arrows(model), {("other", "one", "one"), ("other", "two", "two")})
+        self.assertTrue(all(t.is_chart for t in model.transitions))
+
+    def test_a_law_may_be_another_where_all_sticks(self):
+        law = 'model.contact("a", gap=y, slip=x, kinetic=1)\nmodel.impact("a", [(y.rate, -y.rate), (x.rate, 0 * x.rate)]%s)\n'
+        for given, count in (("", 2), (", held=[(y.rate, -y.rate)]", 1), (", held=[]", 0)):
+            contact = self.loaded(TWO + law % given)[0].contacts[0]
+            self.assertEqual((len(contact.law), len(contact.held_law)), (2, count))
 
     def test_multipliers_can_be_asked_for(self):
         model, = self.loaded(TWO + 'model.contact("floor", gap=y)\nmodel.multipliers()\n')

@@ -57,8 +57,12 @@ class Switches(ScratchTest):
                         'else:\n    model.contact("pin", gap=k - x - y, slip=x - y, kinetic=0.2)\n').replace("gap=k - x - y", "gap=-x - y")
         models = self.loaded(text)
         align(models)
-        for kind in ("coordinates", "discretes", "outputs"):
+        for kind in ("coordinates", "discretes"):
             first, second = [[entry.name for entry in getattr(model, kind)] for model in models]
             self.assertEqual(first, second)
+        # Outputs are those of what is there.
+        self.assertEqual([sorted(o.name for o in model.outputs if not o.name.startswith("pin.")) for model in models], [[], []])
+        self.assertIn("pin.gap", [o.name for o in models[1].outputs])
+        self.assertNotIn("pin.gap", [o.name for o in models[0].outputs])
         self.assertEqual(len(models[0].modes[0].form.idle), 2)
         generate.check_same_declarations(models)

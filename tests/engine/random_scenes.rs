@@ -141,7 +141,7 @@ fn fault(problem: &Problem, run: &Run) -> Option<String> {
         }
     }
     let column = |name: &str| run.trajectory.column(name).unwrap();
-    for (i, coordinate) in problem.model.coordinates.iter().enumerate() {
+    for (i, coordinate) in problem.model.own_coordinates().iter().enumerate() {
         let [place, rate] = [coordinate.name, &format!("{}.rate", coordinate.name)].map(column);
         for row in 0..run.trajectory.len() {
             let mode = &problem.variant().modes[run.trajectory.mode[row]];

@@ -258,7 +258,7 @@ fn mirrored_shaking_throws_it_to_the_other_side() {
                 method,
             ))
         };
-        let [run, mirrored] = [thrown(10.0, 1), thrown(-10.0, -1)];
+        let [run, mirrored] = [thrown(6.0, 1), thrown(-6.0, -1)];
         let other = |name: &str| match name.strip_prefix("left") {
             Some(rest) => format!("right{rest}"),
             None => name.replacen("right", "left", 1),
