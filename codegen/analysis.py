@@ -2,14 +2,7 @@
 
 import casadi as ca
 
-from . import graph
-
-SERIES = ("series", "quiet_series", "guard_series")
-"""What is emitted as a Taylor series."""
-
-LANES = ("series", "quiet_series", "requirement_bounds", "guard")
-"""What is emitted for lanes, too, of the modes that `goes_in_lanes` names; and series of their guards that are not linear, and resets
-that stay in the mode."""
+from . import functions, graph, signals
 
 MOST_IN_LANES = 6
 """Most free coordinates of modes that go in lanes; `FREE` in codegen/lanes.c tells so many apart."""
@@ -19,22 +12,32 @@ def goes_in_lanes(variant, i):
     """Whether trajectories in a mode can go side by side: it and its guards are analytic, nothing drifts, the fall of each guard is an
     event under any conditions, and few coordinates are free."""
     equations = variant.modes[i]
-    analytic = all(variant.functions[i, what].symbol for what in SERIES)
+    analytic = all(variant.functions[i, row.name].symbol for row in functions.OF_EACH_MODE if row.series)
     guards = [any(t.condition is None for t in transitions) for _, transitions in equations.guards]
     return 0 < len(equations.free) <= MOST_IN_LANES and analytic and not equations.mode.drift and all(guards)
 
 
+def facts(variant, i):
+    """What is known of the functions of a mode, as they are emitted."""
+    model, equations = variant.model, variant.modes[i]
+    output = lambda what: variant.functions[i, what].output
+    mass = output("system")[: len(equations.free) ** 2]
+    inertia = ca.vertcat(ca.vec(mass), ca.vec(output("inertia")))
+    return {
+        "mass_is_constant": is_constant(model, equations, mass), "inertia_is_fixed": is_fixed(model, equations, inertia),
+        "is_linear": is_constant(model, equations, output("jacobian")), "goes_in_lanes": goes_in_lanes(variant, i)}
+
+
 def is_for_lanes(variant, slot, function):
     """Whether a function, by its slot, is emitted for lanes, too."""
-    i, what, *_ = slot
-    wanted = what in LANES or function.stays or what == "guard_series" and has_general_guards(variant, i)
-    return wanted and goes_in_lanes(variant, i)
+    i, *_ = slot
+    linear = function.row is functions.GUARDS_OF_MODE and not has_general_guards(variant, i)
+    return (function.row.in_lanes and not linear or function.stays) and goes_in_lanes(variant, i)
 
 
 def has_general_guards(variant, i):
     """Whether a mode has a guard that is more than a coordinate or a rate."""
-    equations = variant.modes[i]
-    return any(linear_shape(variant.model, equations, equations.place(expression)) is None for expression, _ in equations.guards)
+    return any("general" in shape for shape in variant.modes[i].guard_shapes)
 
 
 def shape(model, equations, expression):
@@ -44,7 +47,7 @@ def shape(model, equations, expression):
     if linear is not None:
         return {"linear": linear}
     depends = lambda *columns: bool(present(ca.symvar(placed), *columns))
-    return {"general": {"accelerations": depends(equations.a), "signals": depends(ca.vertcat(*signals(model)))}}
+    return {"general": {"accelerations": depends(equations.a), "signals": depends(signals.of(model))}}
 
 
 def is_constant(model, equations, entries):
@@ -79,16 +82,11 @@ def linear_shape(model, equations, expression):
     return None
 
 
-def signals(model):
-    """The signals of all inputs."""
-    return [s for i in model.inputs for s in i.signals]
-
-
-def used_signals(variants, slots):
-    """Of each signal, whether these functions of some mode depend on it."""
-    outputs = [f.output for v in variants for slot, f in v.functions.items() if slot[1] in slots]
+def used_signals(variants, rows):
+    """Of each signal, whether functions of these rows, of some mode, depend on it."""
+    outputs = [f.output for v in variants for f in v.functions.values() if f.row in rows]
     found = {s.element_hash() for output in outputs for s in ca.symvar(output)}
-    return [s.element_hash() in found for s in signals(variants[0].model)]
+    return [s.element_hash() in found for s in ca.vertsplit(signals.of(variants[0].model))]
 
 
 def present(symbols, *columns):
@@ -100,7 +98,7 @@ def present(symbols, *columns):
 def _moving(model, equations):
     """Columns of the symbols that change while the mode lasts, accelerations left out."""
     drifting = [equations.held[i] for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
-    return equations.q, equations.v, ca.vertcat(*signals(model)), ca.vertcat(*drifting)
+    return equations.q, equations.v, signals.of(model), ca.vertcat(*drifting)
 
 
 def _factor(model, expression):

@@ -7,13 +7,8 @@ the names of the fields there.
 
 import casadi as ca
 
-from . import analysis, contact_outputs, drawing, limits, units
+from . import analysis, contact_outputs, drawing, functions, limits, signals, units
 from .emit_c import KEPT_ANGLES
-
-MODE_FUNCTIONS = ("residual", "jacobian", "system", "inertia", "jerk_load", "magnitude", "reactions", "outputs", "energies",
-                  "powers", "momenta", "requirements", "requirement_bounds", "held_rates", "held_values")
-"""Functions that every mode has, each once."""
-
 
 class Tables:
     """The tables of functions: places by symbol."""
@@ -35,14 +30,15 @@ def describe(name, models, chosen, constants, for_tests):
     constants and their number."""
     model, tables = chosen[0].model, Tables()
     variants = [v for variant in chosen for v in (variant, variant.lean) if v]
-    required = analysis.used_signals(variants, ("requirements",))
+    requirements = functions.ROWS["requirements"]
+    required = analysis.used_signals(variants, [requirements])
     description = {
         "name": name, "title": model.title, "source": model.source, "for_tests": for_tests,
         "dimensions": {
-            "coordinates": len(model.coordinates), "motions": len(model.motions), "signals": len(analysis.signals(model)),
+            "coordinates": len(model.coordinates), "motions": len(model.motions), "signals": signals.of(model).numel(),
             "discretes": len(model.discretes), "parameters": len(model.parameters), "constants": constants[1],
             "angles": KEPT_ANGLES,
-            "expanded": analysis.used_signals(variants, (*analysis.SERIES, "requirements")),
+            "expanded": analysis.used_signals(variants, [row for row in functions.ROWS.values() if row.series or row is requirements]),
             "required": [i for i, used in enumerate(required) if used],
         },
         "coordinates": [_coordinate(model, c) for c in model.coordinates],
@@ -134,7 +130,7 @@ def _is_seen(variant, discrete):
         return False
     if "of_contacts" in discrete.extra:
         return True
-    own = [f.expression for slot, f in variant.functions.items() if slot[1] != "reset"]
+    own = [f.expression for f in variant.functions.values() if f.row.name != "reset"]
     set_by_hand = any(symbol is discrete.symbol for t in variant.model.transitions for symbol, _ in t.reset)
     return set_by_hand or any(ca.depends_on(expression, discrete.symbol) for expression in own)
 
@@ -173,71 +169,65 @@ def _variant(variant, tables, seen=None):
 
 def _mode(variant, i, equations, tables):
     model, mode = variant.model, equations.mode
-    functions = {slot[1:]: f for slot, f in variant.functions.items() if slot[0] == i}
-    mass = functions[("system",)].output[: len(equations.free) ** 2]
-    inertia = ca.vertcat(ca.vec(mass), ca.vec(functions[("inertia",)].output))
-    kernel = {what: tables.value(functions[(what,)].symbol) for what in MODE_FUNCTIONS}
-    kernel |= {what: _series(functions[(what,)], tables) for what in analysis.SERIES}
-    kernel |= {
-        "mass_is_constant": analysis.is_constant(model, equations, mass),
-        "inertia_is_fixed": analysis.is_fixed(model, equations, inertia),
-        "is_linear": analysis.is_constant(model, equations, functions[("jacobian",)].output),
-        "goes_in_lanes": analysis.goes_in_lanes(variant, i),
-        "places": None if mode.form is None else {
-            "function": tables.value(functions[("places",)].symbol), "count": equations.places().numel()},
-    }
+    derived = {slot[1:]: f for slot, f in variant.functions.items() if slot[0] == i}
+    kernel = {row.name: _found(row, derived.get((row.name,)), tables) for row in functions.OF_EACH_MODE}
+    kernel |= analysis.facts(variant, i)
     return {
         "name": mode.name, "meaning": mode.meaning, "free": list(equations.free),
         "held_at": [_held_at(mode.held.get(c.name)) for c in model.coordinates],
         "drifts": [c.name in mode.drift for c in model.coordinates],
-        "guards": [_guard(variant, i, g, functions, tables) for g in range(len(equations.guards))],
+        "guards": [_guard(variant, i, g, derived, tables) for g in range(len(equations.guards))],
         "requirements": [
             {"text": units.short(r.expression, 200), "failure": r.failure, "unit": _unit(model, r.expression),
              "may_vanish": r.may_vanish} for r in mode.requirements],
-        "margins": [
-            None if analysis.is_constant(model, equations, margin) else analysis.shape(model, equations, margin)
-            for margin in equations.margins],
-        "without_series": functions[("series",)].without or None,
+        "margins": equations.margin_shapes,
+        "without_series": derived[("series",)].without or None,
         "system": variant.tapes[i, "system"], "guard_values": variant.tapes[i, "guards"],
         "contacts": None if mode.form is None else {
             **equations.describe(model), "decisions": variant.tapes[i, "decisions"]},
         "kernel": kernel,
         "operations": [[what[0] if len(what) == 1 else " ".join(map(str, what)), f.operations]
-                       for what, f in functions.items()],
+                       for what, f in derived.items()],
     }
 
 
-def _guard(variant, i, g, functions, tables):
+def _guard(variant, i, g, derived, tables):
     model, equations = variant.model, variant.modes[i]
     expression, transitions = equations.guards[g]
     is_contact = equations.mode.form is not None and g < 3 * len(equations.form.contacts)
     return {
         "name": " / ".join(dict.fromkeys(t.name for t in transitions)) if not is_contact
         else equations.form.contacts[g // 3].name,
-        "text": units.short(expression, 200), "unit": "1" if is_contact else _unit(model, expression), "shape": analysis.shape(model, equations, expression),
-        "value": tables.value(functions["guard", g].symbol), "rate": tables.value(functions["guard_rate", g].symbol),
-        "magnitude": tables.value(functions["guard_magnitude", g].symbol),
-        "transitions": [_transition(variant, i, g, t, functions, tables) for t in range(len(transitions))],
+        "text": units.short(expression, 200), "unit": "1" if is_contact else _unit(model, expression), "shape": equations.guard_shapes[g],
+        **{row.name: _found(row, derived[row.name, g], tables) for row in functions.GUARD},
+        "transitions": [_transition(variant, i, g, t, derived, tables) for t in range(len(transitions))],
     }
 
 
-def _transition(variant, i, g, t, functions, tables):
+def _transition(variant, i, g, t, derived, tables):
     transition = variant.modes[i].guards[g][1][t]
-    condition, reset = functions.get(("condition", g, t)), functions["reset", g, t]
     return {
         "name": transition.name,
         "target": [m.name for m in variant.model.modes].index(transition.target.name),
         "changes": list(transition.changes), "impact": bool(transition.impact), "is_chart": bool(transition.is_chart),
-        "reset": tables.value(reset.symbol), "stays": bool(reset.stays),
-        "condition": condition and {"function": tables.value(condition.symbol), "count": condition.output.numel()},
+        "stays": bool(derived["reset", g, t].stays),
+        **{row.name: _found(row, derived.get((row.name, g, t)), tables) for row in functions.TRANSITION},
         "conditions": variant.tapes[i, "conditions", g, t],
     }
 
 
-def _series(function, tables):
-    """A Taylor series; None where there is none."""
-    if not function.symbol:
+def _found(row, function, tables):
+    """Where a function is found in the tables; None where there is none."""
+    if function is None or not function.symbol:
         return None
+    if row.series:
+        return _series(function, tables)
+    place = tables.value(function.symbol)
+    return {"function": place, "count": function.output.numel()} if row.is_counted else place
+
+
+def _series(function, tables):
+    """A Taylor series."""
     lead, row, convolutions, ends = function.workspace
     return {"functions": tables.pair(function.symbol), "lead": lead, "row": row, "convolutions": convolutions,
             "ends": bool(ends)}

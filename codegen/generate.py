@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
-from . import (analysis, bounds, check, combinations, derive, description, dimensions, emit_model, emit_series, graph, limits,
-               momentum, outputs, tape)
+from . import (analysis, check, combinations, derive, description, dimensions, emit_model, emit_series, functions, graph, limits,
+               momentum, signals, tape)
 from .align import align, own
 from .arguments import NOT_FOLDERS
 from .context import build
@@ -23,10 +23,10 @@ class Function:
     """A function to be emitted: where its arguments live and what it computes."""
 
     name: str
+    row: functions.Row
     expression: ca.SX
     """As it was derived."""
     equations: object
-    slot: tuple = ()
     symbol: str = ""
     without: str = ""
     """Why there is no Taylor series of it."""
@@ -108,17 +108,17 @@ def generate(folder, for_tests=False, named=None, owner=""):
     parameters = ca.vertcat(*[p.symbol for p in derived[0].parameters])
     constants_symbol = source.add(f"{prefix}_constants", [("q", parameters)], constants.values)
     for variant in variants:
-        for slot, function in variant.functions.items():
+        for function in variant.functions.values():
             equations = function.equations
-            if slot[1] in analysis.SERIES:
-                _emit_series(source, prefix, variant, slot[1], function, constants)
+            if function.row.series:
+                _emit_series(source, prefix, variant, function, constants)
                 continue
-            is_bound = slot[1] == "requirement_bounds"
+            takes_radii, of = function.row.takes_radii, variant.model
             arguments = [
                 ("q", equations.q), ("v", equations.v), ("a", equations.a),
-                ("j", equations.radii if is_bound else equations.j), ("u", _signals(variant.model)),
-                ("u_dot", _signal_radii(variant.model) if is_bound else _signal_rates(variant.model)),
-                ("d", _discretes(variant.model)), ("h", equations.held), ("c", constants.symbols),
+                ("j", equations.radii if takes_radii else equations.j), ("u", signals.of(of)),
+                ("u_dot", signals.radii(of) if takes_radii else signals.rates(of)),
+                ("d", _discretes(of)), ("h", equations.held), ("c", constants.symbols),
             ]
             function.symbol = source.add(f"{prefix}_{function.name}", arguments, function.output)
             function.operations = source.operations[f"{prefix}_{function.name}"]
@@ -165,19 +165,19 @@ def _lane_functions(variants):
     return names
 
 
-def _emit_series(source, prefix, variant, slot, function, constants):
+def _emit_series(source, prefix, variant, function, constants):
     """Emits Taylor series, if there is a recurrence for every operation."""
     equations, model = function.equations, variant.model
     drifting = [i for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
     count = function.output.numel() - len(drifting)
     arguments = dict(
         output=function.output[:count],
-        moving=[("q", equations.q), ("v", equations.v), ("u", _signals(model))],
+        moving=[("q", equations.q), ("v", equations.v), ("u", signals.of(model))],
         constant=[("d", _discretes(model)), ("c", constants.symbols)],
         held=equations.held,
         drift={i: function.output[count + n] for n, i in enumerate(drifting)})
     try:
-        if slot != "guard_series":
+        if function.row.series == "motion":
             series = emit_series.Equations(len(equations.free), **arguments)
         else:
             arguments["moving"].append(("a", equations.a))
@@ -214,24 +214,6 @@ def check_same_declarations(models):
                     raise ModelError(
                         f"`{name}`: its {what.replace('_', ' ')} differs between choices: {value!r}, but {others[name][what]!r}"
                         f" with {options}; declare what holds for all of them, or two names", model.locations.get(name, model.file))
-
-
-def _signals(model):
-    return ca.vertcat(*[s for i in model.inputs for s in i.signals])
-
-
-def _signal_rates(model):
-    return _of_signals(model, "dot")
-
-
-def _signal_radii(model):
-    return _of_signals(model, "radius")
-
-
-def _of_signals(model, what):
-    """A symbol for each signal: always the same ones."""
-    names = [f"{i.name}.signal{k}.{what}" for i in model.inputs for k in range(len(i.signals))]
-    return model.__dict__.setdefault(f"_signals_{what}", ca.vertcat(*[ca.SX.sym(name) for name in names]))
 
 
 def _discretes(model):
@@ -274,33 +256,39 @@ def _variant(model, absent, kind=""):
     index = {m.name: i for i, m in enumerate(model.modes)}
     for i, equations in enumerate(modes):
         prefix = f"{_tag(model)}{kind}{names[i]}_"
-        _mode_functions(variant, equations, (i,), prefix)
-        guards = _guards(model, equations)
-        equations.guards = guards
-        values = []
-        for g, (expression, transitions) in enumerate(guards):
+        if equations.free:
+            name = equations.mode.name
+            _check_smooth(equations.r, f"equations of mode `{name}`", equations.mode.location, parameters)
+        equations.margins = limits.margins(equations)
+        equations.margin_shapes = [
+            None if analysis.is_constant(model, equations, margin) else analysis.shape(model, equations, margin)
+            for margin in equations.margins]
+        equations.guards = _guards(model, equations)
+        equations.guard_shapes, equations.guard_values = [], []
+        mode = functions.OfMode(variant, equations, _check_smooth)
+        _add(variant, prefix, functions.MODE, mode, equations, (i,))
+        for g, (expression, transitions) in enumerate(equations.guards):
             placed = equations.place(expression, transitions[0].location if transitions else None)
             if transitions:
                 _check_smooth(placed, f"guard of `{transitions[0].name}`", transitions[0].location, parameters)
-            _add(variant, prefix + f"guard{g}", placed, equations, (i, "guard", g))
-            # A linear guard is as good a polynomial as the motion itself.
-            linear = analysis.linear_shape(model, equations, placed)
-            values.append(placed if linear is None else ca.SX(0))
-            rate = equations.along_the_flow(placed, _signals(model), _signal_rates(model))
-            _add(variant, prefix + f"guard{g}_rate", rate, equations, (i, "guard_rate", g))
-            _add(variant, prefix + f"guard{g}_magnitude", graph.magnitude(placed), equations, (i, "guard_magnitude", g))
+            guard = functions.OfGuard(mode, placed)
+            _add(variant, prefix, functions.GUARD, guard, equations, (i,), g)
+            shape = analysis.shape(model, equations, expression)
+            equations.guard_shapes.append(shape)
+            equations.guard_values.append(placed if "general" in shape else ca.SX(0))
             for t, transition in enumerate(transitions):
                 target = modes[index[transition.target.name]]
-                reset = _reset(model, equations, target, transition)
-                function = _add(variant, prefix + f"guard{g}_reset{t}", reset, equations, (i, "reset", g, t))
-                function.stays = target is equations and _stays(model, equations, reset)
+                condition = None
                 if transition.condition is not None:
                     condition = target.place(transition.condition, transition.location)
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
-                    _add(variant, prefix + f"guard{g}_condition{t}", condition, target, (i, "condition", g, t))
+                of = functions.OfTransition(mode, _reset(model, equations, target, transition), condition)
+                _add(variant, prefix, functions.TRANSITION, of, equations, (i,), g, t)
+                variant.functions[i, "reset", g, t].stays = target is equations and _stays(model, equations, of.reset)
+                if condition is not None:
+                    variant.functions[i, "condition", g, t].equations = target
         _tapes(variant, i, index)
-        rates = _drift_rates(model, equations)
-        _add(variant, prefix + "guard_series", ca.vertcat(*values, rates), equations, (i, "guard_series"))
+        _add(variant, prefix, (functions.GUARDS_OF_MODE,), mode, equations, (i,))
     return variant
 
 
@@ -310,15 +298,29 @@ def _tag(model):
     return f"v{tag}_" if tag else ""
 
 
-def _add(variant, name, output, equations, slot):
-    function = variant.functions[slot] = Function(name, ca.densify(ca.vec(ca.SX(output))), equations, slot)
-    return function
+def _add(variant, prefix, rows, of, equations, mode, *places):
+    """Adds the functions of some rows: of a mode, or of a guard or a transition of it, by their `places`."""
+    for row in rows:
+        if row.exists(of):
+            output = ca.densify(ca.vec(ca.SX(row.output(of))))
+            variant.functions[*mode, row.name, *places] = Function(prefix + _name(row, *places), row, output, equations)
+
+
+def _name(row, *places):
+    """What a function is called in C, behind its mode."""
+    match places:
+        case ():
+            return row.name
+        case (g,):
+            return row.name.replace("guard", f"guard{g}")
+        case (g, t):
+            return f"guard{g}_{row.name}{t}"
 
 
 def _tapes(variant, i, index):
     """Adds the tapes of a mode: its system, its guards, and the conditions of its transitions in their targets."""
     model, equations = variant.model, variant.modes[i]
-    places = lambda of: tape.places(model, of, _signals(model))
+    places = lambda of: tape.places(model, of, signals.of(model))
     mass, load = equations.system()
     variant.tapes[i, "system"] = tape.of(ca.vertcat(ca.vec(mass), load), places(equations))
     guards = ca.vertcat(*[equations.place(expression) for expression, _ in equations.guards])
@@ -330,71 +332,6 @@ def _tapes(variant, i, index):
             variant.tapes[i, "conditions", g, t] = tape.of(conditions, places(target))
     if equations.mode.form is not None:
         variant.tapes[i, "decisions"] = tape.of(equations.decisions(), places(equations))
-
-
-def _mode_functions(variant, equations, slot, prefix):
-    model = variant.model
-    signals, rates = _signals(model), _signal_rates(model)
-    if equations.free:
-        name = equations.mode.name
-        _check_smooth(equations.r, f"equations of mode `{name}`", equations.mode.location, [p.symbol for p in model.parameters])
-    mass, load = equations.system()
-    # Those of contacts choose rows: one that few sets have would seem to be idle.
-    chosen = equations.mode.form.discretes() if equations.mode.form else []
-    without_idle = lambda column: graph.without_idle(
-        column, ca.vertcat(equations.q, equations.v),
-        [(d.symbol, d.values) for d in model.discretes if not any(d.symbol is own for own in chosen)])
-    system = without_idle(ca.vertcat(ca.vec(mass), load))
-    jacobians = equations.jacobians()
-    reactions = ca.SX.zeros(len(model.coordinates) + len(model.motions))
-    for i, reaction in equations.reactions:
-        reactions[i] = reaction
-    equations.margins = limits.margins(equations)
-    requirements = ca.vertcat(
-        *[equations.place(r.expression, r.location) for r in equations.mode.requirements], *equations.margins)
-    for what, output in (
-        ("residual", equations.r),
-        ("jacobian", ca.vertcat(*[ca.vec(j) for j in jacobians])),
-        ("system", system),
-        ("series", ca.vertcat(system, _drift_rates(model, equations))),
-        ("quiet_series", _quiet(model, ca.vertcat(system, _drift_rates(model, equations)))),
-        ("inertia", without_idle(ca.vec(equations.inertia()))),
-        ("jerk_load", equations.jerk_load(signals, rates)),
-        ("magnitude", equations.magnitude()),
-        ("reactions", reactions),
-        ("outputs", outputs.values(equations, _check_smooth)),
-        ("energies", equations.energies()),
-        ("powers", equations.powers()),
-        ("momenta", equations.momenta()),
-        ("requirements", requirements),
-        ("requirement_bounds", _bounds(model, equations, requirements)),
-        ("held_rates", equations.freeze(equations.rates_of_held)),
-        ("held_values", equations.values_of_held()),
-        *([("places", equations.places())] if equations.mode.form else []),
-    ):
-        _add(variant, prefix + what, output, equations, slot + (what,))
-
-
-def _bounds(model, equations, column):
-    """Lower bounds of a column while what moves stays within radii of its values."""
-    moving = ca.vertcat(equations.q, equations.v, equations.a, _signals(model))
-    radii = ca.vertcat(equations.radii, _signal_radii(model))
-    known = {moving[i].element_hash(): radii[i] for i in range(moving.numel())}
-    drifting = [equations.held[i] for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
-    known.update((symbol.element_hash(), None) for symbol in drifting)
-    return ca.vertcat(*[bounds.lower_bound(column[i], known) for i in range(column.numel())])
-
-
-def _quiet(model, expression):
-    """An expression where no input acts."""
-    signals = _signals(model)
-    return ca.substitute(expression, signals, ca.SX.zeros(signals.numel())) if signals.numel() else expression
-
-
-def _drift_rates(model, equations):
-    """Rates of the frozen coordinates that drift."""
-    drift = equations.mode.drift
-    return equations.freeze(ca.vertcat(*[ca.SX(drift[c.name]) for c in model.coordinates if c.name in drift]))
 
 
 def _check_smooth(expression, what, location, parameters):
@@ -444,7 +381,7 @@ def _stays(model, equations, reset):
     held = [(i, c) for i, c in enumerate(model.coordinates) if i not in equations.free]
     before = [(k, equations.place(x)) for i, c in held for k, x in ((i, c.symbol), (n + i, c.symbol.rate))]
     return (all(_is_same(reset[k], x) for k, x in before)
-            and not analysis.present(ca.symvar(reset), _signals(model), _signal_rates(model), equations.j))
+            and not analysis.present(ca.symvar(reset), signals.of(model), signals.rates(model), equations.j))
 
 
 def _is_same(one, other):

@@ -23,7 +23,7 @@ def transition(of, names):
 def guard(of, names):
     transitions = ", ".join(transition(t, names) for t in of["transitions"])
     accelerations = str(of["shape"].get("general", {}).get("accelerations", False)).lower()
-    return f"{{{names[of['value']]}, {accelerations}, {{{transitions}}}}}"
+    return f"{{{names[of['guard']]}, {accelerations}, {{{transitions}}}}}"
 
 
 def mode(index, of, rests, names):
@@ -58,7 +58,7 @@ def functions_of(table):
 
 def main(folder):
     folder.mkdir(parents=True, exist_ok=True)
-    subprocess.run([sys.executable, "-B", "-m", "codegen", "generate", "--model-dir", "models/walking_tank", "--out", folder], cwd=ROOT, check=True)
+    subprocess.run([sys.executable, "-B", "-m", "codegen", "generate", "--model-dir", "models/walking_tank", "--out", folder, "--only"], cwd=ROOT, check=True)
     generated = folder / "walking_tank"
     manifest = json.loads((generated / "manifest.json").read_text())
     description = json.loads((generated / "description.json").read_text())

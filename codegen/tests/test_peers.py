@@ -55,7 +55,7 @@ class TablesOfPeers(unittest.TestCase):
             system = self.names[mode["kernel"]["system"]]
             self.assertRegex(table, rf"\{{{len(mode['free'])}, \{{{', '.join(map(str, mode['free']))}\}}, {system}, ")
             for guard in mode["guards"]:
-                self.assertIn(self.names[guard["value"]], table)
+                self.assertIn(self.names[guard["guard"]], table)
         declared = set(re.findall(r"\bFunction (\w+);", table))
         self.assertEqual(declared, set(re.findall(r"\bdalembert_\w+", table)))
 

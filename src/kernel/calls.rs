@@ -124,7 +124,14 @@ impl<F: Size> ModeKernel<F> {
     pub fn residual(&self, x: &Context, at: Free<F>, r: &mut F::Vector) {
         assert_eq!(r.size(), self.size, "one number a free coordinate");
         // SAFETY: F outputs.
-        unsafe { self.call(self.residual, x, at, r.as_mut_slice().as_mut_ptr()) }
+        unsafe {
+            self.call(
+                self.functions.residual,
+                x,
+                at,
+                r.as_mut_slice().as_mut_ptr(),
+            )
+        }
     }
 
     /// [∂r/∂a, ∂r/∂v, ∂r/∂q].
@@ -134,7 +141,7 @@ impl<F: Size> ModeKernel<F> {
         assert!(m.size() == self.size && c.size() == self.size && k.size() == self.size);
         let at = at.pointers(self.size);
         // SAFETY: three dense column-major F × F outputs, one behind the other.
-        let write = |out| unsafe { x.call(self.jacobian, &self.dimensions, at, out) };
+        let write = |out| unsafe { x.call(self.functions.jacobian, &self.dimensions, at, out) };
         self.size.write_three(out, write);
     }
 
@@ -145,7 +152,7 @@ impl<F: Size> ModeKernel<F> {
         let (mass, load) = self.size.matrix_and_vector(|out| {
             if self.size.get() > 0 {
                 // SAFETY: F × F and F outputs, one behind the other; `a` is not read.
-                unsafe { x.call(self.system, &self.dimensions, [q, v, v], out) }
+                unsafe { x.call(self.functions.system, &self.dimensions, [q, v, v], out) }
             }
         });
         LinearSystem { mass, load }
@@ -244,21 +251,21 @@ impl<F: Size> ModeKernel<F> {
         let (q, v) = (pointer(q, self.size), pointer(v, self.size));
         let to = out.as_mut_slice().as_mut_ptr();
         // SAFETY: F × F outputs; `a` is not read.
-        unsafe { x.call(self.inertia, &self.dimensions, [q, v, v], to) }
+        unsafe { x.call(self.functions.inertia, &self.dimensions, [q, v, v], to) }
         out
     }
 
     /// b with M j + b = 0 for the jerk j; needs the signals to be set.
     pub fn jerk_load(&self, x: &Context, at: Free<F>) -> F::Vector {
         // SAFETY: F outputs.
-        unsafe { self.one_a_coordinate(self.jerk_load, x, at) }
+        unsafe { self.one_a_coordinate(self.functions.jerk_load, x, at) }
     }
 
     /// Number of terms × sum of their magnitudes, per equation: times machine epsilon a bound of
     /// the rounding error of the residual.
     pub fn magnitude(&self, x: &Context, at: Free<F>) -> F::Vector {
         // SAFETY: F outputs.
-        unsafe { self.one_a_coordinate(self.magnitude, x, at) }
+        unsafe { self.one_a_coordinate(self.functions.magnitude, x, at) }
     }
 
     /// What a function of the mode gives, one number a free coordinate.
@@ -285,7 +292,7 @@ impl<F: Size> ModeKernel<F> {
             self.dimensions.coordinates + self.dimensions.motions
         );
         // SAFETY: the length was checked.
-        unsafe { self.call(self.reactions, x, at, out.as_mut_ptr()) }
+        unsafe { self.call(self.functions.reactions, x, at, out.as_mut_ptr()) }
     }
 
     /// The outputs of the model.
@@ -293,7 +300,7 @@ impl<F: Size> ModeKernel<F> {
     /// # Panics
     /// If `out` has not one entry an output.
     pub fn outputs(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
-        let (function, count) = self.outputs;
+        let (function, count) = (self.functions.outputs, self.outputs);
         assert_eq!(out.len(), count);
         // SAFETY: the length was checked.
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
@@ -303,7 +310,7 @@ impl<F: Size> ModeKernel<F> {
     pub fn energies(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];
         // SAFETY: two outputs.
-        unsafe { self.call(self.energies, x, at, out.as_mut_ptr()) }
+        unsafe { self.call(self.functions.energies, x, at, out.as_mut_ptr()) }
         out
     }
 
@@ -312,7 +319,7 @@ impl<F: Size> ModeKernel<F> {
     pub fn powers(&self, x: &Context, at: Free<F>) -> [f64; 2] {
         let mut out = [0.0; 2];
         // SAFETY: two outputs.
-        unsafe { self.call(self.powers, x, at, out.as_mut_ptr()) }
+        unsafe { self.call(self.functions.powers, x, at, out.as_mut_ptr()) }
         out
     }
 
@@ -326,7 +333,7 @@ impl<F: Size> ModeKernel<F> {
             self.dimensions.coordinates + self.dimensions.motions
         );
         // SAFETY: the length was checked.
-        unsafe { self.call(self.momenta, x, at, out.as_mut_ptr()) }
+        unsafe { self.call(self.functions.momenta, x, at, out.as_mut_ptr()) }
     }
 
     /// Gaps, their rates, slip rates, coefficients of friction and restitution of contacts, then values and rates of
@@ -349,7 +356,7 @@ impl<F: Size> ModeKernel<F> {
     /// If `out` has not one entry a requirement.
     #[inline]
     pub fn requirements(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
-        let (function, count) = self.requirements;
+        let (function, count) = (self.functions.requirements, self.requirements);
         assert_eq!(out.len(), count);
         // SAFETY: the length was checked.
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
@@ -368,7 +375,7 @@ impl<F: Size> ModeKernel<F> {
         tau: f64,
         out: &mut [f64],
     ) {
-        assert_eq!(out.len(), self.requirements.1);
+        assert_eq!(out.len(), self.requirements);
         assert!(orders + 2 <= ORDERS);
         self.assert_rows(at);
         let n = self.size.get();
@@ -396,7 +403,7 @@ impl<F: Size> ModeKernel<F> {
             );
             // SAFETY: the length of `out` was checked; an entry a signal; F entries each, and three times F
             // radii.
-            unsafe { (self.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
+            unsafe { (self.functions.requirement_bounds)(q, v, a, &raw, out.as_mut_ptr()) }
         });
     }
 
@@ -405,7 +412,7 @@ impl<F: Size> ModeKernel<F> {
     /// # Panics
     /// If `out` has not one entry a coordinate.
     pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
-        self.of_held(self.held_rates, x, out);
+        self.of_held(self.functions.held_rates, x, out);
     }
 
     /// Coordinates as the mode holds them; those that it leaves free or holds wherever they were as the context has
@@ -414,7 +421,7 @@ impl<F: Size> ModeKernel<F> {
     /// # Panics
     /// If `out` has not one entry a coordinate.
     pub fn held_values(&self, x: &Context, out: &mut [f64]) {
-        self.of_held(self.held_values, x, out);
+        self.of_held(self.functions.held_values, x, out);
     }
 
     /// What a function of the mode gives that has one output a coordinate and does not depend on those that are free.

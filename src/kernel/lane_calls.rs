@@ -117,7 +117,7 @@ impl<const F: usize> ModeKernel<Const<F>> {
         tau: &Lanes<W>,
         out: &mut [Lanes<W>],
     ) {
-        assert_eq!(out.len(), self.requirements.1);
+        assert_eq!(out.len(), self.requirements);
         assert!(orders > 0 && orders + 2 <= ORDERS);
         let functions = level.functions;
         let zero = [[Lanes::<W>::of(0.0); F]; 3];

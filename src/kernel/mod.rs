@@ -41,4 +41,4 @@ pub use tables::{
     ConstantsKernel, Free, GuardKernel, LinearSystem, ModeKernel, ModeKernels, TransitionKernel,
     with_kernel,
 };
-pub(crate) use tables::{LaneKernel, SeriesKernel};
+pub(crate) use tables::{LaneKernel, ModeFunctions, SeriesKernel};

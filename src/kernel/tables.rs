@@ -60,25 +60,52 @@ impl<F: Size> LinearSystem<F> {
     }
 }
 
+/// Makes a table of functions with these names.
+macro_rules! functions {
+    ($($name:ident),* $(,)?) => {
+        /// Functions of values that every mode has, each once; what they compute is said by `MODE` in codegen/functions.py.
+        #[derive(Debug)]
+        pub(crate) struct ModeFunctions {
+            $(pub $name: Raw),*
+        }
+
+        impl ModeFunctions {
+            /// Looks for each by its name.
+            pub fn find<E>(find: impl Fn(&str) -> Result<Raw, E>) -> Result<Self, E> {
+                Ok(ModeFunctions { $($name: find(stringify!($name))?),* })
+            }
+        }
+    };
+}
+
+functions! {
+    residual,
+    jacobian,
+    system,
+    inertia,
+    jerk_load,
+    magnitude,
+    reactions,
+    outputs,
+    energies,
+    powers,
+    momenta,
+    requirements,
+    requirement_bounds,
+    held_rates,
+    held_values,
+}
+
 /// The generated functions of one mode with F free coordinates.
 #[derive(Debug)]
 pub struct ModeKernel<F: Size> {
     pub(crate) size: F,
     pub(crate) dimensions: Arc<Dimensions>,
-    pub(crate) residual: Raw,
-    pub(crate) jacobian: Raw,
-    pub(crate) system: Raw,
-    pub(crate) inertia: Raw,
-    pub(crate) jerk_load: Raw,
-    pub(crate) magnitude: Raw,
-    pub(crate) reactions: Raw,
-    pub(crate) outputs: (Raw, usize),
-    pub(crate) energies: Raw,
-    pub(crate) powers: Raw,
-    pub(crate) momenta: Raw,
-    pub(crate) requirements: (Raw, usize),
-    /// In place of rates of signals and of jerks it takes radii.
-    pub(crate) requirement_bounds: Raw,
+    pub(crate) functions: ModeFunctions,
+    /// Number of outputs.
+    pub(crate) outputs: usize,
+    /// Number of requirements and margins.
+    pub(crate) requirements: usize,
     pub(crate) series: Option<SeriesKernel>,
     /// The same where no input acts.
     pub(crate) quiet_series: Option<SeriesKernel>,
@@ -89,8 +116,6 @@ pub struct ModeKernel<F: Size> {
     pub(crate) is_linear: bool,
     /// Of contacts and constraints, with the number of results.
     pub(crate) places: Option<(Raw, usize)>,
-    pub(crate) held_rates: Raw,
-    pub(crate) held_values: Raw,
     /// By level of the processor; none where the mode does not go in lanes.
     pub(crate) lanes: Box<[LaneKernel]>,
 }

@@ -2,7 +2,8 @@
 
 use super::{Read, Reader};
 use crate::kernel::{
-    ConstantsKernel, Functions, LaneKernel, ModeKernel, ModeKernels, Raw, SeriesKernel,
+    ConstantsKernel, Functions, LaneKernel, ModeFunctions, ModeKernel, ModeKernels, Raw,
+    SeriesKernel,
 };
 use crate::model::Guard;
 use crate::model::reader::{At, count, truth};
@@ -46,7 +47,6 @@ impl Reader<'_> {
         guards: &[Guard],
         counts: Counts,
     ) -> Read<ModeKernel<F>> {
-        let value = |key: &str| at.get(key, |at| self.value(at));
         let series = |key: &str| at.get(key, |at| at.option(|at| self.series(at, self.functions)));
         let lanes = match at.get("goes_in_lanes", truth)? {
             true => self.lanes,
@@ -67,27 +67,15 @@ impl Reader<'_> {
         Ok(ModeKernel {
             size,
             dimensions: self.dimensions.clone(),
-            residual: value("residual")?,
-            jacobian: value("jacobian")?,
-            system: value("system")?,
-            inertia: value("inertia")?,
-            jerk_load: value("jerk_load")?,
-            magnitude: value("magnitude")?,
-            reactions: value("reactions")?,
-            outputs: (value("outputs")?, counts.outputs),
-            energies: value("energies")?,
-            powers: value("powers")?,
-            momenta: value("momenta")?,
-            requirements: (value("requirements")?, counts.required),
-            requirement_bounds: value("requirement_bounds")?,
+            functions: ModeFunctions::find(|key| at.get(key, |at| self.value(at)))?,
+            outputs: counts.outputs,
+            requirements: counts.required,
             places: at.get("places", |at| {
                 at.option(|at| {
                     let function = at.get("function", |at| self.value(at))?;
                     Ok((function, at.get("count", count)?))
                 })
             })?,
-            held_rates: value("held_rates")?,
-            held_values: value("held_values")?,
             series: series("series")?,
             quiet_series: series("quiet_series")?,
             guard_series: series("guard_series")?,

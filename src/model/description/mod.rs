@@ -254,10 +254,10 @@ impl Reader<'_> {
             kernel: GuardKernel {
                 dimensions: self.dimensions.clone(),
                 free,
-                value: at.get("value", |at| self.value(at))?,
-                rate: at.get("rate", |at| self.value(at))?,
-                magnitude: at.get("magnitude", |at| self.value(at))?,
-                in_lanes: at.get("value", |at| self.in_lanes(at))?,
+                value: at.get("guard", |at| self.value(at))?,
+                rate: at.get("guard_rate", |at| self.value(at))?,
+                magnitude: at.get("guard_magnitude", |at| self.value(at))?,
+                in_lanes: at.get("guard", |at| self.in_lanes(at))?,
             },
             transitions: at.get("transitions", |at| {
                 at.list(|at| self.transition(at, free, modes))

@@ -1,0 +1,38 @@
+"""The table of functions, and what the engine looks for by its names."""
+
+import os
+import re
+import unittest
+
+from codegen import functions
+from codegen.tests.scratch import HEAD, ScratchTest
+from codegen.tests.test_derivation import ROOT
+
+
+class Functions(ScratchTest):
+    def test_the_engine_lists_the_functions_that_every_mode_has(self):
+        with open(os.path.join(ROOT, "src", "kernel", "tables.rs"), encoding="utf-8") as stream:
+            listed = re.search(r"^functions! \{([^}]*)\}", stream.read(), re.M).group(1)
+        everywhere = [row.name for row in functions.MODE if not row.series and not row.is_counted]
+        self.assertEqual(re.findall(r"\w+", listed), everywhere)
+
+    def test_names_are_told_apart(self):
+        rows = [*functions.MODE, *functions.GUARD, *functions.TRANSITION, functions.GUARDS_OF_MODE]
+        self.assertEqual(len(functions.ROWS), len(rows))
+
+    def test_each_row_is_emitted_and_found(self):
+        text = HEAD + ('y = model.coordinate("y", "m", "height")\nmodel.point_mass(m, position=(x, y))\n'
+                       'model.contact("floor", gap=x + y)\nrests, moves = model.mode("rests"), model.mode("moves")\n'
+                       'model.transition("go", rests, moves, when=falls(x * y), provided=y)\n')
+        mode = self.described(text)["variants"][0]["modes"][0]
+        for row in functions.OF_EACH_MODE:
+            self.assertIsNotNone(mode["kernel"][row.name], row.name)
+        guard = mode["guards"][-1]
+        for row in functions.GUARD:
+            self.assertIsNotNone(guard[row.name], row.name)
+        for row in functions.TRANSITION:
+            self.assertIsNotNone(guard["transitions"][0][row.name], row.name)
+
+
+if __name__ == "__main__":
+    unittest.main()
