@@ -7,10 +7,10 @@ use super::guards::{Conditions, slope, watched_value};
 use super::inertia::pivots;
 use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
-use crate::integrate::{Size, Vector, determinant_sign};
+use crate::integrate::{Size, Vector};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Contacts, Guard, GuardShape};
-use crate::numerics::{Lu, Matrix};
+use crate::numerics::Lu;
 
 /// An acceleration is evidence at once where it is more than this part of the sum of its terms, the square root of the unit
 /// roundoff: then no rounding decides, were it of a hundred million operations. Whatever is closer to zero is left to
@@ -36,19 +36,18 @@ impl<'p> Simulation<'p> {
         let [q, v, _] = self.here.free(kernel.size(), &mode.free);
         self.check_inertia(kernel, [&q, &v])?;
         let system = kernel.system(&self.context, &q, &v);
+        let mass = system
+            .factorize(&self.scale(kernel.size()))
+            .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
         // With multipliers its sign means nothing by itself, and what may follow was judged.
-        if mode.contacts.is_none() && determinant_sign(&system.mass) < 0 {
+        if mode.contacts.is_none() && mass.sign() < 0 {
             return Err(Box::new(Reason::DeterminantChangesSign { mode: mode.name }));
         }
-        let scale = self.scale(kernel.size());
-        let mut a = system
-            .accelerations(&scale)
-            .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
+        let mut a = system.accelerations_by(&mass);
 
         let start = Start {
             kernel,
-            mass: &system.mass,
-            scale: &scale,
+            mass: &mass,
             at: [&q, &v],
             t: self.here.now.seconds(),
         };
@@ -231,10 +230,11 @@ impl<'p> Simulation<'p> {
         self.signs.start();
         if needs_accelerations || self.has_sample_left() {
             let system = kernel.system(&self.context, &q, &v);
-            let a = system.accelerations(&self.scale(kernel.size()));
-            let Some(a) = a.ok().filter(|_| determinant_sign(&system.mass) > 0) else {
+            let mass = system.factorize(&self.scale(kernel.size())).ok();
+            let Some(mass) = mass.filter(|mass| mass.sign() > 0) else {
                 return Ok(false);
             };
+            let a = system.accelerations_by(&mass);
             self.here.set_free(&mode.free, [&q, &v, &a]);
             self.flush_samples()?;
         }
@@ -265,8 +265,8 @@ impl<'p> Simulation<'p> {
 /// The state at the start of a segment, for guards that are exactly zero there.
 struct Start<'a, F: Size> {
     kernel: &'a ModeKernel<F>,
-    mass: &'a F::Matrix,
-    scale: &'a F::Vector,
+    /// Its mass matrix.
+    mass: &'a Lu<f64, F>,
     /// Free coordinates and velocities.
     at: [&'a F::Vector; 2],
     /// When that is, s.
@@ -304,7 +304,7 @@ impl<F: Size> Start<'_, F> {
         if !rate && v[index] != 0.0 {
             return Some(leaves(v[index], 1));
         }
-        let inverse = inverse(self.mass, self.scale);
+        let inverse = self.mass.inverted();
         let size = self.kernel.magnitude(context, Free { q, v, a });
         let terms: f64 = (0..size.size().get())
             .map(|j| inverse[(index, j)].abs() * size[j])
@@ -348,16 +348,6 @@ fn is_at_rest(guard: &Guard, v: &impl Vector) -> bool {
         } => v[index] == 0.0,
         _ => false,
     }
-}
-
-/// The inverse of a mass matrix that was just solved with.
-pub(super) fn inverse<M: Matrix>(mass: &M, scale: &<M::Size as Size>::Vector) -> M {
-    let size = mass.size();
-    let mut inverse = size.zero_matrix();
-    if let Ok(lu) = Lu::<f64, M::Size>::factorize(|i, j| mass[(i, j)], scale) {
-        lu.inverse(|i, j, entry| inverse[(i, j)] = entry);
-    }
-    inverse
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use super::margins::Ended;
 use super::observe::{Step, copy_drifting};
 use super::segment::Stay;
 use super::simulation::{Simulation, Stop, Violation};
-use crate::integrate::{Motion, Node, OneStep, SERIES, Size, State, StepError, determinant_sign};
+use crate::integrate::{Motion, Node, OneStep, SERIES, Size, State, StepError};
 use crate::kernel::Context;
 use crate::model::Mode;
 use crate::numerics::copy_few;
@@ -96,10 +96,13 @@ impl Simulation<'_> {
         if goes_on {
             equations.at(method.end());
         }
-        let determinant = match mass_changes {
-            true => determinant_sign(&kernel.system(equations.context, &began.q, &began.v).mass),
-            false => 1,
+        let sign = |context: &Context, state: &State<F>| {
+            let system = kernel.system(context, &state.q, &state.v);
+            system.determinant_sign(&stay.scale)
         };
+        let determinant = mass_changes
+            .then(|| sign(equations.context, &began))
+            .flatten();
         let vanished = |context: &Context, now: &State<F>| {
             let states = [&began, now].map(|state| [&state.q, &state.v]);
             vanished(kernel, context, (problem, mode), states)
@@ -195,8 +198,11 @@ impl Simulation<'_> {
             // 6. The mass matrix.
             if mass_changes {
                 equations.at(state.t);
-                let mass = kernel.system(equations.context, &state.q, &state.v).mass;
-                if determinant_sign(&mass) != determinant {
+                let now = sign(equations.context, &state);
+                if now
+                    .zip(determinant)
+                    .is_some_and(|(now, began)| now != began)
+                {
                     if let Some(reason) = vanished(equations.context, &state) {
                         return Err(Box::new(reason));
                     }

@@ -40,7 +40,7 @@ pub(crate) use crate::numerics::stretch;
 pub use crate::numerics::{
     Const, Dynamic, Matrix, ORDERS, Rows, Series, SeriesKind, Singular, Size, Vector, solve,
 };
-pub(crate) use crate::numerics::{LaneMask, Lanes, determinant_sign};
+pub(crate) use crate::numerics::{LaneMask, Lanes};
 pub use dense::Dense;
 pub use one_step::{Motion, OneStep};
 pub use radau::Radau;

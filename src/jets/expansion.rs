@@ -4,7 +4,7 @@ use super::ORDERS;
 use crate::input::Signals;
 use crate::kernel::Context;
 use crate::model::{Mode, Operands, Row, Tape};
-use crate::numerics::{self, Bounded};
+use crate::numerics::{self, Bounded, Dynamic, Lu, Size};
 
 /// Where an expansion starts.
 #[derive(Debug, Clone, Copy)]
@@ -31,8 +31,6 @@ pub(crate) struct Expansion {
     others: Vec<Row>,
     /// Inverse of the mass matrix at the start, row by row.
     inverse: Box<[f64]>,
-    /// Room for the matrix while it is inverted.
-    matrix: Box<[f64]>,
     /// What the equations ask of the accelerations, these, and what they leave.
     rest: Box<[Bounded]>,
     accelerations: Box<[f64]>,
@@ -57,7 +55,6 @@ impl Expansion {
             system: Vec::new(),
             others: Vec::new(),
             inverse: vec![0.0; coordinates * coordinates].into(),
-            matrix: vec![0.0; coordinates * coordinates].into(),
             rest: vec![Bounded::default(); coordinates].into(),
             accelerations: vec![0.0; coordinates].into(),
             left: vec![0.0; coordinates].into(),
@@ -148,7 +145,12 @@ impl Expansion {
         let entry = |place: usize| &self.system[mode.system.results[place]];
         if k == 0 {
             let mass = |i: usize, j: usize| entry(count * j + i)[0].value;
-            invert(count, mass, [&mut self.matrix, &mut self.inverse]);
+            let ones = Dynamic(count).repeat(1.0);
+            match Lu::<f64, Dynamic>::factorize(mass, &ones) {
+                Ok(mass) => mass.inverse(|i, j, entry| self.inverse[i * count + j] = entry),
+                // Then nothing is known of what follows: errors without bound.
+                Err(_) => self.inverse[..count * count].fill(f64::NAN),
+            }
         }
         // M₀ a_k + rest = 0.
         let rest = &mut self.rest[..count];
@@ -186,39 +188,6 @@ impl Expansion {
                 if k + 2 < ORDERS {
                     given.q[coordinate][k + 2] = rate / Bounded::exact((k + 2) as f64);
                 }
-            }
-        }
-    }
-}
-
-/// Writes the inverse of a matrix, by Gauss and Jordan with the largest pivot of each column. What is not a number, of a
-/// singular one, becomes an error without bound.
-fn invert(count: usize, entry: impl Fn(usize, usize) -> f64, [rows, inverse]: [&mut [f64]; 2]) {
-    for i in 0..count {
-        for j in 0..count {
-            rows[i * count + j] = entry(i, j);
-            inverse[i * count + j] = f64::from(u8::from(i == j));
-        }
-    }
-    for column in 0..count {
-        let size = |row: &usize| rows[row * count + column].abs();
-        let pivot = (column..count)
-            .max_by(|a, b| size(a).total_cmp(&size(b)))
-            .expect("a column has a row");
-        for j in 0..count {
-            rows.swap(column * count + j, pivot * count + j);
-            inverse.swap(column * count + j, pivot * count + j);
-        }
-        let reciprocal = 1.0 / rows[column * count + column];
-        for j in 0..count {
-            rows[column * count + j] *= reciprocal;
-            inverse[column * count + j] *= reciprocal;
-        }
-        for i in (0..count).filter(|&i| i != column) {
-            let factor = rows[i * count + column];
-            for j in 0..count {
-                rows[i * count + j] -= factor * rows[column * count + j];
-                inverse[i * count + j] -= factor * inverse[column * count + j];
             }
         }
     }

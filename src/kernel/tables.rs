@@ -3,7 +3,7 @@
 
 use super::raw::{Raw, RawRun, RawStart};
 use super::{Context, Dimensions, LaneLevel};
-use crate::numerics::{Const, Dynamic, ORDERS, SeriesKind, Singular, Size, solve_for};
+use crate::numerics::{Const, Dynamic, Lu, Matrix, ORDERS, SeriesKind, Singular, Size};
 use std::sync::Arc;
 
 /// What depends on parameters alone.
@@ -56,7 +56,26 @@ impl<F: Size> LinearSystem<F> {
     /// [`Singular`] where M is singular.
     #[inline(always)]
     pub fn accelerations(&self, scale: &F::Vector) -> Result<F::Vector, Singular> {
-        solve_for(&self.mass, |i| -self.load[i], scale)
+        Ok(self.accelerations_by(&self.factorize(scale)?))
+    }
+
+    /// M, factorized.
+    #[inline(always)]
+    pub(crate) fn factorize(&self, scale: &F::Vector) -> Result<Lu<f64, F>, Singular> {
+        Lu::factorize(|i, j| self.mass[(i, j)], scale)
+    }
+
+    /// The accelerations, by M as it was factorized.
+    #[inline(always)]
+    pub(crate) fn accelerations_by(&self, mass: &Lu<f64, F>) -> F::Vector {
+        let a = mass.solve(|i| -self.load[i]);
+        self.mass.size().vector(|i| a[i])
+    }
+
+    /// Sign of the determinant of M; none where M is singular to rounding.
+    #[inline(always)]
+    pub(crate) fn determinant_sign(&self, scale: &F::Vector) -> Option<i8> {
+        Some(self.factorize(scale).ok()?.sign())
     }
 }
 

@@ -59,9 +59,11 @@ pub(crate) struct Lu<T: Stored, F: Size> {
     reciprocals: F::List<T>,
     /// Row of A that became row i.
     order: F::List<usize>,
+    /// Whether an odd number of rows were exchanged for that.
+    is_odd: bool,
 }
 
-persist!([T: Stored, F: Size] Lu<T, F> { rows, reciprocals, order } but { size });
+persist!([T: Stored, F: Size] Lu<T, F> { rows, reciprocals, order, is_odd } but { size });
 
 impl<T: Scalar, F: Size> Lu<T, F> {
     /// Placeholder until the first factorization.
@@ -71,6 +73,7 @@ impl<T: Scalar, F: Size> Lu<T, F> {
             rows: size.square(T::default()),
             reciprocals: size.list(T::default()),
             order: size.list(0),
+            is_odd: false,
         }
     }
 
@@ -131,6 +134,7 @@ impl<T: Scalar, F: Size> Lu<T, F> {
             let (row, own) = (self.order[pivot], scale[pivot]);
             (self.order[pivot], scale[pivot]) = (self.order[k], scale[k]);
             (self.order[k], scale[k]) = (row, own);
+            self.is_odd = !self.is_odd;
         }
         for j in k + 1..n {
             for l in 0..k {
@@ -167,6 +171,24 @@ impl<T: Scalar, F: Size> Lu<T, F> {
 }
 
 impl<F: Size> Lu<f64, F> {
+    /// Sign of the determinant of A, +1 or −1.
+    #[inline(always)]
+    pub fn sign(&self) -> i8 {
+        let n = self.size.get();
+        let negative = (0..n).filter(|&i| self.reciprocals[i] < 0.0).count();
+        match (negative % 2 == 1) == self.is_odd {
+            true => 1,
+            false => -1,
+        }
+    }
+
+    /// A⁻¹.
+    pub fn inverted(&self) -> F::Matrix {
+        let mut inverse = self.size.zero_matrix();
+        self.inverse(|i, j, entry| inverse[(i, j)] = entry);
+        inverse
+    }
+
     /// Gives the entries of A⁻¹, by columns: row, column, value.
     #[inline(always)]
     pub fn inverse(&self, mut entry: impl FnMut(usize, usize, f64)) {
@@ -202,43 +224,6 @@ pub(crate) fn solve_for<M: Matrix>(
     let lu = Lu::<f64, M::Size>::factorize(|i, j| matrix[(i, j)], row_scale)?;
     let x = lu.solve(right_side);
     Ok(matrix.size().vector(|i| x[i]))
-}
-
-/// Sign of a determinant, by elimination with row pivoting: +1, −1, or 0 where a pivot vanishes.
-#[inline(always)]
-pub(crate) fn determinant_sign<M: Matrix>(matrix: &M) -> i8 {
-    let n = matrix.size().get();
-    let mut m = matrix.clone();
-    let mut sign = 1;
-    for k in 0..n {
-        let mut pivot = k;
-        for i in k + 1..n {
-            if m[(i, k)].abs() > m[(pivot, k)].abs() {
-                pivot = i;
-            }
-        }
-        if pivot != k {
-            for j in 0..n {
-                let entry = m[(pivot, j)];
-                m[(pivot, j)] = m[(k, j)];
-                m[(k, j)] = entry;
-            }
-            sign = -sign;
-        }
-        if m[(k, k)] == 0.0 || m[(k, k)].is_nan() {
-            return 0;
-        }
-        if m[(k, k)] < 0.0 {
-            sign = -sign;
-        }
-        for i in k + 1..n {
-            let factor = m[(i, k)] / m[(k, k)];
-            for j in k + 1..n {
-                m[(i, j)] -= factor * m[(k, j)];
-            }
-        }
-    }
-    sign
 }
 
 #[cfg(test)]

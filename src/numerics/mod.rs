@@ -15,7 +15,7 @@ pub use bounded::Bounded;
 pub(crate) use complementarity::{Unsolved, solve_complementarity};
 pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{LaneMask, Lanes};
-pub(crate) use linear::{Lu, determinant_sign, solve_for};
+pub(crate) use linear::{Lu, solve_for};
 pub use linear::{Singular, solve};
 pub use persist::{Blank, Memory, Persist};
 pub(crate) use persist::{Kept, persist};

@@ -7,7 +7,6 @@
 use super::State;
 use super::geometry::{Geometry, Line, multiplier, write_states};
 use super::hold::{Places, ROUNDOFF};
-use crate::hybrid::enter::inverse;
 use crate::hybrid::equilibrium::{least_squares, to_zero};
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
@@ -188,7 +187,9 @@ impl<'p> Simulation<'p> {
         let (mode, size, scale) = (self.mode(), kernel.size(), self.scale(kernel.size()));
         self.set_accelerations(kernel)?;
         let [q, v, a] = self.here.free(size, &mode.free);
-        let inverse = inverse(&kernel.system(&self.context, &q, &v).mass, &scale);
+        let mass = kernel.system(&self.context, &q, &v).factorize(&scale);
+        let mass = mass.map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
+        let inverse = mass.inverted();
         let at = Free {
             q: &q,
             v: &v,
