@@ -34,8 +34,8 @@ impl<'p> Simulation<'p> {
             self.here.q.copy_from_slice(&self.initial.q);
             self.here.v.copy_from_slice(&self.initial.v);
             self.apply_drift();
-            let why = match self.misfit_in_words(m) {
-                Some(why) => Err(why),
+            let why = match self.misfit_of(m) {
+                Some(why) => Err(why.to_string()),
                 None => with_kernel!(&modes[m].kernels, k => self.rest_in_mode(k)),
             };
             match why {

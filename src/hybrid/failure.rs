@@ -16,7 +16,7 @@ impl From<StepError> for Box<Reason> {
 }
 
 /// Reason of an early stop; the place (hybrid time, mode, state) and the trajectory so far are in
-/// the [`crate::run::Run`].
+/// the [`crate::hybrid::Run`].
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Reason {
@@ -90,19 +90,29 @@ pub enum Reason {
     },
     /// No mode is admissible: the settling came back to a mode and state it had left.
     #[error(
-        "no mode is admissible here: the transitions {cycle} lead back to the same mode and state; two guards contradict each other"
+        "no mode is admissible here: the transitions {} lead back to the same mode and state; two guards contradict each other",
+        joined(cycle)
     )]
     Cycle {
-        /// The transitions of the cycle, `name (from → to)`, separated by commas.
-        cycle: String,
+        /// The transitions of the cycle.
+        cycle: Vec<Taken>,
+    },
+    /// No mode is admissible: a guard has fallen, and the condition of none of its transitions holds.
+    #[error(
+        "no mode is admissible here: the guard of {guard} has fallen, and no condition holds of a transition that it leads to"
+    )]
+    NoTransition {
+        /// The guard.
+        guard: &'static str,
     },
     /// Events follow each other without end, and between them neither time nor motion goes on.
     #[error(
-        "events accumulate (chattering) and neither time nor motion goes on by more than rounding; transitions involved: {transitions}; {missing}"
+        "events accumulate (chattering) and neither time nor motion goes on by more than rounding; transitions involved: {}; {missing}",
+        transitions.join(", ")
     )]
     Chattering {
         /// Names of the transitions.
-        transitions: String,
+        transitions: Vec<&'static str>,
         /// Why they do not come to rest.
         missing: String,
     },
@@ -117,10 +127,10 @@ pub enum Reason {
         of: &'static str,
     },
     /// The model needs a mode that the scene left out by freezing a coordinate.
-    #[error("no mode is left in which {frozen} may be frozen")]
+    #[error("no mode is left in which {} may be frozen", frozen.join(", "))]
     NoModeLeft {
         /// The frozen coordinates.
-        frozen: String,
+        frozen: Vec<&'static str>,
     },
     /// The Taylor method was asked for where it cannot be had.
     #[error(
@@ -159,8 +169,8 @@ pub enum Reason {
     Initial {
         /// Mode.
         mode: &'static str,
-        /// Which coordinate or rate, and what it should be.
-        why: String,
+        /// What does not fit.
+        why: Misfitting,
     },
     /// No static equilibrium to start from.
     #[error("no static equilibrium is found near the initial configuration: {why}")]
@@ -190,30 +200,35 @@ pub enum Reason {
     },
     /// No set of contact states goes on.
     #[error(
-        "no motion: of the contacts that touch ({contacts}) no set of states may go on, whatever opens, sticks or slips (Painlevé's paradox: inconsistent); a scene may ask for an impact without collision"
+        "no motion: of the contacts that touch ({}) no set of states may go on, whatever opens, sticks or slips (Painlevé's paradox: inconsistent); a scene may ask for an impact without collision",
+        contacts.join(", ")
     )]
     NoMotion {
         /// Names of the contacts.
-        contacts: String,
+        contacts: Vec<&'static str>,
     },
     /// Several sets of contact states may go on, with motions that differ.
     #[error(
-        "several motions: of the contacts that touch ({contacts}) several sets of states may go on, and their motions differ: {motions} (Painlevé's paradox: indeterminate)"
+        "several motions: of the contacts that touch ({}) several sets of states may go on, and their motions differ: `{}` and `{}` (Painlevé's paradox: indeterminate)",
+        contacts.join(", "),
+        motions[0],
+        motions[1]
     )]
     SeveralMotions {
         /// Names of the contacts.
-        contacts: String,
+        contacts: Vec<&'static str>,
         /// Two of the sets.
-        motions: String,
+        motions: [String; 2],
     },
     /// The law of impact has no solution.
     #[error(
-        "the impact of {contacts} has no outcome: {}'s law and Coulomb's contradict each other there (a self-locking wedge)",
+        "the impact of {} has no outcome: {}'s law and Coulomb's contradict each other there (a self-locking wedge)",
+        contacts.join(", "),
         law.name()
     )]
     NoImpact {
         /// Names of the contacts.
-        contacts: String,
+        contacts: Vec<&'static str>,
         /// The law.
         law: ImpactLaw,
     },
@@ -231,20 +246,22 @@ pub enum Reason {
     },
     /// Impacts in sequence do not come to an end.
     #[error(
-        "the impacts of {contacts}, one after the other at one instant, do not come to an end; let them happen together, or with less restitution"
+        "the impacts of {}, one after the other at one instant, do not come to an end; let them happen together, or with less restitution",
+        contacts.join(", ")
     )]
     EndlessImpact {
         /// Names of the contacts.
-        contacts: String,
+        contacts: Vec<&'static str>,
     },
     /// The law of impact has several solutions.
     #[error(
-        "the impact of {contacts} has {count} outcomes that differ: {}'s law and Coulomb's do not determine it",
+        "the impact of {} has {count} outcomes that differ: {}'s law and Coulomb's do not determine it",
+        contacts.join(", "),
         law.name()
     )]
     SeveralImpacts {
         /// Names of the contacts.
-        contacts: String,
+        contacts: Vec<&'static str>,
         /// Number of outcomes.
         count: usize,
         /// The law.
@@ -256,7 +273,7 @@ pub enum Reason {
         /// The transition.
         name: &'static str,
         /// What is wrong there.
-        why: String,
+        why: Misfitting,
     },
     /// Something of the problem is not admissible.
     #[error(transparent)]
@@ -272,6 +289,94 @@ pub enum Reason {
     /// The run was interrupted from outside.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// Why a state is not one of a mode.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Misfitting {
+    /// It is beyond a bound.
+    #[error("`{coordinate}` is below {minimum} {unit}")]
+    Below {
+        /// The coordinate.
+        coordinate: &'static str,
+        /// The bound.
+        minimum: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// The mode holds a coordinate at another value.
+    #[error("it holds `{coordinate}` at {held} {unit}")]
+    HeldAt {
+        /// The coordinate.
+        coordinate: &'static str,
+        /// Where it is held.
+        held: f64,
+        /// The unit of that.
+        unit: &'static str,
+    },
+    /// The mode holds the rate of a coordinate at another value.
+    #[error("it holds `{coordinate}.rate` at {held} {unit}/s")]
+    HeldRate {
+        /// The coordinate.
+        coordinate: &'static str,
+        /// The rate at which it is held.
+        held: f64,
+        /// The unit of the coordinate.
+        unit: &'static str,
+    },
+    /// The scene freezes a coordinate that is free in the mode.
+    #[error("the scene freezes a coordinate that is free in it")]
+    Frozen,
+    /// The scene freezes a coordinate that contacts may move.
+    #[error("the scene freezes a coordinate that contacts may move")]
+    FrozenBesideContacts,
+    /// No mode holds the state.
+    #[error("no mode that the scene leaves holds it")]
+    NoMode,
+    /// A constraint does not hold.
+    #[error("{}constraint `{constraint}` is {value:e} there, not zero", if *.is_rate { "the rate of " } else { "" })]
+    Constraint {
+        /// The constraint.
+        constraint: &'static str,
+        /// Whether it is about its rate.
+        is_rate: bool,
+        /// What it is, or its rate.
+        value: f64,
+    },
+    /// A contact penetrates.
+    #[error("the gap of contact `{contact}` is {gap:e} there; it must not be negative")]
+    Gap {
+        /// The contact.
+        contact: &'static str,
+        /// Its gap.
+        gap: f64,
+    },
+    /// A ratchet turns backwards.
+    #[error("the rate of ratchet `{ratchet}` is {rate:e} there; it must not be negative")]
+    Ratchet {
+        /// The ratchet.
+        ratchet: &'static str,
+        /// Its rate.
+        rate: f64,
+    },
+}
+
+/// A transition that was taken.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Taken {
+    /// Its name.
+    pub name: &'static str,
+    /// The mode left.
+    pub from: String,
+    /// The mode entered.
+    pub to: String,
+}
+
+/// Transitions in a sentence.
+fn joined(cycle: &[Taken]) -> String {
+    let steps = (cycle.iter()).map(|Taken { name, from, to }| format!("{name} ({from} → {to})"));
+    steps.collect::<Vec<_>>().join(", ")
 }
 
 impl Reason {

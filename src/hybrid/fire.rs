@@ -1,7 +1,7 @@
 //! Transitions: which one is taken, what it does to state and energy, and what is remembered.
 
 use super::accumulation::Signature;
-use super::failure::{Reason, Stoppable};
+use super::failure::{Reason, Stoppable, Taken};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
@@ -36,8 +36,7 @@ impl<'p> Simulation<'p> {
         let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
             // Every condition fails at the very state where the guard is crossed.
-            let cycle = format!("{} (no condition holds)", fired.name);
-            return Err(Box::new(Reason::Cycle { cycle }));
+            return Err(Box::new(Reason::NoTransition { guard: fired.name }));
         };
         self.doubts.happened(fired);
         self.count(fired.transitions[t].name);
@@ -197,11 +196,14 @@ impl<'p> Simulation<'p> {
         let step = (name, from, self.here.shown);
         match self.visited.arrive(step, state) {
             Some(cycle) => {
-                let steps = cycle.into_iter().map(|(name, from, to)| {
-                    format!("{name} ({} → {})", self.name_of(from), self.name_of(to))
+                let taken = cycle.into_iter().map(|(name, from, to)| Taken {
+                    name,
+                    from: self.name_of(from).to_string(),
+                    to: self.name_of(to).to_string(),
                 });
-                let cycle = steps.collect::<Vec<_>>().join(", ");
-                Err(Box::new(Reason::Cycle { cycle }))
+                Err(Box::new(Reason::Cycle {
+                    cycle: taken.collect(),
+                }))
             }
             None => Ok(()),
         }

@@ -33,6 +33,7 @@ mod outputs;
 mod plan;
 mod problem;
 mod rest;
+mod result;
 mod resume;
 pub mod roots;
 mod search;
@@ -52,7 +53,7 @@ pub(crate) use accumulation::LONGEST_PATTERN;
 pub use advance::Stopped;
 pub use checkpoint::{Checkpoint, Misfit};
 pub use ensemble::{Ensemble, Finished};
-pub use failure::Reason;
+pub use failure::{Misfitting, Reason, Taken};
 pub use member::Member;
 pub use moment::{Moment, NotComputed};
 pub use observe::{Collected, MadeStep, Observer};
@@ -61,6 +62,7 @@ pub use problem::{
     Accuracy, Collisions, End, ImpactLaw, ImpactOrder, Initial, Limits, Method, Observed, OwnLimit,
     Problem, Record,
 };
+pub use result::{Failure, Run};
 pub use resume::{check_row, check_same, simulate_from};
 pub use simulate::{simulate, simulate_member, simulate_with};
 pub use simulator::Simulator;

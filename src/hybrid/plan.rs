@@ -45,8 +45,9 @@ impl Plan {
                 .freeze
                 .iter()
                 .map(|&i| problem.model.coordinates[i].name);
-            let frozen = names.collect::<Vec<_>>().join(", ");
-            return Err(Reason::NoModeLeft { frozen });
+            return Err(Reason::NoModeLeft {
+                frozen: names.collect(),
+            });
         }
         let of_contact = |guard| Watched {
             guard,

@@ -62,7 +62,7 @@ impl Simulation<'_> {
             transitions.sort_unstable();
             transitions.dedup();
             return Err(Box::new(Reason::Chattering {
-                transitions: transitions.join(", "),
+                transitions,
                 missing: self.missing_rest(),
             }));
         }

@@ -5,10 +5,11 @@ use super::failure::Reason;
 use super::observe::{Observer, sample_time};
 use super::outputs::OwnOutput;
 use super::problem::{Collisions, Method, Problem};
+use super::result::Run;
 use super::simulate::subject;
 use super::simulation::Simulation;
 use crate::run::digest;
-use crate::run::{Progress, Run, Tally};
+use crate::run::{Progress, Tally};
 use std::time::Instant as WallClock;
 
 /// Simulates a problem from a checkpoint on, as [`super::simulate_with`] does from the start: to the last bit the rows,

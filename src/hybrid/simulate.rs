@@ -3,9 +3,10 @@
 use super::failure::Reason;
 use super::observe::{Observer, Observers};
 use super::problem::Problem;
+use super::result::{Failure, Run};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
-use crate::run::{Failure, Place, Progress, Run, Subject};
+use crate::run::{Place, Progress, Subject};
 use std::time::Instant as WallClock;
 
 /// Simulates a problem to its end, or until something stops it; the run then says why.
@@ -156,7 +157,7 @@ impl Simulation<'_> {
             events,
             tally,
             failure: reason.map(|reason| Failure {
-                reason: reason.to_string(),
+                reason,
                 at: end.clone(),
             }),
             end,

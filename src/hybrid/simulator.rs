@@ -15,7 +15,7 @@ use crate::run::{Jump, Progress, Reached, Silent, Solver};
 /// nothing, as long as the record does not grow.
 ///
 /// What it gives is what [`super::simulate`] gives, without the trajectory, the extremes and the names of
-/// a [`crate::run::Run`].
+/// a [`crate::hybrid::Run`].
 ///
 /// # In parts
 /// [`Simulator::advance_to`] and [`Simulator::advance_to_event`] go on from where the run is, and

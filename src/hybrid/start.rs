@@ -1,22 +1,11 @@
 //! The mode that a run starts in, and whether its initial state is one that the model can be in: not beyond a stop.
 
-use super::failure::Reason;
+use super::failure::{Misfitting, Reason};
 use super::limits::check_bounds;
 use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{GuardShape, Mode};
 use crate::numerics::Size;
-
-/// What does not fit a mode, of a coordinate by its index.
-#[derive(Debug, Clone, Copy)]
-enum Misfit {
-    /// It is below its minimum.
-    Below(usize, f64),
-    /// The mode holds it at another value.
-    HeldAt(usize, f64),
-    /// The mode holds its rate at another value.
-    HeldRate(usize, f64),
-}
 
 /// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -113,11 +102,11 @@ impl Simulation<'_> {
                 None if self.plan.allowed[chosen] => Ok(()),
                 None => Err(Reason::Initial {
                     mode: modes[chosen].name,
-                    why: "the scene freezes a coordinate that is free in it".into(),
+                    why: Misfitting::Frozen,
                 }),
-                Some(misfit) => Err(Reason::Initial {
+                Some(why) => Err(Reason::Initial {
                     mode: modes[chosen].name,
-                    why: self.in_words(misfit),
+                    why,
                 }),
             };
         }
@@ -139,20 +128,19 @@ impl Simulation<'_> {
                 let misfit = self.misfit(&modes[fallback]);
                 Err(Reason::Initial {
                     mode: modes[fallback].name,
-                    why: misfit.map_or_else(String::new, |misfit| self.in_words(misfit)),
+                    why: misfit.unwrap_or(Misfitting::NoMode),
                 })
             }
         }
     }
 
-    /// Why the state does not fit a mode, in words, if it does not.
-    pub fn misfit_in_words(&mut self, mode: usize) -> Option<String> {
-        let misfit = self.misfit(&self.modes[mode])?;
-        Some(self.in_words(misfit))
+    /// Why the state does not fit a mode, by its index, if it does not.
+    pub fn misfit_of(&mut self, mode: usize) -> Option<Misfitting> {
+        self.misfit(&self.modes[mode])
     }
 
     /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
-    fn misfit(&mut self, mode: &Mode) -> Option<Misfit> {
+    fn misfit(&mut self, mode: &Mode) -> Option<Misfitting> {
         let model = &self.problem.model;
         let held = &mut self.next[..self.here.q.len()];
         with_kernel!(&mode.kernels, k => {
@@ -160,33 +148,33 @@ impl Simulation<'_> {
             k.held_values(&self.context, held);
         });
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
+            let (coordinate, unit) = (c.name, c.unit);
             if let Some(minimum) = c.minimum
                 && self.here.q[i] < minimum
             {
-                return Some(Misfit::Below(i, minimum));
+                return Some(Misfitting::Below {
+                    coordinate,
+                    minimum,
+                    unit,
+                });
             }
             if mode.free.contains(&i) {
                 return None;
             }
             match mode.held_at[i] {
-                Some(_) if self.here.q[i] != held[i] => Some(Misfit::HeldAt(i, held[i])),
-                _ if self.here.v[i] != self.drift[i] => Some(Misfit::HeldRate(i, self.drift[i])),
+                Some(_) if self.here.q[i] != held[i] => Some(Misfitting::HeldAt {
+                    coordinate,
+                    held: held[i],
+                    unit,
+                }),
+                _ if self.here.v[i] != self.drift[i] => Some(Misfitting::HeldRate {
+                    coordinate,
+                    held: self.drift[i],
+                    unit,
+                }),
                 _ => None,
             }
         })
-    }
-
-    /// A misfit in words.
-    fn in_words(&self, misfit: Misfit) -> String {
-        let coordinates = &self.problem.model.coordinates;
-        let (Misfit::Below(i, value) | Misfit::HeldAt(i, value) | Misfit::HeldRate(i, value)) =
-            misfit;
-        let (name, unit) = (coordinates[i].name, coordinates[i].unit);
-        match misfit {
-            Misfit::Below(..) => format!("`{name}` is below {value} {unit}"),
-            Misfit::HeldAt(..) => format!("it holds `{name}` at {value} {unit}"),
-            Misfit::HeldRate(..) => format!("it holds `{name}.rate` at {value} {unit}/s"),
-        }
     }
 
     /// A scene that names a drifting mode need not state the drift's rate.

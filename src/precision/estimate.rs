@@ -30,7 +30,7 @@ pub enum NoEstimate {
         /// When, s.
         t: f64,
         /// Why.
-        reason: String,
+        reason: Reason,
     },
     /// The better run was interrupted.
     #[error("interrupted")]

@@ -44,7 +44,7 @@ pub enum Verdict {
         /// When, s.
         at: f64,
         /// Why.
-        reason: String,
+        reason: Reason,
     },
     /// It took [`GIVEN_UP`] times as long as Radau.
     GivenUp {

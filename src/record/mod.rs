@@ -34,6 +34,7 @@ pub mod summary;
 pub mod table;
 mod units;
 
+pub use crate::hybrid::{Failure, Run};
 pub use crate::run::*;
 pub use folder::{FolderError, OutputFolder, StagedFile, Staging};
 pub use kept::Kept;

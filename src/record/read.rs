@@ -13,15 +13,14 @@ use super::folder::check;
 use super::kept::{CHECKPOINT, Kept};
 use super::summary::{FORMAT, SUMMARY};
 use super::table::{EVENTS, TRAJECTORY, events_header, trajectory_header};
+use crate::hybrid::Run;
 use crate::model::{Model, Variant};
 use crate::run::Peak;
 use crate::run::Reached;
 use crate::run::Recorder;
 use crate::run::Tally;
 use crate::run::Uncertain;
-use crate::run::{
-    EnergyJump, Event, Jump, Ledger, Place, Run, Snapshot, Solver, Subject, Trajectory,
-};
+use crate::run::{EnergyJump, Event, Jump, Ledger, Place, Snapshot, Solver, Subject, Trajectory};
 use crate::run::{Layout, Quantity};
 
 /// Why a run cannot be read.

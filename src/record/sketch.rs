@@ -6,8 +6,9 @@
 //! all rows, however often it happens.
 
 use crate::hybrid::Observer;
+use crate::hybrid::Run;
 use crate::run::Layout;
-use crate::run::{Column, Event, Jump, Run, Snapshot};
+use crate::run::{Column, Event, Jump, Snapshot};
 use std::ops::{ControlFlow, Range};
 
 /// Most numbers that are kept of the rows: 32 MB, some thousand intervals of a model with twenty columns.

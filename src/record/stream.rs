@@ -10,7 +10,8 @@ use super::sketch::Sketch;
 use super::summary::SUMMARY;
 use super::table::{EVENTS, EventsTable, METADATA, TRAJECTORY, TrajectoryTable, write_metadata};
 use super::{FolderError, Kept, Layout, OutputFolder, Summary};
-use crate::run::{Jump, Run, Snapshot};
+use crate::hybrid::Run;
+use crate::run::{Jump, Snapshot};
 
 /// Name of the picture of everything over time, without the format.
 pub const OVERVIEW: &str = "overview";

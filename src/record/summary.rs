@@ -7,9 +7,10 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::ser::{Formatter, PrettyFormatter};
 
 use super::number::push_exact;
+use crate::hybrid::Run;
+use crate::run::Place;
 use crate::run::Quantity;
 use crate::run::{Gain, Impacts};
-use crate::run::{Place, Run};
 
 /// File name of the summary.
 pub const SUMMARY: &str = "summary.json";
@@ -229,7 +230,7 @@ impl Summary {
             projected: Named(run.subject.projected.clone()),
             end: point(run, &run.end),
             failure: (run.failure.as_ref()).map(|f| Stopped {
-                reason: f.reason.clone(),
+                reason: f.reason.to_string(),
                 at: point(run, &f.at),
             }),
             peaks: Named(extremes.collect()),

@@ -9,9 +9,10 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use super::number::push_exact;
+use crate::hybrid::Run;
 use crate::run::Layout;
 use crate::run::ModeNames;
-use crate::run::{Column, EnergyJump, Group, Jump, Run};
+use crate::run::{Column, EnergyJump, Group, Jump};
 
 /// File name of the samples.
 pub const TRAJECTORY: &str = "trajectory.csv";

@@ -1,7 +1,7 @@
-//! What a simulation leaves behind, as values: it is told to an [`crate::hybrid::Observer`], and one that keeps it makes a
-//! [`Run`] of it: the [`Trajectory`], one [`Event`] a transition, the [`Tally`] of these, the energy [`Ledger`], the
-//! [`Solver`]'s counters, and a [`Failure`] where the run stopped early. Every name and unit comes from one [`Layout`],
-//! made once from the model. Files, tables and plots are made of it in [`crate::record`].
+//! What a simulation leaves behind, as values: it is told to an observer, and one that keeps it makes a run of it: the
+//! [`Trajectory`], one [`Event`] a transition, the [`Tally`] of these, the energy [`Ledger`], and the [`Solver`]'s counters. Every
+//! name and unit comes from one [`Layout`], made once from the model. Files, tables and plots are made of it in
+//! [`crate::record`].
 
 mod digest;
 mod layout;
@@ -22,8 +22,8 @@ pub use progress::{Progress, Silent, Until};
 pub use reached::{Left, LimitState, Reached};
 pub use recorder::Recorder;
 pub use result::{
-    Column, EnergyJump, ErrorEstimate, Event, Failure, Group, Jump, Ledger, Place, Run, Snapshot,
-    Solver, Subject, Trajectory,
+    Column, EnergyJump, ErrorEstimate, Event, Group, Jump, Ledger, Place, Snapshot, Solver,
+    Subject, Trajectory,
 };
 pub use tally::{Counted, Gain, Impacts, Tally};
 pub use uncertain::{Doubt, Question, Uncertain};

@@ -1,43 +1,5 @@
 //! The result types. The event engine fills them; nothing here computes.
 
-use std::time::Duration;
-
-use super::{Layout, Peak, Reached, Tally, Uncertain};
-
-/// The result of a simulation, complete or stopped early.
-#[derive(Debug, Clone)]
-pub struct Run {
-    /// What was simulated.
-    pub subject: Subject,
-    /// Names and units of everything below.
-    pub layout: Layout,
-    /// The samples; of a run that an observer was told of, the columns alone.
-    pub trajectory: Trajectory,
-    /// The transitions, in hybrid time; of a run that an observer was told of, none.
-    pub events: Vec<Event>,
-    /// How often transitions happened, and what the impacts did.
-    pub tally: Tally,
-    /// Extremes of the motion, as (index of the column, peak), whether or not a row hits them; none where they were
-    /// not looked for.
-    pub peaks: Vec<(usize, Peak)>,
-    /// Where the run ended; of a run that stopped early, the last admissible point.
-    pub end: Place,
-    /// Work done by the integrator.
-    pub solver: Solver,
-    /// Balance of energies; `None` where it was not kept.
-    pub energy: Option<Ledger>,
-    /// Estimate of the run's error; `None` where none was asked for.
-    pub error: Option<ErrorEstimate>,
-    /// What the run cannot tell at its tolerance.
-    pub uncertain: Uncertain,
-    /// Limit states and conditions of validity that it has reached.
-    pub reached: Reached,
-    /// Time the simulation took on the wall clock (without reading and writing files).
-    pub wall: Duration,
-    /// Why the run stopped before its end; `None` when it reached it.
-    pub failure: Option<Failure>,
-}
-
 /// Estimate of the error of a run: its difference to a run by another method at a tighter tolerance, and
 /// the rounding of their steps.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -203,15 +165,6 @@ pub struct Place {
     pub mode: usize,
     /// State.
     pub state: Snapshot,
-}
-
-/// Why a run stopped before its end.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Failure {
-    /// What went wrong and what can be done about it, without the place.
-    pub reason: String,
-    /// Where it went wrong.
-    pub at: Place,
 }
 
 /// Work done by the integrator.

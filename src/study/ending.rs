@@ -1,8 +1,9 @@
 //! A run at its end, as far as a study looks at it: one that was made alone, or in an ensemble.
 
 use crate::hybrid::Finished;
+use crate::hybrid::Run;
 use crate::record::Layout;
-use crate::run::{Ledger, LimitState, Peak, Run, Snapshot, Solver};
+use crate::run::{Ledger, LimitState, Peak, Snapshot, Solver};
 
 /// What a study looks at.
 pub(crate) trait Ending {
@@ -52,7 +53,9 @@ impl Ending for Run {
     }
 
     fn failure(&self) -> Option<String> {
-        self.failure.as_ref().map(|failure| failure.reason.clone())
+        self.failure
+            .as_ref()
+            .map(|failure| failure.reason.to_string())
     }
 
     fn uncertain(&self) -> Option<u64> {

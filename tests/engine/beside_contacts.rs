@@ -181,7 +181,7 @@ fn a_reset_through_the_ground_is_refused() {
     block.set_parameter("drop", 0.01).unwrap();
     block.end.time = 1.0;
     let run = simulate(&block, &mut Silent).unwrap();
-    let reason = run.failure.unwrap().reason;
+    let reason = run.failure.unwrap().reason.to_string();
     for part in ["`turn_on`", "gap of contact `floor` is -1e-2"] {
         assert!(reason.contains(part), "{reason}");
     }

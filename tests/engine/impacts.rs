@@ -291,15 +291,18 @@ fn an_impact_without_an_outcome_or_with_two_stops_and_says_so() {
                     assert_eq!(outcomes, 1, "{vx} {spin} {mu} {e}");
                     kinds[0] += 1;
                 }
-                Some(failure) if failure.reason.contains("has no outcome") => {
-                    assert!(failure.reason.contains("left, right"), "{failure:?}");
+                Some(failure) if failure.reason.to_string().contains("has no outcome") => {
+                    assert!(
+                        failure.reason.to_string().contains("left, right"),
+                        "{failure:?}"
+                    );
                     assert_eq!(outcomes, 0, "{vx} {spin} {mu} {e}");
                     kinds[1] += 1;
                 }
                 Some(failure) => {
                     let text =
                         format!("the impact of left, right has {outcomes} outcomes that differ");
-                    assert!(failure.reason.contains(&text), "{failure:?}");
+                    assert!(failure.reason.to_string().contains(&text), "{failure:?}");
                     kinds[2] += 1;
                 }
             }

@@ -25,7 +25,7 @@ fn rod(mu: f64, theta: f64, rate: f64, slip: f64) -> Problem {
 /// Why the run cannot start or stops, if it does.
 fn refusal(problem: &Problem) -> Option<String> {
     match simulate(problem, &mut Silent) {
-        Ok(run) => run.failure.map(|f| f.reason),
+        Ok(run) => run.failure.map(|f| f.reason.to_string()),
         Err(reason) => Some(reason.to_string()),
     }
 }

@@ -37,11 +37,11 @@ fn a_block_that_slides_on_a_corner_has_one_motion_or_none_or_several() {
                     Some(failure) => panic!("{failure:?}"),
                 },
                 Err(Reason::NoMotion { contacts }) => {
-                    assert_eq!(contacts, "left");
+                    assert_eq!(contacts[..], ["left"]);
                     "inconsistent"
                 }
                 Err(Reason::SeveralMotions { contacts, .. }) => {
-                    assert_eq!(contacts, "left");
+                    assert_eq!(contacts[..], ["left"]);
                     "indeterminate"
                 }
                 Err(other) => panic!("{other}"),

@@ -269,7 +269,8 @@ fn random_scenes_of_several_contacts_keep_all_laws() {
         }
         check(&scene, &run, &of, [1e-12, 1e-12]);
         if let Some(failure) = &run.failure {
-            let kind = failure.reason.split('`').next().unwrap_or_default();
+            let reason = failure.reason.to_string();
+            let kind = reason.split('`').next().unwrap_or_default();
             *stops.entry(format!("{number}: {kind}")).or_default() += 1;
             continue;
         }

@@ -136,7 +136,7 @@ fn fault(problem: &Problem, run: &Run) -> Option<String> {
     if let Some(failure) = &run.failure {
         let modes = problem.variant().modes.iter();
         let mut required = modes.flat_map(|mode| &mode.requirements);
-        if !required.any(|requirement| failure.reason.contains(requirement.failure)) {
+        if !required.any(|requirement| failure.reason.to_string().contains(requirement.failure)) {
             return Some(format!("stops at {}: {}", failure.at.t, failure.reason));
         }
     }

@@ -20,7 +20,11 @@ fn guards_that_contradict_each_other_are_named() {
     problem.end.time = 10.0;
     let (run, failure) = stopped(&problem);
     for name in ["to_left (right → left)", "to_right (left → right)"] {
-        assert!(failure.reason.contains(name), "{}", failure.reason);
+        assert!(
+            failure.reason.to_string().contains(name),
+            "{}",
+            failure.reason
+        );
     }
     // The place of the failure, and the motion up to it.
     assert!((failure.at.t - 2.0).abs() < 1e-12);
@@ -36,8 +40,16 @@ fn chattering_without_a_limit_names_its_guards() {
     problem.set_initial("x", 1.0).unwrap();
     problem.end.time = 10.0;
     let (run, failure) = stopped(&problem);
-    assert!(failure.reason.contains("chattering"), "{}", failure.reason);
-    assert!(failure.reason.contains("down, up"), "{}", failure.reason);
+    assert!(
+        failure.reason.to_string().contains("chattering"),
+        "{}",
+        failure.reason
+    );
+    assert!(
+        failure.reason.to_string().contains("down, up"),
+        "{}",
+        failure.reason
+    );
     // x = 1 − t² and the surface x + x' = 0 meet at t = √2 − 1.
     assert!((failure.at.t - (2.0f64.sqrt() - 1.0)).abs() < 1e-8);
     assert!(run.events.len() < 100);
@@ -57,7 +69,7 @@ fn a_mass_that_vanishes_on_the_way_is_named_before_it_does() {
         let (_, failure) = stopped(&problem);
         for part in ["mode `moves`", "effective mass of `x` vanishes"] {
             assert!(
-                failure.reason.contains(part),
+                failure.reason.to_string().contains(part),
                 "{method:?}: {}",
                 failure.reason
             );
@@ -97,7 +109,10 @@ fn numbers_that_leave_the_range_of_doubles_stop_the_run() {
             );
             let energy = run.energy.expect("it is kept");
             let overflows = !(energy.final_.is_finite() && energy.imbalance().is_finite());
-            let stops = run.failure.as_ref().map(|failure| failure.reason.clone());
+            let stops = run
+                .failure
+                .as_ref()
+                .map(|failure| failure.reason.to_string());
             if overflows || run.end.t < end && run.events.len() < 3 {
                 let reason = stops.expect("it does not reach its end");
                 assert!(reason.contains("is not finite"), "{reason}");
@@ -113,7 +128,7 @@ fn a_block_that_would_leave_the_ground_stops() {
     problem.set_initial("theta.rate", 5.0).unwrap();
     let (_, failure) = stopped(&problem);
     assert!(
-        failure.reason.contains("leave the ground"),
+        failure.reason.to_string().contains("leave the ground"),
         "{}",
         failure.reason
     );
@@ -169,7 +184,7 @@ fn a_tank_without_weight_on_the_ground_stops() {
     problem.set_initial("theta.rate", 20.0).unwrap();
     let (_, failure) = stopped(&problem);
     assert!(
-        failure.reason.contains("normal force"),
+        failure.reason.to_string().contains("normal force"),
         "{}",
         failure.reason
     );
@@ -183,18 +198,22 @@ fn kinetic_energies_that_are_no_norm_are_refused() {
     for parameters in [indefinite, singular, indefinite_off_diagonal] {
         let (_, failure) = stopped(&problem("coupled_masses", &parameters));
         assert!(
-            failure.reason.contains("not positive definite"),
+            failure.reason.to_string().contains("not positive definite"),
             "{}",
             failure.reason
         );
-        assert!(failure.reason.contains("`y`"), "{}", failure.reason);
+        assert!(
+            failure.reason.to_string().contains("`y`"),
+            "{}",
+            failure.reason
+        );
     }
     // A tank whose shell has less inertia than its mass has there.
     let mut tank = problem("walking_tank", &[("I_S", 1e-6), ("I_E", 1e-6)]);
     tank.set_initial("theta", 0.01).unwrap();
     let (_, failure) = stopped(&tank);
     assert!(
-        failure.reason.contains("not positive definite"),
+        failure.reason.to_string().contains("not positive definite"),
         "{}",
         failure.reason
     );
@@ -238,7 +257,7 @@ fn states_that_fit_no_mode_and_scenes_that_freeze_too_much_are_refused() {
     let Reason::NoModeLeft { frozen } = refused(&frozen) else {
         panic!("another reason")
     };
-    assert_eq!(frozen, "theta_1");
+    assert_eq!(frozen, ["theta_1"]);
 }
 
 /// Found by fuzzing: steps of 1e-25 s, of which the event of one guard left nothing to search for another.
@@ -254,7 +273,7 @@ fn an_absurd_acceleration_of_the_ground_ends_with_a_reason() {
         dalembert::scene::Scene::load(&path, &overrides, dalembert::model::models()).unwrap();
     let (_, failure) = stopped(&scene.problem);
     assert!(
-        failure.reason.contains("leave the ground"),
+        failure.reason.to_string().contains("leave the ground"),
         "{}",
         failure.reason
     );

@@ -46,7 +46,7 @@ proptest! {
             prop_assert!(force > -relative * 9.81, "{force:e} at {t}, fails at {fails}");
         }
         if let Some(failure) = &run.failure {
-            prop_assert!(failure.reason.contains("leave the ground"), "{failure:?}");
+            prop_assert!(failure.reason.to_string().contains("leave the ground"), "{failure:?}");
             let lift = failure.at.t;
             prop_assert!(run.trajectory.t.iter().all(|t| *t <= lift), "samples after {lift}");
         }
@@ -89,7 +89,10 @@ fn requirements_that_fail_for_a_moment_stop_the_run_there() {
                     assert_eq!(exact, f64::INFINITY, "{what}");
                     continue;
                 };
-                assert!(failure.reason.contains(reason), "{what}: {failure:?}");
+                assert!(
+                    failure.reason.to_string().contains(reason),
+                    "{what}: {failure:?}"
+                );
                 // The rope's end comes at 0.27 m/s, and may be off by a tolerance of x and some.
                 let error = (failure.at.t - exact).abs();
                 assert!(error < 5.0 * relative, "{what}: {error:e}");
@@ -123,7 +126,7 @@ fn conditions_and_requirements_count_to_the_last() {
             .failure
             .expect("nothing stops it but a requirement");
         assert!(
-            failure.reason.contains("beyond the place 12"),
+            failure.reason.to_string().contains("beyond the place 12"),
             "{failure:?}"
         );
         assert!((failure.at.t - 8.0 * 0.3).abs() < 1e-9, "{failure:?}");

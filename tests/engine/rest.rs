@@ -122,7 +122,11 @@ fn where_no_rest_fits_the_limit_the_run_stops_and_says_what_does_not_fit() {
             "rest in `a_rests` holds `a` at 0 m, which is",
             "no mode of the model fits the limit",
         ] {
-            assert!(failure.reason.contains(part), "{}", failure.reason);
+            assert!(
+                failure.reason.to_string().contains(part),
+                "{}",
+                failure.reason
+            );
         }
         // The first ball is where it flies.
         let fall = limit(1.0) - limit(4.0) / 3.0;
@@ -185,7 +189,11 @@ fn switches_without_a_rest_stop_and_say_what_is_missing() {
             let run = simulate(&problem, &mut Silent).unwrap();
             let failure = run.failure.expect("no rest is there");
             assert!((failure.at.t - 20.0f64.sqrt()).abs() < 1e-6);
-            assert!(failure.reason.contains(part), "{}", failure.reason);
+            assert!(
+                failure.reason.to_string().contains(part),
+                "{}",
+                failure.reason
+            );
         }
     });
 }

@@ -103,7 +103,10 @@ fn a_block_released_just_below_its_equilibrium_falls_back_in_time() {
             let run = simulate(&problem, &mut Silent).unwrap();
             assert_eq!(times(&run, "landing").len(), 0, "{theta}, {method:?}");
             if let Some(failure) = run.failure {
-                assert!(failure.reason.contains("leave the ground"), "{failure:?}");
+                assert!(
+                    failure.reason.to_string().contains("leave the ground"),
+                    "{failure:?}"
+                );
             }
         }
     }

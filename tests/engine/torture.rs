@@ -412,7 +412,11 @@ fn a_cascade_at_one_instant_ends_or_is_named() {
                         "left_contact, right_contact",
                         "a mode is missing",
                     ] {
-                        assert!(failure.reason.contains(part), "{}", failure.reason);
+                        assert!(
+                            failure.reason.to_string().contains(part),
+                            "{}",
+                            failure.reason
+                        );
                     }
                 }
                 (_, failure) => panic!("e = {e}: {failure:?}"),

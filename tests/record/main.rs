@@ -161,7 +161,7 @@ fn stopped(mut run: Run) -> Run {
     run.events.truncate(2);
     run.end = place.clone();
     run.failure = Some(Failure {
-        reason: "the normal force would be negative".into(),
+        reason: dalembert::hybrid::Reason::DeterminantChangesSign { mode: "rocks" },
         at: place,
     });
     run

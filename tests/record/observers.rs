@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use dalembert::hybrid::{MadeStep, Observer, Problem, simulate, simulate_with};
+use dalembert::hybrid::{MadeStep, Observer, Problem, Reason, simulate, simulate_with};
 use dalembert::model::models;
 use dalembert::record::{
     Earlier, Group, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream,
@@ -276,7 +276,7 @@ fn a_run_ends_at_a_sample_with_its_state_energies_and_extremes() {
             ..Told::default()
         };
         let first = simulate_with(problem, &mut told, &mut Silent).unwrap();
-        assert_eq!(first.failure.as_ref().unwrap().reason, "interrupted");
+        assert_eq!(first.failure.as_ref().unwrap().reason, Reason::Interrupted);
         assert_eq!(told.rows.len(), 1235);
         // The state is that of the sample, and so are the energies and the extremes.
         assert_eq!(first.end.t, whole.trajectory.t[1234]);

@@ -296,7 +296,10 @@ fn a_landing_that_says_nothing_of_flight_stops_where_the_tank_takes_off() {
         let run = simulate(&scene("tank_thrown_up", &chosen), &mut Silent).unwrap();
         let failure = run.failure.unwrap();
         assert!(
-            failure.reason.contains("the tank would leave the ground"),
+            failure
+                .reason
+                .to_string()
+                .contains("the tank would leave the ground"),
             "{}",
             failure.reason
         );

@@ -59,7 +59,7 @@ impl<'p> Simulation<'p> {
         }
         if closes && self.accumulation.is_unresolved(unresolved) {
             return Err(Box::new(Reason::Chattering {
-                transitions: contacts.contacts[k].name.to_owned() + " strikes",
+                transitions: vec![intern(&format!("{} strikes", contacts.contacts[k].name))],
                 missing: "its hops are lower than the rounding of its gap, and their durations do not shrink like a geometric \
                           series, so that no limit is known"
                     .into(),

@@ -189,9 +189,9 @@ impl Impact<'_> {
         }
     }
 
-    fn names(&self) -> String {
+    fn names(&self) -> Vec<&'static str> {
         let of = (self.touches.iter().zip(&self.contacts.contacts)).filter(|(t, _)| **t);
-        of.map(|(_, c)| c.name).collect::<Vec<_>>().join(", ")
+        of.map(|(_, c)| c.name).collect()
     }
 
     /// What the contacts do after an outcome.

@@ -124,9 +124,9 @@ impl<'p> Simulation<'p> {
             write_states(contacts, states, &mut discrete);
             contacts.sets().name(contacts.set(&discrete))
         };
-        let touch = || {
+        let touch = || -> Vec<&'static str> {
             let all = (touching.iter().zip(&contacts.contacts)).filter(|(t, _)| t.is_some());
-            all.map(|(_, c)| c.name).collect::<Vec<_>>().join(", ")
+            all.map(|(_, c)| c.name).collect()
         };
         let Some(first) = admitted.first() else {
             return Err(Reason::NoMotion { contacts: touch() });
@@ -143,7 +143,7 @@ impl<'p> Simulation<'p> {
             let motions = [first, other].map(|a| names(&a.candidate.states));
             return Err(Reason::SeveralMotions {
                 contacts: touch(),
-                motions: format!("`{}` and `{}`", motions[0], motions[1]),
+                motions,
             });
         }
         let Admitted { candidate, motion } = admitted.swap_remove(0);

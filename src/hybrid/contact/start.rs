@@ -4,7 +4,7 @@ use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, hold_lines};
 use super::standing::Standing;
 use super::{State, Tangent};
-use crate::hybrid::failure::{Reason, Stoppable};
+use crate::hybrid::failure::{Misfitting, Reason, Stoppable};
 use crate::hybrid::limits::check_bounds;
 use crate::hybrid::simulation::Simulation;
 use crate::kernel::{ModeKernel, with_kernel};
@@ -23,7 +23,7 @@ impl<'p> Simulation<'p> {
         if !self.plan.allowed[self.here.mode] {
             return Err(Reason::Initial {
                 mode: mode.name,
-                why: "the scene freezes a coordinate that contacts may move".into(),
+                why: Misfitting::FrozenBesideContacts,
             });
         }
         let (model, variant) = (&*self.problem.model, self.problem.variant());
@@ -77,25 +77,26 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// The contacts as they stand in a state, by their gaps and rates alone; why it is not admitted, in words.
+    /// The contacts as they stand in a state, by their gaps and rates alone; or why it is not admitted.
     pub(super) fn standing_of<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
         [mut q, mut v]: [F::Vector; 2],
-    ) -> Result<Standing<F>, String> {
+    ) -> Result<Standing<F>, Misfitting> {
         let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
         let mut places = Vec::new();
         for (c, constraint) in contacts.constraints.iter().enumerate() {
             let line = Line::Constraint(c);
-            for ((value, rounding), of) in [(at.place(line), ""), (at.rate(line), "the rate of ")] {
+            for ((value, rounding), is_rate) in [(at.place(line), false), (at.rate(line), true)] {
                 // What is not a number is not zero.
                 let is_zero = value.abs() <= rounding;
                 if !is_zero {
-                    let name = constraint.name;
-                    return Err(format!(
-                        "{of}constraint `{name}` is {value:e} there, not zero"
-                    ));
+                    return Err(Misfitting::Constraint {
+                        constraint: constraint.name,
+                        is_rate,
+                        value,
+                    });
                 }
             }
             places.push(line);
@@ -104,17 +105,23 @@ impl<'p> Simulation<'p> {
         let mut leaves = vec![false; touching.len()];
         for (k, contact) in contacts.contacts.iter().enumerate() {
             if contact.normal.is_some() {
-                let ((opening, rounding), of) = match contact.is_ratchet {
-                    false => (at.place(Line::Normal(k)), "gap of contact"),
-                    true => (at.rate(Line::Normal(k)), "rate of ratchet"),
+                let (opening, rounding) = match contact.is_ratchet {
+                    false => at.place(Line::Normal(k)),
+                    true => at.rate(Line::Normal(k)),
                 };
                 // What is not a number is not positive.
                 let is_admitted = opening >= -rounding;
                 if !is_admitted {
-                    let name = contact.name;
-                    return Err(format!(
-                        "the {of} `{name}` is {opening:e} there; it must not be negative"
-                    ));
+                    return Err(match contact.is_ratchet {
+                        false => Misfitting::Gap {
+                            contact: contact.name,
+                            gap: opening,
+                        },
+                        true => Misfitting::Ratchet {
+                            ratchet: contact.name,
+                            rate: opening,
+                        },
+                    });
                 }
                 if opening > rounding {
                     continue;
