@@ -105,6 +105,7 @@ omega = 2 * pi * frequency
 model.potential(M_I * omega**2 * x_I**2 / 2)
 model.dissipation(damping * M_I * omega * x_I.rate**2)
 
+
 def printed(number, moduli=(), slipped_unit=1):
     """The value of an equation of the paper in the symbols of this model, as printed or, with
     equations = corrected, as corrected but for the correction that `printed_slip` leaves out.
@@ -153,6 +154,7 @@ if equations != "derived":
 
 
 def by_hand():
+    """The modes written out: on the whole base or about one edge, sticking or slipping."""
     stands_sticks = model.mode("stands_sticks", "on the whole base, held by friction", freeze=[(theta, 0), x, (y, 0)])
     rocks_sticks = model.mode("rocks_sticks", "about one edge, held by friction", freeze=[x, (y, 0)])
     stands_slides = model.mode("stands_slides", "on the whole base, slipping", freeze=[(theta, 0), (y, 0)])
@@ -161,10 +163,8 @@ def by_hand():
     def base_shear(mode):
         return mode.reaction(x) if rules == "reactions" else printed("8")
 
-
     def normal_force(mode):
         return mode.reaction(y) if rules == "reactions" else printed("9")
-
 
     # Slip and stick. Both directions have a guard of their own, since |R_x| is not smooth.
     for sticks, slides in ((stands_sticks, stands_slides), (rocks_sticks, rocks_slides)):
