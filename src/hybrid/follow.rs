@@ -198,11 +198,13 @@ impl Simulation<'_> {
             // 6. The mass matrix.
             if mass_changes {
                 equations.at(state.t);
-                let now = sign(equations.context, &state);
-                if now
-                    .zip(determinant)
-                    .is_some_and(|(now, began)| now != began)
-                {
+                let changes = match (determinant, sign(equations.context, &state)) {
+                    (Some(began), Some(now)) => now != began,
+                    // Constraints may pass a singular position.
+                    (Some(_), None) => mode.contacts.is_none(),
+                    (None, _) => false,
+                };
+                if changes {
                     if let Some(reason) = vanished(equations.context, &state) {
                         return Err(Box::new(reason));
                     }

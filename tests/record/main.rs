@@ -161,7 +161,13 @@ fn stopped(mut run: Run) -> Run {
     run.events.truncate(2);
     run.end = place.clone();
     run.failure = Some(Failure {
-        reason: dalembert::hybrid::Reason::DeterminantChangesSign { mode: "rocks" },
+        reason: dalembert::hybrid::Reason::Requirement {
+            mode: "flight",
+            failure: "the normal force would be negative",
+            text: "N",
+            value: -0.5,
+            unit: "N",
+        },
         at: place,
     });
     run
@@ -173,7 +179,8 @@ fn a_run_that_stopped_early_says_where_and_why() {
     let summary: serde_json::Value =
         serde_json::from_str(&text(|out| Summary::new(&run).write(out))).unwrap();
     let failure = &summary["failure"];
-    assert_eq!(failure["reason"], "the normal force would be negative");
+    let reason = "mode `flight`: the normal force would be negative (N = -5e-1 N)";
+    assert_eq!(failure["reason"], reason);
     assert_eq!(failure["t"], 1.25);
     assert_eq!(failure["j"], 2);
     assert_eq!(failure["mode"], "flies");
@@ -183,7 +190,9 @@ fn a_run_that_stopped_early_says_where_and_why() {
         report.contains("stopped early at t = 1.25 s, after 2 transitions, in mode flies"),
         "{report}"
     );
-    assert!(overview(&run).contains("stopped early at t = 1.25 s: the normal force"));
+    assert!(
+        overview(&run).contains("stopped early at t = 1.25 s: mode `flight`: the normal force")
+    );
     let home = tempfile::tempdir().unwrap();
     run.write(&OutputFolder::new(&home.path().join("out")).unwrap())
         .unwrap();
