@@ -85,6 +85,26 @@ fn a_good_model_is_described() {
 }
 
 #[test]
+fn operations_are_counted_of_the_default_options() {
+    let folder = tempfile::tempdir().unwrap();
+    let tank = project().join("models/walking_tank").display().to_string();
+    let output = ends_with(0, folder.path(), &["check", &tank]);
+    let text = stdout(&output);
+    let counts: Vec<&str> = (text.lines())
+        .filter_map(|line| {
+            line.rsplit_once("; ")?
+                .1
+                .strip_suffix(" operations in all its functions")
+        })
+        .collect();
+    assert_eq!(counts.len(), 4, "{text}");
+    assert!(
+        counts.iter().all(|n| n.parse::<u64>().unwrap() > 0),
+        "{text}"
+    );
+}
+
+#[test]
 fn what_is_no_model_folder_is_told() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("file"), "").unwrap();
