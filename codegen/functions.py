@@ -65,7 +65,7 @@ class OfMode:
         drift = self.equations.mode.drift
         return self.equations.freeze(ca.vertcat(*[ca.SX(drift[c.name]) for c in self.model.coordinates if c.name in drift]))
 
-    def quiet(self, expression):
+    def autonomous(self, expression):
         """An expression where no input acts."""
         inputs = signals.of(self.model)
         return ca.substitute(expression, inputs, ca.SX.zeros(inputs.numel())) if inputs.numel() else expression
@@ -121,7 +121,7 @@ MODE = (
     Row("jacobian", lambda of: ca.vertcat(*[ca.vec(j) for j in of.equations.jacobians()]), "integrate (the implicit method), sensitivity"),
     Row("system", lambda of: of.system, "accelerations wherever they are needed; Geometry of contacts"),
     Row("series", lambda of: of.motion, "integrate (the Taylor method)", series="motion", in_lanes=True),
-    Row("quiet_series", lambda of: of.quiet(of.motion), "the same while no input acts", series="motion", in_lanes=True),
+    Row("autonomous_series", lambda of: of.autonomous(of.motion), "the same while no input acts", series="motion", in_lanes=True),
     Row("inertia", lambda of: of.without_idle(ca.vec(of.equations.inertia())), "hybrid::inertia"),
     Row("jerk_load", lambda of: of.equations.jerk_load(signals.of(of.model), signals.rates(of.model)), "integrate (starts of the implicit method)"),
     Row("magnitude", lambda of: of.equations.magnitude(), "hybrid::enter, integrate (rounding of the residual)"),

@@ -232,8 +232,8 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
             (series.q[1][i], series.v[1][i], series.q[2][i]) = (v[i], a[i], a[i] / 2.0);
             inverse[(i, i)] = 1.0;
         }
-        for quiet in [false, true] {
-            x.quiet = quiet;
+        for autonomous in [false, true] {
+            x.autonomous = autonomous;
             for orders in 1..=ORDERS - 2 {
                 let mut series = series.clone();
                 let _ = kernel.series_start(&mut x, &series);

@@ -119,7 +119,7 @@ fn functions<const F: usize>(
     mode: &Mode,
 ) -> Cost {
     let mut context = Context::new(&problem.model, &problem.parameters);
-    context.quiet = problem.signals.is_zero();
+    context.autonomous = problem.signals.is_zero();
     // A state at which nothing is zero.
     let (q, v) = (SVector::repeat(0.01), SVector::repeat(0.1));
     let (a, inverse) = (SVector::repeat(1.0), SMatrix::identity());

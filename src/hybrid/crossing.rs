@@ -115,7 +115,7 @@ impl Signs {
     pub fn start(&mut self) {
         let count = self.watches.len();
         if self.found.len() < count {
-            self.found.resize(count, Search::quiet(Watch::Dormant));
+            self.found.resize(count, Search::nothing(Watch::Dormant));
             self.from.resize(count, 0.0);
         }
     }
@@ -189,7 +189,7 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                         let what = (watch, Isolation::Place, &mut *found);
                         match from[i] < to {
                             true => search(equations, conditions, dense, of, window, what),
-                            false => *found = Search::quiet(watch),
+                            false => *found = Search::nothing(watch),
                         }
                         if let (true, Some(crossing)) = (is_coordinate, found.crossing) {
                             let apart = APART * (crossing.outside - start);
@@ -445,7 +445,7 @@ fn search_from<F: Size>(
     (watch, isolation, found): (Watch, Isolation, &mut Search),
 ) {
     if from >= to {
-        *found = Search::quiet(watch);
+        *found = Search::nothing(watch);
         return;
     }
     let what = (watch, isolation, found);

@@ -28,7 +28,7 @@ impl Clock<'_> {
     /// Sets signals and drifting coordinates of the context to those at local time `tau`.
     #[inline(always)]
     fn set(&self, tau: f64, context: &mut Context) {
-        if !context.quiet {
+        if !context.autonomous {
             let (t, side) = self.instant(tau);
             context.set_signals(self.signals, t, side);
         }
@@ -177,7 +177,7 @@ impl<'a, F: Size> Equations<'a, F> {
     pub fn at(&mut self, tau: f64) {
         if tau != self.set_for || !self.complete {
             // Without inputs and drifts nothing there changes with time.
-            if !(self.context.quiet && self.clock.drift.is_empty()) {
+            if !(self.context.autonomous && self.clock.drift.is_empty()) {
                 self.clock.set(tau, self.context);
             }
             (self.set_for, self.complete) = (tau, true);
@@ -280,14 +280,14 @@ impl<F: Size> System<F> for Equations<'_, F> {
 
     fn resolution(&self, t: f64) -> f64 {
         let clock = &self.clock;
-        match self.context.quiet {
+        match self.context.autonomous {
             true => f64::INFINITY,
             false => clock.signals.resolution(clock.start.plus(t).seconds()),
         }
     }
 
     fn smooth_until(&self, t: f64) -> f64 {
-        match self.context.quiet {
+        match self.context.autonomous {
             true => f64::INFINITY,
             false => self.clock.next_joint(t),
         }
@@ -336,7 +336,7 @@ impl<F: Size> Analytic<F> for Equations<'_, F> {
     #[inline]
     fn start(&mut self, t: f64, order: usize, series: &Series<F>) -> (F::Matrix, F::Vector) {
         self.clock.set_held(t, self.context);
-        if !self.context.quiet {
+        if !self.context.autonomous {
             let (from, piece) = self.clock.piece(t, self.piece);
             self.piece = piece;
             let signals = self.clock.signals;
@@ -353,7 +353,7 @@ impl<F: Size> Analytic<F> for Equations<'_, F> {
     }
 
     fn horizon(&mut self, t: f64) -> f64 {
-        if self.context.quiet {
+        if self.context.autonomous {
             return f64::INFINITY;
         }
         self.piece = self.clock.piece(t, self.piece).1;

@@ -327,7 +327,7 @@ impl Margins<'_> {
             return Some(window.0);
         }
         let watch = Watch::of(begins);
-        let mut found = Search::quiet(watch);
+        let mut found = Search::nothing(watch);
         match shape? {
             GuardShape::Linear {
                 index,

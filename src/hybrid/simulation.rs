@@ -165,7 +165,7 @@ impl<'p> Simulation<'p> {
         context
             .discrete_mut()
             .copy_from_slice(&problem.initial.discrete);
-        context.quiet = problem.signals.is_zero();
+        context.autonomous = problem.signals.is_zero();
         let foresees = context.can_foresee(&problem.signals);
         let n = model.coordinates.len();
         let modes = &problem.automaton().modes;

@@ -13,7 +13,7 @@ impl Context {
     /// Sets signals and their rates to those at time `t` (s), as they are on that side.
     #[inline]
     pub fn set_signals(&mut self, signals: &Signals, t: f64, side: Side) {
-        if self.quiet {
+        if self.autonomous {
             return;
         }
         let room = self.signal_rooms();
@@ -27,7 +27,7 @@ impl Context {
     /// Whether [`Context::foresee_signals`] gives all that the equations of motion need: they depend on
     /// no antiderivative of an input, and on some input at all.
     pub fn can_foresee(&self, signals: &Signals) -> bool {
-        !self.quiet && !signals.want_antiderivatives(self.expanded())
+        !self.autonomous && !signals.want_antiderivatives(self.expanded())
     }
 
     /// Computes the signals at up to [`Context::MOST_AHEAD`] instants side by side, for
@@ -59,7 +59,7 @@ impl Context {
     /// Sets signals, rates and Taylor coefficients of the signals to those just after time `t` (s).
     #[inline]
     pub fn expand_signals(&mut self, signals: &Signals, t: f64, orders: usize) {
-        if !self.quiet {
+        if !self.autonomous {
             self.set_signals(signals, t, Side::Right);
             let room = self.signal_rooms();
             let [values, rates] = room.now;

@@ -70,7 +70,7 @@ impl Expansion {
     pub fn set_signals(&mut self, context: &Context, signals: &Signals, t: f64) {
         let width = self.given.signals.len();
         self.signal_rows.fill(0.0);
-        if width == 0 || context.quiet {
+        if width == 0 || context.autonomous {
             self.given.signals.fill(Row::default());
             return;
         }

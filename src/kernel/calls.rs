@@ -386,7 +386,7 @@ impl<F: Size> ModeKernel<F> {
             // SAFETY: F entries a row, and all ORDERS rows are there, those beyond the order zero; room for three times F.
             unsafe { dalembert_ranges(n, orders + 2, q, v, a, tau, to_middles, to_radii) };
             x.set_signal_radii(orders, tau);
-            let u = match x.quiet {
+            let u = match x.autonomous {
                 true => x.arrays.signals.as_ptr(),
                 false => x.signal_series.as_ptr(),
             };

@@ -41,7 +41,7 @@ pub struct Context {
     /// Time and side that the signals and their rates are set for, s; NaN: none.
     pub(super) signals_at: (f64, Side),
     /// Whether no input ever acts: all signals are zero and stay so.
-    pub quiet: bool,
+    pub autonomous: bool,
     /// Taylor coefficients of the signals, one row an order.
     pub(super) signal_series: Box<[f64]>,
     /// By how much signals change at most while a step lasts.
@@ -81,7 +81,7 @@ impl Clone for Context {
             raw: arrays.raw(),
             arrays,
             signals_at: self.signals_at,
-            quiet: self.quiet,
+            autonomous: self.autonomous,
             signal_series: self.signal_series.clone(),
             signal_radii: self.signal_radii.clone(),
             ahead: self.ahead.clone(),
@@ -163,7 +163,7 @@ impl Context {
             raw: arrays.raw(),
             arrays,
             signals_at: (f64::NAN, Side::Right),
-            quiet: false,
+            autonomous: false,
             ahead: vec![0.0; Self::MOST_AHEAD * dimensions.signals].into(),
             signal_series: vec![0.0; ORDERS * dimensions.signals].into(),
             signal_radii: vec![0.0; dimensions.signals].into(),
@@ -244,7 +244,7 @@ impl Context {
     #[inline(always)]
     pub(super) fn set_signal_radii(&mut self, orders: usize, tau: f64) {
         let width = self.signal_radii.len();
-        for &i in self.dimensions.required.iter().filter(|_| !self.quiet) {
+        for &i in self.dimensions.required.iter().filter(|_| !self.autonomous) {
             let rows = self.signal_series[..orders * width].chunks_exact(width);
             let (mut radius, mut power) = (0.0, 1.0);
             for row in rows.skip(1) {

@@ -31,20 +31,20 @@ impl<const W: usize> LaneContext<W> {
 }
 
 impl<const F: usize> ModeKernel<Const<F>> {
-    /// As [`Self::series_start`]; `quiet`: no input acts.
+    /// As [`Self::series_start`]; `autonomous`: no input acts.
     ///
     /// # Panics
     /// If the mode does not go in lanes; so do the other functions for lanes.
     pub(crate) fn lane_series_start<const W: usize>(
         &self,
-        (level, quiet): (LaneLevel<W>, bool),
+        (level, autonomous): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
         at: &mut LaneSeries<F, W>,
         out: &mut LaneSystem<F, W>,
     ) {
         let kernel = self.lane_kernel(level);
-        let series = if quiet {
-            &kernel.quiet_series
+        let series = if autonomous {
+            &kernel.autonomous_series
         } else {
             &kernel.series
         };
@@ -59,15 +59,15 @@ impl<const F: usize> ModeKernel<Const<F>> {
     /// As [`Self::series_run`].
     pub(crate) fn lane_series_run<const W: usize>(
         &self,
-        (level, quiet): (LaneLevel<W>, bool),
+        (level, autonomous): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
         n: usize,
         inverse: &[[Lanes<W>; F]; F],
         at: &mut LaneSeries<F, W>,
     ) {
         let kernel = self.lane_kernel(level);
-        let series = if quiet {
-            &kernel.quiet_series
+        let series = if autonomous {
+            &kernel.autonomous_series
         } else {
             &kernel.series
         };
@@ -108,10 +108,10 @@ impl<const F: usize> ModeKernel<Const<F>> {
         &x.guard_series
     }
 
-    /// As [`Self::requirement_bounds`], one lane entry a requirement; `quiet`: no input acts.
+    /// As [`Self::requirement_bounds`], one lane entry a requirement; `autonomous`: no input acts.
     pub(crate) fn lane_requirement_bounds<const W: usize>(
         &self,
-        (level, quiet): (LaneLevel<W>, bool),
+        (level, autonomous): (LaneLevel<W>, bool),
         x: &mut LaneContext<W>,
         (at, orders): (&LaneSeries<F, W>, usize),
         tau: &Lanes<W>,
@@ -131,7 +131,7 @@ impl<const F: usize> ModeKernel<Const<F>> {
         assert_eq!(x.signal_radii.len(), signals);
         let raw = x.raw(&self.dimensions);
         let u = x.signal_series.as_ptr().cast();
-        for &i in self.dimensions.required.iter().filter(|_| !quiet) {
+        for &i in self.dimensions.required.iter().filter(|_| !autonomous) {
             let own = (&raw mut x.signal_radii[i]).cast();
             // SAFETY: a row an order, each with an entry a signal, and this one is there.
             unsafe {

@@ -127,7 +127,7 @@ pub struct ModeKernel<F: Size> {
     pub(crate) requirements: usize,
     pub(crate) series: Option<SeriesKernel>,
     /// The same where no input acts.
-    pub(crate) quiet_series: Option<SeriesKernel>,
+    pub(crate) autonomous_series: Option<SeriesKernel>,
     pub(crate) guard_series: Option<SeriesKernel>,
     pub(crate) guards: usize,
     pub(crate) mass_is_constant: bool,
@@ -144,7 +144,7 @@ pub struct ModeKernel<F: Size> {
 pub struct LaneKernel {
     pub(crate) series: SeriesKernel,
     /// The same where no input acts.
-    pub(crate) quiet_series: SeriesKernel,
+    pub(crate) autonomous_series: SeriesKernel,
     pub(crate) requirement_bounds: Raw,
     /// Where the mode has guards that are not linear.
     pub(crate) guard_series: Option<SeriesKernel>,
@@ -211,20 +211,20 @@ impl<F: Size> ModeKernel<F> {
     #[inline]
     pub fn guards_end(&self, x: &Context) -> bool {
         let end = self.guard_series.as_ref().is_none_or(|guards| guards.ends);
-        end && x.quiet
+        end && x.autonomous
     }
 
     #[inline]
     pub(crate) fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
-        match x.quiet {
-            true => self.quiet_series.as_ref(),
+        match x.autonomous {
+            true => self.autonomous_series.as_ref(),
             false => self.series.as_ref(),
         }
     }
 
     /// Doubles of workspace that the series of this mode need.
     pub(crate) fn workspace(&self) -> usize {
-        let all = [&self.series, &self.quiet_series, &self.guard_series];
+        let all = [&self.series, &self.autonomous_series, &self.guard_series];
         let all = all.into_iter().flatten();
         all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
     }

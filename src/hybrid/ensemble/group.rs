@@ -100,7 +100,7 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     /// Level of the processor.
     pub level: LaneLevel<W>,
     /// Whether no input ever acts.
-    pub quiet: bool,
+    pub autonomous: bool,
     pub taylor: LaneTaylor<F, W>,
     pub context: LaneContext<W>,
     pub signals: LaneSignals<'p, W>,
@@ -144,7 +144,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
     pub fn new(
         kernel: &'p ModeKernel<Const<F>>,
         level: LaneLevel<W>,
-        quiet: bool,
+        autonomous: bool,
         order: Option<usize>,
         like: &Simulation<'p>,
     ) -> Self {
@@ -201,7 +201,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             mode,
             index: like.here.mode,
             level,
-            quiet,
+            autonomous,
             taylor: LaneTaylor::new(level, problem.accuracy.relative, kind, order),
             context,
             signals: LaneSignals::new(level, &problem.signals),
@@ -391,7 +391,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
             _ => self.now(lane),
         };
         let t = into.here.now.seconds();
-        if !self.quiet && outcome != Outcome::Until && t == self.signals.time(lane) {
+        if !self.autonomous && outcome != Outcome::Until && t == self.signals.time(lane) {
             into.context.set_signals_of_lane(&self.signals, lane);
         }
         let steps = self.steps - self.missed[lane];

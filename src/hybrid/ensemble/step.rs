@@ -68,7 +68,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
     fn expand(&mut self, in_pieces: bool) -> LaneMask {
         let order = self.taylor.order();
         let context = &mut self.context;
-        if !self.quiet {
+        if !self.autonomous {
             let t = match in_pieces {
                 true => &self.way.pieces[0],
                 false => &self.here.t[0],
@@ -78,7 +78,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             let rows = &mut rows[..(order + 1) * expanded.len()];
             self.signals.series(expanded, rows);
         }
-        let which = (self.level, self.quiet);
+        let which = (self.level, self.autonomous);
         let (system, inverse) = (&mut self.way.system, &mut self.way.inverse);
         self.taylor.start_at(&self.here);
         let series = &mut self.taylor.series;
@@ -214,7 +214,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         if self.bounds.is_empty() {
             return LaneMask::NONE;
         }
-        let which = (self.level, self.quiet);
+        let which = (self.level, self.autonomous);
         let series = (&self.taylor.series, self.taylor.order());
         let [tau, ..] = &self.way.durations;
         let bounds = &mut self.bounds;
@@ -254,7 +254,7 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
         true => Watch::Dormant,
         false => Watch::Armed,
     };
-    let mut search = Search::quiet(watch);
+    let mut search = Search::nothing(watch);
     let window = ((0.0, 1.0), Isolation::Bracket);
     search_window(own, window, (watch, &mut search));
     match search.crossing {

@@ -110,7 +110,7 @@ pub(super) struct Worker<'a, const W: usize> {
     lanes: Vec<Option<Lanes<'a, W>>>,
     /// Whether a slot or a lane has become free.
     vacancies: bool,
-    quiet: bool,
+    autonomous: bool,
     level: LaneLevel<W>,
 }
 
@@ -139,7 +139,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             slots: (0..count).map(slot).collect(),
             lanes: (0..modes).map(|_| None).collect(),
             vacancies: true,
-            quiet: ensemble.problem.signals.is_zero(),
+            autonomous: ensemble.problem.signals.is_zero(),
             level: LaneLevel::new(ensemble.level),
         }
     }
@@ -188,13 +188,13 @@ impl<'a, const W: usize> Worker<'a, W> {
     fn find_lane(&mut self, slot: usize) {
         let simulation = &self.slots[slot].simulation;
         let mode = simulation.here.mode;
-        let (level, quiet) = (self.level, self.quiet);
+        let (level, autonomous) = (self.level, self.autonomous);
         let order = self.ensemble.orders[mode];
         let lanes = self.lanes[mode].get_or_insert_with(|| {
             let kernels = &simulation.mode().kernels;
             let group: Box<dyn AnyGroup<'a, W> + 'a> =
                 with_kernel!(kernels,
-                    k => Box::new(Group::new(k, level, quiet, order, simulation)),
+                    k => Box::new(Group::new(k, level, autonomous, order, simulation)),
                     _any => unreachable!("a mode of so many free coordinates does not go in lanes"));
             Lanes {
                 group,

@@ -18,7 +18,7 @@ impl Observers<'_> {
     ) -> bool {
         // Where nothing moves and nothing acts all nodes have the same values.
         let stands = step.equations.kernel.size().get() == 0
-            && step.equations.context.quiet
+            && step.equations.context.autonomous
             && step.equations.clock.drift.is_empty();
         if !self.joined {
             self.evaluate(step, part.from, 0, (columns, powers));

@@ -73,7 +73,7 @@ impl<const N: usize> Armed<'_, N> {
     ) -> bool {
         let (start, end) = piece;
         if end <= self.from || self.to <= start {
-            *found = Search::quiet(Watch::Armed);
+            *found = Search::nothing(Watch::Armed);
             return true;
         }
         match Changes::of(bernstein, (1 + cuts) as f64 * self.rounding) {
@@ -433,7 +433,7 @@ mod tests {
     }
 
     fn crossing(polynomial: &Polynomial<12>, isolation: Isolation) -> Crossing {
-        let mut found = Search::quiet(Watch::Armed);
+        let mut found = Search::nothing(Watch::Armed);
         polynomial.search_armed((0.0, 1.0), 0.0, isolation, &mut found);
         found.crossing.expect("it has a root")
     }

@@ -32,7 +32,7 @@ pub fn search(
     noise: f64,
 ) -> Search {
     if from >= to {
-        return Search::quiet(watch);
+        return Search::nothing(watch);
     }
     Guard {
         function: guard,
@@ -121,13 +121,13 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
             self.sample(&mut samples, degree);
             if watch == Watch::Dormant && self.noise == 0.0 && degree == 4 {
                 if samples.magnitude(degree) == 0.0 {
-                    return Search::quiet(watch);
+                    return Search::nothing(watch);
                 }
                 let (is_noise, size) = self.is_noise(&mut samples);
                 if is_noise {
                     return Search {
                         resolved: false,
-                        ..Search::quiet(watch)
+                        ..Search::nothing(watch)
                     };
                 }
                 noise = size;
@@ -276,7 +276,7 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
     /// By the values at the nodes alone.
     fn by_values(&mut self, samples: &Samples, watch: Watch) -> Search {
         if watch == Watch::Dormant && self.noise == 0.0 {
-            return Search::quiet(watch);
+            return Search::nothing(watch);
         }
         walk(
             &mut Values {
@@ -352,7 +352,7 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
             return Some(Search::above(below - error));
         }
         if watch == Watch::Violated && above < -error {
-            return Some(Search::quiet(watch));
+            return Some(Search::nothing(watch));
         }
         if !self.interpolant.decays() && !self.resolved {
             return None;

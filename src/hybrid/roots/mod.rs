@@ -159,7 +159,7 @@ pub struct Search {
 
 impl Search {
     /// No event; `watch` at the end of the window.
-    pub(crate) fn quiet(watch: Watch) -> Self {
+    pub(crate) fn nothing(watch: Watch) -> Self {
         Self {
             crossing: None,
             watch,
@@ -172,7 +172,7 @@ impl Search {
     pub(crate) fn above(turn: f64) -> Self {
         Self {
             turn,
-            ..Self::quiet(Watch::Armed)
+            ..Self::nothing(Watch::Armed)
         }
     }
 

@@ -142,7 +142,7 @@ impl<const N: usize> Polynomial<N> {
     /// divided out exactly; one that is dormant elsewhere is asleep until it exceeds the rounding
     /// error of its value, so expand a segment's polynomials about its start.
     pub fn search(&self, from: f64, to: f64, watch: Watch, noise: f64) -> Search {
-        let mut search = Search::quiet(watch);
+        let mut search = Search::nothing(watch);
         if watch == Watch::Armed {
             self.search_armed((from, to), noise, Isolation::Bracket, &mut search);
             self.close_in(&mut search);
@@ -153,11 +153,11 @@ impl<const N: usize> Polynomial<N> {
         if watch == Watch::Violated {
             let rises = sum_of(&self.coefficients, |c| c.max(0.0));
             if -self.coefficients[0] > rises * (1.0 + Self::ROUNDING) {
-                return Search::quiet(Watch::Violated);
+                return Search::nothing(Watch::Violated);
             }
         }
         if from >= to {
-            Search::quiet(watch)
+            Search::nothing(watch)
         } else if watch == Watch::Dormant && noise == 0.0 && from == 0.0 {
             self.leave_zero(to)
         } else {
@@ -186,7 +186,7 @@ impl<const N: usize> Polynomial<N> {
                 .map_or(0.0, |c| c.max(0.0) / (N - 1) as f64);
             *found = Search::above(self.coefficients[0] + rise - falls);
         } else if from >= to {
-            *found = Search::quiet(Watch::Armed);
+            *found = Search::nothing(Watch::Armed);
         } else if !first_fall(self, (from, to), isolation, found) {
             *found = self.search_pieces(from, to, Watch::Armed, noise);
         }
@@ -226,7 +226,7 @@ impl<const N: usize> Polynomial<N> {
             let mut bernstein = [0.0; N];
             self.bernstein(&mut bernstein);
             if bernstein.iter().all(|&b| b < -margin) {
-                return Search::quiet(watch);
+                return Search::nothing(watch);
             }
         }
         let mut pieces = Monotone::new(self, from, to, noise);
@@ -239,10 +239,10 @@ impl<const N: usize> Polynomial<N> {
         self.divide(order, &mut quotient);
         let coefficients = &quotient.coefficients;
         if coefficients[0] == 0.0 {
-            return Search::quiet(Watch::Dormant);
+            return Search::nothing(Watch::Dormant);
         }
         if coefficients[0] > 0.0 {
-            let mut found = Search::quiet(Watch::Armed);
+            let mut found = Search::nothing(Watch::Armed);
             quotient.search_of_multiple(order, to, Isolation::Bracket, &mut found);
             quotient.close_in(&mut found);
             return found;
@@ -427,7 +427,7 @@ mod tests {
             let quotient = Polynomial {
                 coefficients: [b * c0, b * c1 + c0, b * c2 + c1, c2, 0.0, 0.0],
             };
-            let mut found = Search::quiet(Watch::Dormant);
+            let mut found = Search::nothing(Watch::Dormant);
             quotient.search_of_multiple(1, 1.0, Isolation::Place, &mut found);
             assert_eq!(found.crossing, None, "{i}");
             let least = least_of_multiple(&quotient);

@@ -106,7 +106,7 @@ mod tests {
                 _ => value * (4.0 * part(0.754_877_666_246_692_7) - 2.0),
             };
             let length = 3.0;
-            let mut expected = Search::quiet(Watch::Armed);
+            let mut expected = Search::nothing(Watch::Armed);
             let polynomial = Polynomial {
                 coefficients: [value, slope / length * length, 0.0],
             };

@@ -97,7 +97,7 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
     }
     Some(match watch {
         Watch::Armed => Search::above(least),
-        _ => Search::quiet(watch),
+        _ => Search::nothing(watch),
     })
 }
 

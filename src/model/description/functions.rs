@@ -57,7 +57,7 @@ impl Reader<'_> {
             let series = |key: &str| at.get(key, |at| self.series(at, functions));
             Ok(LaneKernel {
                 series: series("series")?,
-                quiet_series: series("quiet_series")?,
+                autonomous_series: series("autonomous_series")?,
                 guard_series: general.then(|| series("guard_series")).transpose()?,
                 requirement_bounds: at.get("requirement_bounds", |at| {
                     in_lanes(at, self.functions, functions)
@@ -77,7 +77,7 @@ impl Reader<'_> {
                 })
             })?,
             series: series("series")?,
-            quiet_series: series("quiet_series")?,
+            autonomous_series: series("autonomous_series")?,
             guard_series: series("guard_series")?,
             guards: guards.len(),
             mass_is_constant: at.get("mass_is_constant", truth)?,
