@@ -87,7 +87,10 @@ fn a_good_model_is_described() {
 #[test]
 fn operations_are_counted_of_the_default_options() {
     let folder = tempfile::tempdir().unwrap();
-    let tank = super::project().join("models/walking_tank").display().to_string();
+    let tank = super::project()
+        .join("models/walking_tank")
+        .display()
+        .to_string();
     let output = ends_with(0, folder.path(), &["check", &tank]);
     let text = stdout(&output);
     let counts: Vec<&str> = (text.lines())
