@@ -52,7 +52,7 @@ pub struct Trajectory {
     pub columns: Vec<Column>,
     /// Time of each row (s).
     pub t: Vec<f64>,
-    /// Mode of each row, an index into [`Layout::modes`].
+    /// Mode of each row, an index into [`Layout::modes`](super::Layout::modes).
     pub mode: Vec<usize>,
     /// Row-major, `columns.len()` values a row.
     pub values: Vec<f64>,
@@ -99,9 +99,9 @@ pub struct Jump {
     pub j: u64,
     /// Name of the transition.
     pub transition: &'static str,
-    /// Mode left, an index into [`Layout::modes`].
+    /// Mode left, an index into [`Layout::modes`](super::Layout::modes).
     pub from: usize,
-    /// Mode entered, an index into [`Layout::modes`].
+    /// Mode entered, an index into [`Layout::modes`](super::Layout::modes).
     pub to: usize,
     /// Jump of the energy; `None` for a transition that is no impact.
     pub energy: Option<EnergyJump>,
@@ -116,9 +116,9 @@ pub struct Event {
     pub j: u64,
     /// Name of the transition.
     pub transition: &'static str,
-    /// Mode left, an index into [`Layout::modes`].
+    /// Mode left, an index into [`Layout::modes`](super::Layout::modes).
     pub from: usize,
-    /// Mode entered, an index into [`Layout::modes`].
+    /// Mode entered, an index into [`Layout::modes`](super::Layout::modes).
     pub to: usize,
     /// State just before.
     pub before: Snapshot,
@@ -161,7 +161,7 @@ pub struct Place {
     pub t: f64,
     /// Number of transitions so far.
     pub j: u64,
-    /// Mode, an index into [`Layout::modes`].
+    /// Mode, an index into [`Layout::modes`](super::Layout::modes).
     pub mode: usize,
     /// State.
     pub state: Snapshot,
