@@ -67,7 +67,7 @@ model.parameter_set(
 theta = model.coordinate("theta", "rad", "uplift angle about the pivot edge", minimum=0, scale=0.01, rate_scale=0.1)
 x_I = model.coordinate("x_I", "m", "bulging displacement along the tank's base line", scale=1e-3, rate_scale=0.1)
 x = model.coordinate("x", "m", "slip of the base on the ground", scale=0.01, rate_scale=0.1)
-y = model.coordinate("y", "m", "height of the base; its reaction is the normal force N")
+y = model.coordinate("y", "m", "height of the base; where a mode holds it, its reaction is the normal force N")
 side = model.discrete("side", (+1, -1), "pivot: +1 the left edge O, -1 the right edge O'")
 slip = model.discrete("slip", (+1, -1), "direction of slip while sliding")
 z_h = model.ground("z_h", "motion of the ground to the right", input="ground_acceleration")

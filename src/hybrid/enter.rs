@@ -165,11 +165,9 @@ impl<'p> Simulation<'p> {
             }
         }
         self.signs.start();
-        // A chart keeps them.
         if violation.is_none() {
+            // A chart keeps them.
             self.at_zero.clear();
-        }
-        if violation.is_none() {
             let at = Free {
                 q: &q,
                 v: &v,

@@ -275,6 +275,22 @@ pub enum Reason {
         /// What is wrong there.
         why: Misfitting,
     },
+    /// A chart of the model leads to another state.
+    #[error(
+        "chart `{name}` changes {what} of `{of}` from {before:e} to {after:e}: it is to lead to other coordinates of the same state, by which nothing moves"
+    )]
+    Chart {
+        /// The chart.
+        name: &'static str,
+        /// What it changes: the gap, its rate, the slip rate, the value of a constraint or its rate.
+        what: &'static str,
+        /// The contact or the constraint.
+        of: &'static str,
+        /// What that was.
+        before: f64,
+        /// What it is in the other coordinates.
+        after: f64,
+    },
     /// Something of the problem is not admissible.
     #[error(transparent)]
     Invalid(#[from] Invalid),

@@ -8,6 +8,7 @@ mod advance;
 mod beside_contacts;
 mod bouncing;
 mod chains;
+mod charts;
 mod contacts;
 mod coulomb;
 mod derivatives;

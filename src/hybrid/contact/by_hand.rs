@@ -8,7 +8,7 @@ use crate::numerics::Size;
 
 use super::State;
 use super::event::GUARDS;
-use super::geometry::Line;
+use super::geometry::{Geometry, Line};
 use super::hold::{Places, hold};
 
 impl<'p> Simulation<'p> {
@@ -45,14 +45,73 @@ impl<'p> Simulation<'p> {
         assert_eq!(chosen, Some(0), "a chart has no conditions");
         let (n, free, size) = (self.here.q.len(), &self.mode().free, kernel.size());
         let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
+        let before = {
+            let [q, v, _] = self.here.free(size, free);
+            Places::new(kernel, &self.context, contacts, [&q, &v])
+        };
         let discrete = self.context.discrete().to_vec();
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
+        let name = self.mode().guards[guard].transitions[0].name;
+        self.check_chart(kernel, contacts, name, (&before, [&q, &v]))?;
         hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
         self.context.discrete_mut().copy_from_slice(&discrete);
         for (i, &of) in free.iter().enumerate() {
             (self.next[of], self.next[n + of]) = (q[i], v[i]);
         }
-        self.take_chart(self.mode().guards[guard].transitions[0].name)
+        self.take_chart(name)
+    }
+
+    /// Refuses a chart by which a gap, a slip rate, a constraint or a rate of these changes by more than the tolerances tell from
+    /// nothing. The context has the discrete states of the new coordinates.
+    fn check_chart<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        contacts: &Contacts,
+        name: &'static str,
+        (before, [q, v]): (&Places, [&F::Vector; 2]),
+    ) -> Stoppable<()> {
+        let after = Places::new(kernel, &self.context, contacts, [q, v]);
+        let geometry = Geometry::new(kernel, &mut self.context, contacts, [q, v]);
+        let accuracy = self.accuracy;
+        for line in geometry.all() {
+            let (of, [place, rate]) = match line {
+                Line::Normal(k) => (
+                    contacts.contacts[k].name,
+                    ["the gap", "the rate of the gap"],
+                ),
+                Line::Tangent(k) => (contacts.contacts[k].name, ["", "the slip rate"]),
+                Line::Constraint(c) => (contacts.constraints[c].name, ["the value", "the rate"]),
+            };
+            let within = |absolute: &[f64], at: &F::Vector| -> f64 {
+                let along = geometry.along(line).iter().zip(&geometry.own);
+                let within = |i: usize| absolute[i] + accuracy.relative * at[i].abs();
+                along.map(|(along, &i)| along.abs() * within(i)).sum()
+            };
+            for (what, [before, after], within) in [
+                (
+                    place,
+                    [before.place(line), after.place(line)],
+                    within(&accuracy.q_absolute, q),
+                ),
+                (
+                    rate,
+                    [before.rate(line), after.rate(line)],
+                    within(&accuracy.v_absolute, v),
+                ),
+            ] {
+                let is_same = (after.0 - before.0).abs() <= before.1 + after.1 + within;
+                if !is_same {
+                    return Err(Box::new(Reason::Chart {
+                        name,
+                        what,
+                        of,
+                        before: before.0,
+                        after: after.0,
+                    }));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// A contact that is open and whose gap is not positive any more: what closes at the instant of a transition comes before it.
