@@ -19,7 +19,7 @@ def add(model):
         for entry in _of_contact(model, contact):
             model.outputs.append(entry)
     for constraint in model.constraints:
-        force = lambda equations, of=constraint: of.multiplier.acceleration
+        force = lambda equations, of=constraint: _of_constraint(equations, of)
         model.outputs.append(Output(
             f"{constraint.name}.force", _force_unit(model, constraint.expression, constraint.is_rate),
             "force of the constraint, positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
@@ -51,6 +51,12 @@ def _shares_its_slip(model, contact):
     """Whether it slips along the gap of another contact in the reduced form, so that only a sum of forces is determined."""
     return contact.slip is not None and model.modes[0].form is None and any(
         other.gap is not None and other.gap.name == contact.slip.name for other in model.contacts)
+
+
+def _of_constraint(equations, constraint):
+    if equations.mode.form is not None:
+        return constraint.multiplier.acceleration
+    return equations.place(constraint.force_of_line(equations.mode))
 
 
 def _normal(equations, contact):

@@ -69,6 +69,8 @@ class Contact:
     """The same where all that touch stick before, if they are others then."""
     held: list = field(default_factory=list)
     """Of a permanent contact in the form with multipliers, the constraints that hold it: its gap, its slip rate."""
+    sides: ca.SX = None
+    """Of a gap that opens to two sides, the discrete state that says to which."""
 
     @property
     def force_name(self):
@@ -117,9 +119,9 @@ class Contact:
         """Positive along the slip."""
         return self.slip.sign * self.slip.coordinate.rate + self.slip.offset
 
-    def normal_force(self, mode):
-        """λ_N in a mode where it is closed."""
-        return self.normal if self.gap is None else self.gap.sign * mode.reaction(self.gap.coordinate)
+    def normal_force(self, mode, **discrete):
+        """λ_N in a mode where it is closed, with discrete states as given."""
+        return self.normal if self.gap is None else self.gap.sign * mode.reaction(self.gap.coordinate, **discrete)
 
 
 # ---- declarations ---------------------------------------------------------------------------------
@@ -140,7 +142,7 @@ def switched(model, kind, name, switch):
     return chosen
 
 
-def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangential_restitution, switch):
+def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangential_restitution, switch, sides=None):
     """Adds a contact to a model; see `Model.contact` and `Model.friction`."""
     kind = "friction" if gap is None else "contact"
     what = f"{kind} `{name}`"
@@ -168,6 +170,8 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
         if lines and known.slip.name == slip.name:
             raise model.error(f"{what}: `{known.name}` slips along `{slip.name}` too; of two friction forces along one coordinate"
                               " only the sum is determined: declare one friction with the sum of both")
+    if sides is not None:
+        _check_sides(model, what, gap, slip, sides)
     if chosen == OFF:
         return
     direction = None if slip is None or chosen == PERMANENT else model.discrete(
@@ -177,7 +181,19 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
     model.contacts.append(Contact(
         name, gap, gap_expression, slip, slip_expression, by_rate, None if normal is None else of("`normal`", normal), static,
         kinetic, of("`restitution`", restitution), of("`tangential_restitution`", tangential_restitution), direction,
-        caller_location(model.file), chosen == PERMANENT))
+        caller_location(model.file), chosen == PERMANENT, sides=sides))
+
+
+def _check_sides(model, what, gap, slip, sides):
+    """Of a gap that opens to two sides: what says to which, and that the gap is a coordinate on both."""
+    declared = next((d for d in model.discretes if isinstance(sides, ca.SX) and d.symbol is sides), None)
+    if declared is None or sorted(declared.values) != [-1, 1]:
+        raise model.error(f"{what}: `sides` is {arguments.shown(sides)}, not a discrete state with the values +1 and -1")
+    if not isinstance(gap, Line):
+        raise model.error(f"{what}: it opens to two sides, so that its gap is a coordinate, positive on either side")
+    if slip is not None:
+        raise model.error(f"{what}: it opens to two sides and has a slip; what touches differs with the side, so that it is for two"
+                          " contacts to say")
 
 
 def declare_ratchet(model, name, rate, switch):

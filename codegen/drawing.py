@@ -107,6 +107,8 @@ def _pushes(model, what, of, along, location):
         raise ModelError(f"{what}: there is no contact, friction or constraint {arguments.shown(of)} above (there are: {known})",
                          location)
     given = list(forces.values()) if along is None else along
+    if isinstance(given, list) and not given:
+        return []
     try:
         directions = [(ca.SX(x), ca.SX(y)) for x, y in given]
     except (TypeError, ValueError, NotImplementedError):

@@ -99,7 +99,7 @@ class Model:
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
         self.contacts, self.constraints, self.switched_off, self.by_multipliers = [], [], [], False
-        self.charts = []
+        self.charts, self.requirements = [], []
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)
@@ -258,7 +258,8 @@ class Model:
 
     # ---- contacts -----------------------------------------------------------------------------
 
-    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0, tangential_restitution=0, switch=False):
+    def contact(self, name, *, gap, slip=None, static=None, kinetic=None, restitution=0, tangential_restitution=0, sides=None,
+                switch=False):
         """A contact: `gap` ≥ 0, and a force that pushes where it is zero.
 
         With `slip`, a place along the contact or its slip rate, it has Coulomb friction, `static` (`kinetic` where it is
@@ -266,10 +267,14 @@ class Model:
         keep within the kinetic coefficient; an impact that sticks turns the slip rate back by −`tangential_restitution` times
         it. Modes, guards, impacts and rests follow; see docs/models.md.
 
+        A gap that opens to two `sides`, as that under a body which rocks about either edge, is a coordinate that is positive on
+        both; this discrete state, +1 or −1, says on which it is. It opens to the side on which the force that keeps it closed
+        vanishes, and after an impact the motion goes on on the other side.
+
         With `switch=True` a scene may leave it out (`"contacts": {name: "off"}`), or hold it for good (`"permanent"`: it
         neither opens nor slips); there is code of its own for each, so that what is off costs nothing.
         """
-        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution, tangential_restitution, switch)
+        contacts.declare(self, name, gap, slip, None, static, kinetic, restitution, tangential_restitution, switch, sides)
 
     def friction(self, name, *, slip, normal, kinetic, static=None, switch=False):
         """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N. `switch` as for
@@ -392,10 +397,13 @@ class Model:
         self.rests.append((source, target))
 
     def requires(self, mode, positive, failure):
-        """Stops the run with the reason `failure` where `positive` is not > 0."""
-        arguments.mode(self, "what a requirement is of", mode)
+        """Stops the run with the reason `failure` where `positive` is not > 0. Where `mode` is None this holds in every mode which
+        has the reactions that it names, by `model.reaction(…)`."""
+        if mode is not None:
+            arguments.mode(self, "what a requirement is of", mode)
         arguments.text(self, "requirement: what its failure means", failure)
-        mode.requirements.append(Requirement(self._expression("requirement", positive), failure, caller_location(self.file)))
+        requirements = self.requirements if mode is None else mode.requirements
+        requirements.append(Requirement(self._expression("requirement", positive), failure, caller_location(self.file)))
 
     def limit(self, name, message, *, when, ends=True, modes=None):
         """A limit state: reached where the comparison `when`, such as `theta > pi / 2`, first holds.
@@ -436,7 +444,7 @@ class Model:
         return value
 
     def reaction(self, coordinate):
-        """In outputs, limit states and validity: the reaction of a coordinate or ground motion in whatever mode there is,
+        """In outputs, limit states, validity and what every mode requires: the reaction of a coordinate or ground motion in whatever mode there is,
         0 while the coordinate is free."""
         coordinate = arguments.coordinate(self, "what a reaction is asked of", coordinate, motions=True)
         return self._reaction_placeholder(f"R({coordinate.name()})", None, coordinate.name(), {})
@@ -453,7 +461,7 @@ class Model:
 
         Instead, `of` names a contact, friction or constraint declared above, which has a state and forces of its own. `along`
         lists the directions (X, Y) in which its forces act on what is drawn: normal force and friction, upwards and to the
-        right where nothing is said; the forces of a constraint of two expressions, to the right and upwards.
+        right where nothing is said, none where the list is empty; the forces of a constraint of two expressions, to the right and upwards.
         """
         self.shapes.append(drawing.shape(
             self, name, points, kind, radius, caller_location(self.file), force, states, of, along))

@@ -44,6 +44,12 @@ class Constraint:
     multiplier: object = None
     force: str = ""
     """Name of its multiplier, if it is that of a contact."""
+    line: object = None
+    """In the reduced form, the coordinate that it holds, or the rate."""
+
+    def force_of_line(self, mode):
+        """Its force in a mode of the reduced form."""
+        return self.line.sign * mode.reaction(self.line.coordinate)
 
     def gradient(self, places, rates):
         """How what it holds changes with coordinates, or with their rates."""

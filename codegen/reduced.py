@@ -1,7 +1,7 @@
 """The modes that follow from contacts: one for each set of contact states where gaps and slips are coordinates, which it freezes.
 
-This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts (Newton's law) and rests follow. Where there is
-none, one mode serves all sets (`multipliers.py`).
+This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts (Newton's law) and rests follow. Constraints
+freeze theirs in all modes. Where there is no such form, one mode serves all sets (`multipliers.py`).
 """
 
 import itertools
@@ -9,8 +9,8 @@ import itertools
 import casadi as ca
 
 from . import contact_outputs, derive, limits, multipliers
-from .contacts import CLOSED, OPEN, SLIDES, STICKS
-from .declarations import Transition
+from .contacts import CLOSED, OPEN, SLIDES, STICKS, as_line
+from .declarations import Requirement, Transition
 from .errors import ModelError
 
 MOST_MODES = 16
@@ -23,29 +23,46 @@ class NotReducible(ModelError):
 
 def expand(model):
     """Adds the modes, transitions and rests of a model with contacts or constraints; those of any other stay as they are."""
-    if not model.contacts and not model.constraints:
-        if model.charts:
-            name, _, _, location = model.charts[0]
-            raise ModelError(f"chart `{name}`: the model has no contacts; a change of coordinates by hand is a transition", location)
-        if model.switched_off and not model.modes:
-            model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
-        return
-    # Modes by hand have all sets of contact states each.
-    if model.modes or model.charts or not _reduce(model):
-        multipliers.build(model)
-    contact_outputs.add(model)
+    if model.contacts or model.constraints:
+        why_not = _reduce(model)
+        if why_not:
+            _need_no_sides(model, why_not)
+            multipliers.build(model)
+        contact_outputs.add(model)
+    elif model.charts:
+        name, _, _, location = model.charts[0]
+        raise ModelError(f"chart `{name}`: the model has no contacts; a change of coordinates by hand is a transition", location)
+    elif model.switched_off and not model.modes:
+        model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
+    _require(model)
 
 
 def _reduce(model):
-    """Adds the modes of the reduced form; whether there is one."""
-    if model.by_multipliers or model.constraints or not all(contact.is_reducible() for contact in model.contacts):
-        return False
+    """Adds the modes of the reduced form, or says why there is none."""
+    if model.modes or model.charts:
+        # Modes by hand have all sets of contact states each.
+        return "it has modes by hand or charts"
+    if model.by_multipliers:
+        return "multipliers are asked for"
+    bent = next((contact for contact in model.contacts if not contact.is_reducible()), None)
+    if bent is not None:
+        return (f"`{bent.name}` is a ratchet, has a law of its own or a tangential restitution, or has a gap or a slip that is no"
+                " coordinate")
+    placeholders = dict(model.placeholders)
     try:
         Expansion(model).build()
-    except NotReducible:
-        model.modes, model.transitions, model.rests, model.placeholders = [], [], [], {}
-        return False
-    return True
+    except NotReducible as why:
+        model.modes, model.transitions, model.rests, model.placeholders = [], [], [], placeholders
+        return str(why)
+    return ""
+
+
+def _need_no_sides(model, why_not):
+    """With multipliers a gap has one side."""
+    for contact in model.contacts:
+        if contact.sides is not None:
+            raise ModelError(f"contact `{contact.name}`: a gap that opens to two sides needs a model in which every gap, slip and"
+                             f" constraint is a coordinate; here {why_not}", contact.location)
 
 
 def _bound(model, contact):
@@ -62,6 +79,7 @@ class Expansion:
 
     def __init__(self, model):
         self.model, self.contacts = model, model.contacts
+        self.constrained = _constrained(model)
         self.modes = {}
         self.mass = _mass(model)
 
@@ -91,6 +109,11 @@ class Expansion:
 
     def _mode(self, states):
         model, freeze, drift = self.model, [], []
+        for constraint in model.constraints:
+            line = constraint.line
+            freeze.append(line.coordinate if constraint.is_rate else (line.coordinate, line.value()))
+            if constraint.is_rate and not line.offset.is_zero():
+                drift.append((line.coordinate, line.value()))
         for contact, state in zip(self.contacts, states):
             if contact.gap and state != OPEN:
                 freeze.append((contact.gap.coordinate, contact.gap.value()))
@@ -100,8 +123,10 @@ class Expansion:
                 if not contact.slip.offset.is_zero():
                     drift.append((contact.slip.coordinate, contact.slip.value()))
         mode = model._mode(_words(self.contacts, states), "", freeze, drift)
-        mode.location = self.contacts[0].location
+        mode.location = [*self.contacts, *model.constraints][0].location
         mode.contact_states = {contact.name: state for contact, state in zip(self.contacts, states)}
+        for constraint in model.constraints:
+            constraint.force_of_line(mode)  # an output: reactions are known before equations are made
         for contact, state in zip(self.contacts, states):
             if state == SLIDES:
                 mode.friction(contact.slip.coordinate, normal=contact.normal_force(mode), coefficient=contact.kinetic,
@@ -169,7 +194,12 @@ class Expansion:
                 margin = margin + other.static * other.normal_force(mode)
                 target[k] = SLIDES
                 reset.append((other.direction, contact.gap.sign * other.slip.sign))
-        self._add(contact, "opens", states, target, margin, reset)
+        if contact.sides is None:
+            self._add(contact, "opens", states, target, margin, reset)
+            return
+        for side in (+1, -1):
+            margin = contact.normal_force(mode, **{contact.sides.name(): side})
+            self._add(contact, "opens", states, target, margin, [(contact.sides, side)])
 
     # ---- impacts ----------------------------------------------------------------------------------
 
@@ -179,6 +209,8 @@ class Expansion:
         pressed, loose = self._reached(states, contact)
         if len(pressed) > 1 or pressed and (contact.slip or pressed[0].slip):
             raise NotReducible(f"the impact of `{contact.name}` acts on several contacts with friction")
+        if contact.sides is not None and (pressed or loose):
+            raise NotReducible(f"the impact of `{contact.name}`, which opens to two sides, changes other rates")
         slides = [+1, -1] if contact.slip else []
         ways = [(opens, slip) for opens in ([True, False] if pressed else [False]) for slip in slides + [0]]
         for opens, slip in ways:
@@ -192,7 +224,7 @@ class Expansion:
         while pending:
             row = pending.pop()
             for k in range(len(names)):
-                if k in found or self.mass[row, k].is_zero():
+                if k in found or self.mass[row, k].is_zero() or names[k] in self.constrained:
                     continue
                 found.add(k)
                 holder = self._holder(states, names[k])
@@ -239,6 +271,8 @@ class Expansion:
         reset += [(coordinates[k].rate, after[k]) for k in sorted(after)]
         if slip:
             reset.append((contact.direction, slip))
+        if contact.sides is not None:
+            reset.append((contact.sides, -contact.sides))
         if opens:
             target[self.contacts.index(pushed)] = OPEN
             conditions.append(pushed.gap.sign * pushed.gap.coordinate.rate)
@@ -298,4 +332,38 @@ def _mass(model):
 
 def _words(contacts, states):
     """The name of a set of contact states."""
-    return ", ".join(f"{contact.name} {state}" for contact, state in zip(contacts, states))
+    return ", ".join(f"{contact.name} {state}" for contact, state in zip(contacts, states)) or "moves"
+
+
+def _constrained(model):
+    """Names of the coordinates that constraints hold, each by one alone."""
+    names = []
+    for constraint in model.constraints:
+        constraint.line = as_line(model, constraint.expression, constraint.is_rate)
+        if constraint.line is None:
+            raise NotReducible(f"`{constraint.name}` holds no coordinate")
+        names.append(constraint.line.name)
+    by_contacts = {line.name for c in model.contacts for line in (c.gap, c.slip) if line}
+    if len(set(names)) < len(names) or by_contacts & set(names):
+        raise NotReducible("a constraint holds a coordinate that something else holds, too")
+    of_sides = {c.gap.name for c in model.contacts if c.sides is not None}
+    if any(c.slip and c.slip.name in of_sides for c in model.contacts):
+        raise NotReducible("friction acts along a gap that opens to two sides")
+    return set(names)
+
+
+def _require(model):
+    """What every mode requires, in those that have the reactions it names."""
+    of_any = {entry[0].element_hash(): entry for entry in model.placeholders.values() if entry[1] is None}
+    coordinates = {c.name: c.symbol for c in model.coordinates + model.motions}
+    for requirement in model.requirements:
+        found = [of_any[s.element_hash()] for s in ca.symvar(requirement.expression) if s.element_hash() in of_any]
+        names = [entry[2] for entry in found]
+        modes = [mode for mode in model.modes if set(names) <= mode.held.keys() | {m.name for m in model.motions}]
+        if not modes:
+            raise ModelError(f"what every mode requires: {' and '.join(f'`{n}`' for n in names)} {'is' if len(names) == 1 else 'are'}"
+                             " free in each, so that there is no reaction", requirement.location)
+        for mode in modes:
+            own = [mode.reaction(coordinates[name]) for name in names]
+            expression = ca.substitute([requirement.expression], [entry[0] for entry in found], own)[0]
+            mode.requirements.append(Requirement(expression, requirement.failure, requirement.location))

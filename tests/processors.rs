@@ -46,12 +46,12 @@ int main(void) {
     struct dalembert_angle angles[4] = {{0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}, {0.0, {0.0, 1.0}}};
     const struct dalembert_context x = {u, u, d, h, c, a, angles};
     dalembert_rocking_block_constants(p, p, p, &x, c);
-    dalembert_rocking_block_rocks_series_start(q, v, a, u, &x, w, out);
+    dalembert_rocking_block_base_open_series_start(q, v, a, u, &x, w, out);
     double inverse = 1.0 / out[0];
     a[0] = v[1] = -inverse * out[1];
     q[1] = v[0];
     q[2] = 0.5 * a[0];
-    dalembert_rocking_block_rocks_series_run(ORDER, q, v, a, u, &x, w, &inverse);
+    dalembert_rocking_block_base_open_series_run(ORDER, q, v, a, u, &x, w, &inverse);
     print("q", q, ORDER + 2);
     print("a", a, ORDER);
     double middles[3], radii[3];

@@ -122,13 +122,13 @@ pub fn state(name: &str, simulator: &Simulator) -> Vec<f64> {
 pub fn problem(name: &str, tolerance: f64) -> Problem {
     match name {
         "P1" => {
-            let mut p = model("rocking_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.9)]);
+            let mut p = model("hand_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.9)]);
             start(&mut p, "theta", 0.6 * 0.25);
             p.end.time = 6.0;
             accuracy(p, tolerance, &[0.2], &[0.5])
         }
         "P2" => {
-            let mut p = model("rocking_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.85)]);
+            let mut p = model("hand_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.85)]);
             start(&mut p, "theta", 0.3 * 0.25);
             shake(&mut p, Sine::new(-0.35 * 9.81, TAU * 1.5, 0.3));
             p.end.time = 10.0;

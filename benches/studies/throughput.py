@@ -32,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[2]
 RESULTS = Path(__file__).with_name("results.csv")
 TOLERANCE = 1e-8
 LANDINGS = 12
-TWELVE = {"end": {"time": 12, "after": {"landing": LANDINGS}}}
+TWELVE = {"end": {"time": 12, "after": {"base strikes": LANDINGS}}}
 # Name, scene and what is changed in it, the path that varies and its range, the quantity that is measured.
 CASES = [
     ("block, 12 landings", "rocking_block", TWELVE, "parameters.alpha", (0.21, 0.4), "theta"),

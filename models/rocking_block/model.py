@@ -14,31 +14,23 @@ e = model.parameter("e", "1", 0.9, "restitution of the uplift rate", minimum=0, 
 inertia = model.parameter("shape", "1", 1 / 3, "moment of inertia about the centre, in m R^2 (1/3: homogeneous)", minimum=0)
 g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
 
-theta = model.coordinate("theta", "rad", "uplift about the pivot edge", minimum=0, scale=0.1, rate_scale=0.1)
+theta = model.coordinate("theta", "rad", "uplift about the pivot edge", scale=0.1, rate_scale=0.1)
+x = model.coordinate("x", "m", "place of the pivot edge, to the right of where it stands")
 y = model.coordinate("y", "m", "height of the pivot edge")
 side = model.discrete("side", (+1, -1), "pivot: +1 the left edge, -1 the right edge")
-z_h = model.ground("z_h", "motion of the ground to the right", input="ground_acceleration")
+model.ground("z_h", "motion of the ground to the right", input="ground_acceleration")
 
 model.gravity(g)
 model.rigid_body(
     mass=m,
     inertia=inertia * m * R**2,
-    position=(side * R * sin(alpha - theta), y + R * cos(alpha - theta)),
+    position=(x + side * R * sin(alpha - theta), y + R * cos(alpha - theta)),
     angle=side * theta,
 )
 
-stands = model.mode("stands", "on its whole base", freeze=[(theta, 0), (y, 0)])
-rocks = model.mode("rocks", "about one edge", freeze=[(y, 0)])
-
-for edge in (+1, -1):
-    model.transition("lift_off", stands, rocks, when=falls(stands.reaction(theta, side=edge)), reset=[(side, edge)])
-model.transition(
-    "landing", rocks, rocks, when=falls(theta), impact=True,
-    reset=[(theta, 0), (side, -side), (theta.rate, -e * theta.rate)],
-)
-model.rest(rocks, stands)
-for mode in (stands, rocks):
-    model.requires(mode, mode.reaction(y), "the block would leave the ground")
+model.contact("base", gap=theta, restitution=e, sides=side)
+model.constraint("edge", (x, y))
+model.requires(None, model.reaction(y), "the block would leave the ground")
 
 # The pivot edge is where the block stands on it: half a width to the left or right of the centre.
 half_width = R * sin(alpha)
@@ -46,22 +38,22 @@ half_width = R * sin(alpha)
 
 def place(along, up):
     """A point of the block, from the pivot edge along its base and up its side."""
-    return (side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
+    return (x + side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
 
 
 model.output("rotation", "rad", side * theta, "rotation of the block, counter-clockwise: it leans to the left")
-model.output("centre_x", "m", side * R * (sin(alpha - theta) - sin(alpha)), "displacement of the centre to the right")
+model.output("centre_x", "m", x + side * R * (sin(alpha - theta) - sin(alpha)), "displacement of the centre to the right")
 model.output("centre_y", "m", y + R * (cos(alpha - theta) - cos(alpha)), "rise of the centre")
 model.output("left_edge", "m", y + (1 - side) * half_width * sin(theta), "height of the left bottom edge")
 model.output("right_edge", "m", y + (1 + side) * half_width * sin(theta), "height of the right bottom edge")
-model.output("shear_ratio", "1", model.reaction(z_h) / (m * g), "force of the ground to the right, over the weight")
+model.output("shear_ratio", "1", model.reaction(x) / (m * g), "force of the ground to the right, over the weight")
 
 model.draw("ground", [(-2 * R, 0), (2 * R, 0)], kind="fixed")
 model.draw("block", [place(*p) for p in (
     (0, 0), (2 * half_width, 0), (2 * half_width, 2 * R * cos(alpha)), (0, 2 * R * cos(alpha)))])
 model.draw("centre", [place(half_width, R * cos(alpha))], kind="point")
-model.draw("pivot", [place(0, 0)], kind="contact", force=(z_h, y), states=[(stands, "closed"), (rocks, "closed")])
-model.draw("other edge", [place(2 * half_width, 0)], kind="contact", states=[(stands, "closed")])
+model.draw("pivot", [place(0, 0)], kind="contact", of="edge")
+model.draw("other edge", [place(2 * half_width, 0)], kind="contact", of="base", along=[])
 
 model.limit("past_balance", "the centre is beyond the pivot edge: at rest the block would fall, shaken it may come back",
             when=theta > alpha, ends=False)

@@ -110,7 +110,7 @@ fn an_early_stop_is_written_with_its_reason() {
             .unwrap()
             .contains("the block would leave the ground")
     );
-    assert_eq!(failure["mode"], "rocks");
+    assert_eq!(failure["mode"], "base open");
     let t = failure["t"].as_f64().unwrap();
     assert!(t > 0.0 && t < 12.0);
     let rows = fs::read_to_string(out.join("trajectory.csv")).unwrap();

@@ -137,6 +137,41 @@ fn a_ball_on_a_table_and_a_base_that_slips_move_as_those_by_hand() {
     }
 }
 
+/// A gap that opens to two sides: free, shaken, and with a landing that takes all.
+#[test]
+fn a_block_on_two_edges_rocks_as_the_one_by_hand() {
+    let words = [
+        ("base opens", "lift_off"),
+        ("base strikes", "landing"),
+        ("rest", "rest"),
+    ];
+    for (tilt, amplitude, e, least) in [
+        (0.2, 0.0, 0.9, 200),
+        (0.0, 4.0, 0.85, 20),
+        (0.0, -4.0, 0.5, 20),
+        (0.1, 3.0, 0.0, 2),
+    ] {
+        for runs in pair(["rocking_block", "hand_block"], |block| {
+            block.set_parameter("e", e).unwrap();
+            block.set_initial("theta", tilt).unwrap();
+            let shaken = Sine::new(amplitude, 3.0 * PI, 0.3);
+            block
+                .set_input("ground_acceleration", shaken.into())
+                .unwrap();
+            block.set_tolerance(1e-12);
+            block.end.time = 12.0;
+        }) {
+            let found = transitions(&runs[0]).len();
+            assert!(found >= least, "{tilt} {amplitude} {e}: {found} events");
+            assert_same_motion(&runs, &words, 1e-11);
+            let of = |name| runs[0].trajectory.column(name).unwrap();
+            let (force, reaction) = (of("edge.2.force"), of("reaction.y"));
+            let t = &runs[0].trajectory;
+            assert!((0..t.len()).all(|i| t.row(i)[force] == t.row(i)[reaction]));
+        }
+    }
+}
+
 #[test]
 fn stops_and_friction_on_one_coordinate_act_as_the_ones_by_hand() {
     let words = [

@@ -111,7 +111,7 @@ fn the_first_passage_of_the_balance_is_told_from_overturning() {
     block.set_initial("theta.rate", 0.35).unwrap();
     let against = Function::constant(-1.0);
     block.set_input("ground_acceleration", against).unwrap();
-    block.end.after = Some(("landing", 1));
+    block.end.after = Some(("base strikes", 1));
     let mut times = Vec::new();
     for method in METHODS {
         block.method = method;
@@ -119,7 +119,7 @@ fn the_first_passage_of_the_balance_is_told_from_overturning() {
         let [("past_balance", t)] = reached(&run.reached.limit_states)[..] else {
             panic!("{method:?}: {:?}", run.reached)
         };
-        assert_eq!(transitions(&run), ["landing"], "it comes back");
+        assert_eq!(transitions(&run), ["base strikes"], "it comes back");
         times.push(t);
     }
     assert!(

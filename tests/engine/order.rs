@@ -21,9 +21,9 @@ fn tenth_impact(tolerance: f64) -> (f64, f64) {
     problem.set_tolerance(tolerance);
     let exact = numbers(&case["reference"]["impact_times"])[9];
     problem.end.time = 20.0;
-    problem.end.after = Some(("landing", 10));
+    problem.end.after = Some(("base strikes", 10));
     let run = run(&problem);
-    let landing = times(&run, "landing")[9];
+    let landing = times(&run, "base strikes")[9];
     ((landing / exact - 1.0).abs(), run.solver.steps as f64)
 }
 

@@ -76,7 +76,7 @@ fn the_edges_of_a_block_rise_as_high_as_its_energy_takes_them() {
         tighten(&mut block, 0.1);
         record_outputs(&mut block);
         let run = run(&block);
-        assert_eq!(transitions(&run)[..2], ["landing", "landing"]);
+        assert_eq!(transitions(&run)[..2], ["base strikes", "base strikes"]);
         let rest = alpha.cos();
         let next = alpha - (rest + e * e * ((alpha - theta).cos() - rest)).acos();
         let height = |theta: f64| 2.0 * 1.3 * alpha.sin() * theta.sin();

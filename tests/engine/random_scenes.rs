@@ -256,7 +256,7 @@ fn plain(run: &Run) -> Vec<(f64, &'static str)> {
         if event.transition == "rest" {
             while kept
                 .last()
-                .is_some_and(|(_, name)| *name == "landing" || *name == "impact")
+                .is_some_and(|(_, name)| ["landing", "base strikes", "impact"].contains(name))
             {
                 kept.pop();
             }

@@ -282,7 +282,7 @@ fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours
 fn a_transition_that_ends_the_run_is_counted() {
     let mut blocks = shaken_blocks(1e-6, 13);
     for block in &mut blocks {
-        block.end.after = Some(("landing", 5));
+        block.end.after = Some(("base strikes", 5));
     }
     for end in together(&blocks, processor_level(), 1) {
         assert_eq!(end.events.len(), 5);
@@ -322,7 +322,7 @@ fn transitions_in_lanes_are_those_of_the_engine_to_the_bit() {
         })
     });
     let shaken = [1e-3, 1e-6, 1e-9, 1e-12].map(|tolerance| shaken_blocks(tolerance, 37));
-    let blocks = shaken.iter().chain(&dying).map(|p| (p, "landing"));
+    let blocks = shaken.iter().chain(&dying).map(|p| (p, "base strikes"));
     let balls = balls.iter().map(|p| (p, "impact"));
     let shuttles = shuttles();
     let shuttles = ["turn", "left", "right"].map(|name| (&shuttles, name));

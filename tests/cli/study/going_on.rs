@@ -99,7 +99,7 @@ fn long(folder: &Path, cases: usize) {
     let study = json!({
         "scene": "scene.json",
         "vary": { "parameters.alpha": { "from": 0.21, "to": 0.3, "count": cases } },
-        "measure": ["peak.theta", "count.landing"]
+        "measure": ["peak.theta", "count.base strikes"]
     });
     write(folder, "study.json", &study);
 }

@@ -11,7 +11,7 @@ fn outputs_and_limits_over_them_are_measured() {
     let scene = json!({
         "model": "rocking_block",
         "parameters": { "R": 1.0, "alpha": 0.25, "e": 0.8 },
-        "initial": { "theta": 0.2, "side": 1, "mode": "rocks" },
+        "initial": { "theta": 0.2, "side": 1, "mode": "base open" },
         "outputs": {
             "top": { "expression": "side * theta * R", "unit": "cm", "meaning": "along the arc" }
         },
@@ -25,7 +25,7 @@ fn outputs_and_limits_over_them_are_measured() {
         "vary": { "initial.theta": [0.02, 0.1, 0.2], "parameters.e": [0.8, 0.9] },
         "measure": [
             "peak.rotation", "min.rotation", "max.centre_y", "end.rotation", "max.top", "min.top",
-            "reached.far", "time.far", "count.landing", "max.energy.stored"
+            "reached.far", "time.far", "count.base strikes", "max.energy.stored"
         ],
         "failure": { "measure": "min.top", "below": "-0.1 m" }
     });
@@ -72,7 +72,7 @@ fn a_limit_state_of_the_scene_is_a_failure_and_is_searched_for() {
     let scene = json!({
         "model": "rocking_block",
         "parameters": { "R": 1.0, "alpha": 0.25, "e": 0.9 },
-        "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
+        "initial": { "theta": 0.1, "side": 1, "mode": "base open" },
         "limits": { "leans": { "rotation": { "below": "-0.08 rad" } } },
         "end": 4.0,
         "accuracy": { "relative": 1e-12 }
@@ -101,7 +101,7 @@ fn a_cloud_is_regressed_and_its_dispersion_told() {
     let folder = folder();
     let scene = json!({
         "model": "rocking_block",
-        "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
+        "initial": { "theta": 0.1, "side": 1, "mode": "base open" },
         "end": 1e-3
     });
     write(folder.path(), "scene.json", &scene);
@@ -145,7 +145,7 @@ fn a_run_at_its_limit_is_undecided_and_one_away_from_it_is_not() {
     let scene = json!({
         "model": "rocking_block",
         "parameters": { "R": 1.0, "alpha": 0.25, "e": 0.9 },
-        "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
+        "initial": { "theta": 0.1, "side": 1, "mode": "base open" },
         "end": 1.5,
         "accuracy": { "relative": 1e-3 }
     });

@@ -42,7 +42,7 @@ fn sweep() -> Value {
             "parameters.alpha": { "from": 0.21, "to": 0.3, "count": 5 },
             "parameters.e": [0.8, "85 %", 0.9, 0.95]
         },
-        "measure": ["peak.theta", "count.landing", "end.theta.rate", "reached.overturned", "time.overturned"]
+        "measure": ["peak.theta", "count.base strikes", "end.theta.rate", "reached.overturned", "time.overturned"]
     })
 }
 
@@ -114,8 +114,8 @@ fn a_sweep_has_a_row_for_each_case_and_the_values_of_single_runs() {
     for case in [0, 7, 19] {
         let paths = ["parameters.alpha", "parameters.e"];
         let summary = single_run(folder.path(), "scene.json", &rows[case], &paths);
-        let landings = &summary["events"]["by_transition"]["landing"];
-        assert_eq!(rows[case]["count.landing"], landings.to_string());
+        let landings = &summary["events"]["by_transition"]["base strikes"];
+        assert_eq!(rows[case]["count.base strikes"], landings.to_string());
         for (column, value) in [
             ("peak.theta", &summary["peaks"]["theta"]["max"]),
             ("end.theta.rate", &summary["end"]["v"]["theta.rate"]),
@@ -234,10 +234,10 @@ fn what_cannot_run_is_a_row_with_a_reason() {
     let study = json!({
         "scene": "scene.json",
         "cases": [
-            { "initial.theta": 0.2, "initial.theta.rate": 0, "initial.mode": "rocks" },
-            { "initial.theta": 0.3, "initial.theta.rate": 3, "initial.mode": "rocks" },
-            { "initial.theta": 0.0, "initial.theta.rate": 0, "initial.mode": "stands" },
-            { "initial.theta": 0.3, "initial.theta.rate": 4, "initial.mode": "rocks" }
+            { "initial.theta": 0.2, "initial.theta.rate": 0, "initial.mode": "base open" },
+            { "initial.theta": 0.3, "initial.theta.rate": 3, "initial.mode": "base open" },
+            { "initial.theta": 0.0, "initial.theta.rate": 0, "initial.mode": "base closed" },
+            { "initial.theta": 0.3, "initial.theta.rate": 4, "initial.mode": "base open" }
         ],
         "failure": { "measure": "peak.theta", "above": "30 deg" }
     });

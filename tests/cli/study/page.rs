@@ -24,7 +24,7 @@ fn analysis() -> Value {
 fn page_of_analysis(folder: &std::path::Path) -> String {
     let scene = json!({
         "model": "rocking_block",
-        "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
+        "initial": { "theta": 0.1, "side": 1, "mode": "base open" },
         "end": 0.3
     });
     write(folder, "scene.json", &scene);

@@ -13,7 +13,7 @@ fn every_distribution_and_the_copula_give_the_values_of_the_references() {
     let folder = folder();
     fs::write(
         folder.path().join("scene.json"),
-        r#"{ "model": "rocking_block", "initial": { "mode": "rocks" }, "end": 1e-3 }"#,
+        r#"{ "model": "rocking_block", "initial": { "mode": "base open" }, "end": 1e-3 }"#,
     )
     .unwrap();
     let paths = [

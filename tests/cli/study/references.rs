@@ -120,7 +120,7 @@ fn critical(alpha: f64, frequency: f64, near: f64) -> Value {
             "amplitude": alpha * near, "angular_frequency": frequency, "cycles": 1 } } },
         // At the boundary the motion lingers at the unstable equilibrium: a part of 1e-16 grows to its size in 37 s.
         // The reference is without an impact: what comes down has not overturned.
-        "end": { "time": 100.0, "after": { "landing": 1 } },
+        "end": { "time": 100.0, "after": { "base strikes": 1 } },
         "accuracy": { "relative": 1e-13 }
     });
     let folder = folder_of(&scene);
@@ -299,7 +299,7 @@ fn capacities_beyond_the_last_run_are_censored() {
     let scene = json!({
         "model": "rocking_block",
         "parameters": { "alpha": 0.25 },
-        "initial": { "theta": 0.1, "side": 1, "mode": "rocks" },
+        "initial": { "theta": 0.1, "side": 1, "mode": "base open" },
         "end": 0.01
     });
     let folder = folder_of(&scene);

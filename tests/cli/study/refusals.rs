@@ -81,8 +81,8 @@ fn cases() -> Vec<(&'static str, Value, Vec<&'static str>)> {
         ),
         (
             "/measure",
-            json!(["count.landin"]),
-            vec!["unknown transition `landin`", "did you mean `landing`?"],
+            json!(["count.base strike"]),
+            vec!["unknown transition `base strike`", "did you mean `base strikes`?"],
         ),
         (
             "/failure",
