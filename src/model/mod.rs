@@ -414,11 +414,17 @@ impl Requirement {
     }
 }
 
+impl Variant {
+    /// Whether contacts or constraints are held by multipliers.
+    pub fn has_multipliers(&self) -> bool {
+        self.modes.iter().any(|mode| mode.contacts.is_some())
+    }
+}
+
 impl Model {
     /// Whether contacts or constraints are held by multipliers, under some choices at least.
     pub fn has_multipliers(&self) -> bool {
-        let mut modes = self.variants.iter().flat_map(|v| &v.modes);
-        modes.any(|mode| mode.contacts.is_some())
+        self.variants.iter().any(Variant::has_multipliers)
     }
 
     /// Whether it was loaded from a library, not linked into the program.

@@ -160,6 +160,14 @@ pub enum SceneErrorKind {
         /// The options, ` under …`.
         under: String,
     },
+    /// What says how contacts are held by multipliers, where none is.
+    #[error("`{key}` has no effect{under}, where no contact or constraint is held by multipliers")]
+    NoMultipliers {
+        /// The key of the scene.
+        key: &'static str,
+        /// The options, ` under …`.
+        under: String,
+    },
     /// An output whose expression cannot be read, or does not fit its unit.
     #[error("{message}")]
     Formula {

@@ -357,13 +357,12 @@ fn initial(model: Option<&Model>) -> Object {
     let rest = "whether it starts in the static equilibrium near these coordinates, with the contact forces that hold it";
     let mut keys = vec![Key::new("at_rest", rest, Shape::Flag).default(false)];
     let modes = mode_names(&model.variants);
-    let by_multipliers = modes.is_empty();
-    match by_multipliers {
-        true => {
-            let meaning = "whether a state that contacts and constraints do not admit is moved to the nearest that they do";
-            keys.push(Key::new("project", meaning, Shape::Flag).default(false));
-        }
-        false => keys.push(Key::new("mode", meaning, Shape::Choice("mode", modes))),
+    if !modes.is_empty() {
+        keys.push(Key::new("mode", meaning, Shape::Choice("mode", modes)));
+    }
+    if model.has_multipliers() {
+        let meaning = "whether a state that contacts and constraints do not admit is moved to the nearest that they do";
+        keys.push(Key::new("project", meaning, Shape::Flag).default(false));
     }
     for c in model.own_coordinates() {
         let position = Quantity::within(c.bounds(), c.unit);

@@ -56,6 +56,7 @@ pub(super) fn scene_of(
     let parameters = errors.note(parameters(model, &checked));
     let signals = inputs::signals(model, &checked, reader, &mut errors);
     inputs::refuse_barred(model, variant, &checked, &mut errors);
+    refuse_without_multipliers(model, variant, &checked, &mut errors);
     let freeze = state::freeze(model, variant, &checked, &mut errors);
     let parts = (&freeze[..], parameters.as_deref());
     let initial = state::initial(model, variant, &checked, parts, &mut errors);
@@ -217,6 +218,29 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
         };
         SceneError::new(kind, place).help(format!("it offers {}", offered.join("; ")))
     })
+}
+
+/// Refuses what is said of contacts by multipliers where the chosen options have none.
+fn refuse_without_multipliers(
+    model: &Model,
+    variant: &Variant,
+    scene: &Checked,
+    errors: &mut Errors,
+) {
+    if variant.has_multipliers() {
+        return;
+    }
+    let initial = scene.get("initial");
+    let project = initial.and_then(|initial| initial.get("project"));
+    for (key, given) in [("impacts", scene.get("impacts")), ("project", project)] {
+        let Some(given) = given else { continue };
+        let under = under(model, variant);
+        let kind = SceneErrorKind::NoMultipliers { key, under };
+        let others = model.variants.iter().filter(|v| v.has_multipliers());
+        let others: Vec<_> = others.map(|v| options(model, v)).collect();
+        let help = format!("leave it out, or choose {}", others.join("; or "));
+        errors.push(SceneError::new(kind, &given.place).help(help));
+    }
 }
 
 /// The variant as text, for errors: ` under rules = paper, landing = velocities`.

@@ -83,8 +83,8 @@ fn wrong_limits_point_at_their_place() {
             ],
         ),
         (
-            r#"{ "drift": { "x": { "above": 1 } } }"#,
-            ["unknown quantity `x`", "scene.json:2:26", "`theta.rate`"],
+            r#"{ "drift": { "w": { "above": 1 } } }"#,
+            ["unknown quantity `w`", "scene.json:2:26", "`theta.rate`"],
         ),
         (
             r#"{ "drift": { "theta": { "above": "1 m" } } }"#,

@@ -42,7 +42,7 @@ fn outputs_of_a_scene_are_recorded_and_may_be_limits() {
     let table = fs::read_to_string(home.path().join("out/trajectory.csv")).unwrap();
     let header = table.lines().next().unwrap();
     assert!(
-        header.contains(",shear_ratio,lean,twice,energy.stored"),
+        header.contains(",edge.2.force,lean,twice,energy.stored"),
         "{header}"
     );
     let metadata = fs::read_to_string(home.path().join("out/csv-metadata.json")).unwrap();

@@ -160,6 +160,9 @@ fn a_block_on_two_edges_rocks_as_the_one_by_hand() {
                 .unwrap();
             block.set_tolerance(1e-12);
             block.end.time = 12.0;
+            block.record.every = Some(0.1);
+            block.record.columns.reactions = true;
+            block.record.columns.outputs = true;
         }) {
             let found = transitions(&runs[0]).len();
             assert!(found >= least, "{tilt} {amplitude} {e}: {found} events");

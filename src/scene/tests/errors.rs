@@ -153,7 +153,7 @@ fn keys() {
         &tank("\"theta\"", "\"phi\""),
         "unknown coordinate `phi`",
         "5:16",
-        "known: `at_rest`, `mode`, `theta`, `theta.rate`",
+        "known: `at_rest`, `mode`, `project`, `theta`, `theta.rate`",
     );
     expect(
         &tank("[\"x\"]", "[\"z\"]"),
@@ -386,6 +386,28 @@ fn a_title_is_of_printable_characters() {
     assert_eq!(
         scene.unwrap().problem.title.as_deref(),
         Some("Größe µ — 30 °")
+    );
+}
+
+#[test]
+fn what_concerns_multipliers_where_there_are_none() {
+    let under = "under equations = derived, rules = reactions, landing = momenta, edges = modes";
+    let message = |key| {
+        format!(
+            "`{key}` has no effect {under}, where no contact or constraint is held by multipliers"
+        )
+    };
+    let error = tank(
+        r#""end": 2,"#,
+        r#""end": 2, "impacts": { "law": "poisson" },"#,
+    );
+    expect(&error, &message("impacts"), "7:24", "edges = contacts");
+    let error = tank(r#""side": 1"#, r#""project": true"#);
+    expect(
+        &error,
+        &message("project"),
+        "5:42",
+        "leave it out, or choose",
     );
 }
 

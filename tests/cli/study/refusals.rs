@@ -82,7 +82,10 @@ fn cases() -> Vec<(&'static str, Value, Vec<&'static str>)> {
         (
             "/measure",
             json!(["count.base strike"]),
-            vec!["unknown transition `base strike`", "did you mean `base strikes`?"],
+            vec![
+                "unknown transition `base strike`",
+                "did you mean `base strikes`?",
+            ],
         ),
         (
             "/failure",
