@@ -9,6 +9,7 @@
 use super::failure::Reason;
 use super::limits::check_bounds;
 use super::simulation::Simulation;
+use super::unrest::{Tried, Unbalanced};
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::numerics::Size;
 use nalgebra::{DMatrix, DVector};
@@ -35,7 +36,7 @@ impl<'p> Simulation<'p> {
             self.here.v.copy_from_slice(&self.initial.v);
             self.apply_drift();
             let why = match self.misfit_of(m) {
-                Some(why) => Err(why.to_string()),
+                Some(why) => Err(why.into()),
                 None => with_kernel!(&modes[m].kernels, k => self.rest_in_mode(k)),
             };
             match why {
@@ -50,16 +51,17 @@ impl<'p> Simulation<'p> {
                     );
                     return Ok(());
                 }
-                Err(why) => refused.push(format!("`{}`: {why}", modes[m].name)),
+                Err(why) => refused.push(Tried {
+                    mode: Some(modes[m].name),
+                    why,
+                }),
             }
         }
-        Err(Reason::NoRest {
-            why: refused.join("; "),
-        })
+        Err(Reason::NoRest { of: refused })
     }
 
-    /// Brings the forces of the present mode to zero; why it cannot rest, in words.
-    fn rest_in_mode<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Result<(), String> {
+    /// Brings the forces of the present mode to zero; why it cannot rest.
+    fn rest_in_mode<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Result<(), Unbalanced> {
         let mode = self.mode();
         let size = kernel.size();
         self.set_context();
@@ -81,21 +83,20 @@ impl<'p> Simulation<'p> {
             };
             let step = |q: &F::Vector, step: &[f64]| size.vector(|i| q[i] + step[i]);
             let lengths: Vec<f64> = (0..size.get()).map(|i| sizes[i]).collect();
-            q = to_zero((q, &lengths), forces, slopes, step).map_err(|i| {
-                let name = self.problem.model.coordinates[mode.free[i]].name;
-                format!("no place near is found at which the force along `{name}` vanishes")
+            q = to_zero((q, &lengths), forces, slopes, step).map_err(|i| Unbalanced::Force {
+                coordinate: self.problem.model.coordinates[mode.free[i]].name,
             })?;
             [q, v, zero]
         };
         self.here.set_free(&mode.free, [&q, &v, &zero]);
-        let entered = self.enter(kernel).map_err(|reason| reason.to_string())?;
+        let entered = self.enter(kernel).map_err(Unbalanced::Stops)?;
         let moves = entered.map(|violation| mode.guards[violation.guard].name);
         let (discrete, initial) = (self.context.discrete_mut(), &self.initial.discrete);
         discrete.copy_from_slice(initial);
         self.margins.clear();
         match moves {
             None => Ok(()),
-            Some(guard) => Err(format!("`{guard}` happens at once")),
+            Some(transition) => Err(Unbalanced::Happens { transition }),
         }
     }
 }

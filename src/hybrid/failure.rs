@@ -2,6 +2,7 @@
 
 use super::checkpoint::Misfit;
 use super::problem::ImpactLaw;
+use super::unrest::{Restless, Tried, tried};
 use super::validate::Invalid;
 use crate::integrate::{Singular, StepError};
 
@@ -114,7 +115,7 @@ pub enum Reason {
         /// Names of the transitions.
         transitions: Vec<&'static str>,
         /// Why they do not come to rest.
-        missing: String,
+        missing: Restless,
     },
     /// Constraints depend on each other at a place.
     #[error(
@@ -173,10 +174,13 @@ pub enum Reason {
         why: Misfitting,
     },
     /// No static equilibrium to start from.
-    #[error("no static equilibrium is found near the initial configuration: {why}")]
+    #[error(
+        "no static equilibrium is found near the initial configuration: {}",
+        tried(of)
+    )]
     NoRest {
         /// What moves, or cannot be brought to rest.
-        why: String,
+        of: Vec<Tried>,
     },
     /// The initial state is where no motion leads: settling would move it.
     #[error(

@@ -6,7 +6,6 @@ use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::numerics::Size;
-use crate::numerics::copy_few;
 use crate::run::{EnergyJump, Jump};
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
@@ -184,9 +183,11 @@ impl<'p> Simulation<'p> {
         let n = self.here.q.len();
         let left = [&*self.here.q, &self.here.v, self.context.discrete()];
         self.visited.leave(left);
-        copy_few(&self.next[..n], &mut self.here.q);
-        copy_few(&self.next[n..2 * n], &mut self.here.v);
-        copy_few(&self.next[2 * n..], self.context.discrete_mut());
+        self.here.q.copy_from_slice(&self.next[..n]);
+        self.here.v.copy_from_slice(&self.next[n..2 * n]);
+        self.context
+            .discrete_mut()
+            .copy_from_slice(&self.next[2 * n..]);
     }
 
     /// A state that comes back without time to pass is a cycle.

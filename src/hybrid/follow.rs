@@ -15,7 +15,6 @@ use super::simulation::{Simulation, Stop, Violation};
 use crate::integrate::{Motion, Node, OneStep, SERIES, Size, State, StepError};
 use crate::kernel::Context;
 use crate::model::Mode;
-use crate::numerics::copy_few;
 use crate::run::Progress;
 use std::ops::ControlFlow;
 
@@ -57,7 +56,7 @@ impl Simulation<'_> {
         if !goes_on {
             self.began = self.here.now;
             if drifts {
-                copy_few(&self.here.q, &mut self.at_start);
+                self.at_start.copy_from_slice(&self.here.q);
             }
         }
         let (start, last) = (self.began, self.smooth_until);

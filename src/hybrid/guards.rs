@@ -6,7 +6,6 @@ use crate::integrate::{Motion, Size};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, Mode, Transition};
-use crate::numerics::swap_few;
 
 /// What the conditions of transitions are evaluated with.
 pub(super) struct Conditions<'a> {
@@ -45,8 +44,8 @@ impl Conditions<'_> {
     #[inline(always)]
     fn swap_with(&mut self, context: &mut Context) {
         let n = context.held().len();
-        swap_few(&mut self.next[..n], context.held_mut());
-        swap_few(&mut self.next[2 * n..], context.discrete_mut());
+        self.next[..n].swap_with_slice(context.held_mut());
+        self.next[2 * n..].swap_with_slice(context.discrete_mut());
     }
 
     /// The smallest condition of a transition; +∞ if it has none.

@@ -46,6 +46,7 @@ mod solvers;
 mod start;
 mod stiffness;
 mod typical;
+mod unrest;
 mod validate;
 mod visited;
 
@@ -66,4 +67,5 @@ pub use result::{Failure, Run};
 pub use resume::{check_row, check_same, simulate_from};
 pub use simulate::{simulate, simulate_member, simulate_with};
 pub use simulator::Simulator;
+pub use unrest::{Restless, Tried, Unbalanced, Unfit};
 pub use validate::{Exceeds, Invalid, Unknown, check_limits_of_parameters};

@@ -15,7 +15,6 @@ use crate::model::name::intern;
 use crate::model::{Mode, Model};
 use crate::numerics::Size;
 use crate::numerics::Vector;
-use crate::numerics::copy_few;
 
 /// A time at which the motion is not known: it is before the last step that was made, or after the present time.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -217,7 +216,7 @@ impl<'p> Simulation<'p> {
         let is_after_step = self.stage.is_after_step();
         let slots = self.solvers.slots();
         if !drifts {
-            copy_few(&self.here.q, self.context.held_mut());
+            self.context.held_mut().copy_from_slice(&self.here.q);
         }
         let mut equations = Equations::new(
             kernel,

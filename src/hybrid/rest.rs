@@ -9,6 +9,7 @@ use super::accumulation::Limit;
 use super::failure::{Reason, Stoppable};
 use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
+use super::unrest::{Restless, Unfit};
 use crate::kernel::with_kernel;
 use crate::model::Mode;
 use std::cmp::Reverse;
@@ -161,52 +162,21 @@ impl Simulation<'_> {
     }
 
     /// Why events that accumulate do not come to rest.
-    fn missing_rest(&self) -> String {
+    fn missing_rest(&self) -> Restless {
         let modes = self.modes;
-        let Some(limit) = self
-            .accumulation
-            .extrapolated(self.problem.accuracy.relative)
-        else {
-            return "their durations do not shrink like a geometric series, so that no limit is known; a mode is \
-                    missing in which the motion goes on between them"
-                .into();
+        let relative = self.problem.accuracy.relative;
+        let Some(limit) = self.accumulation.extrapolated(relative) else {
+            return Restless::NoLimit;
         };
         let involved: BTreeSet<_> = limit.modes.iter().copied().collect();
-        let names: Vec<_> = involved.iter().map(|&m| modes[m].name).collect();
-        let of = match &names[..] {
-            [one] => format!("mode `{one}`"),
-            several => format!("modes `{}`", several.join("`, `")),
-        };
         let unfit = self.declared(&limit).filter_map(|target| {
-            let mode = &modes[target];
-            let held = self.told_apart(mode, &limit).err()?;
-            Some(format!(
-                "rest in `{}` {}",
-                mode.name,
-                self.unfit(held, &limit)
-            ))
+            let held = self.told_apart(&modes[target], &limit).err()?;
+            Some(self.unfit(modes[target].name, held, &limit))
         });
-        let unfit: Vec<_> = unfit.collect();
-        let why = match unfit.is_empty() {
-            true => format!("no rest is declared for {of}"),
-            false => format!(
-                "no rest that is declared for {of} fits the limit: {}",
-                unfit.join("; ")
-            ),
-        };
-        match self.undeclared(&limit, &involved) {
-            Some(target) => {
-                let target = modes[target].name;
-                let rests = names
-                    .iter()
-                    .map(|of| format!("`model.rest({of}, {target})`"));
-                let rests: Vec<_> = rests.collect();
-                format!(
-                    "{why}; mode `{target}` fits it: if the motion comes to rest there, declare {}",
-                    rests.join(" and ")
-                )
-            }
-            None => format!("{why}; no mode of the model fits the limit"),
+        Restless::NoRest {
+            of: involved.iter().map(|&m| modes[m].name).collect(),
+            unfit: unfit.collect(),
+            fitting: (self.undeclared(&limit, &involved)).map(|target| modes[target].name),
         }
     }
 
@@ -224,22 +194,26 @@ impl Simulation<'_> {
         least.map(|(target, _)| target)
     }
 
-    /// What a mode holds that a limit does not satisfy, in words.
-    fn unfit(&self, held: Held, limit: &Limit) -> String {
+    /// What a mode holds that a limit does not satisfy.
+    fn unfit(&self, mode: &'static str, held: Held, limit: &Limit) -> Unfit {
         let coordinates = &self.problem.model.coordinates;
         let (place, value) = held.place(coordinates.len());
-        let there = limit.state[place];
-        match held {
-            Held::At(i, _) => {
-                let (name, unit) = (coordinates[i].name, coordinates[i].unit);
-                format!("holds `{name}` at {value} {unit}, which is {there:.6e} {unit} there")
-            }
-            Held::Rate(i, _) => {
-                let (name, unit) = (coordinates[i].name, coordinates[i].unit);
-                format!(
-                    "holds `{name}.rate` at {value} {unit}/s, which is {there:.6e} {unit}/s there"
-                )
-            }
+        let (holds, unit) = match held {
+            Held::At(i, _) => (
+                coordinates[i].name.to_owned(),
+                coordinates[i].unit.to_owned(),
+            ),
+            Held::Rate(i, _) => (
+                format!("{}.rate", coordinates[i].name),
+                format!("{}/s", coordinates[i].unit),
+            ),
+        };
+        Unfit {
+            mode,
+            holds,
+            held: value,
+            there: limit.state[place],
+            unit,
         }
     }
 }

@@ -23,7 +23,6 @@ use crate::kernel::{Context, Free};
 use crate::model::Mode;
 use crate::numerics::Size;
 use crate::numerics::Vector;
-use crate::numerics::copy_few;
 use crate::run::{Progress, Snapshot, Solver};
 use std::borrow::Cow;
 
@@ -457,7 +456,7 @@ impl<'p> Simulation<'p> {
     pub fn set_context(&mut self) {
         let t = self.here.now.seconds();
         self.context.set_signals(&self.signals, t, Side::Right);
-        copy_few(&self.here.q, self.context.held_mut());
+        self.context.held_mut().copy_from_slice(&self.here.q);
     }
 
     /// Where energies are kept they are finite.

@@ -2,7 +2,7 @@
 
 use super::{LaneSignals, Signals};
 use crate::kernel::Context;
-use crate::numerics::{Side, copy_few};
+use crate::numerics::Side;
 
 impl Context {
     /// The functions of the signals are others now.
@@ -44,7 +44,7 @@ impl Context {
         let room = self.signal_rooms();
         let [values, _] = room.now;
         let row = &room.ahead[index * values.len()..][..values.len()];
-        copy_few(row, values);
+        values.copy_from_slice(row);
         room.at.0 = f64::NAN;
     }
 

@@ -26,7 +26,6 @@ pub use table::{Interpolation, Outside, Table, TableError};
 
 use crate::model::{Input, InputKind};
 use crate::numerics::Memory;
-use crate::numerics::copy_few;
 
 /// All inputs of a model, as functions of the absolute time of a run.
 ///
@@ -216,7 +215,7 @@ impl Signals {
                 // So are its antiderivatives.
                 for row in rows.chunks_exact_mut(width) {
                     match c.kind {
-                        InputKind::Acceleration => copy_few(&[0.0; 3], &mut row[c.signal..][..3]),
+                        InputKind::Acceleration => row[c.signal..][..3].fill(0.0),
                         InputKind::Value => row[c.signal] = 0.0,
                     }
                 }
@@ -265,7 +264,7 @@ impl Channel {
         match self.kind {
             InputKind::Acceleration => {
                 let values = [jet.value, jet.integral, jet.double_integral];
-                copy_few(&values, &mut u[self.signal..self.signal + 3]);
+                u[self.signal..self.signal + 3].copy_from_slice(&values);
             }
             InputKind::Value => u[self.signal] = jet.value,
         }
@@ -275,7 +274,7 @@ impl Channel {
         match self.kind {
             InputKind::Acceleration => {
                 let rates = [jet.rate, jet.value, jet.integral];
-                copy_few(&rates, &mut u_dot[self.signal..self.signal + 3]);
+                u_dot[self.signal..self.signal + 3].copy_from_slice(&rates);
             }
             InputKind::Value => u_dot[self.signal] = jet.rate,
         }

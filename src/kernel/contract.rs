@@ -60,12 +60,41 @@ pub(crate) struct Parts {
     pub lanes: Vec<Functions>,
 }
 
+/// What the header of a file shows that cannot be loaded as a library.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum LibraryFault {
+    /// It is another kind of file.
+    #[error("it is no shared library")]
+    NoLibrary,
+    /// It is for another processor.
+    #[error(
+        "it is for another processor: its header has the machine {found} where that of this program has {expected}"
+    )]
+    Processor {
+        /// The machine in its header.
+        found: u64,
+        /// That of this program.
+        expected: u64,
+    },
+    /// Its end is missing.
+    #[error("it is cut off: it has {length} of {end} bytes")]
+    CutOff {
+        /// Its length, bytes.
+        length: u64,
+        /// The length that its header tells, bytes.
+        end: u64,
+    },
+}
+
 /// Why something is not a model that this engine can run.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ContractError {
-    /// No constant with the name of the contract is exported, or the system refuses the file: no library, or one for
-    /// another processor.
+    /// The file shows that it is no library for this program.
+    #[error("it cannot be loaded: {0}")]
+    File(LibraryFault),
+    /// The file cannot be read, the system refuses it, or no constant with the name of the contract is exported.
     #[error("it cannot be loaded: {message}")]
     Library {
         /// What the system says.

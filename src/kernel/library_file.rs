@@ -1,6 +1,7 @@
 //! The file of a shared library, before the system loads it. The loader of Linux says of one for another processor that it is
 //! not there, and reads beyond the end of one that was cut off.
 
+use super::contract::LibraryFault;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -13,7 +14,7 @@ const SECTION_SIZE: usize = 58;
 const HEADER: usize = 64;
 
 /// What is wrong with the file of a library, if that is seen in its header. A file of another format is left to the system.
-pub(super) fn fault(file: &Path) -> io::Result<Option<String>> {
+pub(super) fn fault(file: &Path) -> io::Result<Option<LibraryFault>> {
     if !cfg!(all(target_os = "linux", target_pointer_width = "64")) {
         return Ok(None);
     }
@@ -22,7 +23,7 @@ pub(super) fn fault(file: &Path) -> io::Result<Option<String>> {
         return Ok(None);
     };
     let Some(library) = library else {
-        return Ok(Some("it is no shared library".to_owned()));
+        return Ok(Some(LibraryFault::NoLibrary));
     };
     // Width of numbers and their order, and the processor.
     let processor = |header: &[u8; HEADER]| {
@@ -31,16 +32,16 @@ pub(super) fn fault(file: &Path) -> io::Result<Option<String>> {
     };
     let (found, expected) = (processor(&library), processor(&own));
     if found != expected {
-        return Ok(Some(format!(
-            "it is for another processor: its header has the machine {} where that of this program has {}",
-            found.2, expected.2
-        )));
+        return Ok(Some(LibraryFault::Processor {
+            found: found.2,
+            expected: expected.2,
+        }));
     }
     // The table of sections is what linkers put last.
     let sections = number(&library, SECTION_SIZE, 2) * number(&library, SECTION_SIZE + 2, 2);
     let end = number(&library, SECTIONS, 8).saturating_add(sections);
     let length = file.metadata()?.len();
-    Ok((length < end).then(|| format!("it is cut off: it has {length} of {end} bytes")))
+    Ok((length < end).then_some(LibraryFault::CutOff { length, end }))
 }
 
 /// The header of an ELF file; nothing if it is none.

@@ -30,11 +30,13 @@ pub(crate) fn open(file: &Path, digest: Option<&str>) -> Result<(Parts, Library)
     let refused = |error: libloading::Error| ContractError::Library {
         message: error.to_string(),
     };
-    let told = |message: String| ContractError::Library { message };
     match library_file::fault(file) {
         Ok(None) => {}
-        Ok(Some(fault)) => return Err(told(fault)),
-        Err(error) => return Err(told(error.to_string())),
+        Ok(Some(fault)) => return Err(ContractError::File(fault)),
+        Err(error) => {
+            let message = error.to_string();
+            return Err(ContractError::Library { message });
+        }
     }
     // SAFETY: a library of generated code has no initializers; that it is one the caller answers for.
     let loaded = unsafe { libloading::Library::new(file) }.map_err(refused)?;

@@ -25,7 +25,7 @@ mod tables;
 
 pub use context::Context;
 pub(crate) use context::{Dimensions, Rooms};
-pub use contract::{CONTRACT_VERSION, ContractError, RawFunctions, RawModel};
+pub use contract::{CONTRACT_VERSION, ContractError, LibraryFault, RawFunctions, RawModel};
 pub(crate) use contract::{Functions, Parts};
 pub use elementary::{sin_cos, triangular_sums};
 pub(crate) use lane_functions::*;

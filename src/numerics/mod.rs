@@ -3,7 +3,6 @@
 mod bounded;
 mod buffer;
 mod complementarity;
-mod few;
 mod lanes;
 mod linear;
 mod persist;
@@ -13,7 +12,6 @@ mod size;
 
 pub use bounded::Bounded;
 pub(crate) use complementarity::{Unsolved, solve_complementarity};
-pub(crate) use few::{copy_few, swap_few};
 pub(crate) use lanes::{LaneMask, Lanes};
 pub(crate) use linear::{Lu, solve_for};
 pub use linear::{Singular, solve};

@@ -40,6 +40,7 @@ fn refused(file: &Path) -> ContractError {
 fn told(file: &Path) -> String {
     match refused(file) {
         ContractError::Library { message } => message,
+        ContractError::File(fault) => fault.to_string(),
         other => panic!("{other}"),
     }
 }

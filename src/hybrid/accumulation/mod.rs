@@ -7,7 +7,6 @@
 //! the run.
 
 use super::instant::Instant;
-use crate::numerics::copy_few;
 use crate::numerics::{Memory, Persist};
 use std::sync::atomic::{Ordering, compiler_fence};
 
@@ -210,7 +209,7 @@ impl Accumulation {
         self.still = 0;
         let place = self.count % ROOM;
         self.count += 1;
-        copy_few(&at.parts(), &mut self.times[place]);
+        self.times[place].copy_from_slice(&at.parts());
         self.keys[place] = key;
         let start = self.first + place * self.stride;
         &mut self.records[start..][..self.absolute.len() + self.discretes]

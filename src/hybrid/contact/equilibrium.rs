@@ -10,19 +10,26 @@ use super::hold::{Places, ROUNDOFF};
 use crate::hybrid::equilibrium::{least_squares, to_zero};
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
+use crate::hybrid::unrest::{Tried, Unbalanced};
 use crate::kernel::{Free, ModeKernel};
 use crate::model::Contacts;
 use crate::numerics::Size;
 use nalgebra::{DMatrix, DVector};
 
+/// Of contacts, which have no mode by hand.
+pub(super) fn no_rest(why: Unbalanced) -> Box<Reason> {
+    let of = vec![Tried { mode: None, why }];
+    Box::new(Reason::NoRest { of })
+}
+
 impl<'p> Simulation<'p> {
-    /// Brings coordinates to a static equilibrium of the contacts that touch there; why there is none near, in words.
+    /// Brings coordinates to a static equilibrium of the contacts that touch there; why there is none near.
     pub(super) fn find_rest<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &'p Contacts,
         q: &mut F::Vector,
-    ) -> Result<(), String> {
+    ) -> Result<(), Unbalanced> {
         let size = kernel.size();
         let zero = size.zeros();
         let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
@@ -62,10 +69,9 @@ impl<'p> Simulation<'p> {
         };
         match (0..states.len()).find(penetrates) {
             None => Ok(()),
-            Some(k) => Err(format!(
-                "where forces vanish contact `{}` penetrates",
-                contacts.contacts[k].name
-            )),
+            Some(k) => Err(Unbalanced::Penetrates {
+                contact: contacts.contacts[k].name,
+            }),
         }
     }
 
@@ -76,7 +82,7 @@ impl<'p> Simulation<'p> {
         contacts: &Contacts,
         q: &mut F::Vector,
         states: &[State],
-    ) -> Result<Vec<f64>, String> {
+    ) -> Result<Vec<f64>, Unbalanced> {
         let size = kernel.size();
         let n = size.get();
         let (zero, sizes) = (size.zeros(), self.scale(size));
@@ -164,15 +170,13 @@ impl<'p> Simulation<'p> {
             .collect();
         let found =
             to_zero((start, &lengths), forces, slopes, step).map_err(|i| match held[i] {
-                Some(line) => format!(
-                    "what {} holds cannot be reached",
-                    self.name_of_line(contacts, line)
-                ),
-                None if own.contains(&i) => {
-                    let name = self.problem.model.coordinates[self.mode().free[i]].name;
-                    format!("no place near is found at which the force along `{name}` vanishes")
-                }
-                None => "what touches there does not hold it".into(),
+                Some(line) => Unbalanced::Unreached {
+                    of: self.name_of_line(contacts, line),
+                },
+                None if own.contains(&i) => Unbalanced::Force {
+                    coordinate: self.problem.model.coordinates[self.mode().free[i]].name,
+                },
+                None => Unbalanced::Unheld,
             })?;
         own.iter().for_each(|&i| q[i] = found[i]);
         Ok(found)
@@ -205,13 +209,10 @@ impl<'p> Simulation<'p> {
         self.here.a.fill(0.0);
         match moved {
             None => Ok(()),
-            Some(i) => Err(Box::new(Reason::NoRest {
-                why: format!(
-                    "with `{}` the acceleration of `{}` is {:.3e}",
-                    self.name_of(self.here.shown),
-                    self.problem.model.coordinates[mode.free[i]].name,
-                    a[i]
-                ),
+            Some(i) => Err(no_rest(Unbalanced::Accelerates {
+                states: self.name_of(self.here.shown).to_string(),
+                coordinate: self.problem.model.coordinates[mode.free[i]].name,
+                acceleration: a[i],
             })),
         }
     }

@@ -9,6 +9,7 @@ use crate::hybrid::accumulation::Signature;
 use crate::hybrid::advance::MadeBy;
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::{AtZero, Simulation};
+use crate::hybrid::unrest::Restless;
 use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::Contacts;
 use crate::model::name::intern;
@@ -60,9 +61,7 @@ impl<'p> Simulation<'p> {
         if closes && self.accumulation.is_unresolved(unresolved) {
             return Err(Box::new(Reason::Chattering {
                 transitions: vec![intern(&format!("{} strikes", contacts.contacts[k].name))],
-                missing: "its hops are lower than the rounding of its gap, and their durations do not shrink like a geometric \
-                          series, so that no limit is known"
-                    .into(),
+                missing: Restless::BelowRounding,
             }));
         }
         let mut strikes = match closes {

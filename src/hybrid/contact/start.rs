@@ -1,5 +1,6 @@
 //! The set of contact states that a run starts in.
 
+use super::equilibrium::no_rest;
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, hold_lines};
 use super::standing::Standing;
@@ -51,8 +52,7 @@ impl<'p> Simulation<'p> {
             self.project(kernel, contacts, [&mut q, &mut v]);
         }
         if self.problem.at_rest {
-            self.find_rest(kernel, contacts, &mut q)
-                .map_err(|why| Box::new(Reason::NoRest { why }))?;
+            self.find_rest(kernel, contacts, &mut q).map_err(no_rest)?;
             write_states(contacts, &open, self.context.discrete_mut());
         }
         let standing = self.standing_of(kernel, contacts, [q, v]);
