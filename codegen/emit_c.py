@@ -82,6 +82,9 @@ _FACTORS = """\
   } while (0)
 """
 
+LONG_RUN = 16
+"""Outputs in a row that are zero and are set so by a loop: a matrix of many coordinates has most of them."""
+
 _LONG = 150_000
 """Characters of functions that go into one file: about a second of compiling."""
 
@@ -120,11 +123,16 @@ def body(arguments, output):
     if missing:
         raise ValueError(f"expression depends on {', '.join(missing)}, which is not an argument")
     function = ca.Function("emit", symbols, [ca.cse(output)])
-    lines, work, pairs, operations, fresh = [], {}, {}, 0, 0
+    work, pairs, operations, fresh = {}, {}, 0, 0
+    constants = {i: literal(float(output[i])) for i in range(output.numel()) if output[i].is_constant()}
+    lines = zeros(constants, literal(0.0))
+    filled = {i for i in range(output.numel()) if output[i].is_constant()} - constants.keys()
     for k in range(function.n_instructions()):
         op = function.instruction_id(k)
         into, source = function.instruction_output(k), function.instruction_input(k)
         if op == ca.OP_OUTPUT:
+            if into[1] in filled:
+                continue
             lines.append(f"  out[{into[1]}] = REAL({work[source[0]]});")
             continue
         if op == ca.OP_CONST:
@@ -148,6 +156,21 @@ def body(arguments, output):
         work[into[0]] = f"t{fresh}"
         fresh += 1
     return lines, operations
+
+
+def zeros(values, zero):
+    """Lines that set runs of outputs to zero, which are taken out of `values`, texts by index: those that are long enough for a
+    loop."""
+    lines, run = [], []
+    for i in [*sorted(i for i, value in values.items() if value == zero), None]:
+        if run and i != run[-1] + 1:
+            if len(run) >= LONG_RUN:
+                lines.append(f"  for (size_t i = {run[0]}; i < {run[-1] + 1}; ++i) out[i] = REAL(0.0);")
+                for index in run:
+                    del values[index]
+            run = []
+        run.append(i)
+    return lines
 
 
 def literal(value):

@@ -18,10 +18,14 @@ The arithmetic of the nodes is that of series_graph.py.
 
 import casadi as ca
 
-from .emit_c import MOST_ORDERS
+from .emit_c import MOST_ORDERS, zeros
 from .series_graph import ONE, VARIABLE, Graph, Node, NotAnalytic, walk
 
 __all__ = ["Equations", "NotAnalytic", "Outputs", "Series"]
+
+
+MOST_UNROLLED = 8
+"""Most coordinates whose accelerations are written out, each with all its products: the code grows as their square."""
 
 
 class Series:
@@ -54,8 +58,10 @@ class Series:
                 next = f"(k == 1 ? {self.graph.first(rate)} : REAL(0.0))"
                 place[held[i].element_hash()] = Node(f"h[{i}]", next)
         self.nodes = walk(self.graph, place, output)
-        for i, node in enumerate(self.nodes):
-            self.graph.start.append(f"  out[{i}] = REAL({node.zeroth});")
+        values = {i: node.zeroth for i, node in enumerate(self.nodes)}
+        self.graph.start += zeros(values, "0.0")
+        for i, value in values.items():
+            self.graph.start.append(f"  out[{i}] = REAL({value});")
 
     def finish(self):
         """Lays out the workspace: coefficients of order 0, then a row an order with the left and the
@@ -186,6 +192,9 @@ class Equations(Series):
     def _append(self, residuals):
         """Appends an order."""
         graph, free = self.graph, len(residuals)
+        if free > MOST_UNROLLED:
+            self._append_in_loops(residuals)
+            return
         for i, residual in enumerate(residuals):
             graph.state(f"const real r{i} = REAL(%s);", residual)
         for i in range(free):
@@ -194,6 +203,24 @@ class Equations(Series):
             graph.state(f"a[{free} * k + {i}] = a{i};")
             graph.state(f"v[{free} * (k + 1) + {i}] = a{i} * dalembert_inverses[k + 1];")
             graph.state(f"q[{free} * (k + 2) + {i}] = a{i} * (dalembert_inverses[k + 1] * dalembert_inverses[k + 2]);")
+
+    def _append_in_loops(self, residuals):
+        """The same of many coordinates, to the same bits: each sum in the same order, of all coordinates side by side."""
+        graph, free = self.graph, len(residuals)
+        graph.state(f"real r[{free}], next[{free}];")
+        for i, residual in enumerate(residuals):
+            graph.state(f"r[{i}] = REAL(%s);", residual)
+        each = f"for (size_t i = 0; i < {free}; ++i)"
+        graph.state(f"{each} next[i] = -out[i] * r[0];")
+        graph.state(f"for (size_t j = 1; j < {free}; ++j) {{")
+        graph.state(f"  {each} next[i] -= out[{free} * j + i] * r[j];")
+        graph.state("}")
+        graph.state("const real by_k = dalembert_inverses[k + 1], by_both = dalembert_inverses[k + 1] * dalembert_inverses[k + 2];")
+        graph.state(f"{each} {{")
+        graph.state(f"  a[{free} * k + i] = next[i];")
+        graph.state(f"  v[{free} * (k + 1) + i] = next[i] * by_k;")
+        graph.state(f"  q[{free} * (k + 2) + i] = next[i] * by_both;")
+        graph.state("}")
 
     def _late(self, mass, j, free):
         """Interior of M a. The acceleration of order k is not known at order k."""

@@ -87,33 +87,30 @@ impl<T: Scalar, F: Size> Lu<T, F> {
         let size = row_scale.size();
         let mut lu = Self::empty(size);
         let mut scale = size.list(0.0);
+        // Of each entry the largest number of its sum.
+        let mut largest = size.square(0.0);
         for i in 0..size.get() {
             lu.order[i] = i;
             scale[i] = row_scale[i];
             for j in 0..size.get() {
                 lu.rows[(i, j)] = entry(i, j);
+                largest[(i, j)] = lu.rows[(i, j)].size();
             }
         }
         for k in 0..size.get() {
-            lu.eliminate(k, &mut scale)?;
+            lu.eliminate(k, (&mut scale, &mut largest))?;
         }
         Ok(lu)
     }
 
-    /// One column of Doolittle's elimination by rows of U, columns of L (Crout order): column `k` is
-    /// brought up to date, its pivot chosen, and row `k` finished.
+    /// Column `k` of Gauss's elimination: its pivot is chosen, and its multiples are taken from the rows that are left.
     #[inline(always)]
-    fn eliminate(&mut self, k: usize, scale: &mut F::List<f64>) -> Result<(), Singular> {
+    fn eliminate(
+        &mut self,
+        k: usize,
+        (scale, largest): (&mut F::List<f64>, &mut F::Square<f64>),
+    ) -> Result<(), Singular> {
         let n = self.size.get();
-        let mut largest = self.size.list(0.0_f64);
-        for i in k..n {
-            largest[i] = self.rows[(i, k)].size();
-            for l in 0..k {
-                let product = self.rows[(i, l)] * self.rows[(l, k)];
-                largest[i] = largest[i].max(product.size());
-                self.rows[(i, k)] = self.rows[(i, k)] - product;
-            }
-        }
         let mut pivot = k;
         let mut size = self.rows[(k, k)].size() * scale[k];
         for i in k + 1..n {
@@ -126,24 +123,29 @@ impl<T: Scalar, F: Size> Lu<T, F> {
         // F roundings of the largest number of its sum: what is left below that is no information.
         // A row of small numbers may well be exact. (A NaN fails the comparison as well.)
         let rounding = if k == 0 { 0.0 } else { n as f64 * f64::EPSILON };
-        if !(size > rounding * largest[pivot] * scale[pivot] && size.is_finite()) {
+        if !(size > rounding * largest[(pivot, k)] * scale[pivot] && size.is_finite()) {
             return Err(Singular { coordinate: k });
         }
         if pivot != k {
             self.rows.swap_rows(pivot, k);
+            largest.swap_rows(pivot, k);
             let (row, own) = (self.order[pivot], scale[pivot]);
             (self.order[pivot], scale[pivot]) = (self.order[k], scale[k]);
             (self.order[k], scale[k]) = (row, own);
             self.is_odd = !self.is_odd;
         }
-        for j in k + 1..n {
-            for l in 0..k {
-                self.rows[(k, j)] = self.rows[(k, j)] - self.rows[(k, l)] * self.rows[(l, j)];
-            }
-        }
         self.reciprocals[k] = self.rows[(k, k)].reciprocal();
         for i in k + 1..n {
             self.rows[(i, k)] = self.rows[(i, k)] * self.reciprocals[k];
+        }
+        // By columns, as many coordinates store them.
+        for j in k + 1..n {
+            let own = self.rows[(k, j)];
+            for i in k + 1..n {
+                let product = self.rows[(i, k)] * own;
+                largest[(i, j)] = largest[(i, j)].max(product.size());
+                self.rows[(i, j)] = self.rows[(i, j)] - product;
+            }
         }
         Ok(())
     }
@@ -154,11 +156,12 @@ impl<T: Scalar, F: Size> Lu<T, F> {
         let n = self.size.get();
         let mut x = self.size.list(T::default());
         for i in 0..n {
-            let mut sum = b(self.order[i]);
-            for j in 0..i {
-                sum = sum - self.rows[(i, j)] * x[j];
+            x[i] = b(self.order[i]);
+        }
+        for j in 0..n {
+            for i in j + 1..n {
+                x[i] = x[i] - self.rows[(i, j)] * x[j];
             }
-            x[i] = sum;
         }
         for i in (0..n).rev() {
             for j in i + 1..n {
