@@ -180,7 +180,7 @@ fn a_page_is_used_by_keys_in_the_dark_and_on_paper() {
         press('Home');
         const plain = picture.toDataURL(); press('c');
         is('contacts', picture.toDataURL() !== plain && byId('forces').textContent.includes('edge.2.force'));
-        const states = motion.drawing.shapes.flatMap((shape) => Object.values(shape.states ?? {}));
+        const states = motion.drawing.shapes.filter((shape) => shape.of || shape.states);
         is('states', states.length > 0);
         const paper = () => getComputedStyle(document.body).backgroundColor;
         const light = paper(), ink = () => getComputedStyle(document.body).color, dark_on = light === 'rgb(255, 255, 255)';
