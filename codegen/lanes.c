@@ -600,7 +600,7 @@ DALEMBERT_INLINE struct local local(const int n, const real *c, real s) {
  * infinite) and those in which the Bernstein coefficients change their sign once (place: a root, to
  * rounding); of all others the place is not a number.
  */
-DALEMBERT_INLINE real first_fall(const int n, const real *c) {
+DALEMBERT_INLINE real first_crossing(const int n, const real *c) {
   real sizes[2] = {size_of(c[0]), size_of(c[1])}, least[2] = {c[0], smaller(c[1], REAL(0.0))};
 #pragma GCC unroll 36
   for (int k = 2; k < n; ++k) {
@@ -679,16 +679,16 @@ DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, co
   /* What is zero at the start: its sum by tau/h. */
 #pragma GCC unroll 36
   for (int k = 0; k < n; ++k) own[k] = pick(rises, own[k + 1], own[k]);
-  return first_fall(n, own);
+  return first_crossing(n, own);
 }
 
 /* Looks for the first fall of factor * (row k times tau^k) + offset on 0 < tau <= h. Where it is before
  * `place`, a part of h, that becomes it: gives these lanes. c gets the coefficients in powers of tau/h.
  * Unclear are lanes where that takes a closer look.
  */
-unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+unsigned LANES(dalembert_lane_first_crossing)(size_t count, size_t stride, const real *row, const real *h,
                                           const struct guard *guard, real *c, real *place, unsigned *unclear);
-unsigned LANES(dalembert_lane_first_fall)(size_t count, size_t stride, const real *row, const real *h,
+unsigned LANES(dalembert_lane_first_crossing)(size_t count, size_t stride, const real *row, const real *h,
                                           const struct guard *guard, real *c, real *place, unsigned *unclear) {
   real found = REAL(NAN);
   /* With their number known the compiler keeps all coefficients in registers. */

@@ -132,9 +132,9 @@ impl Doubts {
         self.uncertain = Uncertain::default();
     }
 
-    /// Looks for doubts in a step that was searched, up to its end or its first event.
+    /// Searches a step for doubts, one that was searched, up to its end or its first event.
     #[inline]
-    pub fn look<'a, F: Size>(
+    pub fn search_step<'a, F: Size>(
         &mut self,
         step: &Searched,
         method: &mut impl OneStep<F, Equations<'a, F>>,

@@ -174,7 +174,7 @@ impl<'p> Simulation<'p> {
                 a: &a,
             };
             let t = self.here.now.seconds();
-            (self.margins).look_at_start(kernel, &self.context, (mode, at), t)?;
+            (self.margins).check_start(kernel, &self.context, (mode, at), t)?;
         }
         self.here.a.fill(0.0);
         self.here.set_free(&mode.free, [&q, &v, &a]);

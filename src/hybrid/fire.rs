@@ -269,6 +269,6 @@ impl<'p> Simulation<'p> {
         // What the reset has written is the state now.
         let key = signature.key();
         self.accumulation.push(key, self.here.now, &self.next);
-        self.look_for_accumulation()
+        self.find_accumulation()
     }
 }

@@ -192,7 +192,7 @@ impl Simulation<'_> {
             // 5. Doubts.
             let searched = Searched::of((self.here.mode, mode), watched, &self.signs, problem);
             self.doubts
-                .look(&searched, method, &mut equations, &mut conditions);
+                .search_step(&searched, method, &mut equations, &mut conditions);
 
             // 6. The mass matrix.
             if mass_changes {

@@ -92,7 +92,7 @@ impl Margins<'_> {
 
     /// What the mode requires must hold at the start of a segment, at `t` (s); what is reached there is noted.
     #[inline(always)]
-    pub fn look_at_start<F: Size>(
+    pub fn check_start<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
         context: &Context,

@@ -181,13 +181,13 @@ impl<'s> Moment<'s> {
 }
 
 impl<'p> Simulation<'p> {
-    /// Looks at the run at time `t`, s: at the present time, or within the last step. Leaves the context set to it.
-    pub fn look_at(&mut self, t: f64, view: &mut View) -> Result<(), NotComputed> {
+    /// Evaluates the run at time `t`, s: at the present time, or within the last step. Leaves the context set to it.
+    pub fn evaluate_at(&mut self, t: f64, view: &mut View) -> Result<(), NotComputed> {
         let mode = self.mode();
-        with_kernel!(&mode.kernels, k => self.look_by(k, t, view))
+        with_kernel!(&mode.kernels, k => self.evaluate_by(k, t, view))
     }
 
-    fn look_by<F: Size>(
+    fn evaluate_by<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
         t: f64,

@@ -49,7 +49,7 @@ impl Simulation<'_> {
     }
 
     /// Goes to the limit of an accumulation, if the last events have one.
-    pub fn look_for_accumulation(&mut self) -> Stoppable<()> {
+    pub fn find_accumulation(&mut self) -> Stoppable<()> {
         if self.mode().contacts.is_some() {
             if self.rest_contacts()? {
                 return Ok(());

@@ -3,7 +3,7 @@
 use super::equations::Equations;
 use super::guards::{Conditions, motion, motion_at_stage, slope, watched_value};
 use super::plan::Watched;
-use super::roots::{self, Isolation, Polynomial, Search, Watch, straight_fall, sum_of};
+use super::roots::{self, Isolation, Polynomial, Search, Watch, straight_crossing, sum_of};
 use crate::integrate::{Motion, ORDERS, System, stretch};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape};
@@ -228,7 +228,7 @@ fn search_series<F: Size>(
     let is_plain = watch == Watch::Armed && isolation == Isolation::Place && window.0 == tau;
     if count <= 2
         && is_plain
-        && let Some(straight) = straight_fall(constant, power(1), window.1 - tau)
+        && let Some(straight) = straight_crossing(constant, power(1), window.1 - tau)
     {
         *found = straight;
         if let Some(crossing) = &mut found.crossing {

@@ -127,7 +127,7 @@ impl<'p> Simulator<'p> {
             other: View::new(simulation.here.q.len()),
             simulation,
         };
-        simulator.look();
+        simulator.evaluate();
         Ok(simulator)
     }
 
@@ -149,7 +149,7 @@ impl<'p> Simulator<'p> {
     /// Goes back to the start; what was commanded is forgotten.
     pub fn rewind(&mut self) {
         self.simulation.rewind(self.initial_mode);
-        self.look();
+        self.evaluate();
     }
 
     /// Goes on to time `t`, s, or to the end of the run, if that comes before. Gives why it stops: [`Stopped::Time`],
@@ -182,7 +182,7 @@ impl<'p> Simulator<'p> {
             Ok(Stopped::Time) => self.view.t = t.min(self.simulation.here.now.seconds()),
             _ => self.view.t = self.simulation.here.now.seconds(),
         }
-        self.look();
+        self.evaluate();
         outcome
     }
 
@@ -227,7 +227,7 @@ impl<'p> Simulator<'p> {
                 input: inputs[index].name,
             });
         }
-        self.look();
+        self.evaluate();
         Ok(())
     }
 
@@ -273,14 +273,14 @@ impl<'p> Simulator<'p> {
             return Err(misfit);
         }
         self.view.t = from.time();
-        self.look();
+        self.evaluate();
         Ok(())
     }
 
-    /// Looks at the run at the time that it was advanced to.
-    fn look(&mut self) {
+    /// Evaluates the run at the time that it was advanced to.
+    fn evaluate(&mut self) {
         let t = self.view.t;
-        if self.simulation.look_at(t, &mut self.view).is_err() {
+        if self.simulation.evaluate_at(t, &mut self.view).is_err() {
             self.show_here();
         }
     }
@@ -296,7 +296,7 @@ impl<'p> Simulator<'p> {
 
     /// The run at the time that it was advanced to.
     pub fn moment(&mut self) -> Moment<'_> {
-        self.look();
+        self.evaluate();
         Moment::new(&self.simulation, &self.view)
     }
 
@@ -306,7 +306,7 @@ impl<'p> Simulator<'p> {
     /// # Errors
     /// [`NotComputed`] where the motion is not at hand, with the times between which it is.
     pub fn at(&mut self, t: f64) -> Result<Moment<'_>, NotComputed> {
-        self.simulation.look_at(t, &mut self.other)?;
+        self.simulation.evaluate_at(t, &mut self.other)?;
         Ok(Moment::new(&self.simulation, &self.other))
     }
 

@@ -3,7 +3,7 @@
 use super::ORDERS;
 use crate::input::Signals;
 use crate::kernel::Context;
-use crate::model::{Mode, Operands, Row, Tape};
+use crate::model::{Mode, Operands, Powers, Tape};
 use crate::numerics::{self, Bounded, Dynamic, Lu, Size};
 
 /// Where an expansion starts.
@@ -26,9 +26,9 @@ pub(crate) struct Expansion {
     /// Of each signal: it is wanted.
     wanted: Box<[bool]>,
     /// Coefficients of the instructions of the system of a mode.
-    system: Vec<Row>,
+    system: Vec<Powers>,
     /// Of what depends on the motion.
-    others: Vec<Row>,
+    others: Vec<Powers>,
     /// Inverse of the mass matrix at the start, row by row.
     inverse: Box<[f64]>,
     /// What the equations ask of the accelerations, these, and what they leave.
@@ -40,7 +40,7 @@ pub(crate) struct Expansion {
 impl Expansion {
     /// Room for a model with so many coordinates and signals, at some parameters.
     pub fn new(coordinates: usize, signals: usize, parameters: &[f64]) -> Self {
-        let rows = |count: usize| vec![Row::default(); count];
+        let rows = |count: usize| vec![Powers::default(); count];
         Expansion {
             given: Operands {
                 q: rows(coordinates),
@@ -71,7 +71,7 @@ impl Expansion {
         let width = self.given.signals.len();
         self.signal_rows.fill(0.0);
         if width == 0 || context.autonomous {
-            self.given.signals.fill(Row::default());
+            self.given.signals.fill(Powers::default());
             return;
         }
         let known = [context.signals(), context.signal_rates()];
@@ -100,9 +100,9 @@ impl Expansion {
                 None => Bounded::rounded(value, 1.0, 0.0),
                 Some(sizes) => Bounded::of_polynomial(value, numerics::ORDERS, sizes[of][i]),
             };
-            given.q[i] = Row::default();
-            given.v[i] = Row::default();
-            given.a[i] = Row::default();
+            given.q[i] = Powers::default();
+            given.v[i] = Powers::default();
+            given.a[i] = Powers::default();
             given.q[i][0] = known(at.q[i], 0);
             given.v[i][0] = known(at.v[i], 1);
             given.q[i][1] = given.v[i][0];
@@ -113,7 +113,7 @@ impl Expansion {
         ] {
             let count = tape.instructions.len();
             if rows.len() < count {
-                rows.resize(count, Row::default());
+                rows.resize(count, Powers::default());
             }
         }
     }
@@ -122,18 +122,19 @@ impl Expansion {
     pub fn expand(&mut self, mode: &Mode, tape: &Tape, k: usize) {
         self.move_on(mode, k);
         if self.others.len() < tape.instructions.len() {
-            self.others.resize(tape.instructions.len(), Row::default());
+            self.others
+                .resize(tape.instructions.len(), Powers::default());
         }
         tape.expand(k, &self.given, &mut self.others);
     }
 
     /// What the last tape gives, by the index of the result.
-    pub fn result(&self, tape: &Tape, index: usize) -> &Row {
+    pub fn result(&self, tape: &Tape, index: usize) -> &Powers {
         &self.others[tape.results[index]]
     }
 
     /// Coefficients of the acceleration of a coordinate.
-    pub fn acceleration(&self, coordinate: usize) -> &Row {
+    pub fn acceleration(&self, coordinate: usize) -> &Powers {
         &self.given.a[coordinate]
     }
 

@@ -53,7 +53,7 @@ lane_functions!(
         ranges(usize, usize, In, In, In, In, Out, Out);
         signal_radius(usize, usize, In, In, Out);
         length(usize, usize, In, In, In, In, In, In, In, In, Out, OutBits) -> Bits;
-        first_fall(usize, usize, In, In, In, Out, Out, OutBits) -> Bits;
+        first_crossing(usize, usize, In, In, In, Out, Out, OutBits) -> Bits;
         cross(usize, usize, In, In, In, Bits, In, Out, Out);
         durations(In, In, f64, Out);
         end(usize, usize, In, In, In, In, In, Out);
@@ -265,7 +265,7 @@ pub(crate) fn lane_length<const F: usize, const W: usize>(
 /// before `place`, a part of h, that becomes it. `coefficients` get those in powers of τ/h. Gives the
 /// lanes with such a fall, and those where it takes a closer look.
 #[inline]
-pub(crate) fn lane_first_fall<const W: usize>(
+pub(crate) fn lane_first_crossing<const W: usize>(
     level: LaneLevel<W>,
     (rows, count): (&[Lanes<W>], usize),
     (stride, i): (usize, usize),
@@ -277,11 +277,11 @@ pub(crate) fn lane_first_fall<const W: usize>(
     assert!(i < stride && (2..=ORDERS).contains(&count) && rows.len() >= count * stride);
     let mut unclear = 0;
     let row = rows[i..].as_ptr().cast();
-    let first_fall = level.functions.first_fall;
+    let first_crossing = level.functions.first_crossing;
     // SAFETY: as many rows of so many entries are there, of which entry i is read, and room for all
     // coefficients; the rest is one number a lane each, and a guard.
     let first = unsafe {
-        first_fall(
+        first_crossing(
             count,
             stride,
             row,

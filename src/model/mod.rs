@@ -19,7 +19,7 @@ pub(crate) use bounds::shown;
 pub use contacts::{Constraint, Contact, ContactSets, Contacts, DeclaredContact};
 pub use registry::{FolderRefused, FromFolder, Models, SameName, models};
 pub use tape::{Instruction, JET_ORDERS, Name, Pick, Tape};
-pub(crate) use tape::{Operands, Row};
+pub(crate) use tape::{Operands, Powers};
 
 use crate::kernel::{ConstantsKernel, GuardKernel, ModeKernels, TransitionKernel};
 

@@ -90,15 +90,15 @@ pub enum Pick {
 }
 
 /// Coefficients of powers of time.
-pub(crate) type Row = [Bounded; JET_ORDERS];
+pub(crate) type Powers = [Bounded; JET_ORDERS];
 
 /// What an expression is made of: rows of coefficients, one a coordinate, signal and so on.
 #[derive(Debug)]
 pub(crate) struct Operands {
-    pub q: Vec<Row>,
-    pub v: Vec<Row>,
-    pub a: Vec<Row>,
-    pub signals: Vec<Row>,
+    pub q: Vec<Powers>,
+    pub v: Vec<Powers>,
+    pub a: Vec<Powers>,
+    pub signals: Vec<Powers>,
     pub discrete: Vec<f64>,
     pub parameters: Vec<f64>,
 }
@@ -106,7 +106,7 @@ pub(crate) struct Operands {
 impl Tape {
     /// Appends the coefficients of order `k` of all instructions, given those below. Accelerations that a result does
     /// not depend on need not be known.
-    pub(crate) fn expand(&self, k: usize, given: &Operands, rows: &mut [Row]) {
+    pub(crate) fn expand(&self, k: usize, given: &Operands, rows: &mut [Powers]) {
         let still = |value: f64| match k {
             0 => Bounded::exact(value),
             _ => Bounded::default(),

@@ -1,7 +1,7 @@
 //! The mechanism of a run over time: modes, transitions, and what its drawing depends on.
 
 use super::thin::thin;
-use crate::record::{Group, Run, Sketch};
+use crate::record::{ColumnKind, Run, Sketch};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -67,7 +67,7 @@ impl Motion {
                 .map(|c| c.name.clone())
                 .collect(),
             parameters: run.subject.parameters.iter().cloned().collect(),
-            held: [Group::Reaction, Group::Output]
+            held: [ColumnKind::Reaction, ColumnKind::Output]
                 .into_iter()
                 .flat_map(|group| run.layout.range(group))
                 .filter(|i| !drawn.contains(i))

@@ -6,7 +6,7 @@ use super::table::number;
 use super::{Cell, Page, Table};
 use crate::model::Parameter;
 use crate::record::plot::{Grouped, Look, grouped, portraits, symbol};
-use crate::record::{Group, Run, Sketch, Summary, Units};
+use crate::record::{ColumnKind, Run, Sketch, Summary, Units};
 
 /// What a page tells besides the run.
 #[derive(Debug, Clone, Copy)]
@@ -129,7 +129,7 @@ fn columns(sketch: &Sketch, group: &Grouped) -> Plot {
         symbol: symbol(&column(i).name),
         meaning: match column(i).group {
             // Of a rate the symbol says it all.
-            Group::Velocity => "",
+            ColumnKind::Velocity => "",
             _ => &column(i).meaning,
         },
         y: sketch.curve(*i).map(|(_, x)| x).collect(),

@@ -1,7 +1,7 @@
 //! A run that may take too long.
 
 use crate::hybrid::{Problem, Reason, simulate};
-use crate::record::{Looks, Progress, Run};
+use crate::record::{Progress, Run, SparseClock};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -22,7 +22,7 @@ pub enum Attempt {
 struct Limited<'a> {
     progress: &'a mut dyn Progress,
     deadline: Option<Instant>,
-    looks: Looks,
+    looks: SparseClock,
     expired: bool,
     interrupted: bool,
 }
@@ -52,7 +52,7 @@ pub fn attempt(
     let mut limited = Limited {
         progress,
         deadline: limit.map(|limit| Instant::now() + limit),
-        looks: Looks::new(),
+        looks: SparseClock::new(),
         expired: false,
         interrupted: false,
     };

@@ -15,10 +15,10 @@
 //! same bytes, but for `wall_seconds` in the summary, and for the checkpoint of a run that took more than a second, by which it
 //! goes on.
 
+mod clock;
 mod digest;
 pub mod folder;
 mod kept;
-mod looks;
 mod number;
 #[cfg(feature = "plots")]
 pub mod plot;
@@ -36,9 +36,9 @@ mod units;
 
 pub use crate::hybrid::{Failure, Run};
 pub use crate::run::*;
+pub(crate) use clock::SparseClock;
 pub use folder::{FolderError, OutputFolder, StagedFile, Staging};
 pub use kept::Kept;
-pub(crate) use looks::Looks;
 #[cfg(feature = "plots")]
 pub(crate) use number::{exact, rounded};
 #[cfg(feature = "cli")]

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::looks::Looks;
+use super::clock::SparseClock;
 use crate::run::Progress;
 
 /// A line on the standard error that shows the progress; nothing where that is no terminal. The
@@ -14,7 +14,7 @@ use crate::run::Progress;
 pub struct ProgressLine {
     bar: ProgressBar,
     end: f64,
-    looks: Looks,
+    looks: SparseClock,
     /// When the line was last brought up to date.
     drawn: Option<Instant>,
 }
@@ -33,7 +33,7 @@ impl ProgressLine {
         ProgressLine {
             bar,
             end,
-            looks: Looks::new(),
+            looks: SparseClock::new(),
             drawn: None,
         }
     }

@@ -22,8 +22,8 @@ const MOST_MARKS: usize = 1 << 17;
 #[derive(Debug, Clone)]
 pub struct Sketch {
     columns: Vec<Column>,
-    rows: Series,
-    sides: Series,
+    rows: ColumnSamples,
+    sides: ColumnSamples,
     marks: Marks,
     /// Number of rows and points that it was given.
     taken: usize,
@@ -33,7 +33,7 @@ pub struct Sketch {
 
 /// Values of columns over time.
 #[derive(Debug, Clone)]
-struct Series {
+struct ColumnSamples {
     /// Number of columns.
     width: usize,
     t: Vec<f64>,
@@ -73,8 +73,8 @@ impl Sketch {
         let columns = layout.columns();
         let of_state = columns.iter().filter(|c| c.group.is_of_the_state()).count();
         Sketch {
-            rows: Series::new(columns.len(), rows),
-            sides: Series::new(of_state, sides),
+            rows: ColumnSamples::new(columns.len(), rows),
+            sides: ColumnSamples::new(of_state, sides),
             columns,
             marks: Marks {
                 events: Vec::new(),
@@ -241,9 +241,9 @@ fn intervals<'a, T>(
     })
 }
 
-impl Series {
-    fn new(width: usize, most: usize) -> Series {
-        Series {
+impl ColumnSamples {
+    fn new(width: usize, most: usize) -> ColumnSamples {
+        ColumnSamples {
             width,
             t: Vec::new(),
             values: Vec::new(),

@@ -12,7 +12,7 @@ use super::number::push_exact;
 use crate::hybrid::Run;
 use crate::run::Layout;
 use crate::run::ModeNames;
-use crate::run::{Column, EnergyJump, Group, Jump};
+use crate::run::{Column, ColumnKind, EnergyJump, Jump};
 
 /// File name of the samples.
 pub const TRAJECTORY: &str = "trajectory.csv";
@@ -209,7 +209,7 @@ fn event_columns(layout: &Layout) -> Vec<Described> {
             name: name.into(),
             unit: "J".into(),
             meaning: meaning.into(),
-            group: Group::Energy,
+            group: ColumnKind::Energy,
         }));
     }
     columns

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::modes::ModeNames;
-use super::result::{Column, Group};
+use super::result::{Column, ColumnKind};
 use crate::model::{InputKind, Model, Variant};
 
 /// Which columns a scene records besides coordinates, velocities, discrete states and the mode.
@@ -122,21 +122,21 @@ impl Layout {
     }
 
     /// The groups in the order of a row.
-    fn groups(&self) -> [(Group, &[Quantity]); 7] {
+    fn groups(&self) -> [(ColumnKind, &[Quantity]); 7] {
         [
-            (Group::Coordinate, &self.coordinates),
-            (Group::Velocity, &self.velocities),
-            (Group::Reaction, &self.reactions),
-            (Group::Discrete, &self.discretes),
-            (Group::Output, &self.outputs),
-            (Group::Energy, &self.energies),
-            (Group::Input, &self.inputs),
+            (ColumnKind::Coordinate, &self.coordinates),
+            (ColumnKind::Velocity, &self.velocities),
+            (ColumnKind::Reaction, &self.reactions),
+            (ColumnKind::Discrete, &self.discretes),
+            (ColumnKind::Output, &self.outputs),
+            (ColumnKind::Energy, &self.energies),
+            (ColumnKind::Input, &self.inputs),
         ]
     }
 
     /// The columns of a row, in order.
     pub fn columns(&self) -> Vec<Column> {
-        let of_group = |(group, quantities): (Group, &[Quantity])| -> Vec<Column> {
+        let of_group = |(group, quantities): (ColumnKind, &[Quantity])| -> Vec<Column> {
             let column = |q: &Quantity| Column {
                 name: q.name.clone(),
                 unit: q.unit.clone(),
@@ -149,7 +149,7 @@ impl Layout {
     }
 
     /// Where a group is in a row.
-    pub fn range(&self, group: Group) -> Range<usize> {
+    pub fn range(&self, group: ColumnKind) -> Range<usize> {
         let mut start = 0;
         for (candidate, quantities) in self.groups() {
             if candidate == group {

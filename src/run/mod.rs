@@ -22,7 +22,7 @@ pub use progress::{Progress, Silent, Until};
 pub use reached::{Left, LimitState, Reached};
 pub use recorder::Recorder;
 pub use result::{
-    Column, EnergyJump, ErrorEstimate, Event, Group, Jump, Ledger, Place, Snapshot, Solver,
+    Column, ColumnKind, EnergyJump, ErrorEstimate, Event, Jump, Ledger, Place, Snapshot, Solver,
     Subject, Trajectory,
 };
 pub use tally::{Counted, Gain, Impacts, Tally};

@@ -68,12 +68,12 @@ pub struct Column {
     /// Meaning and sign, in words.
     pub meaning: String,
     /// What kind of quantity it is.
-    pub group: Group,
+    pub group: ColumnKind,
 }
 
 /// What kind of quantity a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Group {
+pub enum ColumnKind {
     /// A generalized coordinate.
     Coordinate,
     /// The rate of a generalized coordinate.
@@ -238,16 +238,16 @@ impl Event {
     }
 }
 
-impl Group {
+impl ColumnKind {
     /// Whether a [`Snapshot`] holds values of this group.
     pub fn is_of_the_state(self) -> bool {
         match self {
-            Group::Coordinate
-            | Group::Velocity
-            | Group::Reaction
-            | Group::Discrete
-            | Group::Output => true,
-            Group::Energy | Group::Input => false,
+            ColumnKind::Coordinate
+            | ColumnKind::Velocity
+            | ColumnKind::Reaction
+            | ColumnKind::Discrete
+            | ColumnKind::Output => true,
+            ColumnKind::Energy | ColumnKind::Input => false,
         }
     }
 }

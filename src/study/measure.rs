@@ -3,7 +3,7 @@
 use super::ending::Ending;
 use crate::hybrid::{Problem, Record};
 use crate::record::{Layout, Recorded};
-use crate::run::{Group, Peak};
+use crate::run::{ColumnKind, Peak};
 
 /// A quantity that is measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -174,7 +174,7 @@ impl Failure {
 }
 
 /// All names of quantities that can be measured, with their units; those of the ledger at the end alone.
-pub(crate) fn quantities(problem: &Problem) -> Vec<(String, String, Group)> {
+pub(crate) fn quantities(problem: &Problem) -> Vec<(String, String, ColumnKind)> {
     let recorded = Recorded {
         reactions: true,
         outputs: true,

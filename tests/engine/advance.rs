@@ -7,7 +7,7 @@ use dalembert::hybrid::{
 };
 use dalembert::input::{Command, Function, Interpolation, Outside, Table};
 use dalembert::model::models;
-use dalembert::record::{Group, Jump, Silent};
+use dalembert::record::{ColumnKind, Jump, Silent};
 use dalembert::scene::{Disk, Scene};
 use std::path::{Path, PathBuf};
 
@@ -124,7 +124,7 @@ fn what_is_seen_on_the_way_is_what_a_run_records() {
             let reactions = [&reactions[..n], &reactions[all..]].concat();
             let recorded = run.trajectory.row(row);
             let [state, held] =
-                [0..2 * n, run.layout.range(Group::Reaction)].map(|range| &recorded[range]);
+                [0..2 * n, run.layout.range(ColumnKind::Reaction)].map(|range| &recorded[range]);
             let own = [&now.q()[..n], &now.v()[..n]].concat();
             assert_eq!(state, own, "{name} at {t} s");
             assert_eq!(held, reactions, "{name} at {t} s");

@@ -15,7 +15,7 @@ use std::path::Path;
 use dalembert::record::plot::{Chart, Curve, Dimension, Style, overview, phase_portraits};
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
 use dalembert::record::{
-    Event, Failure, Group, ModeNames, OutputFolder, Place, Quantity, Recorder, Report, Run,
+    ColumnKind, Event, Failure, ModeNames, OutputFolder, Place, Quantity, Recorder, Report, Run,
     Snapshot, Summary,
 };
 use proptest::prelude::*;
@@ -142,7 +142,7 @@ fn a_curve_has_both_sides_of_every_transition_in_order() {
     let times: Vec<f64> = run.curve(1).map(|p| p.0).collect();
     assert_eq!(times.len(), 50 + 2 * run.events.len());
     assert!(times.is_sorted());
-    let energy = run.layout.range(Group::Energy).start;
+    let energy = run.layout.range(ColumnKind::Energy).start;
     assert_eq!(
         run.curve(energy).count(),
         50,

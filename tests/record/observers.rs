@@ -6,7 +6,7 @@ use std::path::Path;
 use dalembert::hybrid::{MadeStep, Observer, Problem, Reason, simulate, simulate_with};
 use dalembert::model::models;
 use dalembert::record::{
-    Earlier, Group, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream,
+    ColumnKind, Earlier, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream,
 };
 use dalembert::scene::Scene;
 
@@ -163,7 +163,7 @@ fn points_between_rows_are_those_of_the_motion() {
             told.curve.len()
         );
         assert!(told.curve.is_sorted_by(|a, b| a.0 <= b.0), "{method}");
-        let energy = problem.layout().range(Group::Energy).start;
+        let energy = problem.layout().range(ColumnKind::Energy).start;
         for (t, values) in &told.curve {
             let (h, rate) = (1.0 - gravity * t * t / 2.0, -gravity * t);
             assert!((values[0] - h).abs() < 1e-14, "{method}: h at {t}");

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use dalembert::record::{
-    EnergyJump, Event, Group, Layout, Ledger, ModeNames, Peak, Place, Quantity, Reached, Recorder,
-    Run, Snapshot, Solver, Subject, Tally, Uncertain,
+    ColumnKind, EnergyJump, Event, Layout, Ledger, ModeNames, Peak, Place, Quantity, Reached,
+    Recorder, Run, Snapshot, Solver, Subject, Tally, Uncertain,
 };
 
 const G: f64 = 9.81;
@@ -97,7 +97,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         );
         recorder.push_row(t, 0, |row| {
             row.copy_from_slice(&[y, v, 0.0, if flight % 2 == 0 { 1.0 } else { -1.0 }, 0.0]);
-            row[layout.range(Group::Energy)][0] = G * y + v * v / 2.0;
+            row[layout.range(ColumnKind::Energy)][0] = G * y + v * v / 2.0;
         });
     }
     with_peaks(Run {
@@ -140,7 +140,12 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
 
 /// The run with the extremes of its rows and events as its peaks.
 pub fn with_peaks(mut run: Run) -> Run {
-    let has_peak = |group| matches!(group, Group::Coordinate | Group::Velocity | Group::Reaction);
+    let has_peak = |group| {
+        matches!(
+            group,
+            ColumnKind::Coordinate | ColumnKind::Velocity | ColumnKind::Reaction
+        )
+    };
     let columns = run.trajectory.columns.iter().enumerate();
     let peaks = columns
         .filter(|(_, c)| has_peak(c.group))
@@ -313,13 +318,13 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         recorder.push_row(t, mode, |row| {
             let state: Vec<f64> = state(t, mode).values().collect();
             row[..state.len()].copy_from_slice(&state);
-            row[layout.range(Group::Energy)].copy_from_slice(&[
+            row[layout.range(ColumnKind::Energy)].copy_from_slice(&[
                 0.3 + 0.2 * (40.0 * t).sin(),
                 work,
                 work * 0.9,
                 work * 0.05,
             ]);
-            row[layout.range(Group::Input)][0] = 20.0 * (2.0 * PI * 7.0 * t).sin();
+            row[layout.range(ColumnKind::Input)][0] = 20.0 * (2.0 * PI * 7.0 * t).sin();
         });
     }
     with_peaks(Run {

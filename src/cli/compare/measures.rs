@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Case, Comparison};
-use crate::record::{Group, Ledger, Run};
+use crate::record::{ColumnKind, Ledger, Run};
 
 /// A number of each case.
 #[derive(Debug)]
@@ -84,7 +84,7 @@ impl Comparison<'_> {
 
 /// Smallest and largest value of a coordinate.
 fn extremes(run: &Run, coordinate: usize) -> Option<(f64, f64)> {
-    let column = run.layout.range(Group::Coordinate).start + coordinate;
+    let column = run.layout.range(ColumnKind::Coordinate).start + coordinate;
     let peak = run.peaks.iter().find(|(i, _)| *i == column);
     peak.map(|(_, peak)| (peak.min, peak.max))
 }

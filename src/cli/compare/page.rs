@@ -3,7 +3,7 @@
 use super::Comparison;
 use crate::cli::page::command_line;
 use crate::page::{Cell, Page, Table};
-use crate::record::Group;
+use crate::record::ColumnKind;
 use crate::scene::Scene;
 
 impl Comparison<'_> {
@@ -24,7 +24,7 @@ impl Comparison<'_> {
         if coordinates.is_empty() {
             page.note("No coordinate moves in any of the runs, so there is nothing to draw.");
         }
-        for group in [Group::Coordinate, Group::Velocity] {
+        for group in [ColumnKind::Coordinate, ColumnKind::Velocity] {
             for &i in &coordinates {
                 page.chart(&self.chart(i, group));
             }

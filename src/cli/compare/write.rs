@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::{Case, Comparison};
 use crate::cli::table::Table;
 use crate::record::plot::{Chart, Curve, comparison};
-use crate::record::{Failure, FolderError, Group, OutputFolder, Run, exact, rounded};
+use crate::record::{ColumnKind, Failure, FolderError, OutputFolder, Run, exact, rounded};
 
 /// File name of the table.
 const TABLE: &str = "comparison.csv";
@@ -104,7 +104,7 @@ impl Comparison<'_> {
             files.file(TABLE, |out| self.table(out))?;
             for i in self.coordinates() {
                 let name = self.model.coordinates[i].name;
-                let chart = self.chart(i, Group::Coordinate);
+                let chart = self.chart(i, ColumnKind::Coordinate);
                 let picture = chart.picture(PLOT, &self.look);
                 files.picture(name, &picture, self.look.formats())?;
             }
@@ -138,7 +138,7 @@ impl Comparison<'_> {
     }
 
     /// A coordinate or its rate over time, one curve a run.
-    pub(super) fn chart(&self, coordinate: usize, group: Group) -> Chart {
+    pub(super) fn chart(&self, coordinate: usize, group: ColumnKind) -> Chart {
         let curve = |case: &Case| {
             let (run, sketch) = case.run.as_ref().ok()?;
             let column = run.layout.range(group).start + coordinate;
@@ -154,7 +154,7 @@ impl Comparison<'_> {
             .next()
             .expect("a coordinate is plotted where there is a run");
         let quantities = match group {
-            Group::Velocity => &run.layout.velocities,
+            ColumnKind::Velocity => &run.layout.velocities,
             _ => &run.layout.coordinates,
         };
         comparison(&quantities[coordinate], curves)

@@ -56,7 +56,7 @@ pub struct Limit {
 }
 
 /// A geometric series of patterns.
-struct Series {
+struct GeometricSeries {
     /// Number of events of the pattern.
     pattern: usize,
     /// Ratio of the durations of the last two patterns, and of the two before.
@@ -68,7 +68,7 @@ struct Series {
     limit: Instant,
 }
 
-impl Series {
+impl GeometricSeries {
     /// Sum of what is left, in units of the last term.
     fn factor(&self) -> f64 {
         self.ratio / (1.0 - self.ratio)
@@ -310,7 +310,7 @@ impl Accumulation {
         Some(self.end_of(&series))
     }
 
-    /// Looks where the last events would have their limit, if they have one, and keeps what is told best: as hops become
+    /// SparseClock where the last events would have their limit, if they have one, and keeps what is told best: as hops become
     /// shorter the series is nearer to a geometric one, but their durations are told less well.
     pub fn predict(&mut self) {
         self.best[3] += 1.0;
@@ -387,7 +387,7 @@ impl Accumulation {
 
     /// The geometric series of a pattern of `p` events, if its limit has converged.
     #[inline]
-    fn series(&self, p: usize, relative: f64) -> Option<Series> {
+    fn series(&self, p: usize, relative: f64) -> Option<GeometricSeries> {
         let (series, uncertainty) = self.candidate(p)?;
         let limit = series.limit.seconds().abs();
         let has_converged = uncertainty <= (relative * limit).max(limit * f64::EPSILON);
@@ -397,7 +397,7 @@ impl Accumulation {
     /// The series of a pattern of `p` events as the last durations give it, and how much, s, its limit differs from that of the
     /// durations before.
     #[inline]
-    fn candidate(&self, p: usize) -> Option<(Series, f64)> {
+    fn candidate(&self, p: usize) -> Option<(GeometricSeries, f64)> {
         if !self.are_alike(0, p) {
             return None;
         }
@@ -420,7 +420,7 @@ impl Accumulation {
         let predicted_before = at[1].plus(middle * ratio_before / (1.0 - ratio_before));
         let uncertainty = limit.since(predicted_before).abs();
         let repeats = (1..2 * p).all(|i| self.are_alike(i, i + p));
-        let series = Series {
+        let series = GeometricSeries {
             pattern: p,
             ratio,
             ratio_before,
@@ -431,7 +431,7 @@ impl Accumulation {
     }
 
     /// Whether what is left of a series moves nothing by more than the tolerances.
-    fn is_negligible(&self, series: &Series, relative: f64) -> bool {
+    fn is_negligible(&self, series: &GeometricSeries, relative: f64) -> bool {
         // Below one unit in the last place of t the series cannot advance the time any more.
         if series.remaining < series.limit.seconds().abs() * f64::EPSILON {
             return true;
@@ -448,7 +448,7 @@ impl Accumulation {
     }
 
     /// Where a series ends.
-    fn end_of(&self, series: &Series) -> Limit {
+    fn end_of(&self, series: &GeometricSeries) -> Limit {
         let p = series.pattern;
         let [now, before, earlier] = [0, p, 2 * p].map(|back| self.state(back));
         let mut state = now.to_vec();

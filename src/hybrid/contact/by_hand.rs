@@ -6,7 +6,7 @@ use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::{Contacts, Transition};
 use crate::numerics::Size;
 
-use super::State;
+use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
 use super::hold::{Places, hold};
@@ -122,11 +122,12 @@ impl<'p> Simulation<'p> {
     ) -> Option<usize> {
         let [q, v, _] = self.here.free(kernel.size(), &self.mode().free);
         let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
-        let states = State::all(contacts, self.context.discrete());
+        let states = ContactState::all(contacts, self.context.discrete());
         (0..states.len()).find(|&k| {
             let line = Line::Normal(k);
             let opens_now = self.at_zero.iter().any(|zero| zero.guard == GUARDS * k);
-            let is_open = states[k] == State::Open && contacts.contacts[k].has_gap() && !opens_now;
+            let is_open =
+                states[k] == ContactState::Open && contacts.contacts[k].has_gap() && !opens_now;
             let (rate, rounding) = at.rate(line);
             is_open && at.place(line).0 <= 0.0 && rate < -rounding
         })
@@ -159,7 +160,7 @@ impl<'p> Simulation<'p> {
         let mut standing = match stays {
             // What rests goes on resting by bookkeeping.
             true => {
-                let states = State::all(contacts, self.context.discrete());
+                let states = ContactState::all(contacts, self.context.discrete());
                 self.standing(kernel, contacts, (None, &states))
             }
             false => {

@@ -4,7 +4,7 @@
 //! keeps its place, as far as the friction that holds it is not determined. A contact whose force would pull is open, and the search
 //! goes on without it. Whether friction holds, and no other motion goes on, is judged as for any state a run starts in.
 
-use super::State;
+use super::ContactState;
 use super::geometry::{Geometry, Line, multiplier, write_states};
 use super::hold::{Places, ROUNDOFF};
 use crate::hybrid::equilibrium::{least_squares, to_zero};
@@ -33,7 +33,7 @@ impl<'p> Simulation<'p> {
         let size = kernel.size();
         let zero = size.zeros();
         let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
-        let mut states: Vec<State> = (contacts.contacts.iter().enumerate())
+        let mut states: Vec<ContactState> = (contacts.contacts.iter().enumerate())
             .map(|(k, contact)| {
                 let touches = contact.normal.is_none_or(|_| {
                     let (opening, rounding) = match contact.is_ratchet {
@@ -43,9 +43,9 @@ impl<'p> Simulation<'p> {
                     opening <= rounding
                 });
                 match (touches, contact.tangent) {
-                    (false, _) => State::Open,
-                    (true, None) => State::Closed,
-                    (true, Some(_)) => State::Sticks,
+                    (false, _) => ContactState::Open,
+                    (true, None) => ContactState::Closed,
+                    (true, Some(_)) => ContactState::Sticks,
                 }
             })
             .collect();
@@ -59,7 +59,7 @@ impl<'p> Simulation<'p> {
             match pulls {
                 None => break,
                 // One less each time.
-                Some((k, _)) => states[k] = State::Open,
+                Some((k, _)) => states[k] = ContactState::Open,
             }
         }
         let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
@@ -81,7 +81,7 @@ impl<'p> Simulation<'p> {
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
         q: &mut F::Vector,
-        states: &[State],
+        states: &[ContactState],
     ) -> Result<Vec<f64>, Unbalanced> {
         let size = kernel.size();
         let n = size.get();
@@ -90,7 +90,7 @@ impl<'p> Simulation<'p> {
         let holds = |line: Line| match line {
             Line::Constraint(_) => true,
             Line::Normal(k) => states[k].is_closed(),
-            Line::Tangent(k) => states[k] == State::Sticks,
+            Line::Tangent(k) => states[k] == ContactState::Sticks,
         };
         let mut held: Vec<Option<Line>> = vec![None; n];
         let geometry = Geometry::new(kernel, &mut self.context, contacts, [q, &zero]);

@@ -4,7 +4,7 @@ use super::geometry::{Line, write_states};
 use super::hold::{Places, hold, hold_lines};
 use super::impact::Impact;
 use super::standing::{Standing, tangent_at};
-use super::{Conditioning, State, Tangent};
+use super::{Conditioning, ContactState, Tangent};
 use crate::hybrid::accumulation::Signature;
 use crate::hybrid::advance::MadeBy;
 use crate::hybrid::failure::{Reason, Stoppable};
@@ -38,16 +38,16 @@ impl<'p> Simulation<'p> {
     ) -> Stoppable<()> {
         self.set_context();
         let (k, part) = (guard / GUARDS, guard % GUARDS);
-        let before = State::all(contacts, self.context.discrete());
+        let before = ContactState::all(contacts, self.context.discrete());
         let of = &contacts.contacts[k];
-        let closes = part == 0 && before[k] == State::Open && !of.is_ratchet;
+        let closes = part == 0 && before[k] == ContactState::Open && !of.is_ratchet;
         let mut standing = match closes {
             true => self.closing(kernel, contacts, (k, &before)),
             false => {
                 let stops = match (part, before[k]) {
-                    (1, State::Slides(_)) => Some(Line::Tangent(k)),
+                    (1, ContactState::Slides(_)) => Some(Line::Tangent(k)),
                     // A ratchet whose rate has come to zero.
-                    (0, State::Open) => Some(Line::Normal(k)),
+                    (0, ContactState::Open) => Some(Line::Normal(k)),
                     _ => None,
                 };
                 self.standing(kernel, contacts, (stops, &before))
@@ -96,7 +96,7 @@ impl<'p> Simulation<'p> {
         self.accumulation
             .push(signature.key(), self.here.now, &self.next);
         self.accumulation.predict();
-        self.look_for_accumulation()
+        self.find_accumulation()
     }
 
     /// Brings the state before an event back to what the contacts held there: the end of a step that an event cuts is not. Its
@@ -168,7 +168,7 @@ impl<'p> Simulation<'p> {
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        (k, before): (usize, &[State]),
+        (k, before): (usize, &[ContactState]),
         standing: &mut Standing<F>,
     ) -> Stoppable<Option<usize>> {
         let at = [&standing.q, &standing.v];
@@ -179,14 +179,14 @@ impl<'p> Simulation<'p> {
         // Of the initial state it is not known whether what opens has left its gap.
         let is_given = self.here.j == 0;
         for j in 0..touches.len() {
-            if before[j] == State::Open && contacts.contacts[j].is_ratchet {
+            if before[j] == ContactState::Open && contacts.contacts[j].is_ratchet {
                 let (rate, rounding) = places.rate(Line::Normal(j));
                 touches[j] = true;
                 rests[j] = rate <= rounding;
                 standing.touching[j] = rests[j].then_some(Tangent::None);
                 continue;
             }
-            if !touches[j] || before[j] != State::Open {
+            if !touches[j] || before[j] != ContactState::Open {
                 continue;
             }
             let (rate, rounding) = places.rate(Line::Normal(j));
@@ -202,8 +202,10 @@ impl<'p> Simulation<'p> {
             return Ok(None);
         }
         if !contacts.contacts[k].law.is_empty() {
-            let slides = before.iter().any(|state| matches!(state, State::Slides(_)));
-            let sticks = before.contains(&State::Sticks) && !slides;
+            let slides = before
+                .iter()
+                .any(|state| matches!(state, ContactState::Slides(_)));
+            let sticks = before.contains(&ContactState::Sticks) && !slides;
             for (i, rate) in places.stated(contacts, k, sticks) {
                 standing.v[i] = rate;
             }
@@ -229,14 +231,14 @@ impl<'p> Simulation<'p> {
         &self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        (k, before, touches): (usize, &[State], &[bool]),
+        (k, before, touches): (usize, &[ContactState], &[bool]),
         (came, standing): (&Places, &mut Standing<F>),
     ) -> Stoppable<()> {
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
         // What has stuck, as the state that came is held to, and is not set in motion.
         let still: Vec<Line> = (0..touches.len())
-            .filter(|&j| before[j] == State::Sticks)
+            .filter(|&j| before[j] == ContactState::Sticks)
             .map(Line::Tangent)
             .filter(|&line| {
                 let ((before, _), (after, rounding)) = (came.rate(line), places.rate(line));
@@ -313,7 +315,7 @@ impl<'p> Simulation<'p> {
         kernel: &ModeKernel<F>,
         contacts: &'p Contacts,
         standing: &mut Standing<F>,
-    ) -> Stoppable<Vec<State>> {
+    ) -> Stoppable<Vec<ContactState>> {
         let [places, rates] = standing.held(contacts);
         let Standing {
             q,
@@ -339,11 +341,11 @@ impl<'p> Simulation<'p> {
         self.next[2 * n..].copy_from_slice(&decision.discrete);
         self.at_zero = (touching.iter().zip(&decision.states).enumerate())
             .filter_map(|(k, (tangent, state))| match (tangent, state) {
-                (Some(_), State::Open) => {
+                (Some(_), ContactState::Open) => {
                     let of_guard = contacts.contacts[k].derivative_of_acceleration();
                     Some((GUARDS * k, of_guard + decision.vanishing_of_gap(k)))
                 }
-                (Some(Tangent::Still), State::Slides(_)) => {
+                (Some(Tangent::Still), ContactState::Slides(_)) => {
                     Some((GUARDS * k + 1, 1 + decision.vanishing_of_slip(k)))
                 }
                 // It leaves with a rate.
@@ -362,18 +364,18 @@ impl Simulation<'_> {
         let n = self.here.q.len();
         self.next[..n].copy_from_slice(standing.q.as_slice());
         self.next[n..2 * n].copy_from_slice(standing.v.as_slice());
-        let states: Vec<State> = (contacts.contacts.iter().zip(&standing.touching))
+        let states: Vec<ContactState> = (contacts.contacts.iter().zip(&standing.touching))
             .map(|(contact, touching)| match (contact.normal, touching) {
-                (None, Some(Tangent::Slips(direction))) => State::Slides(*direction),
-                (None, _) => State::Sticks,
-                (Some(_), _) => State::Open,
+                (None, Some(Tangent::Slips(direction))) => ContactState::Slides(*direction),
+                (None, _) => ContactState::Sticks,
+                (Some(_), _) => ContactState::Open,
             })
             .collect();
         let discrete = &mut self.next[2 * n..];
         discrete.copy_from_slice(self.context.discrete());
         write_states(contacts, &states, discrete);
         let touches = (0..states.len())
-            .filter(|&k| states[k] == State::Open && standing.touching[k].is_some());
+            .filter(|&k| states[k] == ContactState::Open && standing.touching[k].is_some());
         self.at_zero = touches
             .map(|k| AtZero {
                 guard: GUARDS * k,
@@ -387,8 +389,8 @@ impl Simulation<'_> {
 fn verb(
     contacts: &Contacts,
     (k, strikes): (usize, Option<usize>),
-    before: &[State],
-    after: &[State],
+    before: &[ContactState],
+    after: &[ContactState],
 ) -> &'static str {
     let named = |k: usize, verb: &str| intern(&format!("{} {verb}", contacts.contacts[k].name));
     if let Some(first) = strikes {
@@ -398,13 +400,13 @@ fn verb(
     let changed = std::iter::once(k).chain(others);
     let found = changed.filter(|&j| before[j] != after[j]).find_map(|j| {
         let verb = match (before[j], after[j]) {
-            (State::Open, _) if contacts.contacts[j].is_ratchet => "engages",
-            (_, State::Open) if contacts.contacts[j].is_ratchet => "releases",
-            (State::Open, _) => "closes",
-            (_, State::Open) => "opens",
-            (_, State::Sticks) => "sticks",
-            (State::Slides(_), State::Slides(_)) => "reverses",
-            (_, State::Slides(_)) => "slips",
+            (ContactState::Open, _) if contacts.contacts[j].is_ratchet => "engages",
+            (_, ContactState::Open) if contacts.contacts[j].is_ratchet => "releases",
+            (ContactState::Open, _) => "closes",
+            (_, ContactState::Open) => "opens",
+            (_, ContactState::Sticks) => "sticks",
+            (ContactState::Slides(_), ContactState::Slides(_)) => "reverses",
+            (_, ContactState::Slides(_)) => "slips",
             _ => return None,
         };
         Some(named(j, verb))

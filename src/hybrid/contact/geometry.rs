@@ -1,6 +1,6 @@
 //! Masses, and the lines along which contacts and constraints push.
 
-use super::State;
+use super::ContactState;
 use crate::kernel::{Context, ModeKernel};
 use crate::model::Contacts;
 use crate::numerics::{Dynamic, Lu, Size};
@@ -51,7 +51,7 @@ impl Geometry {
         [q, v]: [&F::Vector; 2],
     ) -> Self {
         let present = context.discrete().to_vec();
-        let closed = vec![State::Sticks; contacts.contacts.len()];
+        let closed = vec![ContactState::Sticks; contacts.contacts.len()];
         write_states(contacts, &closed, context.discrete_mut());
         let system = kernel.system(context, q, v);
         context.discrete_mut().copy_from_slice(&present);
@@ -289,7 +289,7 @@ impl Geometry {
 }
 
 /// The discrete states of contacts that do so, all of whose forces are determined.
-pub(super) fn write_states(contacts: &Contacts, states: &[State], discrete: &mut [f64]) {
+pub(super) fn write_states(contacts: &Contacts, states: &[ContactState], discrete: &mut [f64]) {
     for (contact, &state) in contacts.contacts.iter().zip(states) {
         let mut set = |index: Option<usize>, value: f64| {
             if let Some(i) = index {
@@ -300,7 +300,7 @@ pub(super) fn write_states(contacts: &Contacts, states: &[State], discrete: &mut
         set(
             contact.direction,
             match state {
-                State::Slides(direction) => direction,
+                ContactState::Slides(direction) => direction,
                 _ => 0.0,
             },
         );

@@ -1,6 +1,6 @@
 //! Guards by hand that are coordinates which contacts hold at zero, or have held until now.
 
-use super::State;
+use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
 use super::hold::held_lines;
@@ -49,7 +49,7 @@ pub(in crate::hybrid) fn guarded_by_contacts<F: Size>(
     if contacts.moved || found.is_empty() {
         return Vec::new();
     }
-    let states = State::all(contacts, context.discrete());
+    let states = ContactState::all(contacts, context.discrete());
     let [places, _] = held_lines(contacts, &states);
     let geometry = Geometry::new(kernel, context, contacts, state);
     let of = |(guard, index, factor): (usize, usize, f64)| {

@@ -1,6 +1,6 @@
 //! Positions and rates where contacts and constraints hold them, to rounding.
 
-use super::State;
+use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
 use crate::kernel::{Context, ModeKernel};
@@ -103,13 +103,13 @@ impl Places {
 }
 
 /// The lines whose place is held, and those whose rate is, while contacts do this.
-pub(super) fn held_lines(contacts: &Contacts, states: &[State]) -> [Vec<Line>; 2] {
+pub(super) fn held_lines(contacts: &Contacts, states: &[ContactState]) -> [Vec<Line>; 2] {
     let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
     let closed = (0..states.len())
         .filter(|&k| states[k].is_closed() && contacts.contacts[k].normal.is_some())
         .map(Line::Normal);
     let places: Vec<Line> = constraints.chain(closed).collect();
-    let sticks = (0..states.len()).filter(|&k| states[k] == State::Sticks);
+    let sticks = (0..states.len()).filter(|&k| states[k] == ContactState::Sticks);
     let rates = (places.iter().copied()).chain(sticks.map(Line::Tangent));
     [places.clone(), rates.collect()]
 }
@@ -122,7 +122,7 @@ pub(in crate::hybrid) fn hold<F: Size>(
     contacts: &Contacts,
     [q, v]: [&mut F::Vector; 2],
 ) {
-    let states = State::all(contacts, context.discrete());
+    let states = ContactState::all(contacts, context.discrete());
     let [places, rates] = held_lines(contacts, &states);
     hold_lines(kernel, context, contacts, [&places, &rates], [q, v]);
 }
@@ -135,7 +135,7 @@ pub(in crate::hybrid) fn held_by_others<F: Size>(
     contacts: &Contacts,
     state: [&F::Vector; 2],
 ) -> Vec<usize> {
-    let states = State::all(contacts, context.discrete());
+    let states = ContactState::all(contacts, context.discrete());
     let at = Places::new(kernel, context, contacts, state);
     let held = held_with(contacts, &states, &at, || {
         Geometry::new(kernel, context, contacts, state)
@@ -146,13 +146,13 @@ pub(in crate::hybrid) fn held_by_others<F: Size>(
 /// The same contacts, where the geometry may be known already.
 pub(super) fn held_with<G: std::borrow::Borrow<Geometry>>(
     contacts: &Contacts,
-    states: &[State],
+    states: &[ContactState],
     at: &Places,
     geometry: impl FnOnce() -> G,
 ) -> Vec<usize> {
     let is_at_zero = |&k: &usize| {
         let (gap, rounding) = at.place(Line::Normal(k));
-        contacts.contacts[k].has_gap() && states[k] == State::Open && gap.abs() <= rounding
+        contacts.contacts[k].has_gap() && states[k] == ContactState::Open && gap.abs() <= rounding
     };
     let mut found: Vec<usize> = (0..states.len()).filter(is_at_zero).collect();
     if !found.is_empty() {

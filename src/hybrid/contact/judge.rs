@@ -9,11 +9,11 @@ use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, held_lines};
 use super::many::{all_of_many, to_try};
 use super::share::{Dropped, Forces, Sharing};
-use super::{State, Tangent};
+use super::{ContactState, Tangent};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::simulation::Simulation;
 use crate::jets::{ORDERS, Point};
-use crate::model::{Contact, Contacts, Mode, Row};
+use crate::model::{Contact, Contacts, Mode, Powers};
 
 /// Which of the results of the tape of decisions.
 const PUSH: usize = 0;
@@ -25,7 +25,7 @@ pub(super) const SLIP: usize = 4;
 /// A set of contact states that may follow.
 #[derive(Debug)]
 struct Candidate {
-    states: Vec<State>,
+    states: Vec<ContactState>,
     discrete: Vec<f64>,
 }
 
@@ -38,14 +38,14 @@ struct Admitted {
 /// How a candidate goes on.
 struct Motion {
     /// Coefficients of the accelerations of the coordinates that are no multipliers.
-    accelerations: Vec<Row>,
+    accelerations: Vec<Powers>,
     /// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
     orders: Vec<(usize, usize)>,
 }
 
 /// What was found.
 pub(super) struct Decision {
-    pub states: Vec<State>,
+    pub states: Vec<ContactState>,
     pub discrete: Vec<f64>,
     orders: Vec<(usize, usize)>,
 }
@@ -79,15 +79,16 @@ impl<'p> Simulation<'p> {
     ) -> Result<Decision, Reason> {
         self.expand_signals();
         let choices = choices(contacts, touching);
-        let holds = |k: usize, state: &State| {
+        let holds = |k: usize, state: &ContactState| {
             let has_gap = contacts.contacts[k].normal.is_some();
             (has_gap && state.is_closed()).then_some(Line::Normal(k))
         };
         let sets = to_try(&choices, geometry, holds, || {
             self.answers((contacts, geometry), places, touching)
         });
-        let mut judge =
-            |states: Vec<State>| self.admitted((contacts, geometry), places, touching, states);
+        let mut judge = |states: Vec<ContactState>| {
+            self.admitted((contacts, geometry), places, touching, states)
+        };
         let mut admitted: Vec<Admitted> = sets.into_iter().filter_map(&mut judge).collect();
         if admitted.is_empty() {
             admitted.extend(all_of_many(&choices).filter_map(&mut judge));
@@ -95,11 +96,11 @@ impl<'p> Simulation<'p> {
         // Between kinetic and static friction both are admissible: what sticks goes on sticking, and what it held stays closed.
         let yields = |a: &Admitted, b: &Admitted| {
             let pairs = || (a.candidate.states.iter().zip(&b.candidate.states)).enumerate();
-            let could = |(k, (a, b)): (usize, (&State, &State))| {
-                let sticks = matches!((a, b), (State::Slides(_), State::Sticks));
+            let could = |(k, (a, b)): (usize, (&ContactState, &ContactState))| {
+                let sticks = matches!((a, b), (ContactState::Slides(_), ContactState::Sticks));
                 sticks && places.static_friction(k) > places.kinetic(k)
             };
-            let opens = |a: &State, b: &State| a.is_closed() != b.is_closed();
+            let opens = |a: &ContactState, b: &ContactState| a.is_closed() != b.is_closed();
             let differ = |(k, (a, b))| a == b || opens(a, b) || could((k, (a, b)));
             pairs().any(could) && pairs().all(differ)
         };
@@ -119,7 +120,7 @@ impl<'p> Simulation<'p> {
             of_b.cmp(&of_a).then_with(|| spans(b).total_cmp(&spans(a)))
         });
         let present = self.context.discrete().to_vec();
-        let names = |states: &[State]| {
+        let names = |states: &[ContactState]| {
             let mut discrete = present.clone();
             write_states(contacts, states, &mut discrete);
             contacts.sets().name(contacts.set(&discrete))
@@ -160,7 +161,7 @@ impl<'p> Simulation<'p> {
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &Places,
         touching: &[Option<Tangent>],
-        states: Vec<State>,
+        states: Vec<ContactState>,
     ) -> Option<Admitted> {
         let sharing = Sharing::new(contacts, geometry, places, &states)?;
         let present = self.context.discrete().to_vec();
@@ -188,7 +189,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// The accelerations of a candidate, from a state that is known to its rounding.
-    fn accelerations(&mut self, geometry: &Geometry, candidate: &Candidate) -> Vec<Row> {
+    fn accelerations(&mut self, geometry: &Geometry, candidate: &Candidate) -> Vec<Powers> {
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
         let at = point(&self.next, self.here.q.len(), &candidate.discrete);
@@ -293,7 +294,11 @@ impl Candidate {
     /// How much it holds: contacts that are closed, then those that stick.
     fn holds(&self) -> (usize, usize) {
         let closed = self.states.iter().filter(|s| s.is_closed()).count();
-        let sticks = self.states.iter().filter(|s| **s == State::Sticks).count();
+        let sticks = self
+            .states
+            .iter()
+            .filter(|s| **s == ContactState::Sticks)
+            .count();
         (closed, sticks)
     }
 }
@@ -311,7 +316,7 @@ fn asked(
         };
         let of = |what: usize| k * Contacts::DECISIONS + what;
         let state = candidate.states[k];
-        if state == State::Open {
+        if state == ContactState::Open {
             asked.push((of(GAP), 1.0));
             continue;
         }
@@ -322,10 +327,10 @@ fn asked(
             .dropped
             .is_some_and(|i| candidate.discrete[i] != 0.0);
         match state {
-            State::Sticks if !is_dropped => {
+            ContactState::Sticks if !is_dropped => {
                 asked.extend([(of(FORWARDS), 1.0), (of(BACKWARDS), 1.0)]);
             }
-            State::Slides(direction) if tangent == Tangent::Still => {
+            ContactState::Slides(direction) if tangent == Tangent::Still => {
                 asked.push((of(SLIP), direction));
             }
             _ => {}
@@ -335,18 +340,22 @@ fn asked(
 }
 
 /// What each contact may do, of those that touch, with what their tangents do.
-fn choices(contacts: &Contacts, touching: &[Option<Tangent>]) -> Vec<Vec<State>> {
+fn choices(contacts: &Contacts, touching: &[Option<Tangent>]) -> Vec<Vec<ContactState>> {
     let of = |(contact, tangent): (&Contact, &Option<Tangent>)| {
         let mut choices = match tangent {
-            None => return vec![State::Open],
-            Some(Tangent::None) => vec![State::Closed],
+            None => return vec![ContactState::Open],
+            Some(Tangent::None) => vec![ContactState::Closed],
             Some(Tangent::Still) => {
-                vec![State::Sticks, State::Slides(1.0), State::Slides(-1.0)]
+                vec![
+                    ContactState::Sticks,
+                    ContactState::Slides(1.0),
+                    ContactState::Slides(-1.0),
+                ]
             }
-            Some(Tangent::Slips(direction)) => vec![State::Slides(*direction)],
+            Some(Tangent::Slips(direction)) => vec![ContactState::Slides(*direction)],
         };
         if contact.normal.is_some() {
-            choices.push(State::Open);
+            choices.push(ContactState::Open);
         }
         choices
     };
@@ -354,7 +363,7 @@ fn choices(contacts: &Contacts, touching: &[Option<Tangent>]) -> Vec<Vec<State>>
 }
 
 /// Whether two motions are equal, as far as rounding tells.
-fn are_equal(one: &[Row], other: &[Row]) -> bool {
+fn are_equal(one: &[Powers], other: &[Powers]) -> bool {
     one.iter().zip(other).all(|(a, b)| {
         let is_same = |k: usize| {
             let error = a[k].error + b[k].error;

@@ -3,7 +3,7 @@
 use super::geometry::{Geometry, Line, multiplier};
 use super::hold::Places;
 use super::standing::Standing;
-use super::{State, Tangent};
+use super::{ContactState, Tangent};
 use crate::hybrid::accumulation::Limit;
 use crate::hybrid::failure::Stoppable;
 use crate::hybrid::instant::Instant;
@@ -70,7 +70,7 @@ impl<'p> Simulation<'p> {
         let of_place = |i: usize| of(accuracy.q_absolute[i], i);
         let of_rate = |i: usize| of(accuracy.v_absolute[i], n + i);
         let unknown = |i: usize| limit.uncertainty[n + i];
-        let before = State::all(contacts, self.context.discrete());
+        let before = ContactState::all(contacts, self.context.discrete());
         let is_near = |k: usize| {
             let normal = Line::Normal(k);
             at.place(normal).0.abs() <= within(normal, &of_place)
@@ -81,12 +81,12 @@ impl<'p> Simulation<'p> {
         let mut rests = false;
         let touching = (before.iter().enumerate())
             .map(|(k, &state)| {
-                if state == State::Open && contacts.contacts[k].is_ratchet {
+                if state == ContactState::Open && contacts.contacts[k].is_ratchet {
                     let (rate, rounding) = at.rate(Line::Normal(k));
                     let is_zero = rate <= rounding + within(Line::Normal(k), &unknown);
                     return is_zero.then_some(Tangent::None);
                 }
-                if state == State::Open {
+                if state == ContactState::Open {
                     let normal = Line::Normal(k);
                     let is_there =
                         is_near(k) && at.rate(normal).0.abs() <= within(normal, &of_rate);
@@ -98,7 +98,7 @@ impl<'p> Simulation<'p> {
                 let tangent = Line::Tangent(k);
                 Some(match (contacts.contacts[k].tangent, state) {
                     (None, _) => Tangent::None,
-                    (_, State::Sticks) => Tangent::Still,
+                    (_, ContactState::Sticks) => Tangent::Still,
                     _ => {
                         let (slip, rounding) = at.rate(tangent);
                         match slip.abs() <= rounding + within(tangent, &unknown) {

@@ -54,7 +54,7 @@ enum Tangent {
 
 /// What a contact does.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum State {
+enum ContactState {
     Open,
     /// Closed, without friction.
     Closed,
@@ -63,28 +63,28 @@ enum State {
     Slides(f64),
 }
 
-impl State {
+impl ContactState {
     fn is_closed(self) -> bool {
-        self != State::Open
+        self != ContactState::Open
     }
 
     /// Of the present discrete states.
     fn of(contacts: &Contacts, k: usize, discrete: &[f64]) -> Self {
         let contact = &contacts.contacts[k];
         if contact.closed.is_some_and(|i| discrete[i] == 0.0) {
-            return State::Open;
+            return ContactState::Open;
         }
         match contact.direction.map(|i| discrete[i]) {
-            None => State::Closed,
-            Some(0.0) => State::Sticks,
-            Some(direction) => State::Slides(direction),
+            None => ContactState::Closed,
+            Some(0.0) => ContactState::Sticks,
+            Some(direction) => ContactState::Slides(direction),
         }
     }
 
     /// All of them.
     fn all(contacts: &Contacts, discrete: &[f64]) -> Vec<Self> {
         (0..contacts.contacts.len())
-            .map(|k| State::of(contacts, k, discrete))
+            .map(|k| ContactState::of(contacts, k, discrete))
             .collect()
     }
 }

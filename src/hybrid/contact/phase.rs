@@ -339,21 +339,21 @@ impl Phase<'_> {
     }
 
     /// The lines that have an impulse of their own, with what is said of it; `None` if they depend on each other.
-    fn rows(&self, pushes: &[Push]) -> Option<Vec<Row>> {
+    fn rows(&self, pushes: &[Push]) -> Option<Vec<ImpulseCondition>> {
         let constraints = (0..self.contacts.constraints.len()).map(|c| {
             let line = Line::Constraint(c);
-            Row::change(line, About::default())
+            ImpulseCondition::change(line, About::default())
         });
-        let mut rows: Vec<Row> = constraints.collect();
+        let mut rows: Vec<ImpulseCondition> = constraints.collect();
         for (member, push) in self.members.iter().zip(pushes) {
             let line = Line::Normal(member.contact);
             if push.more {
                 let before = self.rates.of(line);
                 let factor = 1.0 + member.restitution;
                 let (value, error) = (-factor * before.value, factor * before.error);
-                rows.push(Row::change(line, About { value, error }));
+                rows.push(ImpulseCondition::change(line, About { value, error }));
             } else if !member.least.is_zero() {
-                rows.push(Row {
+                rows.push(ImpulseCondition {
                     line,
                     is_impulse: true,
                     amount: member.least,
@@ -366,7 +366,11 @@ impl Phase<'_> {
 
     /// Adds the tangents that stick to the rows, but for those that others hold already: of each of these the member, and
     /// the member that holds it. `None` if what they hold is not one tangent.
-    fn join_tangents(&self, pushes: &[Push], rows: &mut Vec<Row>) -> Option<Vec<(usize, usize)>> {
+    fn join_tangents(
+        &self,
+        pushes: &[Push],
+        rows: &mut Vec<ImpulseCondition>,
+    ) -> Option<Vec<(usize, usize)>> {
         let mut joined = Vec::new();
         for (i, member) in self.members.iter().enumerate() {
             if pushes[i].tangent != Friction::Sticks {
@@ -379,7 +383,7 @@ impl Phase<'_> {
                 let back = member.returns * member.slip_before.value;
                 let value = -before.value - back;
                 let error = before.error + member.returns * member.slip_before.error;
-                rows.push(Row::change(line, About { value, error }));
+                rows.push(ImpulseCondition::change(line, About { value, error }));
                 continue;
             }
             let holds = |&other: &usize| {
@@ -392,7 +396,7 @@ impl Phase<'_> {
     }
 
     /// Changes of the rates, then impulses along the rows' lines. Friction of what slips goes with its normal.
-    fn solve(&self, pushes: &[Push], rows: &[Row]) -> Option<Vec<About>> {
+    fn solve(&self, pushes: &[Push], rows: &[ImpulseCondition]) -> Option<Vec<About>> {
         let geometry = self.geometry;
         let n = geometry.own.len();
         let count = n + rows.len();
@@ -430,16 +434,16 @@ impl Phase<'_> {
 
 /// What is said of a line with an impulse.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+struct ImpulseCondition {
     line: Line,
     /// Whether its impulse is given, or the change of its rate.
     is_impulse: bool,
     amount: About,
 }
 
-impl Row {
+impl ImpulseCondition {
     fn change(line: Line, amount: About) -> Self {
-        Row {
+        ImpulseCondition {
             line,
             is_impulse: false,
             amount,
@@ -448,7 +452,7 @@ impl Row {
 }
 
 /// Lines whose rate is given.
-fn held_of(rows: &[Row]) -> Vec<Line> {
+fn held_of(rows: &[ImpulseCondition]) -> Vec<Line> {
     let held = rows.iter().filter(|row| !row.is_impulse);
     held.map(|row| row.line).collect()
 }

@@ -4,7 +4,7 @@ use super::geometry::{Geometry, Line, write_states};
 use super::hold::Places;
 use super::judge::{BACKWARDS, FORWARDS, GAP, SLIP, point};
 use super::many::{Answer, Answers, Asked, Friction, answers};
-use super::{State, Tangent};
+use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
 use crate::model::Contacts;
 use crate::numerics::Unsolved;
@@ -17,12 +17,12 @@ impl<'p> Simulation<'p> {
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &Places,
         touching: &[Option<Tangent>],
-    ) -> Result<Vec<Answers<State>>, Unsolved> {
-        let without_forces: Vec<State> = (contacts.contacts.iter().zip(touching))
+    ) -> Result<Vec<Answers<ContactState>>, Unsolved> {
+        let without_forces: Vec<ContactState> = (contacts.contacts.iter().zip(touching))
             .map(|(contact, tangent)| match (contact.normal, tangent) {
-                (Some(_), _) => State::Open,
-                (None, Some(Tangent::Slips(direction))) => State::Slides(*direction),
-                (None, _) => State::Slides(1.0),
+                (Some(_), _) => ContactState::Open,
+                (None, Some(Tangent::Slips(direction))) => ContactState::Slides(*direction),
+                (None, _) => ContactState::Slides(1.0),
             })
             .collect();
         let mut discrete = self.context.discrete().to_vec();
@@ -57,7 +57,7 @@ impl<'p> Simulation<'p> {
                 .filter_map(|&(line, force)| Some(compliance[at(of, line)?] * force))
                 .sum()
         };
-        let mut all: Vec<Answers<State>> = Vec::new();
+        let mut all: Vec<Answers<ContactState>> = Vec::new();
         // Static friction, until one is seen to slip.
         let mut slips = vec![false; touching.len()];
         loop {
@@ -99,23 +99,23 @@ impl<'p> Simulation<'p> {
             }
             let answers = answers(contacts, geometry, &asked)?;
             let mut goes_on = false;
-            let mut found: Answers<State> = vec![(None, false); touching.len()];
+            let mut found: Answers<ContactState> = vec![(None, false); touching.len()];
             let mut sticks = found.clone();
             for (asked, (answer, open)) in asked.iter().zip(answers) {
                 let k = asked.contact;
                 let state = match (answer, touching[k]) {
-                    (Answer::Opens, _) => State::Open,
-                    (_, Some(Tangent::Slips(direction))) => State::Slides(direction),
-                    (_, Some(Tangent::None)) => State::Closed,
-                    (Answer::Slips(way) | Answer::Yields(way), _) => State::Slides(way),
-                    (Answer::Holds, _) => State::Sticks,
+                    (Answer::Opens, _) => ContactState::Open,
+                    (_, Some(Tangent::Slips(direction))) => ContactState::Slides(direction),
+                    (_, Some(Tangent::None)) => ContactState::Closed,
+                    (Answer::Slips(way) | Answer::Yields(way), _) => ContactState::Slides(way),
+                    (Answer::Holds, _) => ContactState::Sticks,
                 };
                 let starts = matches!(answer, Answer::Slips(_) | Answer::Yields(_));
                 goes_on |= starts && !slips[k] && places.kinetic(k) != places.static_friction(k);
                 slips[k] |= starts;
                 found[k] = (Some(state), open);
                 let held = match (answer, touching[k]) {
-                    (Answer::Yields(_), Some(Tangent::Still)) => State::Sticks,
+                    (Answer::Yields(_), Some(Tangent::Still)) => ContactState::Sticks,
                     _ => state,
                 };
                 sticks[k] = (Some(held), open);

@@ -7,7 +7,7 @@
 //! in it, so that it has a corner if it is not empty: there as many contacts as forces are left undetermined push with the most friction
 //! that they can hold. Such a corner is what a mode can say, and the contacts stick until no corner is left.
 
-use super::State;
+use super::ContactState;
 use super::geometry::{DEPENDENT, Geometry, Line};
 use super::hold::{Places, held_lines};
 use super::many::MAY_BE_ZERO;
@@ -51,14 +51,14 @@ impl Sharing {
         contacts: &Contacts,
         geometry: &Geometry,
         at: &Places,
-        states: &[State],
+        states: &[ContactState],
     ) -> Option<Self> {
         let [places, _] = held_lines(contacts, states);
         if geometry.independent(&places).len() < places.len() {
             return None;
         }
         let (mut first, mut joined): (Vec<usize>, Vec<(usize, usize)>) = Default::default();
-        for k in (0..states.len()).filter(|&k| states[k] == State::Sticks) {
+        for k in (0..states.len()).filter(|&k| states[k] == ContactState::Sticks) {
             let holds = |&&of: &&usize| geometry.are_parallel(Line::Tangent(k), Line::Tangent(of));
             match first.iter().find(holds) {
                 Some(&of) => joined.push((k, of)),
@@ -73,7 +73,7 @@ impl Sharing {
             _ => {
                 let pushed = |&line: &Line| match line {
                     Line::Normal(k) => match states[k] {
-                        State::Slides(direction) => {
+                        ContactState::Slides(direction) => {
                             vec![(line, 1.0), (Line::Tangent(k), -at.kinetic(k) * direction)]
                         }
                         _ => vec![(line, 1.0)],

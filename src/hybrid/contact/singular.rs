@@ -3,7 +3,7 @@
 //! There the forces have a pole, while the motion goes on smoothly as a rule. How well the force is determined that is
 //! determined least ([`Geometry::least_determined`]) is held against where in the run it was determined best.
 
-use super::State;
+use super::ContactState;
 use super::geometry::{DEPENDENT, Geometry, Line};
 use super::hold::held_lines;
 use crate::hybrid::failure::Reason;
@@ -36,7 +36,7 @@ impl Conditioning {
         if contacts.constraints.is_empty() {
             return None;
         }
-        let [places, _] = held_lines(contacts, &State::all(contacts, context.discrete()));
+        let [places, _] = held_lines(contacts, &ContactState::all(contacts, context.discrete()));
         let geometry = Geometry::new(kernel, context, contacts, state);
         Some(Conditioning { geometry, places })
     }

@@ -3,7 +3,7 @@
 use super::geometry::{Geometry, Line, multiplier};
 use super::hold::{Places, held_lines, held_with, hold_lines};
 use super::impact::Impacted;
-use super::{State, Tangent};
+use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
 use crate::kernel::ModeKernel;
 use crate::model::{Contact, Contacts};
@@ -74,7 +74,7 @@ impl Simulation<'_> {
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        (stops, before): (Option<Line>, &[State]),
+        (stops, before): (Option<Line>, &[ContactState]),
     ) -> Standing<F> {
         let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
         let [places, mut still] = held_lines(contacts, before);
@@ -96,11 +96,13 @@ impl Simulation<'_> {
         let beside = held_with(contacts, before, &at, || &geometry);
         let touching = (before.iter().zip(&contacts.contacts).enumerate())
             .map(|(k, (&state, contact))| match state {
-                State::Open if beside.contains(&k) => Some(match stops(Line::Tangent(k)) {
+                ContactState::Open if beside.contains(&k) => Some(match stops(Line::Tangent(k)) {
                     true if contact.tangent.is_some() => Tangent::Still,
                     _ => tangent_at(contact, k, &at),
                 }),
-                State::Open if contact.is_ratchet && stops(Line::Normal(k)) => Some(Tangent::None),
+                ContactState::Open if contact.is_ratchet && stops(Line::Normal(k)) => {
+                    Some(Tangent::None)
+                }
                 _ => tangent_of(state, || stops(Line::Tangent(k))),
             })
             .collect();
@@ -137,14 +139,14 @@ impl Simulation<'_> {
         &mut self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        (k, before): (usize, &[State]),
+        (k, before): (usize, &[ContactState]),
     ) -> Standing<F> {
         let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
         let context = &mut self.context;
         let at = Places::new(kernel, context, contacts, [&q, &v]);
         let closes = |j: usize| {
             let (gap, rounding) = at.place(Line::Normal(j));
-            let is_open = before[j] == State::Open && !contacts.contacts[j].is_ratchet;
+            let is_open = before[j] == ContactState::Open && !contacts.contacts[j].is_ratchet;
             is_open && (j == k || gap <= rounding)
         };
         let [mut places, rates] = held_lines(contacts, before);
@@ -184,12 +186,12 @@ pub(super) fn tangent_at(contact: &Contact, k: usize, places: &Places) -> Tangen
 }
 
 /// What the tangent of a contact in a state does; `stops`: whether the slip rate of one that slides has come to zero.
-fn tangent_of(state: State, stops: impl FnOnce() -> bool) -> Option<Tangent> {
+fn tangent_of(state: ContactState, stops: impl FnOnce() -> bool) -> Option<Tangent> {
     match state {
-        State::Open => None,
-        State::Closed => Some(Tangent::None),
-        State::Sticks => Some(Tangent::Still),
-        State::Slides(_) if stops() => Some(Tangent::Still),
-        State::Slides(direction) => Some(Tangent::Slips(direction)),
+        ContactState::Open => None,
+        ContactState::Closed => Some(Tangent::None),
+        ContactState::Sticks => Some(Tangent::Still),
+        ContactState::Slides(_) if stops() => Some(Tangent::Still),
+        ContactState::Slides(direction) => Some(Tangent::Slips(direction)),
     }
 }

@@ -4,7 +4,7 @@ use super::equilibrium::no_rest;
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, hold_lines};
 use super::standing::Standing;
-use super::{State, Tangent};
+use super::{ContactState, Tangent};
 use crate::hybrid::failure::{Misfitting, Reason, Stoppable};
 use crate::hybrid::limits::check_bounds;
 use crate::hybrid::simulation::Simulation;
@@ -46,7 +46,7 @@ impl<'p> Simulation<'p> {
         contacts: &'p Contacts,
     ) -> Stoppable<()> {
         let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
-        let open = vec![State::Open; contacts.contacts.len()];
+        let open = vec![ContactState::Open; contacts.contacts.len()];
         write_states(contacts, &open, self.context.discrete_mut());
         if self.problem.project || self.problem.at_rest {
             self.project(kernel, contacts, [&mut q, &mut v]);

@@ -13,7 +13,7 @@ use crate::run::Peak;
 
 impl<const F: usize, const W: usize> Group<'_, F, W> {
     /// Takes note of a step to `next` in lanes that make it: its end, and what is beyond both ends within.
-    pub fn look_for_extremes(&mut self, made: LaneMask) {
+    pub fn find_extremes(&mut self, made: LaneMask) {
         let Some(extremes) = &mut self.extremes else {
             return;
         };
@@ -21,7 +21,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         let tau = &self.way.durations[0];
         let inside = lane_may_exceed(level, order, &self.taylor.series, tau, extremes);
         for lane in (inside & made).lanes() {
-            self.look_inside(lane);
+            self.find_extremes_within(lane);
         }
         if let Some(extremes) = &mut self.extremes {
             lane_note(level, made, &self.next, extremes);
@@ -37,7 +37,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
 
     /// Takes note of the extrema of all polynomials of a step of a lane.
     #[cold]
-    fn look_inside(&mut self, lane: usize) {
+    fn find_extremes_within(&mut self, lane: usize) {
         let Some(extremes) = &mut self.extremes else {
             return;
         };

@@ -28,7 +28,7 @@ pub(super) enum Outcome {
 }
 
 /// A guard of the mode that is watched and is a coordinate or a rate.
-pub(super) struct WatchedGuard<const W: usize> {
+pub(super) struct CoordinateGuard<const W: usize> {
     /// Index in the mode, and among those that are watched.
     pub guard: usize,
     place: usize,
@@ -104,7 +104,7 @@ pub(super) struct Group<'p, const F: usize, const W: usize> {
     pub taylor: LaneTaylor<F, W>,
     pub context: LaneContext<W>,
     pub signals: LaneSignals<'p, W>,
-    pub guards: Vec<WatchedGuard<W>>,
+    pub guards: Vec<CoordinateGuard<W>>,
     /// Indices of the other guards that are watched, in the mode, and room for the coefficients of one.
     pub general: Vec<usize>,
     pub room: [Lanes<W>; ORDERS],
@@ -178,7 +178,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 transition: transition.unwrap_or_default(),
                 mode: like.here.mode,
             };
-            Some(WatchedGuard {
+            Some(CoordinateGuard {
                 guard: watched.guard,
                 place,
                 of: (index, rate),

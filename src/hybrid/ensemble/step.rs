@@ -8,7 +8,7 @@ use super::group::{Group, Way};
 use crate::input::Signals;
 use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{
-    LaneGuard, lane_crossed, lane_durations, lane_first_fall, lane_take, lane_unmet,
+    LaneGuard, lane_crossed, lane_durations, lane_first_crossing, lane_take, lane_unmet,
 };
 
 /// Part of a step beyond which a root of its polynomial is not moved by rounding: as in
@@ -27,13 +27,13 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
         let limits = ([&self.last, horizon], &self.past.tolerances[..]);
         let to = (&mut self.way.h, &mut unclear);
         let reached = self.taylor.length(&self.here, limits, to);
-        let falls = self.first_falls(&mut unclear);
+        let falls = self.first_crossings(&mut unclear);
         unclear = unclear | self.land(falls);
         unclear = unclear | self.unmet();
         let until = reached & !falls;
 
         let made = self.occupied & !unclear;
-        self.look_for_extremes(made);
+        self.find_extremes(made);
         self.here.take(self.level, made, &self.next);
         self.at_start = self.at_start & !made;
         for guard in &mut self.guards {
@@ -94,7 +94,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
     }
 
     /// Looks for the first fall of a guard in each lane; gives the lanes with one.
-    fn first_falls(&mut self, unclear: &mut LaneMask) -> LaneMask {
+    fn first_crossings(&mut self, unclear: &mut LaneMask) -> LaneMask {
         let mut falls = LaneMask::NONE;
         let Way {
             h,
@@ -109,7 +109,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             let (linear, coefficients) = (&guard.linear, &mut guard.coefficients);
             let found = self
                 .taylor
-                .first_fall(guard.of, h, linear, coefficients, places);
+                .first_crossing(guard.of, h, linear, coefficients, places);
             let ([mut first, look], count) = found;
             for lane in (look & self.occupied & !*unclear).lanes() {
                 let dormant = guard.linear.starts_at_zero.is(lane);
@@ -129,14 +129,14 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             falls = falls | first;
         }
         if !self.general.is_empty() {
-            self.look_at_general(unclear);
+            self.search_general(unclear);
         }
         falls
     }
 
     /// Marks the lanes in which a guard that is no coordinate and no rate may fall before the first of those that are, by its own
     /// series, or that does not fall off: that is for the engine.
-    fn look_at_general(&mut self, unclear: &mut LaneMask) {
+    fn search_general(&mut self, unclear: &mut LaneMask) {
         let order = self.taylor.order();
         let (context, series) = (&mut self.context, &mut self.taylor.series);
         let rows = (self.kernel).lane_guard_series(self.level, context, order, series);
@@ -151,7 +151,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             let (coefficients, mut place) = (&mut self.room, *places);
             let (all, which) = ((rows, order), (self.kernel.guards, guard));
             let [falls, looks] =
-                lane_first_fall(self.level, all, which, h, &itself, coefficients, &mut place);
+                lane_first_crossing(self.level, all, which, h, &itself, coefficients, &mut place);
             let mut sizes = [Lanes::<W>::of(0.0); 2];
             for (k, own) in coefficients[..order].iter().enumerate() {
                 let last = k + 2 >= order;

@@ -2,7 +2,7 @@
 //! mode, nothing stands still, and no guard acts at once. All others are taken by the engine for single runs.
 
 use super::super::simulation::Simulation;
-use super::group::{Group, WatchedGuard};
+use super::group::{CoordinateGuard, Group};
 use crate::integrate::{LaneMask, Lanes};
 use crate::kernel::{lane_departs, lane_is_apart, lane_leap, lane_take};
 use crate::run::Jump;
@@ -86,7 +86,7 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
 
     /// Records the transition of a guard that a lane has just taken: as [`Simulation::fire`], where the time advances
     /// before the next one, no transition is counted, and nothing is asked about doubts.
-    pub fn record(&self, guard: &WatchedGuard<W>, lane: usize, into: &mut Simulation) {
+    pub fn record(&self, guard: &CoordinateGuard<W>, lane: usize, into: &mut Simulation) {
         let at = self.now(lane);
         let here = &mut into.here;
         here.j += 1;

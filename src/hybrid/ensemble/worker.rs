@@ -86,11 +86,11 @@ struct Slot<'a> {
     simulation: Simulation<'a>,
     /// The member that it is.
     member: usize,
-    state: State,
+    state: Progress,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum State {
+enum Progress {
     /// It has come to its end.
     Free,
     /// It is in a mode that goes in lanes.
@@ -129,7 +129,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         let slot = |_| Slot {
             simulation: Simulation::new(&ensemble.problem).expect("the scene was prepared"),
             member: 0,
-            state: State::Free,
+            state: Progress::Free,
         };
         Worker {
             ensemble,
@@ -161,7 +161,7 @@ impl<'a, const W: usize> Worker<'a, W> {
 
     /// Starts members in a slot until one waits for a lane, and looks for one.
     fn fill(&mut self, slot: usize, take: &mut impl FnMut(usize, Finished)) {
-        while self.slots[slot].state == State::Free && !self.stop.is_reached() {
+        while self.slots[slot].state == Progress::Free && !self.stop.is_reached() {
             let member = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(next) = self.members.get(member) else {
                 return;
@@ -179,7 +179,7 @@ impl<'a, const W: usize> Worker<'a, W> {
                 }
             }
         }
-        if self.slots[slot].state == State::Waiting {
+        if self.slots[slot].state == Progress::Waiting {
             self.find_lane(slot);
         }
     }
@@ -206,7 +206,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             lanes.group.load(lane, simulation);
             lanes.slots[lane] = Some(slot);
             lanes.occupied += 1;
-            self.slots[slot].state = State::InLane;
+            self.slots[slot].state = Progress::InLane;
         }
     }
 
@@ -221,7 +221,7 @@ impl<'a, const W: usize> Worker<'a, W> {
             let simulation = &mut self.slots[slot].simulation;
             lanes.group.unload(lane, simulation);
             simulation.visited.clear();
-            let passed = simulation.look_for_accumulation();
+            let passed = simulation.find_accumulation();
             self.leave(mode, lane, passed.map(|()| true), false, take);
         }
         for lane in ended.lanes() {
@@ -269,7 +269,7 @@ impl<'a, const W: usize> Worker<'a, W> {
         lanes.occupied -= 1;
         self.vacancies = true;
         self.go_on(slot, passed, alone, take);
-        if self.slots[slot].state == State::Waiting {
+        if self.slots[slot].state == Progress::Waiting {
             self.find_lane(slot);
         }
     }
@@ -304,13 +304,13 @@ impl<'a, const W: usize> Worker<'a, W> {
                 && self.ensemble.in_lanes[simulation.here.mode]
                 && Group::<0, W>::takes(simulation)
             {
-                *state = State::Waiting;
+                *state = Progress::Waiting;
                 return;
             }
             alone = false;
             passed = simulation.advance_to_event(&mut self.stop);
         };
-        *state = State::Free;
+        *state = Progress::Free;
         // One that was stopped has not come to its end.
         if self.stop.is_reached() {
             return;

@@ -8,7 +8,7 @@ use crate::numerics::Size;
 
 impl Observers<'_> {
     /// Looks for extremes of all that is represented in a part of a step.
-    pub(super) fn look_for_extremes<F: Size, M: Motion<F>>(
+    pub(super) fn find_extremes<F: Size, M: Motion<F>>(
         &mut self,
         extremes: &mut Extremes,
         step: &mut Step<F, M>,
@@ -25,7 +25,7 @@ impl Observers<'_> {
                 continue;
             }
             let time = |place: f64| seconds(part.time(place));
-            let summits = extremes.look(&self.interpolants, f, column, rate, time);
+            let summits = extremes.update(&self.interpolants, f, column, rate, time);
             for place in summits.into_iter().flatten() {
                 let n = step.equations.kernel.size().get();
                 let tau = polish((step.motion, n), part, f, part.time(place));
@@ -38,7 +38,7 @@ impl Observers<'_> {
 
     /// Looks for extremes of what was dissipated and of the work of the inputs: their ends, and where a power
     /// changes its sign.
-    pub(super) fn look_for_extremes_of_work<F: Size, M: Motion<F>>(
+    pub(super) fn find_extremes_of_work<F: Size, M: Motion<F>>(
         &self,
         extremes: &mut Extremes,
         step: &Step<F, M>,

@@ -2,7 +2,7 @@
 
 use super::interpolants::{Interpolants, place};
 use crate::numerics::{Memory, Persist};
-use crate::run::{Group, Layout, Peak};
+use crate::run::{ColumnKind, Layout, Peak};
 use std::ops::Range;
 
 /// The extremes so far, one of each column that has one.
@@ -43,9 +43,9 @@ impl Extremes {
         };
         Extremes {
             coordinates: layout.coordinates.len(),
-            reactions: layout.range(Group::Reaction),
-            outputs: layout.range(Group::Output),
-            energies: layout.range(Group::Energy),
+            reactions: layout.range(ColumnKind::Reaction),
+            outputs: layout.range(ColumnKind::Output),
+            energies: layout.range(ColumnKind::Energy),
             peaks: vec![nothing; layout.columns().len()].into(),
         }
     }
@@ -124,7 +124,7 @@ impl Extremes {
 
     /// Takes the values of a function at the nodes, at times given by `time` (of the place in the window), and gives
     /// the places between nodes at which it may exceed the largest value and fall below the smallest.
-    pub fn look(
+    pub fn update(
         &mut self,
         of: &Interpolants,
         function: usize,

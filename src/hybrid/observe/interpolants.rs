@@ -6,7 +6,7 @@
 //! cosines of φ, and its nodes are equally spaced in φ: between two of them it exceeds the larger
 //! value by no more than (π/n)²/8 Σ k²|cₖ|.
 
-use super::summit::Search;
+use super::summit::SummitSearch;
 use crate::numerics::{Memory, Persist};
 use std::f64::consts::PI;
 
@@ -315,7 +315,7 @@ impl Interpolants {
         let room = self.overshoot(function);
         let value = |node: usize| sign * self.value_at(node, function);
         let stride = MOST / self.degree;
-        let mut search: Option<Search> = None;
+        let mut search: Option<SummitSearch> = None;
         for node in (stride..=MOST).step_by(stride) {
             let most = value(node - stride).max(value(node)) + room;
             let best = search.as_ref().map_or(best, |search| search.best);
@@ -326,7 +326,7 @@ impl Interpolants {
             let search = search.get_or_insert_with(|| {
                 let of = self.polynomial(function).times(sign);
                 let least = self.rounding(function).max(self.error(function));
-                Search::new(of, least, best)
+                SummitSearch::new(of, least, best)
             });
             search.climb([node - stride, node], PI / self.degree as f64);
         }

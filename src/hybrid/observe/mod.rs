@@ -396,7 +396,7 @@ impl<'o> Observers<'o> {
         let powers = self.ledger.is_some() && (step.work.is_none() || inside);
         if due || powers || self.extremes.is_some() {
             let start = step.motion.start();
-            if let ControlFlow::Break(cut) = self.look(&mut step, start, powers) {
+            if let ControlFlow::Break(cut) = self.observe(&mut step, start, powers) {
                 return ControlFlow::Break(self.cut(&mut step, cut, powers));
             }
         } else {
@@ -424,7 +424,7 @@ impl<'o> Observers<'o> {
         (step.end, step.beyond, step.work) = (tau, 0.0, None);
         self.joined = false;
         if tau > from && self.watches() {
-            let _ = self.look(step, from, self.ledger.is_some());
+            let _ = self.observe(step, from, self.ledger.is_some());
         }
         t
     }
@@ -461,8 +461,8 @@ impl<'o> Observers<'o> {
         });
     }
 
-    /// Looks at a step from local time `start` on.
-    fn look<F: Size, M: Motion<F>>(
+    /// Observes a step from local time `start` on.
+    fn observe<F: Size, M: Motion<F>>(
         &mut self,
         step: &mut Step<F, M>,
         start: f64,
@@ -544,10 +544,10 @@ impl<'o> Observers<'o> {
             return ControlFlow::Break(sampled);
         }
         if let Some(mut extremes) = self.extremes.take() {
-            self.look_for_extremes(&mut extremes, step, part, columns);
+            self.find_extremes(&mut extremes, step, part, columns);
             if powers && self.functions.stored {
                 let work = (work.as_ref(), whole);
-                self.look_for_extremes_of_work(&mut extremes, step, part, (columns, work));
+                self.find_extremes_of_work(&mut extremes, step, part, (columns, work));
             }
             self.extremes = Some(extremes);
         }

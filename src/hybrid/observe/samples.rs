@@ -16,11 +16,11 @@ use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Contacts, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
-use crate::run::{Group, Layout};
+use crate::run::{ColumnKind, Layout};
 use std::ops::ControlFlow;
 
 /// What a row needs besides the state.
-pub(super) struct Row<'a> {
+pub(super) struct RowSource<'a> {
     pub layout: &'a Layout,
     pub q: &'a [f64],
     pub v: &'a [f64],
@@ -32,7 +32,7 @@ pub(super) struct Row<'a> {
     pub ledger: [f64; 4],
 }
 
-impl Row<'_> {
+impl RowSource<'_> {
     /// Fills a row; the context is set to its time.
     pub fn fill<F: Size>(
         mut self,
@@ -44,28 +44,28 @@ impl Row<'_> {
         let n = self.layout.coordinates.len();
         row[..n].copy_from_slice(&self.q[..n]);
         row[n..2 * n].copy_from_slice(&self.v[..n]);
-        let reactions = self.layout.range(Group::Reaction);
+        let reactions = self.layout.range(ColumnKind::Reaction);
         if has_reactions(self.layout, self.outputs.1) {
             self.outputs
                 .0
                 .reactions(kernel, context, at, &mut row[reactions]);
         }
-        let discrete = self.layout.range(Group::Discrete);
+        let discrete = self.layout.range(ColumnKind::Discrete);
         for (into, &i) in row[discrete].iter_mut().zip(self.discretes) {
             *into = context.discrete()[i];
         }
-        let outputs = self.layout.range(Group::Output);
+        let outputs = self.layout.range(ColumnKind::Output);
         if !outputs.is_empty() {
             let (of, mode) = &mut self.outputs;
             of.evaluate(kernel, context, mode, at, &mut row[outputs]);
         }
-        let energies = self.layout.range(Group::Energy);
+        let energies = self.layout.range(ColumnKind::Energy);
         if !energies.is_empty() {
             let [kinetic, potential] = kernel.energies(context, at);
             self.ledger[0] = kinetic + potential;
             row[energies].copy_from_slice(&self.ledger);
         }
-        let inputs = self.layout.range(Group::Input);
+        let inputs = self.layout.range(ColumnKind::Input);
         if !inputs.is_empty() {
             row[inputs].copy_from_slice(context.signals());
         }
@@ -309,7 +309,7 @@ impl Observers<'_> {
             }
             let place = (tau - part.from) / (part.to - part.from);
             let work = work.map_or([0.0; 2], |work| work.each_ref().map(|w| w.value(place)));
-            let row = Row {
+            let row = RowSource {
                 layout: &self.layout,
                 q: &here.q,
                 v: &here.v,
@@ -351,7 +351,7 @@ impl Observers<'_> {
         (mode, here): (&Mode, &Here),
         at: Free<F>,
     ) -> ControlFlow<()> {
-        let row = Row {
+        let row = RowSource {
             layout: &self.layout,
             q: &here.q,
             v: &here.v,
@@ -402,7 +402,7 @@ impl Simulation<'_> {
             context,
             ..
         } = self;
-        let row = Row {
+        let row = RowSource {
             layout: &observers.layout,
             q: &here.q,
             v: &here.v,

@@ -11,7 +11,7 @@ use super::interpolants::{Interpolants, MOST, Polynomial, place};
 const MOST_HALVINGS: u32 = 5;
 
 /// The search of one polynomial.
-pub(super) struct Search {
+pub(super) struct SummitSearch {
     /// The polynomial, and its first two derivatives with respect to 2s − 1.
     of: [Polynomial; 3],
     /// Bounds of its second and third derivative with respect to φ.
@@ -41,11 +41,11 @@ struct Point {
 /// The ends of an interval of φ.
 struct Ends([Point; 2]);
 
-impl Search {
+impl SummitSearch {
     /// Of a polynomial for a value above `best`.
     pub fn new(of: Polynomial, least: f64, best: f64) -> Self {
         let slope = of.derivative();
-        Search {
+        SummitSearch {
             bends: [2, 3].map(|power| of.bound_of_derivative(power)),
             of: [of, slope, slope.derivative()],
             least,

@@ -63,7 +63,7 @@ mod chebyshev;
 mod doubles;
 mod earliest;
 mod extrema;
-mod first_fall;
+mod first_crossing;
 mod function;
 mod polynomial;
 mod quadratic;
@@ -76,7 +76,7 @@ pub(super) use earliest::{at_most_one, first_of_several};
 pub use function::search;
 pub use polynomial::Polynomial;
 pub(super) use polynomial::sum_of;
-pub(super) use quadratic::straight_fall;
+pub(super) use quadratic::straight_crossing;
 
 /// Remembered sign of a guard at the start of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

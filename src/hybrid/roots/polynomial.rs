@@ -2,7 +2,7 @@
 
 use super::bracket::{close, departure};
 use super::extrema::{Count, Expansion, Places, extrema};
-use super::first_fall::first_fall;
+use super::first_crossing::first_crossing;
 use super::walk::{Pieces, walk};
 use super::{Isolation, Kind, Search, Watch};
 use crate::integrate::stretch;
@@ -187,7 +187,7 @@ impl<const N: usize> Polynomial<N> {
             *found = Search::above(self.coefficients[0] + rise - falls);
         } else if from >= to {
             *found = Search::nothing(Watch::Armed);
-        } else if !first_fall(self, (from, to), isolation, found) {
+        } else if !first_crossing(self, (from, to), isolation, found) {
             *found = self.search_pieces(from, to, Watch::Armed, noise);
         }
     }

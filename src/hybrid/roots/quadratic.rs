@@ -1,6 +1,6 @@
 //! The first fall of a guard that is a parabola, such as the height in a free flight, or a straight line.
 
-use super::first_fall::{certain_fall, fall_beside};
+use super::first_crossing::{certain_crossing, crossing_beside};
 use super::polynomial::{Polynomial, sum_of};
 use super::{Isolation, Kind, Search, Watch};
 
@@ -10,7 +10,7 @@ pub(super) const ROOM: usize = 3;
 /// Writes the first event of an armed guard c₀ + c₁ s + c₂ s² in `from` < s ≤ `to`, or that there is none; false where
 /// rounding decides.
 #[inline(always)]
-pub(super) fn first_fall<const N: usize>(
+pub(super) fn first_crossing<const N: usize>(
     polynomial: &Polynomial<N>,
     (from, to): (f64, f64),
     isolation: Isolation,
@@ -36,12 +36,12 @@ pub(super) fn first_fall<const N: usize>(
         let derivatives = [c1 + 2.0 * c2 * s, 2.0 * c2];
         let event = match isolation {
             Isolation::Place => Some(Search::found(s, s, Kind::Fall, Watch::Violated)),
-            Isolation::Bracket => certain_fall(polynomial, (from, to), s, margin, derivatives),
+            Isolation::Bracket => certain_crossing(polynomial, (from, to), s, margin, derivatives),
         };
         let event = event.unwrap_or_else(|| {
             let mut value = |s: f64| polynomial.value(s);
             let point = (s, value(s));
-            fall_beside(&mut value, ((from, start), (to, end)), point)
+            crossing_beside(&mut value, ((from, start), (to, end)), point)
         });
         *found = match c2 > 0.0 {
             true => event.turning(turn),
@@ -66,7 +66,7 @@ pub(super) fn first_fall<const N: usize>(
 /// The first event of an armed guard that is `value` + `slope` · τ in 0 < τ ≤ `length`, by a place in τ
 /// ([`Isolation::Place`]), or that there is none; `None` where rounding decides.
 #[inline(always)]
-pub(in crate::hybrid) fn straight_fall(value: f64, slope: f64, length: f64) -> Option<Search> {
+pub(in crate::hybrid) fn straight_crossing(value: f64, slope: f64, length: f64) -> Option<Search> {
     let change = slope * length;
     let end = value + change;
     let margin = Polynomial::<2>::ROUNDING * (value.abs() + change.abs());
@@ -111,7 +111,7 @@ mod tests {
                 coefficients: [value, slope / length * length, 0.0],
             };
             polynomial.search_armed((0.0, 1.0), 0.0, Isolation::Place, &mut expected);
-            let Some(found) = straight_fall(value, slope / length, length) else {
+            let Some(found) = straight_crossing(value, slope / length, length) else {
                 assert_eq!(i % 4, 0, "{value} {slope}");
                 continue;
             };

@@ -3,7 +3,7 @@
 use super::length::{self, Terms};
 use crate::kernel::{
     LANE_ROWS, LaneGuard, LaneLevel, LaneLimits, LanePoint, LaneSeries, LaneSystem, lane_begin,
-    lane_cross, lane_end, lane_first_fall, lane_length, lane_start,
+    lane_cross, lane_end, lane_first_crossing, lane_length, lane_start,
 };
 use crate::numerics::{LaneMask, Lanes, ORDERS, SeriesKind};
 
@@ -99,9 +99,9 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
     }
 
     /// Looks for the first fall of a guard that is coordinate `index` or its rate times a factor and an
-    /// offset: see [`lane_first_fall`]. Gives the number of coefficients, too.
+    /// offset: see [`lane_first_crossing`]. Gives the number of coefficients, too.
     #[inline]
-    pub fn first_fall(
+    pub fn first_crossing(
         &self,
         (index, rate): (usize, bool),
         h: &Lanes<W>,
@@ -115,7 +115,7 @@ impl<const F: usize, const W: usize> LaneTaylor<F, W> {
         };
         let (count, which) = (rows.len(), (F, index));
         let rows = (rows.as_flattened(), count);
-        let found = lane_first_fall(self.level, rows, which, h, guard, coefficients, place);
+        let found = lane_first_crossing(self.level, rows, which, h, guard, coefficients, place);
         (found, count)
     }
 

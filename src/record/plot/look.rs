@@ -1,7 +1,7 @@
 //! How pictures look, where the reader has a choice.
 
 use super::format::Format;
-use crate::record::{Column, Group, Layout, Units};
+use crate::record::{Column, ColumnKind, Layout, Units};
 
 /// Least width and height of a picture, in pixels: below that labels cover each other.
 pub const LEAST: (f64, f64) = (320.0, 200.0);
@@ -26,17 +26,17 @@ pub struct Look {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Asked {
     Columns(Vec<usize>),
-    Group(Group),
+    Group(ColumnKind),
 }
 
 /// The groups by the words for them.
-const GROUPS: [(&str, Group); 6] = [
-    ("coordinates", Group::Coordinate),
-    ("velocities", Group::Velocity),
-    ("outputs", Group::Output),
-    ("reactions", Group::Reaction),
-    ("energies", Group::Energy),
-    ("inputs", Group::Input),
+const GROUPS: [(&str, ColumnKind); 6] = [
+    ("coordinates", ColumnKind::Coordinate),
+    ("velocities", ColumnKind::Velocity),
+    ("outputs", ColumnKind::Output),
+    ("reactions", ColumnKind::Reaction),
+    ("energies", ColumnKind::Energy),
+    ("inputs", ColumnKind::Input),
 ];
 
 impl Look {
@@ -159,7 +159,7 @@ mod tests {
         let asked = look(&["energies", "x"]).asked(&layout).unwrap();
         assert_eq!(
             asked,
-            [Asked::Group(Group::Energy), Asked::Columns(vec![0])]
+            [Asked::Group(ColumnKind::Energy), Asked::Columns(vec![0])]
         );
         let error = look(&["z"]).check(&layout).unwrap_err();
         assert!(

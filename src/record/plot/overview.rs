@@ -11,7 +11,7 @@ use super::panel::{
 use super::strip::Strip;
 use super::symbol::symbol;
 use crate::record::number::rounded;
-use crate::record::{Column, Group, Run, Sketch};
+use crate::record::{Column, ColumnKind, Run, Sketch};
 
 /// Width of the picture where no other is asked for, and of its margins, which hold the labels of the axes and, on the
 /// right, the numbers of transitions.
@@ -43,7 +43,7 @@ const TITLE: Font = Font {
 
 /// The curves of one panel.
 struct Panel {
-    group: Group,
+    group: ColumnKind,
     unit: String,
     range: (f64, f64),
     /// Columns, with the range of each.
@@ -153,13 +153,13 @@ fn time_axis(run: &Run, sketch: &Sketch, look: &Look) -> Axis {
 }
 
 /// The order of groups where none is asked for: the response before what causes it.
-const ORDER: [Group; 6] = [
-    Group::Coordinate,
-    Group::Velocity,
-    Group::Output,
-    Group::Reaction,
-    Group::Energy,
-    Group::Input,
+const ORDER: [ColumnKind; 6] = [
+    ColumnKind::Coordinate,
+    ColumnKind::Velocity,
+    ColumnKind::Output,
+    ColumnKind::Reaction,
+    ColumnKind::Energy,
+    ColumnKind::Input,
 ];
 
 /// Divides the columns among panels; also a sentence about those that never change.
@@ -254,8 +254,8 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, look: &Look) -> Vec<Curve> {
         let column = &sketch.columns()[i];
         // Of a rate the symbol says it all, and a lone one has it beside its axis.
         let label = match (panel.group, panel.columns.len()) {
-            (Group::Velocity, 1) => String::new(),
-            (Group::Velocity, _) => symbol(&column.name),
+            (ColumnKind::Velocity, 1) => String::new(),
+            (ColumnKind::Velocity, _) => symbol(&column.name),
             _ => format!("{}: {}", symbol(&column.name), column.meaning),
         };
         Curve {
@@ -270,16 +270,20 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, look: &Look) -> Vec<Curve> {
 /// The symbol of the only quantity of a panel, or the kind of its quantities.
 fn axis_title(sketch: &Sketch, panel: &Panel) -> String {
     match (&panel.columns[..], panel.group) {
-        ([(i, _)], Group::Coordinate | Group::Velocity | Group::Output | Group::Reaction) => {
-            symbol(&sketch.columns()[*i].name)
-        }
-        (_, Group::Coordinate) => "coordinate".into(),
-        (_, Group::Velocity) => "velocity".into(),
-        (_, Group::Reaction) => "reaction".into(),
-        (_, Group::Output) => "output".into(),
-        (_, Group::Energy) => "energy".into(),
-        (_, Group::Input) => "input".into(),
-        (_, Group::Discrete) => "state".into(),
+        (
+            [(i, _)],
+            ColumnKind::Coordinate
+            | ColumnKind::Velocity
+            | ColumnKind::Output
+            | ColumnKind::Reaction,
+        ) => symbol(&sketch.columns()[*i].name),
+        (_, ColumnKind::Coordinate) => "coordinate".into(),
+        (_, ColumnKind::Velocity) => "velocity".into(),
+        (_, ColumnKind::Reaction) => "reaction".into(),
+        (_, ColumnKind::Output) => "output".into(),
+        (_, ColumnKind::Energy) => "energy".into(),
+        (_, ColumnKind::Input) => "input".into(),
+        (_, ColumnKind::Discrete) => "state".into(),
     }
 }
 

@@ -9,7 +9,7 @@ use super::palette::{PAPER, line};
 use super::panel::{Area, Curve, SMALL, range};
 use super::symbol::symbol;
 use crate::record::number::rounded;
-use crate::record::{Group, Run, Sketch};
+use crate::record::{ColumnKind, Run, Sketch};
 
 /// Size of a portrait.
 const SIZE: (f64, f64) = (380.0, 330.0);
@@ -58,8 +58,8 @@ pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Opt
 
 /// The phase portraits of the coordinates that move, as charts of a path in the plane.
 pub(crate) fn portraits(run: &Run, sketch: &Sketch, look: &Look) -> Vec<Chart> {
-    let coordinates = run.layout.range(Group::Coordinate);
-    let velocities = run.layout.range(Group::Velocity);
+    let coordinates = run.layout.range(ColumnKind::Coordinate);
+    let velocities = run.layout.range(ColumnKind::Velocity);
     let of = |(q, v)| portrait(sketch, (q, v), look.window);
     coordinates.zip(velocities).filter_map(of).collect()
 }

@@ -1,7 +1,7 @@
 //! What a study file measures, and what it calls a failure.
 
 use crate::hybrid::Problem;
-use crate::run::Group;
+use crate::run::ColumnKind;
 use crate::scene::check::{Checked, unknown_name};
 use crate::scene::error::{SceneError, SceneErrors};
 use crate::scene::format::transition_names;
@@ -11,7 +11,7 @@ use crate::study::measure::{Failure, Measure, What, limits, quantities};
 
 /// What can be measured of a scene.
 struct Known {
-    quantities: Vec<(String, String, Group)>,
+    quantities: Vec<(String, String, ColumnKind)>,
     transitions: Vec<&'static str>,
     limits: Vec<String>,
 }
@@ -38,7 +38,7 @@ impl Known {
         // Discrete states have no extremes, and the inputs are known.
         let quantity = |extremes: bool| {
             let all = self.quantities.iter();
-            let known = all.filter(|(_, _, group)| !(extremes && *group == Group::Discrete));
+            let known = all.filter(|(_, _, group)| !(extremes && *group == ColumnKind::Discrete));
             let known: Vec<_> = known.collect();
             let found = known.iter().find(|(known, ..)| known == of);
             found.map(|(_, unit, _)| unit.clone()).ok_or_else(|| {
@@ -106,7 +106,7 @@ pub(super) fn measures(
         return Ok(measures);
     }
     let coordinates = known.quantities.iter();
-    let coordinates = coordinates.filter(|(_, _, group)| *group == Group::Coordinate);
+    let coordinates = coordinates.filter(|(_, _, group)| *group == ColumnKind::Coordinate);
     let of_coordinates = coordinates.flat_map(|(c, ..)| [format!("peak.{c}"), format!("end.{c}")]);
     let of_limits = known
         .limits

@@ -28,14 +28,14 @@ const NEAR: f64 = 1.0e-9;
 
 /// Writes the first event of an armed guard in `from` < s ≤ `to`, or that there is none; false where this
 /// search cannot tell.
-pub(super) fn first_fall<const N: usize>(
+pub(super) fn first_crossing<const N: usize>(
     polynomial: &Polynomial<N>,
     (from, to): (f64, f64),
     isolation: Isolation,
     found: &mut Search,
 ) -> bool {
     if N == quadratic::ROOM {
-        return quadratic::first_fall(polynomial, (from, to), isolation, found);
+        return quadratic::first_crossing(polynomial, (from, to), isolation, found);
     }
     let size = sum_of(&polynomial.coefficients, f64::abs);
     let guard = Armed {
@@ -47,7 +47,7 @@ pub(super) fn first_fall<const N: usize>(
     };
     let mut bernstein = [0.0; N];
     polynomial.bernstein(&mut bernstein);
-    guard.first_fall(&bernstein, (0.0, 1.0), 0, found)
+    guard.first_crossing(&bernstein, (0.0, 1.0), 0, found)
 }
 
 /// An armed guard on a window.
@@ -64,7 +64,7 @@ struct Armed<'p, const N: usize> {
 impl<const N: usize> Armed<'_, N> {
     /// The same within a piece, given the Bernstein coefficients there, after so many cuts.
     #[inline]
-    fn first_fall(
+    fn first_crossing(
         &self,
         bernstein: &[f64; N],
         piece: (f64, f64),
@@ -81,16 +81,16 @@ impl<const N: usize> Armed<'_, N> {
                 *found = Search::above(least_after_start(bernstein));
                 true
             }
-            Changes::One(index) => self.only_fall((bernstein, index), piece, found),
+            Changes::One(index) => self.only_crossing((bernstein, index), piece, found),
             Changes::Other => {
-                cuts < MOST_CUTS && self.first_fall_of_parts(bernstein, piece, cuts, found)
+                cuts < MOST_CUTS && self.first_crossing_of_parts(bernstein, piece, cuts, found)
             }
         }
     }
 
     /// The same, of two parts in turn.
     #[inline(never)]
-    fn first_fall_of_parts(
+    fn first_crossing_of_parts(
         &self,
         bernstein: &[f64; N],
         (start, end): (f64, f64),
@@ -112,7 +112,7 @@ impl<const N: usize> Armed<'_, N> {
                 Some(right)
             }
         };
-        if !self.first_fall(&left, (start, middle), cuts + 1, found) {
+        if !self.first_crossing(&left, (start, middle), cuts + 1, found) {
             return false;
         }
         if found.crossing.is_some() {
@@ -120,7 +120,7 @@ impl<const N: usize> Armed<'_, N> {
         }
         let turn = found.turn;
         let right = right.unwrap_or_else(|| cut(bernstein, part).1);
-        if !self.first_fall(&right, (middle, end), cuts + 1, found) {
+        if !self.first_crossing(&right, (middle, end), cuts + 1, found) {
             return false;
         }
         if found.crossing.is_none() {
@@ -132,7 +132,7 @@ impl<const N: usize> Armed<'_, N> {
     /// The event in a piece where the Bernstein coefficients change their sign once, at the one of index
     /// `falls`: there is one root.
     #[inline(always)]
-    fn only_fall(
+    fn only_crossing(
         &self,
         (bernstein, falls): (&[f64; N], usize),
         (start, end): (f64, f64),
@@ -307,7 +307,7 @@ fn narrow((left, right): (&mut Point, &mut Point), point: Point) {
 /// The fall in a bracket, next to a point within it that is off by rounding only. That may have left one end of the
 /// bracket far away: its neighbour is looked at first.
 #[inline(always)]
-pub(super) fn fall_beside(
+pub(super) fn crossing_beside(
     value: &mut impl FnMut(f64) -> f64,
     (mut l, mut r): (Point, Point),
     point: Point,
@@ -329,7 +329,7 @@ pub(super) fn fall_beside(
 /// Values next to a root are equal over many doubles, or have random signs: which of them are neighbours of different
 /// signs takes up to ten values, and tells nothing about where the root is.
 #[inline(always)]
-pub(super) fn certain_fall<const N: usize>(
+pub(super) fn certain_crossing<const N: usize>(
     polynomial: &Polynomial<N>,
     (from, to): (f64, f64),
     s: f64,
@@ -389,7 +389,7 @@ fn root<const N: usize>(guard: &Armed<N>, left: Point, right: Point, s: f64) -> 
             }
         } else if is_last {
             let window = (left.0, right.0);
-            isolated = certain_fall(polynomial, window, next, rounding, bend);
+            isolated = certain_crossing(polynomial, window, next, rounding, bend);
         }
         if isolated.is_some() || !is_within {
             break;
@@ -401,7 +401,7 @@ fn root<const N: usize>(guard: &Armed<N>, left: Point, right: Point, s: f64) -> 
     }
     let event = match isolated {
         Some(event) => event,
-        None => fall_beside(&mut |s| polynomial.value(s), (l, r), point),
+        None => crossing_beside(&mut |s| polynomial.value(s), (l, r), point),
     };
     match parabola {
         // The bottom of the parabola where the iteration has ended.

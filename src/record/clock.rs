@@ -9,7 +9,7 @@ const INTERVAL: Duration = Duration::from_micros(100);
 /// Looks at the clock once in many calls, so often that the time between two looks is about
 /// [`INTERVAL`], or one call where that takes longer.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Looks {
+pub(crate) struct SparseClock {
     /// Calls until the next look.
     left: u32,
     /// Calls from the last look to the next.
@@ -17,10 +17,10 @@ pub(crate) struct Looks {
     last: Instant,
 }
 
-impl Looks {
+impl SparseClock {
     /// The first call is a look.
     pub fn new() -> Self {
-        Looks {
+        SparseClock {
             left: 1,
             stride: 1,
             last: Instant::now(),
