@@ -2,6 +2,7 @@
 
 use std::env;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -36,8 +37,12 @@ impl Model {
             advice,
         };
         let name_a_folder = "name a folder that has a model.py; `dalembert new` makes one";
+        let advice = |error: &io::Error| match error.kind() {
+            io::ErrorKind::PermissionDenied => "allow yourself to read the folder and its model.py",
+            _ => name_a_folder,
+        };
         let absolute = fs::canonicalize(folder)
-            .map_err(|error| wrong(format!("no model folder: {error}"), name_a_folder))?;
+            .map_err(|error| wrong(format!("no model folder: {error}"), advice(&error)))?;
         if !absolute.is_dir() {
             return Err(wrong(
                 "a file, not a model folder".to_owned(),
@@ -48,7 +53,7 @@ impl Model {
         fs::read(&file).map_err(|error| {
             wrong(
                 format!("the model folder has no readable model.py: {error}"),
-                name_a_folder,
+                advice(&error),
             )
         })?;
         let name = absolute.file_name().unwrap_or_default().to_string_lossy();

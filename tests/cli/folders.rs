@@ -358,6 +358,16 @@ fn folders_are_refused_with_reasons() {
             "{text}"
         );
     }
+    fs::create_dir_all(place.path("locked")).unwrap();
+    fs::write(place.path("locked/model.py"), "").unwrap();
+    let shut = fs::Permissions::from_mode(0o000);
+    fs::set_permissions(place.path("locked/model.py"), shut).unwrap();
+    // Root may read what nobody may.
+    if fs::read(place.path("locked/model.py")).is_err() {
+        let text = place.run(2, &["check", "locked"]);
+        let denied = text.contains("Permission denied") && text.contains("allow yourself to read");
+        assert!(denied, "{text}");
+    }
     place.run(0, &["new", "ball", "--template", "impact"]);
     let text = place.run(2, &["run", "ball/scene.json", "--no-build"]);
     assert!(
