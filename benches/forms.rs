@@ -1,0 +1,135 @@
+//! A run by contacts against the same by modes written by hand: `cargo bench --bench forms`.
+//!
+//! The shipped models against those of `tests/models/hand_*`, one core, in turns, the least of repeats. Where gaps and slips are
+//! coordinates contacts have the reduced form, with modes of their own: the aim is 1.2 times the time by hand. The last two hold
+//! the same contacts by multipliers: the aim is 3 times. Runs record nothing but their events.
+
+use dalembert::hybrid::{Problem, Simulator};
+use dalembert::input::Sine;
+use dalembert::model::models;
+use dalembert::record::Silent;
+use std::f64::consts::PI;
+use std::time::Instant;
+
+/// Repeats of which the fastest counts; more do not change the second digit of the ratios.
+const REPEATS: usize = 200;
+const TOLERANCES: [f64; 3] = [1e-4, 1e-8, 1e-12];
+
+/// What is run, by contacts, by hand, and how: parameters, initial values, an input, its sine, and the end, s.
+struct Pair {
+    contacts: &'static str,
+    hand: &'static str,
+    parameters: &'static [(&'static str, f64)],
+    initial: &'static [(&'static str, f64)],
+    input: Option<(&'static str, [f64; 3])>,
+    end: f64,
+}
+
+const BELT: Pair = Pair {
+    contacts: "belt_oscillator",
+    hand: "hand_belt",
+    parameters: &[("mu_s", 0.1), ("mu_k", 0.05), ("belt", 0.5)],
+    initial: &[("x", 0.05)],
+    input: Some(("force", [0.7, 1.3, 0.2])),
+    end: 40.0,
+};
+
+const PAIRS: [Pair; 7] = [
+    Pair {
+        contacts: "bouncing_ball",
+        hand: "hand_ball",
+        parameters: &[],
+        initial: &[("h", 1.0)],
+        input: None,
+        end: 5.0,
+    },
+    Pair {
+        contacts: "vibrating_table_ball",
+        hand: "hand_table_ball",
+        parameters: &[],
+        initial: &[],
+        input: Some(("table_acceleration", [1.2 * 9.81, 20.0 * PI, 0.0])),
+        end: 2.0,
+    },
+    BELT,
+    Pair {
+        contacts: "coulomb_oscillator",
+        hand: "hand_coulomb",
+        parameters: &[("static_friction", 0.15), ("stop", 0.8), ("e", 0.5)],
+        initial: &[],
+        input: Some(("force", [1.4, 0.6, PI / 5.0])),
+        end: 60.0,
+    },
+    Pair {
+        contacts: "sliding_oscillator",
+        hand: "hand_slider",
+        parameters: &[],
+        initial: &[],
+        input: Some(("ground_acceleration", [20.0, 14.0 * PI, 0.0])),
+        end: 2.0,
+    },
+    Pair {
+        contacts: "rocking_block",
+        hand: "hand_block",
+        parameters: &[("R", 1.5), ("e", 0.85)],
+        initial: &[("theta", 0.075)],
+        input: Some(("ground_acceleration", [-0.35 * 9.81, 3.0 * PI, 0.3])),
+        end: 10.0,
+    },
+    // By multipliers.
+    Pair {
+        contacts: "held_belt",
+        ..BELT
+    },
+];
+
+fn main() {
+    println!(
+        "{:24}{:>12}{:>14}{:>12}{:>8}",
+        "model", "tolerance", "contacts / µs", "hand / µs", "ratio"
+    );
+    for pair in &PAIRS {
+        for tolerance in TOLERANCES {
+            let names = [pair.contacts, pair.hand];
+            let problems = names.map(|name| problem(pair, name, tolerance));
+            let mut simulators = problems
+                .each_ref()
+                .map(|problem| Simulator::new(problem).expect("it can be started"));
+            let mut least = [f64::INFINITY; 2];
+            for _ in 0..REPEATS {
+                for (simulator, least) in simulators.iter_mut().zip(&mut least) {
+                    let start = Instant::now();
+                    simulator.run(&mut Silent).expect("it comes to its end");
+                    *least = least.min(start.elapsed().as_secs_f64());
+                }
+            }
+            let [contacts, hand] = least.map(|seconds| 1e6 * seconds);
+            println!(
+                "{:24}{tolerance:12.0e}{contacts:14.1}{hand:12.1}{:8.2}",
+                pair.contacts,
+                contacts / hand
+            );
+        }
+    }
+}
+
+fn problem(pair: &Pair, name: &str, tolerance: f64) -> Problem {
+    let model = models().find(name).expect("the model is linked");
+    let mut problem = Problem::new(&model);
+    for &(parameter, value) in pair.parameters {
+        let set = problem.set_parameter(parameter, value);
+        set.expect("the model has it");
+    }
+    for &(what, value) in pair.initial {
+        problem.set_initial(what, value).expect("the model has it");
+    }
+    if let Some((input, [amplitude, frequency, phase])) = pair.input {
+        let set = problem.set_input(input, Sine::new(amplitude, frequency, phase).into());
+        set.expect("the model has it");
+    }
+    problem.set_tolerance(tolerance);
+    problem.record.ledger = false;
+    problem.record.event_states = false;
+    problem.end.time = pair.end;
+    problem
+}
