@@ -42,6 +42,17 @@ MISTAKES = (
     ("a law for what sticks that is no list of rates",
      'model.contact("a", gap=y); model.impact("a", [(y.rate, -y.rate)], held=[(x, x)])\n',
      "impact of `a` while others stick: `x` is not the rate of a coordinate"),
+    ("sides that are no discrete state", 'model.contact("a", gap=y, sides=k)\n', "contact `a`: `sides` is `k`, not a discrete state"),
+    ("sides with a slip", 'side = model.discrete("side", (1, -1), ""); model.contact("a", gap=y, slip=x, kinetic=1, sides=side)\n',
+     "contact `a`: it opens to two sides and has a slip"),
+    ("sides of a gap that is no coordinate", 'side = model.discrete("side", (1, -1), ""); model.contact("a", gap=y + x, sides=side)\n',
+     "contact `a`: it opens to two sides, so that its gap is a coordinate"),
+    ("sides by multipliers", 'side = model.discrete("side", (1, -1), ""); model.contact("a", gap=y, sides=side); model.multipliers()\n',
+     "contact `a`: a gap that opens to two sides needs a model in which every gap, slip and constraint is a coordinate; here multipliers are asked for"),
+    ("sides beside a constraint", 'side = model.discrete("side", (1, -1), ""); model.contact("a", gap=y, sides=side); model.constraint("rod", x * y)\n',
+     "here `rod` holds no coordinate"),
+    ("what every mode requires of nothing held", 'model.contact("a", gap=y); model.requires(None, model.reaction(x), "slips")\n',
+     "what every mode requires: `x` is free in each, so that there is no reaction"),
     ("a mode that freezes beside contacts", 'model.contact("a", gap=y)\nmodel.mode("lies", freeze=[x])\n', "mode `lies` freezes `x`"),
 )
 
@@ -134,6 +145,38 @@ class Contacts(ScratchTest):
             ("table sticks", "table slides", "table sticks"),
             ("table reverses", "table slides", "table slides"),
         }, arrows(hopper))
+
+    def test_a_gap_with_sides_opens_to_either_and_goes_on_on_the_other(self):
+        text = TWO + ('side = model.discrete("side", (1, -1), "")\ne = model.parameter("e", "1", 0.5, "")\n'
+                      'model.contact("a", gap=y, restitution=e, sides=side)\n')
+        model, = self.loaded(text)
+        opens = [t for t in model.transitions if t.name == "a opens"]
+        self.assertEqual([[float(value) for _, value in t.reset] for t in opens], [[1.0], [-1.0]])
+        strikes, = (t for t in model.transitions if t.name == "a strikes")
+        changed = {symbol.name(): str(value) for symbol, value in strikes.reset}
+        self.assertEqual((strikes.target.name, changed["side"]), ("a open", "(-side)"))
+
+    def test_constraints_that_hold_a_coordinate_or_a_rate_freeze_it(self):
+        drive = ('w = model.parameter("w", "m/s", 2, "")\nmodel.constraint("rail", y)\n'
+                 'model.constraint("drive", x.rate - w)\n')
+        plane = ('z = model.coordinate("z", "m", "")\nmodel.point_mass(m, position=(z, 0))\n'
+                 'model.contact("a", gap=z)\n')
+        for contact, names in (("", ["moves"]), (plane, ["a open", "a closed"])):
+            model, = self.loaded(TWO + drive + contact)
+            self.assertEqual(modes(model), names)
+            for mode in model.modes:
+                self.assertLessEqual({"x", "y"}, mode.held.keys())
+                self.assertEqual(list(mode.drift), ["x"])
+        self.assertEqual([o.name for o in model.outputs if o.name.endswith("force")], ["rail.force", "drive.force"])
+
+    def test_a_coordinate_that_two_hold_takes_multipliers(self):
+        model, = self.loaded(TWO + 'model.constraint("rail", y)\nmodel.contact("a", gap=y)\n')
+        self.assertEqual(modes(model), ["moves"])
+        self.assertIsNotNone(model.modes[0].form)
+
+    def test_what_every_mode_requires_is_asked_where_it_is_held(self):
+        model, = self.loaded(TWO + 'model.contact("a", gap=y)\nmodel.requires(None, 1 - model.reaction(y) / (k * x), "breaks")\n')
+        self.assertEqual({mode.name: len(mode.requirements) for mode in model.modes}, {"a open": 0, "a closed": 1})
 
     def test_what_is_always_plastic_needs_no_rest(self):
         text = TWO + 'model.contact("floor", gap=y)\n'
