@@ -10,8 +10,9 @@ use super::failure::{Reason, Stoppable};
 use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
 use super::unrest::{Restless, Unfit};
-use crate::kernel::with_kernel;
-use crate::model::Mode;
+use crate::integrate::ORDERS;
+use crate::kernel::{Free, with_kernel};
+use crate::model::{Guard, GuardShape, Mode};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
@@ -44,8 +45,61 @@ impl Simulation<'_> {
         if limit.at.seconds() >= self.problem.end.time {
             return None;
         }
-        let target = self.fitting(&limit)?;
+        let target = self.fitting(&limit, false)?;
         Some((target, limit))
+    }
+
+    /// The same where hops at a stop that is not at zero have become lower than the rounding of its coordinate, which keeps them
+    /// from becoming lower still: the limit that was told best before. (A hop begins at the stop and ends one rounding
+    /// beyond it, which makes up for what a low impact takes.)
+    fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
+        let height = self.lowest_hop()?;
+        self.accumulation.predict();
+        if height > ORDERS as f64 || !self.plan.rests(self.here.mode) {
+            return None;
+        }
+        let limit = self.accumulation.predicted()?;
+        if limit.at.seconds() >= self.problem.end.time {
+            return None;
+        }
+        let target = self.fitting(&limit, true)?;
+        Some((target, limit))
+    }
+
+    /// The height of the last hop at a stop, in roundings of its coordinate there; none where there is no such
+    /// hop, or where it is so high that rounding does not tell its duration from that of another, to half of all digits. A
+    /// hop of the duration T that ends with the rate u is about |u| T/4 high.
+    fn lowest_hop(&self) -> Option<f64> {
+        let duration = self.accumulation.last_duration()?;
+        let mode = self.mode();
+        let heights = mode
+            .guards
+            .iter()
+            .filter(|guard| is_impact(guard))
+            .filter_map(|guard| {
+                let GuardShape::Linear {
+                    index, rate: false, ..
+                } = guard.shape
+                else {
+                    return None;
+                };
+                let i = mode.free[index];
+                let rounding = f64::EPSILON * self.here.q[i].abs();
+                let height = 0.25 * self.here.v[i].abs() * duration / rounding;
+                let is_there = rounding > 0.0 && height * f64::EPSILON.sqrt() <= 1.0;
+                (is_there && self.is_zero(guard)).then_some(height)
+            });
+        heights.min_by(f64::total_cmp)
+    }
+
+    /// Whether a guard is zero at the present state.
+    fn is_zero(&self, guard: &Guard) -> bool {
+        let mode = self.mode();
+        with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
+            let at = Free { q: &q, v: &v, a: &a };
+            k.guard(&self.context, &guard.kernel, at) == 0.0
+        })
     }
 
     /// Goes to the limit of an accumulation, if the last events have one.
@@ -55,6 +109,8 @@ impl Simulation<'_> {
                 return Ok(());
             }
         } else if let Some((target, limit)) = self.rest() {
+            return self.come_to_rest(target, &limit);
+        } else if let Some((target, limit)) = self.rest_below_rounding() {
             return self.come_to_rest(target, &limit);
         }
         let relative = self.problem.accuracy.relative;
@@ -80,7 +136,7 @@ impl Simulation<'_> {
                 uncertainty: vec![0.0; 2 * n],
                 modes: vec![self.here.mode],
             };
-            if let Some(target) = self.fitting(&here) {
+            if let Some(target) = self.fitting(&here, false) {
                 return self.come_to_rest(target, &here);
             }
         }
@@ -104,11 +160,11 @@ impl Simulation<'_> {
 
     /// The rest that a limit of events in some modes comes to: of those declared for these modes that fit it the
     /// one with the least that the limit tells from what is held; of these the one that holds the most, and of these
-    /// the first in the order of the file.
-    fn fitting(&self, limit: &Limit) -> Option<usize> {
+    /// the first in the order of the file. `uncertain`: within what the limit is uncertain by, too.
+    fn fitting(&self, limit: &Limit, uncertain: bool) -> Option<usize> {
         let fits = self.declared(limit).filter_map(|target| {
             let mode = &self.modes[target];
-            let told = self.told_apart(mode, limit).ok()?;
+            let told = self.told_apart(mode, limit, uncertain).ok()?;
             Some((told, mode.free.len(), target))
         });
         let best = fits.min_by_key(|&(told, free, _)| (told, free));
@@ -125,7 +181,7 @@ impl Simulation<'_> {
     ///
     /// # Errors
     /// The first component that differs from what the mode holds by more than its tolerance.
-    fn told_apart(&self, mode: &Mode, limit: &Limit) -> Result<usize, Held> {
+    fn told_apart(&self, mode: &Mode, limit: &Limit, uncertain: bool) -> Result<usize, Held> {
         let accuracy = self.accuracy;
         let n = self.here.q.len();
         let mut told = 0;
@@ -137,7 +193,12 @@ impl Simulation<'_> {
             };
             let distance = (limit.state[place] - value).abs();
             // What is not a number fits nothing.
-            let fits = distance <= absolute + accuracy.relative * value.abs();
+            let room = if uncertain {
+                limit.uncertainty[place]
+            } else {
+                0.0
+            };
+            let fits = distance <= absolute + accuracy.relative * value.abs() + room;
             if !fits {
                 return Err(held);
             }
@@ -170,7 +231,7 @@ impl Simulation<'_> {
         };
         let involved: BTreeSet<_> = limit.modes.iter().copied().collect();
         let unfit = self.declared(&limit).filter_map(|target| {
-            let held = self.told_apart(&modes[target], &limit).err()?;
+            let held = self.told_apart(&modes[target], &limit, false).err()?;
             Some(self.unfit(modes[target].name, held, &limit))
         });
         Restless::NoRest {
@@ -188,7 +249,7 @@ impl Simulation<'_> {
         let modes = self.modes.iter().enumerate();
         let fitting = modes.filter(|(_, target)| {
             involved.iter().all(|&m| holds_more(target, &self.modes[m]))
-                && self.told_apart(target, limit).is_ok()
+                && self.told_apart(target, limit, false).is_ok()
         });
         let least = fitting.min_by_key(|(_, target)| Reverse(target.free.len()));
         least.map(|(target, _)| target)

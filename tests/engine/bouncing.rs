@@ -168,3 +168,37 @@ fn an_accumulation_in_every_period_of_an_orbit_is_found() {
         assert_eq!(count, 2);
     });
 }
+
+/// A spring presses a mass against a stop at 1 m: hops become as low as the rounding of 1 m before they are as short as tolerances ask
+/// for. From rest at 0 it strikes after π/6 s at 2√3 m/s, and hops of u m/s last atan(u/2) s.
+#[test]
+fn hops_at_a_stop_that_is_not_at_zero_come_to_rest() {
+    for e in [0.1, 0.5, 0.9, 0.97] {
+        let hop = |n: i32| (3f64.sqrt() * f64::powi(e, n)).atan();
+        let exact = std::f64::consts::FRAC_PI_6 + (1..4000).rev().map(hop).sum::<f64>();
+        with_each_method(|| {
+            for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+                let mut mass = problem("pressed_mass", &[("e", e)]);
+                mass.initial.mode = Some(mode(&mass, "stop open"));
+                mass.set_tolerance(tolerance);
+                mass.end.time = exact + 1.0;
+                mass.end.after = Some(("stop strikes", 5000));
+                let run = run(&mass);
+                let rests = times(&run, "rest");
+                assert_eq!(
+                    rests.len(),
+                    1,
+                    "{e} {tolerance:e}: {} events",
+                    run.events.len()
+                );
+                let off = (rests[0] - exact).abs();
+                // An error of one hop is in all that follow. Hops whose height is the rounding of 1 m end in the same speed as they
+                // began with: the limit may be off by as much as would be left of the series there, by the order of it.
+                let left = 2.0 * f64::EPSILON.sqrt() * (1.0 - e).powf(-1.5);
+                let error = 10.0 * tolerance / (1.0 - e) + left;
+                assert!(off < error, "{e} {tolerance:e}: {off:e}");
+                assert_eq!(run.layout.modes.name(run.end.mode), "stop closed");
+            }
+        });
+    }
+}

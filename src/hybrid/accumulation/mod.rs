@@ -221,6 +221,11 @@ impl Accumulation {
         (self.count > 0).then(|| (self.at(0), self.state(0), self.discrete(0)))
     }
 
+    /// Time between the last two events, s.
+    pub fn last_duration(&self) -> Option<f64> {
+        (self.count > 1).then(|| self.at(0).since(self.at(1)))
+    }
+
     /// Place of the event so many before the last.
     #[inline]
     fn place(&self, back: usize) -> usize {
@@ -310,7 +315,7 @@ impl Accumulation {
         Some(self.end_of(&series))
     }
 
-    /// SparseClock where the last events would have their limit, if they have one, and keeps what is told best: as hops become
+    /// Looks where the last events would have their limit, if they have one, and keeps what is told best: as hops become
     /// shorter the series is nearer to a geometric one, but their durations are told less well.
     pub fn predict(&mut self) {
         self.best[3] += 1.0;
