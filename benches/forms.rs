@@ -29,7 +29,8 @@ const BELT: Pair = Pair {
     contacts: "belt_oscillator",
     hand: "hand_belt",
     parameters: &[("mu_s", 0.1), ("mu_k", 0.05), ("belt", 0.5)],
-    initial: &[("x", 0.05)],
+    // It begins sticking: no direction of slip has to be given.
+    initial: &[("x.rate", 0.5)],
     input: Some(("force", [0.7, 1.3, 0.2])),
     end: 40.0,
 };
