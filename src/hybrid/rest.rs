@@ -35,6 +35,9 @@ impl Held {
     }
 }
 
+/// Height of a hop, in roundings of its coordinate, whose duration is told to a quarter of all digits: ε^(−1/4).
+const TOLD: f64 = (1u64 << 13) as f64;
+
 impl Simulation<'_> {
     /// The mode and the limit of an accumulation that the last events make certain, where a rest fits it.
     pub fn rest(&self) -> Option<(usize, Limit)> {
@@ -54,7 +57,10 @@ impl Simulation<'_> {
     /// beyond it, which makes up for what a low impact takes.)
     fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
         let height = self.lowest_hop()?;
-        self.accumulation.predict();
+        // What is told of lower hops is worse than what higher ones have told.
+        if height >= TOLD || self.accumulation.predicted().is_none() {
+            self.accumulation.predict();
+        }
         if height > ORDERS as f64 || !self.plan.rests(self.here.mode) {
             return None;
         }

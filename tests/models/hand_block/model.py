@@ -37,29 +37,6 @@ model.rest(rocks, stands)
 for mode in (stands, rocks):
     model.requires(mode, mode.reaction(y), "the block would leave the ground")
 
-# The pivot edge is where the block stands on it: half a width to the left or right of the centre.
-half_width = R * sin(alpha)
-
-
-def place(along, up):
-    """A point of the block, from the pivot edge along its base and up its side."""
-    return (side * (along * cos(theta) - up * sin(theta) - half_width), y + along * sin(theta) + up * cos(theta))
-
-
-model.output("rotation", "rad", side * theta, "rotation of the block, counter-clockwise: it leans to the left")
-model.output("centre_x", "m", side * R * (sin(alpha - theta) - sin(alpha)), "displacement of the centre to the right")
-model.output("centre_y", "m", y + R * (cos(alpha - theta) - cos(alpha)), "rise of the centre")
-model.output("left_edge", "m", y + (1 - side) * half_width * sin(theta), "height of the left bottom edge")
-model.output("right_edge", "m", y + (1 + side) * half_width * sin(theta), "height of the right bottom edge")
-model.output("shear_ratio", "1", model.reaction(z_h) / (m * g), "force of the ground to the right, over the weight")
-
-model.draw("ground", [(-2 * R, 0), (2 * R, 0)], kind="fixed")
-model.draw("block", [place(*p) for p in (
-    (0, 0), (2 * half_width, 0), (2 * half_width, 2 * R * cos(alpha)), (0, 2 * R * cos(alpha)))])
-model.draw("centre", [place(half_width, R * cos(alpha))], kind="point")
-model.draw("pivot", [place(0, 0)], kind="contact", force=(z_h, y), states=[(stands, "closed"), (rocks, "closed")])
-model.draw("other edge", [place(2 * half_width, 0)], kind="contact", states=[(stands, "closed")])
-
 model.limit("past_balance", "the centre is beyond the pivot edge: at rest the block would fall, shaken it may come back",
             when=theta > alpha, ends=False)
 model.limit("overturned", "the side of the block reaches the ground", when=theta > pi / 2)
