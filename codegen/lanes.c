@@ -663,8 +663,8 @@ DALEMBERT_INLINE real first_crossing(const int n, const real *c) {
 /* The same of a guard up to h, of `count` rows; the others up to n are filled up with zeros. c gets the coefficients
  * in powers of tau/h.
  */
-DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, const real *row, real h,
-                                    const struct guard *guard, real *c) {
+DALEMBERT_INLINE real first_crossing_of(const int n, size_t count, size_t stride, const real *row, real h,
+                                        const struct guard *guard, real *c) {
   const truth rises = truth_of(guard->starts_at_zero);
   const real h2 = h * h;
   real powers[2] = {guard->factor, guard->factor * h}, own[37];
@@ -687,14 +687,14 @@ DALEMBERT_INLINE real first_fall_of(const int n, size_t count, size_t stride, co
  * Unclear are lanes where that takes a closer look.
  */
 unsigned LANES(dalembert_lane_first_crossing)(size_t count, size_t stride, const real *row, const real *h,
-                                          const struct guard *guard, real *c, real *place, unsigned *unclear);
+                                              const struct guard *guard, real *c, real *place, unsigned *unclear);
 unsigned LANES(dalembert_lane_first_crossing)(size_t count, size_t stride, const real *row, const real *h,
-                                          const struct guard *guard, real *c, real *place, unsigned *unclear) {
+                                              const struct guard *guard, real *c, real *place, unsigned *unclear) {
   real found = REAL(NAN);
   /* With their number known the compiler keeps all coefficients in registers. */
   switch ((count + 3) / 4 * 4) {
 #define CASE(n) \
-  case n: found = first_fall_of(n, count, stride, row, *h, guard, c); break;
+  case n: found = first_crossing_of(n, count, stride, row, *h, guard, c); break;
     DEGREES(CASE)
 #undef CASE
   }
