@@ -166,7 +166,9 @@ class Expansion:
             if sticking is not None:
                 self._add(contact, "sticks", states, with_state(STICKS), stops,
                           provided=list(self._holds(contact, sticking).values()))
-            self._add(contact, "reverses", states, states, stops, [(contact.direction, -contact.direction)])
+            # The slip rate is zero there but for the landing's rounding; where it starts at zero exactly the guard's root is divided out.
+            self._add(contact, "reverses", states, states, stops,
+                      [(contact.direction, -contact.direction), (contact.slip.coordinate.rate, contact.slip.value())])
 
     @staticmethod
     def _holds(contact, mode):

@@ -17,7 +17,8 @@ use crate::numerics::Size;
 /// How a number goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Departure {
-    /// It is positive, or becomes so at once with the derivative of this `order`, and stays so for a time, s.
+    /// It is positive, or becomes so at once with the derivative of this `order`, and stays so for a time, s: 0 where that is
+    /// not asked for.
     Up { order: usize, until: f64 },
     /// It is negative, or becomes so at once with the derivative of this order.
     Down { order: usize },
@@ -35,8 +36,10 @@ struct Question<'a> {
     at: Point<'a>,
     /// Typical sizes of coordinates and rates.
     sizes: [&'a [f64]; 2],
-    /// For how long the series holds, s.
+    /// For how long the series holds, s; 0 where nothing is asked of how long a sign lasts.
     within: f64,
+    /// A sign that the derivative of this order decides, or the value itself, need not be known to last.
+    shown: usize,
     /// How many of the first derivatives, the value among them, are zero whatever rounding makes of them.
     vanishing: usize,
 }
@@ -73,15 +76,18 @@ impl Question<'_> {
         if expansion.result(tape, index)[order].sign() == Some(false) {
             return Departure::Down { order };
         }
+        if order <= self.shown || self.within <= 0.0 {
+            return Departure::Up { order, until: 0.0 };
+        }
         for k in order + 1..ORDERS {
             expansion.expand(mode, tape, k);
         }
-        let until = self.lasts(order, &expansion.result(tape, index)[order..]);
+        let until = self.lasts(&expansion.result(tape, index)[order..]);
         Departure::Up { order, until }
     }
 
     /// For how long the first of some coefficients outweighs the others twice, s: till then the sign is its own.
-    fn lasts(&self, order: usize, coefficients: &[crate::jets::Bounded]) -> f64 {
+    fn lasts(&self, coefficients: &[crate::jets::Bounded]) -> f64 {
         let (first, others) = coefficients.split_first().expect("it was found");
         let least = 0.5 * (first.value - first.error);
         let outweighs = |time: f64| {
@@ -92,9 +98,6 @@ impl Question<'_> {
             };
             others.iter().rev().fold(0.0, of) <= least
         };
-        if order == 0 {
-            return 0.0;
-        }
         let mut time = self.within;
         while time > 0.0 && !outweighs(time) {
             time *= 0.5;
@@ -105,9 +108,9 @@ impl Question<'_> {
 
 impl<'p> Simulation<'p> {
     /// How a guard of the present mode goes on from here, of which so many derivatives are known to vanish, the value among
-    /// them; the context is set for it.
+    /// them; the context is set for it. A rise by the derivative of order `shown` need not be known to last.
     #[cold]
-    pub fn departure(&mut self, guard: usize, vanishing: usize) -> Departure {
+    pub fn departure(&mut self, guard: usize, vanishing: usize, shown: usize) -> Departure {
         self.expand_signals();
         let mode = self.mode();
         let now = self.here.now.seconds();
@@ -125,6 +128,7 @@ impl<'p> Simulation<'p> {
             sizes: [&self.sizes, &self.rate_sizes],
             within: knot.min(self.problem.end.time) - now,
             vanishing,
+            shown,
         };
         question.answer(&mut self.expansion)
     }
@@ -169,6 +173,7 @@ impl<'p> Simulation<'p> {
                 sizes: [&self.sizes, &self.rate_sizes],
                 within: 0.0,
                 vanishing: 0,
+                shown: 0,
             };
             let departure = question.answer(&mut self.expansion);
             matches!(departure, Departure::Up { .. } | Departure::Stays)

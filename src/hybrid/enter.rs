@@ -8,6 +8,7 @@ use super::inertia::pivots;
 use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
 use crate::integrate::{Size, Vector};
+use crate::jets::ORDERS;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Contacts, Guard, GuardShape};
 use crate::numerics::Lu;
@@ -104,7 +105,7 @@ impl<'p> Simulation<'p> {
             let zero = self.at_zero.iter().find(|zero| zero.guard == watched.guard);
             let vanishing = zero.map_or(0, |zero| zero.vanishing);
             if held.contains(&watched.guard) {
-                let departure = self.departure(watched.guard, vanishing);
+                let departure = self.departure(watched.guard, vanishing, ORDERS);
                 if matches!(departure, Departure::Stays | Departure::Unknown) {
                     self.signs.remember(Watch::Dormant, f64::INFINITY);
                     continue;
@@ -123,12 +124,15 @@ impl<'p> Simulation<'p> {
                 .then(|| start.departure(&self.context, guard, (&a, is_explicit)));
             let departure = match plain.flatten() {
                 Some(departure) => departure,
-                None => self.departure(watched.guard, vanishing),
+                // A rise by the first derivative shows on a step of the Taylor method.
+                None => {
+                    let shown = usize::from(is_explicit && vanishing == 1);
+                    self.departure(watched.guard, vanishing, shown)
+                }
             };
             let (watch, away) = match departure {
                 // Its dense output shows it.
                 Departure::Up { until: 0.0, .. } => (sign, 0.0),
-                Departure::Up { order: 1, .. } if is_explicit && vanishing == 1 => (sign, 0.0),
                 Departure::Up { until, .. } => (Watch::Armed, until),
                 Departure::Down { .. } => (Watch::Violated, 0.0),
                 Departure::Stays | Departure::Unknown => (sign, 0.0),

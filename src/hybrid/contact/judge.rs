@@ -29,25 +29,20 @@ struct Candidate {
     discrete: Vec<f64>,
 }
 
-/// A candidate that may go on, with the motion that it leads to.
+/// A candidate that may go on.
 struct Admitted {
     candidate: Candidate,
-    motion: Motion,
+    orders: Orders,
 }
 
-/// How a candidate goes on.
-struct Motion {
-    /// Coefficients of the accelerations of the coordinates that are no multipliers.
-    accelerations: Vec<Powers>,
-    /// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
-    orders: Vec<(usize, usize)>,
-}
+/// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
+type Orders = Vec<(usize, usize)>;
 
 /// What was found.
 pub(super) struct Decision {
     pub states: Vec<ContactState>,
     pub discrete: Vec<f64>,
-    orders: Vec<(usize, usize)>,
+    orders: Orders,
 }
 
 impl Decision {
@@ -132,30 +127,30 @@ impl<'p> Simulation<'p> {
         let Some(first) = admitted.first() else {
             return Err(Reason::NoMotion { contacts: touch() });
         };
+        // Where the state is exact; and where it is known to its rounding.
         let mut differs = |other: &&Admitted| {
-            let [one, two] = [&first.motion, &other.motion].map(|m| &m.accelerations[..]);
-            // Where the state is exact; and where it is known to its rounding.
-            !are_equal(one, two) && {
-                let [one, two] = [first, other].map(|a| self.accelerations(geometry, &a.candidate));
+            [true, false].into_iter().all(|is_exact| {
+                let [one, two] = [first, other]
+                    .map(|a| self.accelerations(geometry, &a.candidate, is_exact));
                 !are_equal(&one, &two)
-            }
+            })
         };
-        if let Some(other) = admitted.iter().find(&mut differs) {
+        if let Some(other) = admitted[1..].iter().find(&mut differs) {
             let motions = [first, other].map(|a| names(&a.candidate.states));
             return Err(Reason::SeveralMotions {
                 contacts: touch(),
                 motions,
             });
         }
-        let Admitted { candidate, motion } = admitted.swap_remove(0);
+        let Admitted { candidate, orders } = admitted.swap_remove(0);
         Ok(Decision {
             states: candidate.states,
             discrete: candidate.discrete,
-            orders: motion.orders,
+            orders,
         })
     }
 
-    /// A set with the motion that it leads to, if it may go on: with some share of the forces that are not determined.
+    /// A set, if it may go on: with some share of the forces that are not determined.
     fn admitted(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
@@ -173,9 +168,9 @@ impl<'p> Simulation<'p> {
             Candidate { states, discrete }
         };
         let first = candidate(&sharing.without_friction(geometry));
-        if let Some(motion) = self.admit(contacts, geometry, &first, touching) {
+        if let Some(orders) = self.admit(contacts, &first, touching) {
             let candidate = first;
-            return Some(Admitted { candidate, motion });
+            return Some(Admitted { candidate, orders });
         }
         if sharing.is_determined() {
             return None;
@@ -183,18 +178,25 @@ impl<'p> Simulation<'p> {
         let forces = self.forces(contacts, &first)?;
         let corners = sharing.corners(geometry, places, &forces);
         corners.iter().map(candidate).find_map(|candidate| {
-            let motion = self.admit(contacts, geometry, &candidate, touching)?;
-            Some(Admitted { candidate, motion })
+            let orders = self.admit(contacts, &candidate, touching)?;
+            Some(Admitted { candidate, orders })
         })
     }
 
-    /// The accelerations of a candidate, from a state that is known to its rounding.
-    fn accelerations(&mut self, geometry: &Geometry, candidate: &Candidate) -> Vec<Powers> {
+    /// Coefficients of the accelerations of a candidate, of the coordinates that are no multipliers: from the state that is
+    /// given, or from one that is known to its rounding.
+    fn accelerations(
+        &mut self,
+        geometry: &Geometry,
+        candidate: &Candidate,
+        is_exact: bool,
+    ) -> Vec<Powers> {
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
         let at = point(&self.next, self.here.q.len(), &candidate.discrete);
         let sizes = [&*self.sizes, &*self.rate_sizes];
-        self.expansion.begin(mode, at, Some(sizes));
+        let sizes = (!is_exact).then_some(sizes);
+        self.expansion.begin(mode, at, sizes);
         for order in 0..ORDERS {
             self.expansion.expand(mode, &contacts.decisions, order);
         }
@@ -224,14 +226,13 @@ impl<'p> Simulation<'p> {
         (0..contacts.contacts.len()).map(of).collect()
     }
 
-    /// The motion of a candidate, if it may go on.
+    /// Which derivatives decided about a candidate, if it may go on.
     fn admit(
         &mut self,
         contacts: &'p Contacts,
-        geometry: &Geometry,
         candidate: &Candidate,
         touching: &[Option<Tangent>],
-    ) -> Option<Motion> {
+    ) -> Option<Orders> {
         let mode: &Mode = self.mode();
         let asked = asked(contacts, candidate, touching);
         let at = point(&self.next, self.here.q.len(), &candidate.discrete);
@@ -254,12 +255,15 @@ impl<'p> Simulation<'p> {
             }
         }
         // What is zero leaves zero as the motion from the state that is given does.
-        expansion.begin(mode, at, None);
-        for k in 0..ORDERS {
-            expansion.expand(mode, tape, k);
-            if k == 0 {
-                continue;
+        if !open.is_empty() {
+            expansion.begin(mode, at, None);
+            expansion.expand(mode, tape, 0);
+        }
+        for k in 1..ORDERS {
+            if open.is_empty() {
+                break;
             }
+            expansion.expand(mode, tape, k);
             let mut falls = false;
             open.retain(
                 |&(index, sign)| match expansion.result(tape, index)[k].sign() {
@@ -275,11 +279,7 @@ impl<'p> Simulation<'p> {
                 return None;
             }
         }
-        let own = geometry.own.iter();
-        Some(Motion {
-            accelerations: own.map(|&i| *expansion.acceleration(i)).collect(),
-            orders,
-        })
+        Some(orders)
     }
 }
 
