@@ -1,14 +1,16 @@
 //! A run by contacts against the same by modes written by hand: `cargo bench --bench forms`.
 //!
 //! The shipped models against those of `tests/models/hand_*`, one core, in turns, the least of repeats. Where gaps and slips are
-//! coordinates contacts have the reduced form, with modes of their own: the aim is 1.2 times the time by hand. The last two hold
-//! the same contacts by multipliers: the aim is 3 times. Runs record nothing but their events.
+//! coordinates contacts have the reduced form, with modes of their own: the aim is 1.2 times the time by hand. The last ones hold
+//! contacts by multipliers: the aim is 3 times. Runs record nothing but their events.
 
 use dalembert::hybrid::{Problem, Simulator};
 use dalembert::input::Sine;
 use dalembert::model::models;
 use dalembert::record::Silent;
+use dalembert::scene::Scene;
 use std::f64::consts::PI;
+use std::path::Path;
 use std::time::Instant;
 
 /// Repeats of which the fastest counts; more do not change the second digit of the ratios.
@@ -84,6 +86,13 @@ const PAIRS: [Pair; 7] = [
     },
 ];
 
+/// Scenes of the tank, whose edges have multipliers too.
+const TANKS: [&str; 3] = [
+    "tank_free_release",
+    "tank_doughnut",
+    "tank_rocks_and_slides",
+];
+
 fn main() {
     println!(
         "{:24}{:>12}{:>14}{:>12}{:>8}",
@@ -91,27 +100,56 @@ fn main() {
     );
     for pair in &PAIRS {
         for tolerance in TOLERANCES {
-            let names = [pair.contacts, pair.hand];
-            let problems = names.map(|name| problem(pair, name, tolerance));
-            let mut simulators = problems
-                .each_ref()
-                .map(|problem| Simulator::new(problem).expect("it can be started"));
-            let mut least = [f64::INFINITY; 2];
-            for _ in 0..REPEATS {
-                for (simulator, least) in simulators.iter_mut().zip(&mut least) {
-                    let start = Instant::now();
-                    simulator.run(&mut Silent).expect("it comes to its end");
-                    *least = least.min(start.elapsed().as_secs_f64());
-                }
-            }
-            let [contacts, hand] = least.map(|seconds| 1e6 * seconds);
-            println!(
-                "{:24}{tolerance:12.0e}{contacts:14.1}{hand:12.1}{:8.2}",
-                pair.contacts,
-                contacts / hand
-            );
+            let problems = [pair.contacts, pair.hand].map(|name| problem(pair, name, tolerance));
+            compare(pair.contacts, tolerance, problems);
         }
     }
+    for name in TANKS {
+        for tolerance in TOLERANCES {
+            let problems = ["contacts", "modes"].map(|edges| tank(name, edges, tolerance));
+            compare(name, tolerance, problems);
+        }
+    }
+}
+
+/// Runs a problem by contacts and the same by hand in turns, and prints the times.
+fn compare(name: &str, tolerance: f64, problems: [Problem; 2]) {
+    let mut simulators = problems
+        .each_ref()
+        .map(|problem| Simulator::new(problem).expect("it can be started"));
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..REPEATS {
+        for (simulator, least) in simulators.iter_mut().zip(&mut least) {
+            let start = Instant::now();
+            simulator.run(&mut Silent).expect("it comes to its end");
+            *least = least.min(start.elapsed().as_secs_f64());
+        }
+    }
+    let [contacts, hand] = least.map(|seconds| 1e6 * seconds);
+    println!(
+        "{name:24}{tolerance:12.0e}{contacts:14.1}{hand:12.1}{:8.2}",
+        contacts / hand
+    );
+}
+
+/// A shipped scene of the tank, on two edges by contacts or by modes, under a landing that both have.
+fn tank(name: &str, edges: &str, tolerance: f64) -> Problem {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.json"));
+    let chosen = [format!("edges={edges}"), "landing=momenta".into()];
+    let scene = Scene::load(&path, &chosen, models());
+    let mut problem = scene.unwrap_or_else(|errors| panic!("{errors}")).problem;
+    problem.record.columns.energies = false;
+    problem.record.extremes = false;
+    silent(&mut problem, tolerance);
+    problem
+}
+
+/// A tolerance, and nothing that is recorded but events.
+fn silent(problem: &mut Problem, tolerance: f64) {
+    problem.set_tolerance(tolerance);
+    problem.record.every = Some(f64::MAX);
+    problem.record.ledger = false;
+    problem.record.event_states = false;
 }
 
 fn problem(pair: &Pair, name: &str, tolerance: f64) -> Problem {
@@ -128,9 +166,7 @@ fn problem(pair: &Pair, name: &str, tolerance: f64) -> Problem {
         let set = problem.set_input(input, Sine::new(amplitude, frequency, phase).into());
         set.expect("the model has it");
     }
-    problem.set_tolerance(tolerance);
-    problem.record.ledger = false;
-    problem.record.event_states = false;
+    silent(&mut problem, tolerance);
     problem.end.time = pair.end;
     problem
 }

@@ -44,6 +44,8 @@ pub struct Contacts {
     /// What decides whether a set of states may go on, [`Contacts::DECISIONS`] a contact: λ_N, g̈, what is left before it slips
     /// forwards and backwards, γ̇.
     pub decisions: Tape,
+    /// Whether what some friction can hold depends on accelerations, beside normal forces.
+    pub(crate) follows_motion: bool,
 }
 
 /// A contact with its coordinates and discrete states, by their indices.
@@ -105,6 +107,18 @@ impl Contacts {
         let of_contact = |c: &Contact| [c.normal, c.tangent].contains(&Some(coordinate));
         self.contacts.iter().any(of_contact)
             || self.constraints.iter().any(|c| c.multiplier == coordinate)
+    }
+
+    /// Whether what some friction can hold depends on accelerations beside normal forces, given what decides.
+    pub(super) fn follow_motion(contacts: &[Contact], decisions: &Tape) -> bool {
+        let multipliers: Vec<usize> = (contacts.iter())
+            .flat_map(|contact| contact.normal.into_iter().chain(contact.tangent))
+            .collect();
+        (0..contacts.len()).any(|k| {
+            let forwards = decisions.results[k * Contacts::DECISIONS + 2];
+            let accelerations = decisions.accelerations_of(forwards);
+            accelerations.iter().any(|i| !multipliers.contains(i))
+        })
     }
 
     /// The sets of contact states.

@@ -104,6 +104,36 @@ pub(crate) struct Operands {
 }
 
 impl Tape {
+    /// The coordinates whose accelerations what an instruction gives depends on.
+    pub(super) fn accelerations_of(&self, place: usize) -> Vec<usize> {
+        let mut is_needed = vec![false; self.instructions.len()];
+        is_needed[place] = true;
+        let mut found = Vec::new();
+        let mut pending = vec![place];
+        while let Some(place) = pending.pop() {
+            let operands = match self.instructions[place] {
+                Instruction::Acceleration(i) => {
+                    found.push(i);
+                    continue;
+                }
+                Instruction::Sum(x, y)
+                | Instruction::Difference(x, y)
+                | Instruction::Product(x, y)
+                | Instruction::Quotient(x, y)
+                | Instruction::Function(_, x, y)
+                | Instruction::Fixed(_, x, y) => [x, y],
+                Instruction::Negative(x) => [x, x],
+                _ => continue,
+            };
+            for operand in operands {
+                if !std::mem::replace(&mut is_needed[operand], true) {
+                    pending.push(operand);
+                }
+            }
+        }
+        found
+    }
+
     /// Appends the coefficients of order `k` of all instructions, given those below. Accelerations that a result does
     /// not depend on need not be known.
     pub(crate) fn expand(&self, k: usize, given: &Operands, rows: &mut [Powers]) {

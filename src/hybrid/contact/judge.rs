@@ -7,8 +7,9 @@
 
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::{Places, held_lines};
-use super::many::{all_of_many, to_try};
+use super::many::{all_of_many, count, to_try};
 use super::share::{Dropped, Forces, Sharing};
+use super::unforced::Unforced;
 use super::{ContactState, Tangent};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::simulation::Simulation;
@@ -21,6 +22,9 @@ pub(super) const GAP: usize = 1;
 pub(super) const FORWARDS: usize = 2;
 pub(super) const BACKWARDS: usize = 3;
 pub(super) const SLIP: usize = 4;
+
+/// Sets of the states of one contact: what would rule some of them out costs as much as to judge two.
+const FEW_SETS: usize = 4;
 
 /// A set of contact states that may follow.
 #[derive(Debug)]
@@ -78,15 +82,52 @@ impl<'p> Simulation<'p> {
             let has_gap = contacts.contacts[k].normal.is_some();
             (has_gap && state.is_closed()).then_some(Line::Normal(k))
         };
-        let sets = to_try(&choices, geometry, holds, || {
-            self.answers((contacts, geometry), places, touching)
+        let unforced = (count(&choices) > FEW_SETS)
+            .then(|| self.unforced((contacts, geometry), places, touching))
+            .flatten();
+        let sets = to_try(&choices, geometry, holds, || match &unforced {
+            Some(unforced) => self.answers((contacts, geometry), places, (touching, unforced)),
+            None => Ok(Vec::new()),
         });
-        let mut judge = |states: Vec<ContactState>| {
-            self.admitted((contacts, geometry), places, touching, states)
+        let unforced = unforced.filter(|_| !contacts.follows_motion);
+        // A contact that is to slip whose slip others hold goes on as one that sticks (the same motion, and friction within its
+        // bound): such sets are idle, and tried where no other is admitted.
+        let mut idle = Vec::new();
+        let mut admitted = Vec::new();
+        let mut judge = |states: Vec<ContactState>, idle: Option<&mut Vec<_>>| {
+            let sharing = Sharing::new(contacts, geometry, places, &states)?;
+            match idle {
+                Some(idle) if sharing.holds_a_slip(geometry, &states, touching) => {
+                    idle.push(states);
+                    return None;
+                }
+                _ => {}
+            }
+            let is_out = |of: &Unforced| {
+                sharing.is_determined()
+                    && of.rules_out(places, &states, touching, sharing.unknown())
+            };
+            let is_out = unforced.as_ref().is_some_and(is_out);
+            // Tests are built with assertions: there each set is judged.
+            if is_out && !cfg!(debug_assertions) {
+                return None;
+            }
+            let of = (states, sharing);
+            let admitted = self.admitted((contacts, geometry), places, touching, of);
+            debug_assert!(
+                !(is_out && admitted.is_some()),
+                "a set that may go on was ruled out"
+            );
+            admitted
         };
-        let mut admitted: Vec<Admitted> = sets.into_iter().filter_map(&mut judge).collect();
+        for states in sets {
+            admitted.extend(judge(states, Some(&mut idle)));
+        }
         if admitted.is_empty() {
-            admitted.extend(all_of_many(&choices).filter_map(&mut judge));
+            admitted.extend(idle.into_iter().filter_map(|states| judge(states, None)));
+        }
+        if admitted.is_empty() {
+            admitted.extend(all_of_many(&choices).filter_map(|states| judge(states, None)));
         }
         // Between kinetic and static friction both are admissible: what sticks goes on sticking, and what it held stays closed.
         let yields = |a: &Admitted, b: &Admitted| {
@@ -130,8 +171,8 @@ impl<'p> Simulation<'p> {
         // Where the state is exact; and where it is known to its rounding.
         let mut differs = |other: &&Admitted| {
             [true, false].into_iter().all(|is_exact| {
-                let [one, two] = [first, other]
-                    .map(|a| self.accelerations(geometry, &a.candidate, is_exact));
+                let [one, two] =
+                    [first, other].map(|a| self.accelerations(geometry, &a.candidate, is_exact));
                 !are_equal(&one, &two)
             })
         };
@@ -156,9 +197,8 @@ impl<'p> Simulation<'p> {
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &Places,
         touching: &[Option<Tangent>],
-        states: Vec<ContactState>,
+        (states, sharing): (Vec<ContactState>, Sharing),
     ) -> Option<Admitted> {
-        let sharing = Sharing::new(contacts, geometry, places, &states)?;
         let present = self.context.discrete().to_vec();
         let candidate = |dropped: &Dropped| {
             let mut discrete = present.clone();

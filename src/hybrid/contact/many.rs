@@ -243,7 +243,7 @@ fn products<T: Clone>(choices: &[Vec<T>]) -> impl Iterator<Item = Vec<T>> + '_ {
 }
 
 /// Number of sets of choices.
-fn count<T>(choices: &[Vec<T>]) -> usize {
+pub(super) fn count<T>(choices: &[Vec<T>]) -> usize {
     let sizes = choices.iter().map(Vec::len);
     sizes.fold(1, usize::saturating_mul)
 }

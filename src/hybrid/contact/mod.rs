@@ -8,6 +8,7 @@
 //! - `hold`: positions and rates brought back to where they are held, to rounding.
 //! - `singular`: how well the forces are determined that hold them.
 //! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
+//! - `unforced`: what contacts would do without forces, and which sets that rules out before they are judged.
 //! - `share`: how those that stick share forces that are not determined.
 //! - `many`: which of them are tried where these are too many; `pivoting`: what the accelerations say of that.
 //! - `impact`: what an impact does, under the law of the scene.
@@ -34,6 +35,7 @@ mod share;
 mod singular;
 mod standing;
 mod start;
+mod unforced;
 
 pub(super) use guarded::{Guarded, guarded_by_contacts};
 pub(super) use hold::{held_by_others, hold};

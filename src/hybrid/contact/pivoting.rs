@@ -1,9 +1,9 @@
 //! What a pivoting method is asked about accelerations, and what it says.
 
-use super::geometry::{Geometry, Line, write_states};
+use super::geometry::{Geometry, Line};
 use super::hold::Places;
-use super::judge::{BACKWARDS, FORWARDS, GAP, SLIP, point};
 use super::many::{Answer, Answers, Asked, Friction, answers};
+use super::unforced::Unforced;
 use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
 use crate::model::Contacts;
@@ -13,50 +13,12 @@ impl<'p> Simulation<'p> {
     /// What a pivoting method says that contacts do, on their accelerations: where what has come to the limit of static friction
     /// sticks, and where it slips.
     pub(super) fn answers(
-        &mut self,
+        &self,
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &Places,
-        touching: &[Option<Tangent>],
+        (touching, unforced): (&[Option<Tangent>], &Unforced),
     ) -> Result<Vec<Answers<ContactState>>, Unsolved> {
-        let without_forces: Vec<ContactState> = (contacts.contacts.iter().zip(touching))
-            .map(|(contact, tangent)| match (contact.normal, tangent) {
-                (Some(_), _) => ContactState::Open,
-                (None, Some(Tangent::Slips(direction))) => ContactState::Slides(*direction),
-                (None, _) => ContactState::Slides(1.0),
-            })
-            .collect();
-        let mut discrete = self.context.discrete().to_vec();
-        write_states(contacts, &without_forces, &mut discrete);
-        let mode = self.mode();
-        let at = point(&self.next, self.here.q.len(), &discrete);
-        let tape = &contacts.decisions;
-        self.expansion.begin(mode, at, None);
-        self.expansion.expand(mode, tape, 0);
-        let value = |k: usize, what: usize| {
-            self.expansion.result(tape, k * Contacts::DECISIONS + what)[0].value
-        };
-        // Friction without a gap acts there already, as what slides forwards; it is taken out again.
         let bare = |k: usize| contacts.contacts[k].normal.is_none();
-        let frictions: Vec<(Line, f64)> = (0..touching.len())
-            .filter(|&k| bare(k) && touching[k] == Some(Tangent::Still))
-            .map(|k| {
-                let force = 0.5 * (value(k, BACKWARDS) - value(k, FORWARDS));
-                (Line::Tangent(k), force)
-            })
-            .collect();
-        let constraints: Vec<Line> = (0..contacts.constraints.len())
-            .map(Line::Constraint)
-            .collect();
-        let lines: Vec<Line> = geometry.all().collect();
-        let compliance = geometry.compliance(&lines, &constraints);
-        let taken_out = |of: Line| -> f64 {
-            let place = |line: Line| lines.iter().position(|known| *known == line);
-            let at = |of: Line, line: Line| Some(place(of)? * lines.len() + place(line)?);
-            let parts = frictions.iter();
-            parts
-                .filter_map(|&(line, force)| Some(compliance[at(of, line)?] * force))
-                .sum()
-        };
         let mut all: Vec<Answers<ContactState>> = Vec::new();
         // Static friction, until one is seen to slip.
         let mut slips = vec![false; touching.len()];
@@ -75,25 +37,28 @@ impl<'p> Simulation<'p> {
                         coefficient: places.kinetic(k),
                     },
                     Tangent::Still => {
-                        let limit = 0.5 * (value(k, FORWARDS) + value(k, BACKWARDS));
                         let part = match coefficient == places.static_friction(k) {
                             true => 1.0,
                             false => coefficient / places.static_friction(k),
                         };
                         Friction::Still {
-                            slip: value(k, SLIP) - taken_out(Line::Tangent(k)),
+                            slip: unforced.acceleration(Line::Tangent(k)),
                             coefficient,
-                            bound: if bare(k) { limit * part } else { 0.0 },
+                            bound: if bare(k) {
+                                unforced.bound(k) * part
+                            } else {
+                                0.0
+                            },
                         }
                     }
                 };
                 if bare(k) && tangent != Tangent::Still {
                     continue;
                 }
-                let normal = value(k, GAP) - taken_out(Line::Normal(k));
+                let normal = |_| [unforced.acceleration(Line::Normal(k)), 0.0];
                 asked.push(Asked {
                     contact: k,
-                    normal: contact.normal.map(|_| [normal, 0.0]),
+                    normal: contact.normal.map(normal),
                     friction,
                 });
             }

@@ -7,10 +7,10 @@
 //! in it, so that it has a corner if it is not empty: there as many contacts as forces are left undetermined push with the most friction
 //! that they can hold. Such a corner is what a mode can say, and the contacts stick until no corner is left.
 
-use super::ContactState;
 use super::geometry::{DEPENDENT, Geometry, Line};
 use super::hold::{Places, held_lines};
 use super::many::MAY_BE_ZERO;
+use super::{ContactState, Tangent};
 use crate::model::Contacts;
 use crate::numerics::{Dynamic, Lu, Size};
 
@@ -107,6 +107,25 @@ impl Sharing {
     /// Whether all forces are determined, but for how contacts of one line share theirs.
     pub fn is_determined(&self) -> bool {
         self.missing == 0
+    }
+
+    /// The lines along which forces are unknown, and the contacts that stick beside the first of their line, each with that.
+    pub fn unknown(&self) -> (&[Line], &[(usize, usize)]) {
+        (&self.unknown, &self.joined)
+    }
+
+    /// Whether the set holds the slip of a contact that is to begin to slip.
+    pub fn holds_a_slip(
+        &self,
+        geometry: &Geometry,
+        states: &[ContactState],
+        touching: &[Option<Tangent>],
+    ) -> bool {
+        (0..states.len()).any(|k| {
+            matches!(states[k], ContactState::Slides(_))
+                && touching[k] == Some(Tangent::Still)
+                && geometry.depends(Line::Tangent(k), &self.unknown)
+        })
     }
 
     /// Those that are dropped where none of what others hold has friction.

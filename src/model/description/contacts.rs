@@ -43,12 +43,14 @@ impl Reader<'_> {
             })
         };
         let contacts: Box<[Contact]> = at.get("contacts", |at| at.list_of(count, contact))?;
+        let decisions = at.get("decisions", |at| self.tape(at, Contacts::DECISIONS * count))?;
         Ok(Contacts {
+            follows_motion: Contacts::follow_motion(&contacts, &decisions),
             moved: at.get("moved", truth)?,
             sets: ContactSets::new(&contacts),
             contacts,
             constraints: at.get("constraints", |at| at.list(constraint))?,
-            decisions: at.get("decisions", |at| self.tape(at, Contacts::DECISIONS * count))?,
+            decisions,
         })
     }
 }
