@@ -21,8 +21,9 @@ def main(argv):
     parser = argparse.ArgumentParser(prog="python -m codegen", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     generator = commands.add_parser("generate", help="write C and manifest of models")
-    generator.add_argument("--model-dir", action="append", required=True, help="a folder with a model.py")
-    generator.add_argument("--out", required=True, help="output root; each model gets a folder in it")
+    generator.add_argument("--model-dir", required=True, help="a folder with a model.py")
+    generator.add_argument("--name", help="name of the model, if it is not that of its folder")
+    generator.add_argument("--out", required=True, help="output root; the model gets a folder in it")
     generator.add_argument("--for-tests", action="store_true", help="mark the models as test models")
     generator.add_argument("--owner", default="", help="what the names of C functions begin with")
     generator.add_argument("--only", action="append", metavar="CHOICE=OPTION", nargs="?", const="",
@@ -30,10 +31,11 @@ def main(argv):
     generator.add_argument("--reads", action="store_true", help="also list the files that were read, in reads.json")
     judge = commands.add_parser("check", help="print all errors of a model, or its modes, as JSON")
     judge.add_argument("--model-dir", required=True, help="a folder with a model.py")
+    judge.add_argument("--name", help="name of the model, if it is not that of its folder")
     arguments = parser.parse_args(argv)
     if arguments.command == "check":
         from .judge import judge
-        print(json.dumps(judge(arguments.model_dir)))
+        print(json.dumps(judge(arguments.model_dir, arguments.name)))
         return 0
     named = arguments.only and dict(pair.split("=", 1) for pair in arguments.only if pair)
     from . import reads
@@ -41,15 +43,15 @@ def main(argv):
         reads.watch()
     from .generate import generate
     try:
-        for folder in arguments.model_dir:
-            files = generate(folder, arguments.for_tests, named, arguments.owner)
-            target = os.path.join(arguments.out, os.path.basename(os.path.normpath(folder)))
-            os.makedirs(target, exist_ok=True)
-            if arguments.reads:
-                files["reads.json"] = reads.listed(folder)
-            for name, text in files.items():
-                with open(os.path.join(target, name), "w", encoding="utf-8", newline="\n") as stream:
-                    stream.write(text)
+        folder = arguments.model_dir
+        files = generate(folder, arguments.for_tests, named, arguments.owner, arguments.name)
+        target = os.path.join(arguments.out, arguments.name or os.path.basename(os.path.abspath(folder)))
+        os.makedirs(target, exist_ok=True)
+        if arguments.reads:
+            files["reads.json"] = reads.listed(folder)
+        for name, text in files.items():
+            with open(os.path.join(target, name), "w", encoding="utf-8", newline="\n") as stream:
+                stream.write(text)
     except ModelError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

@@ -14,9 +14,6 @@ _KEYWORDS = {**dict.fromkeys(_RUST.split(), "Rust"), **dict.fromkeys(_C.split(),
 
 _COLUMNS = {"t": "the time", "mode": "the mode", "j": "the number of events so far"}
 _INITIAL = dict.fromkeys(("project", "at_rest"), "a key of initial states")
-NOT_FOLDERS = {*_KEYWORDS, "context", "few", "lanes", "tables", "kernel", "core", "std", "alloc"}
-"""Names that a model's folder cannot have: its tables are a module in src/kernel/mod.rs."""
-
 RESERVED = {
     "parameter": {"set": "the key that chooses a parameter set", "t": "the time"},
     "coordinate": {**_COLUMNS, **_INITIAL}, "discrete state": {**_COLUMNS, **_INITIAL}, "output": _COLUMNS, "input": _COLUMNS,

@@ -12,7 +12,6 @@ import casadi as ca
 from . import (analysis, check, combinations, derive, description, dimensions, emit_model, emit_series, functions, graph, limits,
                momentum, signals, tape)
 from .align import align, own
-from .arguments import NOT_FOLDERS
 from .context import build
 from .emit_c import Source
 from .errors import ModelError, error_location
@@ -57,13 +56,13 @@ class Variant:
     """The same where no optional motion of the ground acts, if there is one."""
 
 
-def load(folder, build=build):
-    """The models (one a combination of choices) of a model folder."""
-    name = os.path.basename(os.path.normpath(folder))
+def load(folder, name=None, build=build):
+    """The models (one a combination of choices) of a model folder, by the name of the folder if none is given."""
+    name = name or os.path.basename(os.path.abspath(folder))
     file = os.path.abspath(os.path.join(folder, "model.py"))
-    if not name.isidentifier() or not name.isascii() or "__" in name or name in NOT_FOLDERS:
-        raise ModelError(f"`{name}` cannot be the name of a model: it names modules and functions of generated code; take another one,"
-                         " of letters, digits and single underscores", file)
+    if not name.isidentifier() or not name.isascii() or "__" in name:
+        raise ModelError(f"`{name}` cannot be the name of a model: it is part of the names of functions in C; take another one, of"
+                         " letters, digits and single underscores", file)
     try:
         with open(file, encoding="utf-8") as stream:
             source = stream.read()
@@ -89,12 +88,12 @@ def as_model_error(error, file):
     return ModelError(message, error_location(error, file))
 
 
-def generate(folder, for_tests=False, named=None, owner=""):
+def generate(folder, for_tests=False, named=None, owner="", name=None):
     """All files of a model: a dict from file name to text. With `named`, options by choices, that of the fitting variant alone.
 
     What is linked has names that begin with `owner`, so that two crates of one program may have models of one name.
     """
-    models = load(folder)
+    models = load(folder, name)
     name = models[0].name
     check_same_declarations(models)
     derived = models if named is None else [combinations.fitting(models, named)]

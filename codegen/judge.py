@@ -13,12 +13,12 @@ from .context import build
 from .errors import Location, ModelError, collected, error_location, report, split
 
 
-def judge(folder):
+def judge(folder, name=None):
     """The judgement as data for JSON: model, ok, errors, and for a model without errors its modes."""
-    result = {"model": os.path.basename(os.path.abspath(folder)), "ok": False, "errors": [], "modes": [], "contacts": [], "variants": []}
+    result = {"model": name or os.path.basename(os.path.abspath(folder)), "ok": False, "errors": [], "modes": [], "contacts": [], "variants": []}
     # Whatever the model file prints is not the answer.
     with contextlib.redirect_stdout(sys.stderr), collected() as errors:
-        models = generate.load(folder, _build)
+        models = generate.load(folder, name, _build)
         if not errors:
             variants = _variants(models)
     result["errors"] = _unique([_error(error) for error in errors])

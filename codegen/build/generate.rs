@@ -103,7 +103,7 @@ pub fn generate(
             let for_tests = model.for_tests.then_some("--for-tests");
             run(
                 project,
-                model.folder.as_ref(),
+                (&model.name, model.folder.as_ref()),
                 ["--owner", owner.tag()].into_iter().chain(for_tests),
                 generator,
                 environment,
@@ -153,7 +153,7 @@ pub fn digest(
 /// the model's `folder` is.
 pub fn run<'a>(
     directory: &Path,
-    folder: &Path,
+    (name, folder): (&str, &Path),
     options: impl IntoIterator<Item = &'a str>,
     generator: &Generator,
     environment: &Environment,
@@ -166,6 +166,7 @@ pub fn run<'a>(
         .arg(directory)
         .args(["generate", "--model-dir"])
         .arg(folder)
+        .args(["--name", name])
         .arg("--out")
         .arg(out)
         .args(options);
@@ -218,6 +219,24 @@ pub fn read(name: &str, origin: &str, folder: &Path, digest: String) -> Result<G
         tables: folder.join(tables),
         digest,
     })
+}
+
+/// The name of a model in a folder of any name: lower-case letters, digits and single underscores of it, a letter first.
+pub fn module_name(folder: &str) -> String {
+    let mut name = String::new();
+    for c in folder.chars().map(|c| c.to_ascii_lowercase()) {
+        match c.is_ascii_alphanumeric() {
+            true => name.push(c),
+            false if name.ends_with('_') || name.is_empty() => {}
+            false => name.push('_'),
+        }
+    }
+    let name = name.trim_end_matches('_');
+    match name.starts_with(|c: char| c.is_ascii_lowercase()) {
+        true => name.to_owned(),
+        false if name.is_empty() => "model".to_owned(),
+        false => format!("model_{name}"),
+    }
 }
 
 /// Whether a name can be that of a Python module and part of the names of C functions, in which single underscores separate.

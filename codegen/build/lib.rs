@@ -73,7 +73,6 @@ pub const PAGE_STYLE: &str = include_str!("../page.css");
 pub use cache::Cache;
 pub use error::{Error, InstallCause, ModelFailure};
 pub use evict::Item;
-pub use generate::is_module_name as is_model_name;
 pub use library::{Choices, Library, Options, Stage, library};
 pub use model::{Sources, check, sources};
 pub use script::models;

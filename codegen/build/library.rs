@@ -187,7 +187,7 @@ impl Model {
         let directory = env::current_dir().map_err(Error::io("find", Path::new(".")))?;
         let result = generate::run(
             &directory,
-            &self.absolute,
+            (&self.name, &self.absolute),
             flags.iter().map(String::as_str),
             &generator,
             &environment,

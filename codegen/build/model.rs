@@ -20,7 +20,7 @@ use super::link;
 
 /// A model folder.
 pub struct Model {
-    /// Its name: that of the folder.
+    /// Its name: that of the folder, as far as it can be one.
     pub name: String,
     /// As it was named.
     pub folder: PathBuf,
@@ -57,13 +57,8 @@ impl Model {
             )
         })?;
         let name = absolute.file_name().unwrap_or_default().to_string_lossy();
-        if !generate::is_module_name(&name) {
-            return Err(Error::ModelName {
-                folder: folder.display().to_string(),
-            });
-        }
         Ok(Self {
-            name: name.into_owned(),
+            name: generate::module_name(&name),
             folder: folder.to_owned(),
             absolute,
         })
@@ -131,7 +126,8 @@ pub fn check(folder: &Path, progress: &dyn Fn(Stage)) -> Result<Value, Error> {
         .args(["-m", "codegen", "--directory"])
         .arg(directory)
         .args(["check", "--model-dir"])
-        .arg(&model.absolute);
+        .arg(&model.absolute)
+        .args(["--name", &model.name]);
     let output = command
         .output()
         .map_err(Error::io("run", Path::new(command.get_program())))?;

@@ -80,18 +80,9 @@ pub fn new(arguments: &NewArguments) -> Result {
     Ok(Outcome::Done)
 }
 
-/// Refuses a folder whose name no model can have, and one in which there is something.
+/// Refuses a folder in which there is something.
 fn refuse(folder: &Path) -> std::result::Result<(), Failure> {
     let shown = folder.display();
-    let absolute =
-        std::path::absolute(folder).map_err(|e| Failure::wrong_input(format!("{shown}: {e}")))?;
-    let name = absolute.file_name().unwrap_or_default().to_string_lossy();
-    if !dalembert_build::is_model_name(&name) {
-        return Err(Failure::wrong_input(format!(
-            "{shown}: the name of the folder becomes that of the model, and part of names in C: take one of lower-case \
-             letters, digits and single underscores, a letter first and no underscore last"
-        )));
-    }
     match fs::read_dir(folder) {
         Ok(mut entries) => match entries.next() {
             None => Ok(()),

@@ -41,9 +41,9 @@ fn modes_are_shown_with_guards_and_transitions() {
 
   free  x
 
-  transition     to           may change      kind         when this falls through 0     unit
-  belt sticks    belt sticks                  conditional  belt_direction*(x.rate-belt)  m/s
-  belt reverses  belt slides  belt_direction  otherwise    as above
+  transition     to           may change              kind         when this falls through 0     unit
+  belt sticks    belt sticks                          conditional  belt_direction*(x.rate-belt)  m/s
+  belt reverses  belt slides  belt_direction, x.rate  otherwise    as above
 ";
     assert!(modes[1].starts_with(slides), "{text}");
 }

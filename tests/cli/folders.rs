@@ -5,7 +5,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::{new::TEMPLATES, project, stderr};
+use super::{new::TEMPLATES, project, stderr, stdout};
 
 /// A folder with a cache of its own, and Python and a compiler that note their runs.
 struct Place {
@@ -100,6 +100,24 @@ impl Place {
 fn close(found: f64, expected: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
     assert!(error < 1e-6, "{found} is not {expected}");
+}
+
+#[test]
+fn a_folder_may_have_any_name() {
+    let place = Place::new();
+    for (folder, model) in [
+        ("My-Block.v2", "my_block_v2"),
+        ("1st try", "model_1st_try"),
+        ("tmp__x_", "tmp_x"),
+        ("class", "class"),
+        ("ж", "model"),
+    ] {
+        place.run(0, &["new", folder, "--template", "impact"]);
+        place.run(0, &["run", &format!("{folder}/scene.json")]);
+        let output = place.command(&["check", folder]).output().unwrap();
+        let said = stdout(&output);
+        assert!(said.starts_with(&format!("{model}: no errors\n")), "{said}");
+    }
 }
 
 #[test]
