@@ -17,7 +17,7 @@ _INITIAL = dict.fromkeys(("project", "at_rest"), "a key of initial states")
 RESERVED = {
     "parameter": {"set": "the key that chooses a parameter set", "t": "the time"},
     "coordinate": {**_COLUMNS, **_INITIAL}, "discrete state": {**_COLUMNS, **_INITIAL}, "output": _COLUMNS, "input": _COLUMNS,
-    "ground motion": _COLUMNS,
+    "ground motion": _COLUMNS, "motion": {**_COLUMNS, **_INITIAL},
     "choice": dict.fromkeys(
         ("model", "title", "set", "parameters", "contacts", "inputs", "initial", "freeze", "end", "limits", "outputs", "accuracy", "method",
          "impacts", "record", "format"), "a key of scenes"),
@@ -98,11 +98,11 @@ def mode(model, what, value):
 
 
 def coordinate(model, what, value, *, motions=False):
-    """A coordinate of the model, or, where they are asked for, a motion of the ground."""
+    """A coordinate of the model, or, where they are asked for, a prescribed motion."""
     known = {c.symbol.element_hash(): c.symbol for c in model.coordinates + (model.motions if motions else [])}
     if isinstance(value, ca.SX) and value.is_scalar() and value.element_hash() in known:
         return known[value.element_hash()]
-    kinds = "a coordinate or a motion of the ground" if motions else "a coordinate"
+    kinds = "a coordinate or a prescribed motion" if motions else "a coordinate"
     names = ", ".join(f"`{symbol.name()}`" for symbol in known.values())
     right = (f"give the coordinate itself, what model.coordinate({value!r}, …) returned"
              if isinstance(value, str) and any(symbol.name() == value for symbol in known.values())

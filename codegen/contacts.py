@@ -260,7 +260,7 @@ def _law(model, of, what, rates):
         value = arguments.expression(model, entry, value)
         for symbol in ca.symvar(value):
             if symbol.element_hash() not in allowed:
-                raise model.error(f"{entry} depends on `{symbol.name()}`; it depends on coordinates, rates, motions of the ground,"
+                raise model.error(f"{entry} depends on `{symbol.name()}`; it depends on coordinates, rates, prescribed motions,"
                                   " discrete states and parameters alone")
         operation = graph.non_smooth_operation(value, [p.symbol for p in model.parameters])
         if operation:
@@ -291,21 +291,21 @@ def declare_constraint(model, name, expressions, switch):
         expression = _of_motion(model, what, arguments.expression(model, what, expression), rates=True)
         is_rate = _is_of_rates(model, what, expression)
         if not is_rate and ca.depends_on(expression, ca.vertcat(ca.SX(0, 1), *[m.symbol.rate for m in model.motions])):
-            raise model.error(f"{what}, `{units.short(expression)}`, depends on the rate of a motion of the ground, but on none of a coordinate")
+            raise model.error(f"{what}, `{units.short(expression)}`, depends on the rate of a prescribed motion, but on none of a coordinate")
         if chosen == OFF:
             continue
         model.constraints.append(multipliers.Constraint(own, expression, caller_location(model.file), is_rate))
 
 
 def _of_motion(model, what, expression, rates):
-    """An expression in coordinates, motions of the ground, discrete states and parameters, and in `rates` where these are allowed."""
+    """An expression in coordinates, prescribed motions, discrete states and parameters, and in `rates` where these are allowed."""
     places = [c.symbol for c in model.coordinates + model.motions]
     allowed = {s.element_hash() for s in [*places, *(p.symbol for p in model.parameters), *_by_hand(model)]}
     allowed |= {s.rate.element_hash() for s in places} if rates else set()
     for symbol in ca.symvar(expression):
         if symbol.element_hash() not in allowed:
             raise model.error(f"{what}, `{units.short(expression)}`, depends on `{symbol.name()}`; it depends on coordinates"
-                              f"{', rates' if rates else ''}, motions of the ground, discrete states and parameters alone")
+                              f"{', rates' if rates else ''}, prescribed motions, discrete states and parameters alone")
     operation = graph.non_smooth_operation(expression, [p.symbol for p in model.parameters])
     if operation:
         raise model.error(f"{what}, `{units.short(expression)}`: `{operation}` is not smooth; declare one contact or constraint for each"

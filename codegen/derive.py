@@ -20,7 +20,7 @@ ENERGY = units.parse("kg m^2/s^2")
 
 @dataclass
 class Configuration:
-    """Coordinates, rates and accelerations with the ground motions appended, as columns."""
+    """Coordinates, rates and accelerations with the prescribed motions appended, as columns."""
 
     q: ca.SX
     v: ca.SX
@@ -28,7 +28,7 @@ class Configuration:
 
 
 def configuration(model):
-    """All coordinates and ground motions of a model."""
+    """All coordinates and prescribed motions of a model."""
     symbols = [c.symbol for c in model.coordinates + model.motions]
     return Configuration(
         ca.vertcat(*symbols) if symbols else ca.SX(0, 1),
@@ -38,10 +38,11 @@ def configuration(model):
 
 
 def inertial_position(model, body):
-    """Position of a body in the inertial frame: relative position plus motion of the ground."""
+    """Position of a body in the inertial frame: relative position plus the motions of the ground."""
     position = list(body.position)
     for motion in model.motions:
-        position[motion.axis] = position[motion.axis] + motion.symbol
+        if motion.axis is not None:
+            position[motion.axis] = position[motion.axis] + motion.symbol
     return ca.vertcat(*position)
 
 

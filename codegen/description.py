@@ -42,7 +42,8 @@ def describe(name, models, chosen, constants, for_tests):
             "required": [i for i, used in enumerate(required) if used],
         },
         "coordinates": [_coordinate(model, c) for c in model.coordinates],
-        "motions": [{"name": m.name, "unit": m.unit, "reaction_unit": _reaction_unit(m.unit), "meaning": m.meaning}
+        "motions": [{"name": m.name, "unit": m.unit, "reaction_unit": _reaction_unit(m.unit), "meaning": m.meaning,
+                     "is_ground": m.axis is not None, "input": next(k for k, i in enumerate(model.inputs) if i.motion == m.name)}
                     for m in model.motions],
         "parameters": [parameter(p) for p in model.parameters],
         "parameter_sets": [

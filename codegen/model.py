@@ -182,13 +182,26 @@ class Model:
         For an `optional` one there is code with and without it, so that scenes that do not give it pay nothing. One that
         is not `available` under the choices made so far may not be given.
         """
-        symbol = self._declare_motion("ground motion", name, unit)
-        self._text("ground motion", name, meaning)
-        self._declare("input", input, unit + "/s^2")
         if axis not in ("x", "y"):
             raise self.error(f"ground `{name}`: there is no axis {axis!r}, but 'x' (to the right) and 'y' (upwards)")
+        return self._prescribe("ground motion", name, meaning, input, unit, "xy".index(axis), optional, available)
+
+    def motion(self, name, meaning, *, input, unit="m", optional=False, available=True):
+        """A prescribed motion of something else than the ground: a belt, a table beside the ground, a driven crank
+        (`unit="rad"`). A scene gives its acceleration, and under `initial` where it is and how fast it moves at first.
+
+        Positions and energies, forces, gaps, slips and constraints may depend on it. Returns the motion as `ground` does;
+        `mode.reaction(motion)` is the force that it takes. `optional` and `available` as there.
+        """
+        return self._prescribe("motion", name, meaning, input, unit, None, optional, available)
+
+    def _prescribe(self, what, name, meaning, input, unit, axis, optional, available):
+        """Declares a prescribed motion, of the ground where it has an axis, and its input."""
+        symbol = self._declare_motion(what, name, unit)
+        self._text(what, name, meaning)
+        self._declare("input", input, unit + "/s^2")
         self.motions.append(Declaration(name, unit, meaning, symbol, dict(
-            axis="xy".index(axis), optional=optional, available=available, location=caller_location(self.file))))
+            axis=axis, optional=optional, available=available, location=caller_location(self.file))))
         self.inputs.append(Declaration(input, unit + "/s^2", meaning, symbol.acceleration, dict(
             signals=[symbol.acceleration, symbol.rate, symbol], motion=name)))
         return symbol

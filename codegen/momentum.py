@@ -26,10 +26,16 @@ _LENGTH = units.parse("m")
 
 def check(model):
     """Refuses a model whose energies or forces contradict one of the four."""
-    if model.motions:
+    ground = _of_ground(model)
+    if ground:
         check = _Check(model)
-        for motion in model.motions:
+        for motion in ground:
             check.of(motion)
+
+
+def _of_ground(model):
+    """The motions of the ground: others are a matter of the model alone."""
+    return [motion for motion in model.motions if motion.axis is not None]
 
 
 class _Check:
@@ -90,7 +96,7 @@ class _Check:
                 raise ModelError(f"equation of `{name}`: it {why}", self.model.location(self.model.hand_written, name))
 
     def _has_its_momentum(self, motion):
-        rates = ca.vertcat(*[m.symbol.rate for m in self.model.motions])
+        rates = ca.vertcat(*[m.symbol.rate for m in _of_ground(self.model)])
         # Where a coordinate moves bodies, the translations below tell what it does.
         place = ca.vertcat(*[p for b in self.lifted.bodies for p in b.position])
         symbols = [self.model.coordinates[i].symbol for i in self.lengths]

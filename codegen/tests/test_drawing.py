@@ -98,7 +98,7 @@ class Refusals(ScratchTest):
         self.refused('model.draw("b", [(x, 0), (0, 0)], kind="line", radius=x)', "only a `point` has a radius")
         self.refused('model.draw("b", [(x, 0)], kind="point", force=(x, None))', "only a `contact` has a force and states")
         self.refused('model.draw("b", [(x, 0)], kind="contact", force=x)', "its force is a pair")
-        self.refused('model.draw("b", [(x, 0)], kind="contact", force=(k, None))', "not a coordinate or a motion of the ground")
+        self.refused('model.draw("b", [(x, 0)], kind="contact", force=(k, None))', "not a coordinate or a prescribed motion")
         self.refused('model.draw("b", [(x, 0)], kind="contact", states=[(model.modes[0], "shut")])', "there is no state 'shut'")
         self.refused('model.draw("b", [(x, 0)], kind="contact", states=[("m", "closed")])', "not a mode")
         self.refused('model.draw("b", [(x, 0)], kind="contact", of="wall")', "there is no contact, friction or constraint the text 'wall'")

@@ -3,7 +3,7 @@
 use super::outputs::OwnOutput;
 use super::validate::{Invalid, Unknown, check_initial, within};
 use crate::input::{Function, Signals};
-use crate::model::{Model, Variant};
+use crate::model::{Bounds, Model, Variant};
 use crate::run::Recorded;
 use std::sync::Arc;
 
@@ -275,13 +275,24 @@ impl Problem {
         Ok(())
     }
 
-    /// Sets the initial value of a coordinate (`theta`), a rate (`theta.rate`) or a discrete state.
+    /// Sets the initial value of a coordinate (`theta`), a rate (`theta.rate`) or a discrete state; or where a prescribed motion
+    /// that is not of the ground starts, and at which rate.
     ///
     /// # Errors
     /// [`Invalid`] if the model has none of that name, or it must not have this value.
     pub fn set_initial(&mut self, name: &str, value: f64) -> Result<(), Invalid> {
         let model = &self.model;
         let mut initial = self.initial.clone();
+        let (of, is_rate) = match name.strip_suffix(".rate") {
+            Some(of) => (of, true),
+            None => (name, false),
+        };
+        if let Some(motion) = model.motions.iter().find(|m| !m.is_ground && m.name == of) {
+            within(Bounds::NONE, "", value, || format!("initial `{name}`"))?;
+            let [place, rate] = [!is_rate, is_rate].map(|is_it| is_it.then_some(value));
+            self.signals.start(motion.input, place, rate);
+            return Ok(());
+        }
         let rate = name
             .strip_suffix(".rate")
             .and_then(|name| model.coordinate(name));
@@ -294,6 +305,8 @@ impl Problem {
         } else {
             let known = model.coordinates.iter().map(|c| c.name);
             let known = known.chain(model.discretes.iter().map(|d| d.name));
+            let motions = model.motions.iter().filter(|m| !m.is_ground);
+            let known = known.chain(motions.map(|m| m.name));
             return Err(self
                 .unknown("coordinate, rate or discrete state", name, known)
                 .into());
@@ -312,9 +325,7 @@ impl Problem {
         let found = inputs.iter().position(|i| i.name == name);
         let known = || inputs.iter().map(|i| i.name);
         let index = found.ok_or_else(|| self.unknown("input", name, known()))?;
-        let mut functions: Vec<Function> = self.signals.functions().cloned().collect();
-        functions[index] = function;
-        self.signals = Signals::new(inputs, functions);
+        self.signals.set(index, function);
         Ok(())
     }
 

@@ -46,6 +46,14 @@ enum Term {
     Sine(Sine),
     Table(Table),
     Commanded(Commanded),
+    Start(Start),
+}
+
+/// Where a motion is at t = 0, and its rate there: zero as an acceleration.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Start {
+    pub place: f64,
+    pub rate: f64,
 }
 
 impl Function {
@@ -66,6 +74,24 @@ impl Function {
         Function {
             terms: vec![Term::Commanded(Commanded::new(initial))],
         }
+    }
+
+    /// Where the motion is at t = 0 whose acceleration this is.
+    pub(super) fn start(&self) -> Start {
+        let start = |term: &Term| match term {
+            Term::Start(start) => Some(*start),
+            _ => None,
+        };
+        self.terms.iter().find_map(start).unwrap_or_default()
+    }
+
+    /// The same acceleration of a motion that starts elsewhere.
+    pub(super) fn starting(mut self, start: Start) -> Self {
+        self.terms.retain(|term| !matches!(term, Term::Start(_)));
+        if start != Start::default() {
+            self.terms.push(Term::Start(start));
+        }
+        self
     }
 
     /// Whether the caller changes it while a run goes on.
@@ -124,6 +150,9 @@ impl Function {
                 Term::Commanded(commanded) => {
                     put(3.0);
                     commanded.content(put);
+                }
+                Term::Start(Start { place, rate }) => {
+                    [4.0, *place, *rate].into_iter().for_each(&mut *put);
                 }
             }
         }
@@ -348,6 +377,11 @@ impl Term {
             Term::Sine(sine) => sine.at(t, side),
             Term::Table(table) => table.at(t, side),
             Term::Commanded(commanded) => commanded.at(t, side),
+            Term::Start(Start { place, rate }) => Jet {
+                integral: *rate,
+                double_integral: place + rate * t,
+                ..Jet::default()
+            },
         }
     }
 
@@ -361,6 +395,7 @@ impl Term {
             Term::Sine(sine) => sine::add_series(std::iter::once(sine), t, side, out),
             Term::Table(table) => table.add_series(t, side, out),
             Term::Commanded(commanded) => commanded.add_series(t, side, out),
+            Term::Start(_) => {}
         }
     }
 
@@ -373,7 +408,7 @@ impl Term {
 
     fn next_breakpoint(&self, t: f64) -> f64 {
         match self {
-            Term::Constant(_) => f64::INFINITY,
+            Term::Constant(_) | Term::Start(_) => f64::INFINITY,
             Term::Sine(sine) => sine.next_breakpoint(t),
             Term::Table(table) => table.next_breakpoint(t),
             Term::Commanded(commanded) => commanded.next_knot(t),
@@ -382,14 +417,18 @@ impl Term {
 
     fn next_joint(&self, t: f64) -> f64 {
         match self {
-            Term::Constant(_) | Term::Sine(_) | Term::Commanded(_) => f64::INFINITY,
+            Term::Constant(_) | Term::Start(_) | Term::Sine(_) | Term::Commanded(_) => {
+                f64::INFINITY
+            }
             Term::Table(table) => table.next_joint(t),
         }
     }
 
     fn resolution(&self, t: f64) -> f64 {
         match self {
-            Term::Constant(_) | Term::Table(_) | Term::Commanded(_) => f64::INFINITY,
+            Term::Constant(_) | Term::Start(_) | Term::Table(_) | Term::Commanded(_) => {
+                f64::INFINITY
+            }
             Term::Sine(sine) => sine.resolution(t),
         }
     }

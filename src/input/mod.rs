@@ -1,8 +1,8 @@
 //! Prescribed functions of time: what a scene's `inputs` say, evaluated as the signals of a model.
 //!
 //! An input of kind [`InputKind::Acceleration`] fills three signals: acceleration, velocity and
-//! displacement of the ground. The last two are the exact antiderivatives of the first, both zero
-//! at t = 0, for tables and sums too; nothing is integrated numerically.
+//! displacement of the ground, or of what else it moves. The last two are the exact antiderivatives of the first, for tables and
+//! sums too; nothing is integrated numerically. Both are zero at t = 0, unless the motion starts elsewhere.
 //!
 //! Functions may jump, start and end. At such a breakpoint there are two limits:
 //! [`Signals::evaluate`] gives the right-hand one and [`Signals::evaluate_left`] the left-hand one.
@@ -74,6 +74,21 @@ impl Signals {
     /// The functions, one for each input of the model.
     pub fn functions(&self) -> impl Iterator<Item = &Function> {
         self.channels.iter().map(|c| &c.function)
+    }
+
+    /// Lets the motion whose acceleration an input is, by its index, be at this place at t = 0, or move at this rate.
+    pub(crate) fn start(&mut self, input: usize, place: Option<f64>, rate: Option<f64>) {
+        let function = &mut self.channels[input].function;
+        let mut start = function.start();
+        start.place = place.unwrap_or(start.place);
+        start.rate = rate.unwrap_or(start.rate);
+        *function = std::mem::take(function).starting(start);
+    }
+
+    /// Gives an input, by its index, another function; the motion whose acceleration it is starts where it did.
+    pub(crate) fn set(&mut self, input: usize, function: Function) {
+        let own = &mut self.channels[input].function;
+        *own = function.starting(own.start());
     }
 
     /// Whether the function of some input is set by the caller while a run goes on.

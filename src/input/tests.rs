@@ -375,6 +375,42 @@ fn signals_follow_the_layout_of_the_model() {
     assert!((u[3] - 2.0_f64.cos()).abs() < 1e-15);
 }
 
+#[test]
+fn a_motion_goes_on_from_where_it_starts() {
+    let inputs = [Input {
+        name: "drive",
+        unit: "",
+        meaning: "",
+        kind: InputKind::Acceleration,
+        signal: 0,
+    }];
+    let mut signals = Signals::new(&inputs, vec![Sine::new(2.0, 3.0, 0.5).into()]);
+    let own = |signals: &Signals| {
+        let (mut u, mut rates) = ([f64::NAN; 3], [f64::NAN; 3]);
+        signals.jets(0.7, Side::Right, &mut u, &mut rates);
+        let mut rows = [f64::NAN; 3 * 6];
+        signals.series(0.7, [&u, &rates], &[true; 3], &mut rows);
+        (u, rates, rows)
+    };
+    let (still, _, still_rows) = own(&signals);
+    signals.start(0, None, Some(5.0));
+    signals.start(0, Some(-4.0), None);
+    signals.set(0, Sine::new(2.0, 3.0, 0.5).into());
+    let (u, rates, rows) = own(&signals);
+    assert_eq!(u, [still[0], still[1] + 5.0, still[2] + (5.0 * 0.7 - 4.0)]);
+    assert_eq!(rates[1..], u[..2]);
+    // Their series differ in what a steady motion has.
+    for (k, (row, still)) in rows.chunks(3).zip(still_rows.chunks(3)).enumerate() {
+        let more = [[0.0, 5.0, -0.5], [0.0, 0.0, 5.0]].get(k).copied();
+        for (i, more) in more.unwrap_or_default().into_iter().enumerate() {
+            assert!((row[i] - still[i] - more).abs() < 1e-15, "{k} {i}");
+        }
+    }
+    assert!(!signals.is_zero());
+    signals.start(0, Some(0.0), Some(0.0));
+    assert_eq!(own(&signals).0, still);
+}
+
 fn rows() -> impl Strategy<Value = Vec<(f64, f64)>> {
     let start = -1.0..1.0;
     let steps = prop::collection::vec((0.01..1.0, -10.0..10.0), 2..20);

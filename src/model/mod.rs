@@ -36,7 +36,7 @@ pub struct Model {
     pub source: &'static str,
     /// Generalized coordinates, in the order of every `q`, `v`, `a` and reaction vector.
     pub coordinates: Box<[Coordinate]>,
-    /// Prescribed motions of the ground, in the order of the base reactions.
+    /// Prescribed motions, in the order of their reactions.
     pub motions: Box<[Motion]>,
     /// Parameters, in the order of the raw parameter vector.
     pub parameters: Box<[Parameter]>,
@@ -84,15 +84,19 @@ pub struct Coordinate {
     pub maximum: Option<f64>,
 }
 
-/// A prescribed motion of the ground along one axis.
+/// A prescribed motion: of the ground along one axis, or of something else.
 #[derive(Debug)]
 pub struct Motion {
     /// Name (`z_h`).
     pub name: &'static str,
     /// Unit of the displacement.
     pub unit: &'static str,
-    /// Unit of the base reaction: the force the ground exerts on the system along the axis.
+    /// Unit of its reaction: the force that the ground, or what else it is of, exerts on the system along it.
     pub reaction_unit: &'static str,
+    /// Whether it is of the ground.
+    pub is_ground: bool,
+    /// The input that is its acceleration, by its index.
+    pub input: usize,
     /// Meaning and sign.
     pub meaning: &'static str,
 }

@@ -168,7 +168,10 @@ fn reactions(model: &Model) -> Vec<Quantity> {
         Quantity::new(format!("reaction.{}", c.name), c.reaction_unit, meaning)
     });
     let ground = model.motions.iter().map(|m| {
-        let meaning = format!("force of the ground on the system along {}", m.name);
+        let meaning = match m.is_ground {
+            true => format!("force of the ground on the system along {}", m.name),
+            false => format!("force on the system along {}, which drives it", m.name),
+        };
         Quantity::new(format!("reaction.{}", m.name), m.reaction_unit, meaning)
     });
     held.chain(ground).collect()

@@ -339,7 +339,12 @@ pub(crate) fn chosen<'s>(scene: &'s Checked, choice: &str) -> Option<&'s Checked
 
 /// The key of a coordinate's velocity.
 pub(crate) fn rate_key(coordinate: &Coordinate) -> String {
-    format!("{}.rate", coordinate.name)
+    rate_of(coordinate.name)
+}
+
+/// The key of a velocity.
+pub(crate) fn rate_of(name: &str) -> String {
+    format!("{name}.rate")
 }
 
 /// The unit of a coordinate's velocity.
@@ -369,6 +374,12 @@ fn initial(model: Option<&Model>) -> Object {
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
         keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));
+    }
+    for m in model.motions.iter().filter(|m| !m.is_ground) {
+        keys.push(Key::new(m.name, m.meaning, Quantity::any(m.unit)).default(0.0));
+        let rate = format!("velocity of {}", m.name);
+        let unit = format!("{}/s", m.unit);
+        keys.push(Key::new(rate_of(m.name), rate, Quantity::any(unit)).default(0.0));
     }
     for d in model.discretes.iter().filter(|d| d.given) {
         let mut key = Key::new(d.name, d.meaning, Shape::Values(d.values.clone()));

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::check::{Checked, Datum};
 use super::error::{Errors, SceneError, SceneErrorKind};
 use super::files::Files;
+use super::format;
 use super::interpret::{options, under};
 use super::record::{self, Records};
 use super::source::Span;
@@ -39,10 +40,13 @@ pub(crate) fn signals(
             None => Some(Function::zero()),
         })
         .collect();
-    Some(Signals::new(
-        &model.inputs,
-        functions.into_iter().collect::<Option<_>>()?,
-    ))
+    let mut signals = Signals::new(&model.inputs, functions.into_iter().collect::<Option<_>>()?);
+    for motion in model.motions.iter().filter(|motion| !motion.is_ground) {
+        let said = |key: &str| Some(scene.get("initial")?.get(key)?.number());
+        let rate = format::rate_of(motion.name);
+        signals.start(motion.input, said(motion.name), said(&rate));
+    }
+    Some(signals)
 }
 
 /// Refuses what is given for inputs that the chosen options do not know.

@@ -13,6 +13,7 @@ mod contacts;
 mod coulomb;
 mod derivatives;
 mod doubts;
+mod driven;
 mod equilibrium;
 mod extreme_damping;
 mod grazing;

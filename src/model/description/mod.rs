@@ -108,7 +108,9 @@ impl Reader<'_> {
             title: at.get("title", text)?,
             source: at.get("source", text)?,
             coordinates: at.get("coordinates", |at| at.list_of(of.coordinates, coordinate))?,
-            motions: at.get("motions", |at| at.list_of(of.motions, motion))?,
+            motions: at.get("motions", |at| {
+                at.list_of(of.motions, |at| motion(at, inputs.len()))
+            })?,
             parameters,
             parameter_sets: at.get("parameter_sets", |at| at.list(parameter_set))?,
             discretes: at.get("discretes", |at| at.list_of(of.discretes, discrete))?,
@@ -331,11 +333,13 @@ fn coordinate(at: &At) -> Read<Coordinate> {
     })
 }
 
-fn motion(at: &At) -> Read<Motion> {
+fn motion(at: &At, inputs: usize) -> Read<Motion> {
     Ok(Motion {
         name: at.get("name", text)?,
         unit: at.get("unit", text)?,
         reaction_unit: at.get("reaction_unit", text)?,
+        is_ground: at.get("is_ground", truth)?,
+        input: at.get("input", |at| at.index(inputs))?,
         meaning: at.get("meaning", text)?,
     })
 }

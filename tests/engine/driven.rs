@@ -1,0 +1,197 @@
+//! Prescribed motions that are not of the ground: a belt and a crank, from where they start.
+
+use crate::common::*;
+use dalembert::hybrid::{Method, Problem, simulate};
+use dalembert::input::{Function, Interpolation, Outside, Table};
+use dalembert::model::models;
+use dalembert::record::Silent;
+use dalembert::scene::{Disk, Scene};
+use std::path::Path;
+
+const METHODS: [Method; 2] = [Method::Taylor, Method::Radau];
+
+fn at_tolerance(mut problem: Problem, method: Method, end: f64) -> Problem {
+    problem.set_tolerance(1e-12);
+    problem.method = method;
+    problem.end.time = end;
+    problem
+}
+
+#[test]
+fn a_belt_of_constant_speed_is_one_whose_speed_is_a_parameter() {
+    for method in METHODS {
+        let mut by_parameter = problem("belt_oscillator", &[("belt", 0.1), ("k", 20.0)]);
+        by_parameter.set_initial("x.rate", 0.1).unwrap();
+        let mut driven = problem("driven_belt", &[("k", 20.0)]);
+        for (what, value) in [("x.rate", 0.1), ("belt.rate", 0.1), ("belt", 3.0)] {
+            driven.set_initial(what, value).unwrap();
+        }
+        let [expected, found] = [by_parameter, driven].map(|p| run(&at_tolerance(p, method, 40.0)));
+        for (expected_name, name) in [("belt slips", "base slips"), ("belt sticks", "base sticks")]
+        {
+            let [expected, found] = [times(&expected, expected_name), times(&found, name)];
+            assert_eq!(expected.len(), found.len());
+            assert!(found.len() > 3, "{found:?}");
+            for (expected, found) in expected.iter().zip(&found) {
+                assert!(
+                    (expected - found).abs() < 1e-11,
+                    "{method:?}: {expected} {found}"
+                );
+            }
+        }
+        for column in ["x", "x.rate"] {
+            let [expected, found] = [&expected, &found].map(|run| at_end(run, column));
+            assert!(
+                (expected - found).abs() < 1e-11,
+                "{method:?}: {column} {expected} {found}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_belt_that_is_braked_lets_its_mass_slip_until_that_is_as_slow() {
+    let (v, braking, until, slows) = (1.0, 6.0, 0.1, 0.25 * 9.81);
+    for method in METHODS {
+        let mut driven = problem("driven_belt", &[("k", 0.0)]);
+        for rate in ["x.rate", "belt.rate"] {
+            driven.set_initial(rate, v).unwrap();
+        }
+        let rows = ([0.0, until], [-braking, 0.0]);
+        let table = Table::new(&rows.0, &rows.1, Interpolation::Previous, Outside::Zero).unwrap();
+        driven.set_input("belt_acceleration", table.into()).unwrap();
+        let run = run(&at_tolerance(driven, method, 0.5));
+        let [stops] = times(&run, "base sticks")[..] else {
+            panic!("{:?}", transitions(&run));
+        };
+        let expected = braking * until / slows;
+        assert!(
+            (stops - expected).abs() < 1e-13,
+            "{method:?}: {stops} {expected}"
+        );
+        let after = v - braking * until;
+        let x = v * stops - 0.5 * slows * stops * stops + after * (0.5 - stops);
+        assert!((at_end(&run, "x") - x).abs() < 1e-13, "{method:?}");
+        // The mass slips on by how much farther it goes than the belt.
+        let belt = v * stops - braking * until * (stops - 0.5 * until);
+        let slipped = v * stops - 0.5 * slows * stops * stops - belt;
+        let energy = run.energy.as_ref().unwrap();
+        assert!(
+            (energy.dissipated - slows * slipped).abs() < 1e-12,
+            "{energy:?}"
+        );
+        assert!(energy.imbalance().abs() < 1e-13, "{energy:?}");
+    }
+}
+
+#[test]
+fn a_driven_crank_moves_its_slider_as_the_closed_form_says() {
+    let (r, l, m, rod, rate, acceleration) = (0.1, 0.3, 2.0, 0.5, 10.0, -3.0);
+    let psi = |phi: f64| (r * phi.sin() / l).asin();
+    let x = |phi: f64| r * phi.cos() + l * psi(phi).cos();
+    let phi = |t: f64| 0.4 + rate * t + 0.5 * acceleration * t * t;
+    let energy = |t: f64| {
+        let (phi, rate) = (phi(t), rate + acceleration * t);
+        let psi_rate = r * phi.cos() * rate / (l * psi(phi).cos());
+        let x_rate = -r * phi.sin() * rate - l * psi(phi).sin() * psi_rate;
+        let half = 0.5 * l * psi_rate;
+        let [u, w] = [x_rate + half * psi(phi).sin(), half * psi(phi).cos()];
+        0.5 * (m * x_rate * x_rate
+            + rod * (u * u + w * w)
+            + rod * l * l / 12.0 * psi_rate * psi_rate)
+    };
+    for method in METHODS {
+        let mut driven = problem("driven_crank", &[]);
+        let psi_rate = r * 0.4_f64.cos() * rate / (l * psi(0.4).cos());
+        let x_rate = -r * 0.4_f64.sin() * rate - l * psi(0.4).sin() * psi_rate;
+        let start = [
+            ("phi", 0.4),
+            ("phi.rate", rate),
+            ("x", x(0.4)),
+            ("psi", psi(0.4)),
+            ("x.rate", x_rate),
+            ("psi.rate", psi_rate),
+        ];
+        for (what, value) in start {
+            driven.set_initial(what, value).unwrap();
+        }
+        // An input that is set later leaves it where it starts.
+        let constant = Function::constant(acceleration);
+        driven.set_input("crank_acceleration", constant).unwrap();
+        driven.record.columns.reactions = true;
+        let end = 1.7;
+        let run = run(&at_tolerance(driven, method, end));
+        for (column, expected) in [("x", x(phi(end))), ("psi", psi(phi(end)))] {
+            let found = at_end(&run, column);
+            assert!(
+                (found - expected).abs() < 1e-14,
+                "{method:?}: {column} {found} {expected}"
+            );
+        }
+        // What drives the crank is the power over its rate; a central difference of fourth order.
+        let h = 1e-3;
+        let change = |k: f64| energy(end + k * h) - energy(end - k * h);
+        let power = (8.0 * change(1.0) - change(2.0)) / (12.0 * h);
+        let last = run.trajectory.len() - 1;
+        let column = run.trajectory.column("reaction.phi").unwrap();
+        let torque = run.trajectory.row(last)[column];
+        let expected = power / (rate + acceleration * end);
+        assert!(
+            (torque - expected).abs() < 1e-8,
+            "{method:?}: {torque} {expected}"
+        );
+        let ledger = run.energy.as_ref().unwrap();
+        let work = energy(end) - energy(0.0);
+        assert!(
+            (ledger.input_work - work).abs() < 1e-10,
+            "{ledger:?} {work}"
+        );
+    }
+}
+
+#[test]
+fn a_scene_says_where_a_motion_starts() {
+    let scene = |initial: &str| {
+        let text =
+            format!(r#"{{ "model": "driven_belt", "initial": {{ {initial} }}, "end": 0.2 }}"#);
+        let path = Path::new("belt.json");
+        Scene::parse(text.as_bytes(), path, &[], models(), &Disk)
+    };
+    let problem = scene(r#""belt": "30 mm", "belt.rate": 0.1, "x.rate": "10 cm/s""#)
+        .unwrap()
+        .problem;
+    let mut expected = common_belt();
+    expected.end.time = 0.2;
+    assert_eq!(problem.signals, expected.signals);
+    assert_eq!(transitions(&run(&problem)), [""; 0]);
+    let refused = scene(r#""belt_acceleration": 1"#).map(|_| ()).unwrap_err();
+    assert!(
+        refused.to_string().contains("belt_acceleration"),
+        "{refused}"
+    );
+}
+
+/// A belt that starts 30 mm on, at 0.1 m/s, with its mass.
+fn common_belt() -> Problem {
+    let mut belt = problem("driven_belt", &[]);
+    for (what, value) in [("belt", 0.03), ("belt.rate", 0.1), ("x.rate", 0.1)] {
+        belt.set_initial(what, value).unwrap();
+    }
+    belt
+}
+
+#[test]
+fn only_what_is_not_of_the_ground_starts_somewhere() {
+    let mut driven = problem("driven_belt", &[]);
+    let refused = driven.set_initial("belt.rate", f64::NAN).unwrap_err();
+    assert!(
+        refused.to_string().contains("initial `belt.rate`"),
+        "{refused}"
+    );
+    let mut block = problem("rigid_block", &[]);
+    let refused = block.set_initial("x_g.rate", 1.0).unwrap_err();
+    assert!(refused.to_string().contains("x_g.rate"), "{refused}");
+    // Nor does it have to be given.
+    let run = simulate(&driven, &mut Silent).unwrap();
+    assert_eq!(run.failure.map(|f| f.reason.to_string()), None);
+}
