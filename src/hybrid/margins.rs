@@ -341,7 +341,7 @@ impl Margins<'_> {
                     count: dense.coefficients(rate),
                     constant: begins,
                     rises: dense.value_and_slope((index, rate), factor)[1] > 0.0,
-                    write: |first, out: &mut [f64]| {
+                    write: &mut |first, out: &mut [f64]| {
                         dense.polynomial((index, rate), factor, first, out);
                         if first == 0 {
                             out[0] = begins;

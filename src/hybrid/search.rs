@@ -143,7 +143,7 @@ fn search_linear<F: Size>(
         count: dense.coefficients(rate),
         constant,
         rises: slope > 0.0,
-        write: |first, out: &mut [f64]| {
+        write: &mut |first, out: &mut [f64]| {
             dense.polynomial((index, rate), factor, first, out);
             if offset && first == 0 {
                 out[0] = constant;
@@ -249,7 +249,7 @@ fn search_series<F: Size>(
             count,
             constant,
             rises: count > 1 && power(1) * length > 0.0,
-            write: |first, out: &mut [f64]| {
+            write: &mut |first, out: &mut [f64]| {
                 stretch(&POWERS[..count], |k| power(*k), (1.0, length, first), out);
                 if count + 2 > orders {
                     let size = |of: &[f64]| sum_of(of, f64::abs);
@@ -276,21 +276,21 @@ fn search_series<F: Size>(
 }
 
 /// A polynomial in s.
-pub(super) struct Coefficients<W: FnMut(usize, &mut [f64])> {
+pub(super) struct Coefficients<'w> {
     /// Their number.
     pub count: usize,
     /// That of the power 0.
     pub constant: f64,
     /// Whether that of the power 1 is positive.
     pub rises: bool,
-    /// Writes them, from a power on.
-    pub write: W,
+    /// Writes them, from a power on: a call, so that one search serves all sizes and methods.
+    pub write: &'w mut dyn FnMut(usize, &mut [f64]),
 }
 
 /// Searches a polynomial in s = (τ − start)/length.
 #[inline]
 pub(super) fn search_polynomial(
-    coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
+    coefficients: Coefficients,
     ((start, length), (from, to), isolation): ((f64, f64), (f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {
@@ -305,7 +305,7 @@ pub(super) fn search_polynomial(
 
 /// Searches a polynomial in s on a window within 0 ≤ s ≤ 1.
 pub(super) fn search_window(
-    coefficients: Coefficients<impl FnMut(usize, &mut [f64])>,
+    coefficients: Coefficients,
     window: ((f64, f64), Isolation),
     of: (Watch, &mut Search),
 ) {
@@ -328,7 +328,7 @@ pub(super) fn search_window(
 /// after them would wait for what is on its way to memory.
 #[inline(never)]
 fn search_part<const N: usize>(
-    mut of: Coefficients<impl FnMut(usize, &mut [f64])>,
+    of: Coefficients,
     ((from, to), isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {

@@ -241,7 +241,7 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
             false => coefficients[0].0[lane],
         },
         rises: coefficients.get(1).is_some_and(|slope| slope.0[lane] > 0.0),
-        write: |first, out: &mut [f64]| {
+        write: &mut |first, out: &mut [f64]| {
             for (own, of) in out.iter_mut().zip(&coefficients[first..]) {
                 *own = of.0[lane];
             }

@@ -25,7 +25,7 @@ const HALF_DIGITS: u32 = f64::MANTISSA_DIGITS / 2;
 /// one that falls about 20, one that is dormant at the start 10 to 20 more; see the
 /// [module's page](super) for what is guaranteed.
 pub fn search(
-    guard: impl FnMut(f64) -> f64,
+    mut guard: impl FnMut(f64) -> f64,
     from: f64,
     to: f64,
     watch: Watch,
@@ -35,15 +35,16 @@ pub fn search(
         return Search::nothing(watch);
     }
     Guard {
-        function: guard,
+        function: &mut guard,
         noise,
         evaluations: 0,
     }
     .window(from, to, watch)
 }
 
-struct Guard<F> {
-    function: F,
+struct Guard<'f> {
+    /// A call costs little beside a value, and one search serves all sizes and methods.
+    function: &'f mut dyn FnMut(f64) -> f64,
     noise: f64,
     evaluations: usize,
 }
@@ -95,7 +96,7 @@ impl Samples {
     }
 }
 
-impl<F: FnMut(f64) -> f64> Guard<F> {
+impl Guard<'_> {
     fn value(&mut self, t: f64) -> f64 {
         self.evaluations += 1;
         (self.function)(t)
@@ -309,8 +310,8 @@ impl<F: FnMut(f64) -> f64> Guard<F> {
 
 /// The guard cut at the extrema of its interpolant, divided by the `order`-th power of the fraction
 /// of the window.
-struct Cut<'g, F> {
-    guard: &'g mut Guard<F>,
+struct Cut<'g, 'f> {
+    guard: &'g mut Guard<'f>,
     samples: &'g Samples,
     interpolant: Interpolant,
     extrema: Places<NODES>,
@@ -322,9 +323,9 @@ struct Cut<'g, F> {
     resolved: bool,
 }
 
-impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
+impl<'g, 'f> Cut<'g, 'f> {
     fn new(
-        guard: &'g mut Guard<F>,
+        guard: &'g mut Guard<'f>,
         samples: &'g Samples,
         interpolant: Interpolant,
         ends: (f64, f64),
@@ -362,7 +363,7 @@ impl<'g, F: FnMut(f64) -> f64> Cut<'g, F> {
     }
 }
 
-impl<F: FnMut(f64) -> f64> Pieces for Cut<'_, F> {
+impl Pieces for Cut<'_, '_> {
     fn len(&self) -> usize {
         self.extrema.as_slice().len() + 2
     }
@@ -413,7 +414,7 @@ impl<F: FnMut(f64) -> f64> Pieces for Cut<'_, F> {
         if inside.1 - outside.1 <= continuous {
             Kind::Fall
         } else {
-            let own = |guard: &mut Guard<F>, point: Point| (point.0, guard.value(point.0));
+            let own = |guard: &mut Guard, point: Point| (point.0, guard.value(point.0));
             let (inside, outside) = (own(self.guard, inside), own(self.guard, outside));
             self.guard.classify(inside, outside, self.samples)
         }
@@ -421,12 +422,12 @@ impl<F: FnMut(f64) -> f64> Pieces for Cut<'_, F> {
 }
 
 /// The guard at the nodes, taken at its word.
-struct Values<'g, F> {
-    guard: &'g mut Guard<F>,
+struct Values<'g, 'f> {
+    guard: &'g mut Guard<'f>,
     samples: &'g Samples,
 }
 
-impl<F: FnMut(f64) -> f64> Pieces for Values<'_, F> {
+impl Pieces for Values<'_, '_> {
     fn len(&self) -> usize {
         NODES
     }
