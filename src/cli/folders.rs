@@ -52,15 +52,17 @@ pub fn models_seen(needs: Needs, seen: impl Fn(&Path) + Send + Sync + 'static) -
     })
 }
 
-/// The model in a folder, or that of a name.
+/// The model in a folder, or that of a name. A name comes first: without a slash a folder is one that no model is called.
 pub fn find(
     model: &str,
     named: BTreeMap<String, String>,
 ) -> std::result::Result<Arc<Model>, Failure> {
-    if Models::is_folder(model) {
-        load(Path::new(model), Choices::Fitting(named))
-    } else {
-        super::models::find(model)
+    let folder = Path::new(model);
+    match super::models::find(model) {
+        Err(_) if Models::is_folder(model) || folder.join("model.py").is_file() => {
+            load(folder, Choices::Fitting(named))
+        }
+        found => found,
     }
 }
 

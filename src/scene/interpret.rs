@@ -149,9 +149,15 @@ pub(super) fn model(root: &Node, models: &Models, folder: &Path) -> Result<Arc<M
             }
         });
     }
-    models
-        .find(name)
-        .ok_or_else(|| unknown_name("model", name, &known, &node.place()))
+    models.find(name).ok_or_else(|| {
+        let error = unknown_name("model", name, &known, &node.place());
+        match folder.join(name).join("model.py").is_file() {
+            true => error.help(format!(
+                "for the folder beside this scene write \"./{name}\""
+            )),
+            false => error,
+        }
+    })
 }
 
 /// What a scene may mean for choices of its model, which is not known yet: all texts by their keys.

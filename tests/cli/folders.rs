@@ -121,6 +121,29 @@ fn a_folder_may_have_any_name() {
 }
 
 #[test]
+fn a_folder_without_a_slash_is_one_that_no_model_is_called() {
+    let place = Place::new();
+    place.run(0, &["new", "my_ball", "--template", "impact"]);
+    let describe = |name: &str| {
+        let output = place.command(&["describe", name]).output().unwrap();
+        (output.status.code(), stdout(&output).to_owned())
+    };
+    let (status, said) = describe("my_ball");
+    assert!(status == Some(0) && said.starts_with("my_ball: "), "{said}");
+    assert_eq!(describe("./my_ball"), (status, said));
+    let (status, _) = describe("my_bell");
+    assert_eq!(status, Some(2));
+    // In a scene names and folders are told apart by the slash.
+    fs::write(
+        place.path("scene.json"),
+        r#"{ "model": "my_ball", "end": 1 }"#,
+    )
+    .unwrap();
+    let refused = place.run(2, &["run", "scene.json"]);
+    assert!(refused.contains(r#"write "./my_ball""#), "{refused}");
+}
+
+#[test]
 fn every_template_runs_as_its_page_says() {
     let place = Place::new();
     for template in TEMPLATES {

@@ -315,6 +315,51 @@ impl Accumulation {
         Some(self.end_of(&series))
     }
 
+    /// The limit, if the last events repeat without advancing the time, with changes of the rates that shrink geometrically: of
+    /// impacts of several contacts in turn that are closer to each other than the time tells.
+    pub fn at_one_instant(&self, relative: f64) -> Option<Limit> {
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
+        (1..=known).find_map(|p| {
+            let at = self.at(0);
+            let stands = at.since(self.at(3 * p)) < at.seconds().abs() * f64::EPSILON;
+            if !(stands && (0..2 * p).all(|i| self.are_alike(i, i + p))) {
+                return None;
+            }
+            let [last, middle, first] = [0, 1, 2].map(|k| self.change_of_rates(k * p, p));
+            let (ratio, ratio_before) = (last / middle, middle / first);
+            if !(ratio < LARGEST_RATIO && ratio_before < LARGEST_RATIO) {
+                return None;
+            }
+            let limit = self.end_of(&GeometricSeries {
+                pattern: p,
+                ratio,
+                ratio_before,
+                remaining: 0.0,
+                limit: at,
+            });
+            let now = self.state(0).iter().zip(&self.absolute);
+            let told = limit.state.iter().zip(&limit.uncertainty);
+            // The last two predictions agree.
+            let has_converged = now
+                .zip(told)
+                .all(|((now, absolute), (value, uncertainty))| {
+                    uncertainty - (value - now).abs() <= absolute + relative * now.abs()
+                });
+            has_converged.then_some(limit)
+        })
+    }
+
+    /// The largest change of a rate over the `p` events before the one so many back, in tolerances.
+    fn change_of_rates(&self, back: usize, p: usize) -> f64 {
+        let rates = self.absolute.len() / 2..;
+        let [now, before] = [back, back + p].map(|back| &self.state(back)[rates.clone()]);
+        let changes = now.iter().zip(before).map(|(a, b)| (a - b).abs());
+        let in_tolerances = changes
+            .zip(&self.absolute[rates.clone()])
+            .map(|(c, a)| c / a);
+        in_tolerances.fold(0.0, f64::max)
+    }
+
     /// Looks where the last events would have their limit, if they have one, and keeps what is told best: as hops become
     /// shorter the series is nearer to a geometric one, but their durations are told less well.
     pub fn predict(&mut self) {

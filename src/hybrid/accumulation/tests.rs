@@ -157,3 +157,53 @@ fn what_follows_is_foreseen_from_hops_that_shrink() {
     assert_eq!(happens(0, 20.0), 0.5);
     assert_eq!(happens(1, 20.25), 1.5);
 }
+
+/// Impacts, all at one instant, of a light ball between the floor and a ball that is `heavy` times as heavy, which both come down
+/// at 1 m/s: after how many their limit is known, and the limit.
+fn squeezed(heavy: f64, e: f64) -> Option<(usize, Limit)> {
+    let mut accumulation = Accumulation::new([1e-12; 4].into(), 0);
+    let at = Instant::new(0.9);
+    let (mut light, mut other) = (-1.0, -1.0);
+    for k in 0..Accumulation::MEMORY {
+        let before = [0.0, 0.0, light, other];
+        match k % 2 {
+            0 if light < 0.0 => light *= -e,
+            1 if other < light => {
+                let (mean, between) =
+                    ((light + heavy * other) / (1.0 + heavy), e * (light - other));
+                light = mean - between * heavy / (1.0 + heavy);
+                other = mean + between / (1.0 + heavy);
+            }
+            // They have parted.
+            _ => return None,
+        }
+        push(
+            &mut accumulation,
+            k % 2,
+            at,
+            &before,
+            &[0.0, 0.0, light, other],
+        );
+        if let Some(limit) = accumulation.at_one_instant(1e-12) {
+            return Some((k, limit));
+        }
+    }
+    None
+}
+
+#[test]
+fn impacts_in_turn_at_one_instant_have_a_limit() {
+    for (heavy, e) in [(5.0, 0.0625), (20.0, 0.1), (20.0, 0.2), (5.0, 0.1)] {
+        let (count, limit) = squeezed(heavy, e).unwrap_or_else(|| panic!("{heavy} {e}"));
+        assert!(count > 6, "{heavy} {e}: {count}");
+        assert_eq!(limit.at, Instant::new(0.9));
+        let [light, other] = [2, 3].map(|i| limit.state[i]);
+        assert!(
+            light.abs() < 1e-11 && other.abs() < 1e-11,
+            "{heavy} {e}: {limit:?}"
+        );
+    }
+    // They part after a few, or go on without losing anything.
+    assert_eq!(squeezed(1.0, 0.5), None);
+    assert_eq!(squeezed(20.0, 1.0), None);
+}

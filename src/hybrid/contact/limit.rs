@@ -18,7 +18,9 @@ impl<'p> Simulation<'p> {
     pub(in crate::hybrid) fn rest_contacts(&mut self) -> Stoppable<bool> {
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
-        match self.accumulation.limit(self.problem.accuracy.relative) {
+        let relative = self.problem.accuracy.relative;
+        let limit = self.accumulation.limit(relative);
+        match limit.or_else(|| self.accumulation.at_one_instant(relative)) {
             Some(limit) => {
                 with_kernel!(&mode.kernels, k => self.rest_contacts_by(k, contacts, limit))
             }
