@@ -11,11 +11,7 @@ const SHARE: u64 = 30;
 
 /// Those that stop before their end. 4 and 7: hops of 1e-16 m amid rocking of 1e-12, whose limit is not known. 18: amid hops as
 /// low as rounding, Newton's iteration does not converge in steps of 1e-10 s.
-const STOPS: [&str; 3] = [
-    "stack 4 by Radau",
-    "stack 7 by Radau",
-    "stack 18 by Radau",
-];
+const STOPS: [&str; 3] = ["stack 4 by Radau", "stack 7 by Radau", "stack 18 by Radau"];
 
 const G: f64 = 9.81;
 
