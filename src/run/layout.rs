@@ -191,7 +191,12 @@ fn ledger() -> Vec<Quantity> {
 }
 
 fn signals(model: &Model) -> Vec<Quantity> {
-    let of_input = |input: &crate::model::Input| {
+    let of_input = |(i, input): (usize, &crate::model::Input)| {
+        // The ground starts at rest where it is; others start where the scene says.
+        let moved = model.motions.iter().find(|m| m.input == i && !m.is_ground);
+        let start = moved.map_or("0 at t = 0".to_owned(), |m| {
+            format!("from where {} starts", m.name)
+        });
         let mut signals = vec![Quantity::new(input.name, input.unit, input.meaning)];
         if input.kind == InputKind::Acceleration {
             let length = input.unit.strip_suffix("/s^2").unwrap_or(input.unit);
@@ -200,7 +205,7 @@ fn signals(model: &Model) -> Vec<Quantity> {
                 ("displacement", length.to_owned(), "second integral"),
             ];
             for (what, unit, integral) in integrals {
-                let meaning = format!("{integral} of {} over time, 0 at t = 0", input.name);
+                let meaning = format!("{integral} of {} over time, {start}", input.name);
                 signals.push(Quantity::new(
                     format!("{}.{what}", input.name),
                     unit,
@@ -210,7 +215,7 @@ fn signals(model: &Model) -> Vec<Quantity> {
         }
         signals
     };
-    model.inputs.iter().flat_map(of_input).collect()
+    model.inputs.iter().enumerate().flat_map(of_input).collect()
 }
 
 /// Unit of the rate of a quantity.

@@ -163,7 +163,17 @@ fn a_scene_says_where_a_motion_starts() {
     let mut expected = common_belt();
     expected.end.time = 0.2;
     assert_eq!(problem.signals, expected.signals);
-    assert_eq!(transitions(&run(&problem)), [""; 0]);
+    let mut problem = problem;
+    problem.record.columns.inputs = true;
+    let run_of_it = run(&problem);
+    let signals = &run_of_it.layout.inputs;
+    let said = |name: &str| {
+        let of = signals.iter().find(|s| s.name == name).expect("a signal");
+        of.meaning.clone()
+    };
+    let rate = said("belt_acceleration.velocity");
+    assert!(rate.ends_with("from where belt starts"), "{rate}");
+    assert_eq!(transitions(&run_of_it), [""; 0]);
     let refused = scene(r#""belt_acceleration": 1"#).map(|_| ()).unwrap_err();
     assert!(
         refused.to_string().contains("belt_acceleration"),

@@ -251,3 +251,40 @@ fn what_is_not_determined_is_marked() {
     }
     assert!(run.events.len() == 1 && (run.events[0].t - rocks).abs() <= 1e-14);
 }
+
+#[test]
+fn friction_under_an_apparent_weight_is_that_of_the_weight() {
+    for method in [Method::Taylor, Method::Radau] {
+        let of = |model: &str, parameters: &[(&str, f64)], input: &str| {
+            let mut problem = problem(model, parameters);
+            problem.set_input(input, sine("8 sin(1 t+0)")).unwrap();
+            problem.set_tolerance(1e-12);
+            problem.method = method;
+            problem.end.time = 12.0;
+            run(&problem)
+        };
+        let limit = 0.3 * 2.0 * 9.81;
+        let fixed = [
+            ("m", 2.0),
+            ("k", 0.0),
+            ("static_friction", limit),
+            ("kinetic_friction", limit),
+        ];
+        let expected = of("coulomb_oscillator", &fixed, "force");
+        let found = of("pressed_by_weight", &[], "force");
+        for what in ["slips", "sticks"] {
+            let expected = times(&expected, &format!("base {what}"));
+            let found = times(&found, &format!("rail {what}"));
+            assert_eq!(expected.len(), found.len(), "{method:?} {what}");
+            assert!(found.len() > 2, "{method:?} {what}: {found:?}");
+            for (expected, found) in expected.iter().zip(&found) {
+                assert!(
+                    (expected - found).abs() < 1e-11,
+                    "{method:?}: {expected} {found}"
+                );
+            }
+        }
+        let off = at_end(&expected, "x") - at_end(&found, "x");
+        assert!(off.abs() < 1e-11, "{method:?}: {off:e}");
+    }
+}
