@@ -8,13 +8,11 @@
 use super::geometry::{Geometry, Line, write_states};
 use super::hold::Places;
 use super::judge::{BACKWARDS, FORWARDS, GAP, SLIP, point};
+use super::many::MAY_BE_ZERO;
 use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
 use crate::model::Contacts;
 use crate::numerics::{Dynamic, Lu, Size};
-
-/// Half of the digits of a double, as a part of a number: √ε, twice what is asked of a `CLEAR` acceleration (`enter.rs`).
-const HALF: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// A number, and what it would be off by if it were known to half of its digits.
 type Rough = (f64, f64);
@@ -64,118 +62,153 @@ impl Unforced {
         touching: &[Option<Tangent>],
         (unknown, joined): (&[Line], &[(usize, usize)]),
     ) -> bool {
-        let is_constraint = |line: &&Line| matches!(line, Line::Constraint(_));
-        let unknown: Vec<Line> = unknown
-            .iter()
-            .filter(|l| !is_constraint(l))
-            .copied()
-            .collect();
-        // The forces that come with a unit of each unknown one, and those that are known.
-        let pushed = |line: Line| match line {
-            Line::Normal(k) => match states[k] {
-                ContactState::Slides(direction) => {
-                    vec![
-                        (line, 1.0),
-                        (Line::Tangent(k), -places.kinetic(k) * direction),
-                    ]
-                }
-                _ => vec![(line, 1.0)],
-            },
-            _ => vec![(line, 1.0)],
-        };
-        let pushed: Vec<_> = unknown.iter().map(|&line| pushed(line)).collect();
-        let known = |k: usize| match (states[k], touching[k]) {
-            (ContactState::Slides(direction), Some(Tangent::Still))
-                if !self.lines.contains(&Line::Normal(k)) =>
-            {
-                let [_, (kinetic, off)] = self.bounds[k];
-                Some((k, -kinetic * direction, off))
-            }
-            _ => None,
-        };
-        let known: Vec<_> = (0..states.len()).filter_map(known).collect();
-        let free = |of: Line| -> Rough {
-            let own = self.accelerations[self.place(of)];
-            known.iter().fold(own, |(sum, off), &(k, force, rough)| {
-                let per_force = self.moves(of, &[(Line::Tangent(k), 1.0)]);
-                let term = per_force * force;
-                (
-                    sum + term,
-                    off + per_force.abs() * rough + HALF * term.abs(),
-                )
-            })
-        };
-        let n = unknown.len();
-        let matrix: Vec<f64> = (unknown.iter())
-            .flat_map(|&row| pushed.iter().map(move |forces| self.moves(row, forces)))
-            .collect();
-        let left: Vec<Rough> = unknown.iter().map(|&line| free(line)).collect();
-        let entry = |i: usize, j: usize| matrix[i * n + j];
-        let Ok(lu) = Lu::<f64, Dynamic>::factorize(entry, &Dynamic(n).repeat(1.0)) else {
+        let Some(forced) = Forced::new(self, places, (states, touching), unknown) else {
             return false;
         };
-        let solution = lu.solve(|i| -left[i].0);
-        // What the residual of other numbers would be, times the inverse.
-        let mut forces: Vec<Rough> = (0..n).map(|i| (solution[i], 0.0)).collect();
-        let off: Vec<f64> = (0..n)
-            .map(|i| {
-                left[i].1
-                    + HALF
-                        * (0..n)
-                            .map(|j| (matrix[i * n + j] * solution[j]).abs())
-                            .sum::<f64>()
-            })
-            .collect();
-        lu.inverse(|i, j, inverse| forces[i].1 += inverse.abs() * off[j]);
         let is_wrong = |(value, off): Rough| value < -off;
-        let acceleration = |of: Line, sign: f64| -> Rough {
-            let (own, rough) = free(of);
-            pushed.iter().zip(&forces).fold(
-                (sign * own, rough),
-                |(sum, off), (per, &(force, rough))| {
-                    let per_force = self.moves(of, per);
-                    (
-                        sum + sign * per_force * force,
-                        off + per_force.abs() * (rough + HALF * force.abs()),
-                    )
-                },
-            )
-        };
-        let force = |line: Line| {
-            let found = unknown.iter().position(|known| *known == line);
-            found.map(|i| forces[i])
-        };
-        // The most friction of a contact that sticks.
-        let most = |k: usize| match force(Line::Normal(k)) {
-            Some((push, off)) => {
-                let coefficient = places.static_friction(k);
-                (coefficient * push, coefficient * (off + HALF * push.abs()))
-            }
-            None => self.bounds[k][0],
-        };
         (0..states.len()).any(|k| {
             let Some(tangent) = touching[k] else {
                 return false;
             };
-            let pulls = force(Line::Normal(k)).is_some_and(is_wrong);
+            let pulls = forced.force(Line::Normal(k)).is_some_and(is_wrong);
             pulls
                 || match states[k] {
-                    ContactState::Open => is_wrong(acceleration(Line::Normal(k), 1.0)),
+                    ContactState::Open => is_wrong(forced.acceleration(Line::Normal(k), 1.0)),
                     ContactState::Slides(direction) if tangent == Tangent::Still => {
-                        is_wrong(acceleration(Line::Tangent(k), direction))
+                        is_wrong(forced.acceleration(Line::Tangent(k), direction))
                     }
-                    ContactState::Sticks => force(Line::Tangent(k)).is_some_and(|(held, off)| {
-                        let beside = joined.iter().filter(|(_, first)| *first == k);
-                        let all = beside.map(|(of, _)| *of).chain([k]);
-                        is_wrong(all.fold((-held.abs(), off), |(left, off), k| {
-                            let (most, rough) = most(k);
-                            (left + most, off + rough)
-                        }))
-                    }),
+                    ContactState::Sticks => {
+                        let left = |(held, off): Rough| {
+                            let beside = joined.iter().filter(|(_, first)| *first == k);
+                            let all = beside.map(|(of, _)| *of).chain([k]);
+                            all.fold((-held.abs(), off), |(left, off), k| {
+                                let (most, rough) = forced.most_friction(k, places);
+                                (left + most, off + rough)
+                            })
+                        };
+                        let friction = forced.force(Line::Tangent(k));
+                        friction.map(left).is_some_and(is_wrong)
+                    }
                     _ => false,
                 }
         })
     }
+}
+
+/// What contacts do under the forces of a set of their states.
+struct Forced<'a> {
+    unforced: &'a Unforced,
+    /// The lines along which forces are unknown but for those of constraints, and the forces that come with a unit of each.
+    unknown: Vec<Line>,
+    pushed: Vec<Vec<(Line, f64)>>,
+    /// Friction without a gap that slides, whose force is known.
+    known: Vec<(Line, Rough)>,
+    /// Those that were unknown.
+    forces: Vec<Rough>,
+}
+
+impl<'a> Forced<'a> {
+    /// The forces that hold what a set holds; `None` if they are not determined.
+    fn new(
+        unforced: &'a Unforced,
+        places: &Places,
+        (states, touching): (&[ContactState], &[Option<Tangent>]),
+        unknown: &[Line],
+    ) -> Option<Self> {
+        let is_constraint = |line: &&Line| matches!(line, Line::Constraint(_));
+        let others = unknown.iter().filter(|line| !is_constraint(line));
+        let unknown: Vec<Line> = others.copied().collect();
+        let pushed = |&line: &Line| {
+            let mut pushed = vec![(line, 1.0)];
+            if let Line::Normal(k) = line
+                && let ContactState::Slides(direction) = states[k]
+            {
+                pushed.push((Line::Tangent(k), -places.kinetic(k) * direction));
+            }
+            pushed
+        };
+        let known = |k: usize| match (states[k], touching[k]) {
+            (ContactState::Slides(direction), Some(Tangent::Still))
+                if !unforced.lines.contains(&Line::Normal(k)) =>
+            {
+                let [_, (kinetic, off)] = unforced.bounds[k];
+                Some((Line::Tangent(k), (-kinetic * direction, off)))
+            }
+            _ => None,
+        };
+        let mut forced = Forced {
+            pushed: unknown.iter().map(pushed).collect(),
+            known: (0..states.len()).filter_map(known).collect(),
+            forces: Vec::new(),
+            unknown,
+            unforced,
+        };
+        forced.solve()?;
+        Some(forced)
+    }
+
+    /// Sets the forces: what they hold has no acceleration.
+    fn solve(&mut self) -> Option<()> {
+        let n = self.unknown.len();
+        let matrix: Vec<f64> = (self.unknown.iter())
+            .flat_map(|&row| (self.pushed.iter()).map(move |forces| (row, forces)))
+            .map(|(row, forces)| self.unforced.moves(row, forces))
+            .collect();
+        let free: Vec<Rough> = (self.unknown.iter())
+            .map(|&line| self.without_unknown(line))
+            .collect();
+        let entry = |i: usize, j: usize| matrix[i * n + j];
+        let lu = Lu::<f64, Dynamic>::factorize(entry, &Dynamic(n).repeat(1.0)).ok()?;
+        let solution = lu.solve(|i| -free[i].0);
+        // What rough numbers would leave of the equations, times the inverse.
+        let left = |i: usize| {
+            let terms = (0..n).map(|j| (entry(i, j) * solution[j]).abs());
+            free[i].1 + MAY_BE_ZERO * terms.sum::<f64>()
+        };
+        self.forces = (0..n).map(|i| (solution[i], 0.0)).collect();
+        lu.inverse(|i, j, inverse| self.forces[i].1 += inverse.abs() * left(j));
+        Some(())
+    }
+
+    /// The acceleration of what a line is about under the forces that are known.
+    fn without_unknown(&self, of: Line) -> Rough {
+        let own = self.unforced.accelerations[self.unforced.place(of)];
+        self.known.iter().fold(own, |sum, &(line, force)| {
+            add(sum, self.unforced.moves(of, &[(line, 1.0)]), force)
+        })
+    }
+
+    /// The acceleration of what a line is about, times a sign.
+    fn acceleration(&self, of: Line, sign: f64) -> Rough {
+        let (own, off) = self.without_unknown(of);
+        let forces = self.pushed.iter().zip(&self.forces);
+        forces.fold((sign * own, off), |sum, (pushed, &force)| {
+            add(sum, sign * self.unforced.moves(of, pushed), force)
+        })
+    }
+
+    /// The force along a line, where that was unknown.
+    fn force(&self, line: Line) -> Option<Rough> {
+        let found = self.unknown.iter().position(|known| *known == line);
+        found.map(|i| self.forces[i])
+    }
+
+    /// The most friction of a contact that sticks.
+    fn most_friction(&self, k: usize, places: &Places) -> Rough {
+        match self.force(Line::Normal(k)) {
+            Some(push) => add((0.0, 0.0), places.static_friction(k), push),
+            None => self.unforced.bounds[k][0],
+        }
+    }
+}
+
+/// A sum and a multiple of another number: all three rough.
+fn add((sum, off): Rough, factor: f64, (value, rough): Rough) -> Rough {
+    let term = factor * value;
+    (
+        sum + term,
+        off + factor.abs() * rough + MAY_BE_ZERO * term.abs(),
+    )
 }
 
 impl<'p> Simulation<'p> {
@@ -204,7 +237,10 @@ impl<'p> Simulation<'p> {
         // An error is no less than a rounding of all terms.
         let result = |k: usize, what: usize| -> Rough {
             let known = self.expansion.result(tape, k * Contacts::DECISIONS + what)[0];
-            (known.value, known.error * (HALF / (0.5 * f64::EPSILON)))
+            (
+                known.value,
+                known.error * (MAY_BE_ZERO / (0.5 * f64::EPSILON)),
+            )
         };
         let constraints: Vec<Line> = (0..contacts.constraints.len())
             .map(Line::Constraint)
@@ -245,15 +281,9 @@ impl<'p> Simulation<'p> {
                 Line::Tangent(k) => result(k, SLIP),
                 Line::Constraint(_) => continue,
             };
-            let accelerates = frictions
-                .iter()
-                .fold(own, |(sum, off), &(line, (force, rough))| {
-                    let per_force = unforced.moves(unforced.lines[i], &[(line, 1.0)]);
-                    (
-                        sum - per_force * force,
-                        off + per_force.abs() * (rough + HALF * force.abs()),
-                    )
-                });
+            let accelerates = frictions.iter().fold(own, |sum, &(friction, force)| {
+                add(sum, -unforced.moves(*line, &[(friction, 1.0)]), force)
+            });
             unforced.accelerations[i] = accelerates;
         }
         let is_known = |(value, off): &Rough| value.is_finite() && off.is_finite();
