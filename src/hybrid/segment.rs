@@ -77,13 +77,15 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Whether the present mode is followed by the Taylor method.
+    /// Whether the present mode is followed by the Taylor method: by choice, or since the implicit one does not resolve its hops.
     pub fn is_explicit<F: Size>(&self, kernel: &ModeKernel<F>) -> bool {
+        let prefers_implicit = self.stiffness[self.here.mode].prefers_implicit();
         kernel.is_analytic()
             && match self.problem.method {
                 Method::Taylor => true,
-                Method::Radau => false,
-                Method::Auto => !self.stiffness[self.here.mode].prefers_implicit(),
+                // Its polynomials have the rounding of coordinates, a series that of what has moved since the last event.
+                Method::Radau => self.accumulation.needs_series() && !prefers_implicit,
+                Method::Auto => !prefers_implicit,
             }
     }
 
@@ -144,7 +146,8 @@ impl<'p> Simulation<'p> {
             mode,
             scale: self.scale(kernel.size()),
             drifts,
-            chooses: problem.method == Method::Auto && kernel.is_analytic(),
+            chooses: kernel.is_analytic()
+                && (problem.method == Method::Auto || self.accumulation.needs_series()),
             looks_at_ends: is_explicit
                 || drifts
                 || mode.contacts.is_some()

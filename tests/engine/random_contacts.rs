@@ -243,7 +243,8 @@ fn random_scenes_of_several_contacts_keep_all_laws() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
     let only = asked("DALEMBERT_RANDOM_SCENE");
-    let numbers = only.map_or(0..share, |n| n..n + 1);
+    // Also one whose six feet land flat, on a pivot: two that are close together say when, and move the farthest by roundings.
+    let numbers = only.map_or_else(|| (0..share).chain([645]).collect(), |n| vec![n]);
     let mut unsettled_scenes = 0;
     let (mut stops, mut events) = (std::collections::BTreeMap::<String, u64>::new(), 0);
     for number in numbers {

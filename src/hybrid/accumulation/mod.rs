@@ -106,6 +106,8 @@ pub struct Accumulation {
     best: Box<[f64]>,
     /// Number of last events that the motion did not resolve.
     unresolved: usize,
+    /// Whether the last event ended a hop that is lower than what the implicit method tells, and the explicit one does.
+    needs_series: bool,
 }
 
 /// Numbers of a prediction before those of its state.
@@ -120,7 +122,8 @@ impl Persist for Accumulation {
         self.count.persist(memory)?;
         self.still.persist(memory)?;
         memory.slice(&mut self.best)?;
-        self.unresolved.persist(memory)
+        self.unresolved.persist(memory)?;
+        self.needs_series.persist(memory)
     }
 }
 
@@ -155,6 +158,7 @@ impl Accumulation {
             still: 0,
             best,
             unresolved: 0,
+            needs_series: false,
         }
     }
 
@@ -168,6 +172,7 @@ impl Accumulation {
     /// Forgets all events.
     pub fn clear(&mut self) {
         (self.count, self.still, self.unresolved) = (0, 0, 0);
+        self.needs_series = false;
         [self.best[0], self.best[4], self.best[5]] = [f64::INFINITY; 3];
     }
 
@@ -407,6 +412,16 @@ impl Accumulation {
     pub fn is_unresolved(&mut self, unresolved: bool) -> bool {
         self.unresolved = if unresolved { self.unresolved + 1 } else { 0 };
         self.unresolved >= Self::MEMORY
+    }
+
+    /// Says whether the last event ended a hop that only the explicit method resolves.
+    pub fn set_needs_series(&mut self, needs: bool) {
+        self.needs_series = needs;
+    }
+
+    /// Whether it did.
+    pub fn needs_series(&self) -> bool {
+        self.needs_series
     }
 
     /// Whether the time since the last event but one is so short that the rest of a series, at least

@@ -8,12 +8,25 @@ use super::{Conditioning, ContactState, Tangent};
 use crate::hybrid::accumulation::Signature;
 use crate::hybrid::advance::MadeBy;
 use crate::hybrid::failure::{Reason, Stoppable};
+use crate::hybrid::problem::Method;
 use crate::hybrid::simulation::{AtZero, Simulation};
 use crate::hybrid::unrest::Restless;
 use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::Contacts;
 use crate::model::name::intern;
 use crate::numerics::{Bounded, ORDERS, Size, Vector};
+
+/// How the end of a hop is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Resolution {
+    /// By its gap.
+    Seen,
+    /// By its gap; when those that follow close the implicit method tells less well than the tolerance asks for, or not at all, and
+    /// the explicit one does.
+    BySeries,
+    /// Not by its gap: it was lower than what the motion tells.
+    Lost,
+}
 
 /// Guards of a contact.
 pub(super) const GUARDS: usize = Contacts::GUARDS;
@@ -53,8 +66,13 @@ impl<'p> Simulation<'p> {
                 self.standing(kernel, contacts, (stops, &before))
             }
         };
-        let unresolved =
-            closes && (self.signs.unseen() || self.is_unresolved(kernel, contacts, k, &standing));
+        let hop = match closes {
+            true => self.resolution(kernel, contacts, k, &standing),
+            false => Resolution::Seen,
+        };
+        self.accumulation
+            .set_needs_series(hop == Resolution::BySeries);
+        let unresolved = hop == Resolution::Lost;
         if unresolved && self.rest_unresolved(kernel, contacts)? {
             return Ok(());
         }
@@ -129,19 +147,31 @@ impl<'p> Simulation<'p> {
         self.set_accelerations(kernel)
     }
 
-    /// Whether the hop that ends at a contact was lower than the rounding of its gap, so that its end is not known by its gap.
-    /// A hop of the duration T that ends with the rate u is about |u| T / 4 high. The series of the explicit method shows all that
-    /// begins with a bounce of the contact itself; one without restitution begins at an impact of another, where what is held
-    /// moves its gap by a rounding.
-    fn is_unresolved<F: Size>(
+    /// Whether the hop that ends at a contact was high enough for its end to be known by its gap. A hop of the duration T that ends
+    /// with the rate u is about |u| T / 4 high. The series of the explicit method shows all that begins with a bounce of the
+    /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding.
+    fn resolution<F: Size>(
         &self,
         kernel: &ModeKernel<F>,
         contacts: &Contacts,
         k: usize,
         standing: &Standing<F>,
-    ) -> bool {
+    ) -> Resolution {
+        let by_implicit = match self.problem.method == Method::Radau && kernel.is_analytic() {
+            true => Resolution::BySeries,
+            false => Resolution::Lost,
+        };
+        let is_explicit = self.made_by == MadeBy::Taylor;
+        let lost = if is_explicit {
+            Resolution::Lost
+        } else {
+            by_implicit
+        };
+        if self.signs.unseen() {
+            return lost;
+        }
         let Some((last, ..)) = self.accumulation.last() else {
-            return false;
+            return Resolution::Seen;
         };
         let at = [&standing.q, &standing.v];
         let places = Places::new(kernel, &self.context, contacts, at);
@@ -156,9 +186,15 @@ impl<'p> Simulation<'p> {
             .sum();
         let (rate, _) = places.rate(line);
         let height = 0.25 * rate.abs() * self.here.now.since(last);
-        match self.made_by {
-            MadeBy::Taylor => places.restitution(k) == 0.0 && height <= rounding,
-            _ => height <= rounding + of_steps,
+        let told = rounding + of_steps;
+        // What it is told to makes this of the time at which it closes.
+        let blurs = told > self.accuracy.relative * self.here.now.seconds() * rate.abs();
+        let is_low = height <= told;
+        match is_explicit {
+            true if places.restitution(k) == 0.0 && height <= rounding => Resolution::Lost,
+            true if by_implicit == Resolution::Lost => Resolution::Seen,
+            _ if is_low || blurs && by_implicit == Resolution::BySeries => by_implicit,
+            _ => Resolution::Seen,
         }
     }
 

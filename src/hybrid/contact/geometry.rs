@@ -115,6 +115,45 @@ impl Geometry {
         kept
     }
 
+    /// Those of some lines that together determine all of them, each time the one of which most is left beside those before it: of
+    /// feet side by side the two outermost. What the others are about follows from these with parts that are no greater than about 1.
+    pub fn spanning(&self, lines: &[Line]) -> Vec<Line> {
+        let independent = self.independent(lines);
+        if independent.len() == lines.len() {
+            return independent;
+        }
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let mut kept = Vec::new();
+        while kept.len() < independent.len() {
+            let left = (lines.iter().enumerate())
+                .filter(|(i, _)| !kept.contains(i))
+                .map(|(i, &line)| {
+                    let (part, unit) = left_of(&self.scaled[self.place(line)], &basis);
+                    (part * self.strength(line), i, unit)
+                });
+            let most = left.max_by(|(a, i, _), (b, j, _)| a.total_cmp(b).then(j.cmp(i)));
+            let Some((_, i, unit)) = most else { break };
+            kept.push(i);
+            basis.push(unit);
+        }
+        kept.sort_unstable();
+        kept.into_iter().map(|i| lines[i]).collect()
+    }
+
+    /// The parts of others that make up a line which depends on them; `None` of one that does not.
+    pub fn parts(&self, line: Line, others: &[Line]) -> Option<Vec<(Line, f64)>> {
+        let others = self.spanning(others);
+        let all = others.iter().copied().chain([line]);
+        let forces: Vec<Vec<(Line, f64)>> = all.map(|line| vec![(line, 1.0)]).collect();
+        let parts = self.without_effect(&forces).pop()?;
+        Some(
+            others
+                .into_iter()
+                .zip(parts.into_iter().map(|part| -part))
+                .collect(),
+        )
+    }
+
     /// Of some lines that of which the least is left beside those before it, as a part of the longest: whose force is determined
     /// least, and that part; `None` of no lines. What becomes shorter than all others is determined as little as what becomes
     /// parallel to them.
@@ -423,6 +462,32 @@ mod tests {
         assert!(turns([-0.2, 0.1]));
         assert!(!turns([0.2, 0.1]));
         assert!(!turns([-0.2, -0.1]));
+    }
+
+    #[test]
+    fn lines_that_depend_are_parts_of_those_that_are_farthest_apart() {
+        // Heights of feet at these places beside the centre of a body that moves up and turns.
+        let feet = [-0.1, 0.3, -0.5, 0.7];
+        let lines: Vec<(Line, Vec<f64>)> = (feet.iter().enumerate())
+            .map(|(k, &across)| (Line::Normal(k), vec![1.0, across]))
+            .collect();
+        let geometry = Geometry {
+            own: vec![0, 1],
+            mass: vec![1.0, 0.0, 0.0, 1.0],
+            scaled: lines.iter().map(|(_, along)| along.clone()).collect(),
+            lines,
+        };
+        let all: Vec<Line> = geometry.all().collect();
+        assert_eq!(geometry.independent(&all), all[..2]);
+        assert_eq!(geometry.spanning(&all), [all[2], all[3]]);
+        assert_eq!(geometry.spanning(&all[..2]), all[..2]);
+        let parts = geometry.parts(all[1], &[all[0], all[2], all[3]]).unwrap();
+        let expected = [(all[2], 1.0 / 3.0), (all[3], 2.0 / 3.0)];
+        for ((line, part), (of, expected)) in parts.into_iter().zip(expected) {
+            assert_eq!(line, of);
+            assert!((part - expected).abs() < 1e-15, "{part} and {expected}");
+        }
+        assert_eq!(geometry.parts(all[1], &all[..1]), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::ContactState;
 use super::event::GUARDS;
-use super::geometry::{Geometry, Line};
+use super::geometry::{DEPENDENT, Geometry, Line};
 use crate::kernel::{Context, ModeKernel};
 use crate::model::Contacts;
 use crate::numerics::Size;
@@ -150,17 +150,41 @@ pub(super) fn held_with<G: std::borrow::Borrow<Geometry>>(
     at: &Places,
     geometry: impl FnOnce() -> G,
 ) -> Vec<usize> {
-    let is_at_zero = |&k: &usize| {
-        let (gap, rounding) = at.place(Line::Normal(k));
-        contacts.contacts[k].has_gap() && states[k] == ContactState::Open && gap.abs() <= rounding
-    };
-    let mut found: Vec<usize> = (0..states.len()).filter(is_at_zero).collect();
+    let is_open = |&k: &usize| contacts.contacts[k].has_gap() && states[k] == ContactState::Open;
+    let [held, _] = held_lines(contacts, states);
+    let mut found: Vec<usize> = (0..states.len())
+        .filter(|k| is_open(k) && may_be_at_zero(*k, at))
+        .collect();
     if !found.is_empty() {
         let geometry = geometry();
-        let [places, _] = held_lines(contacts, states);
-        found.retain(|&k| geometry.borrow().depends(Line::Normal(k), &places));
+        found.retain(|&k| is_at_zero(k, &held, at, geometry.borrow()));
     }
     found
+}
+
+/// Whether a gap could be zero if others held it there.
+fn may_be_at_zero(k: usize, at: &Places) -> bool {
+    let (gap, rounding) = at.place(Line::Normal(k));
+    // Of lines with greater parts it is not told that they depend.
+    gap.abs() <= rounding / DEPENDENT
+}
+
+/// Whether a gap that others determine is zero within its rounding and what theirs make of it: a foot far from two that are
+/// close together moves by several of their roundings.
+pub(super) fn is_at_zero(k: usize, held: &[Line], at: &Places, geometry: &Geometry) -> bool {
+    let line = Line::Normal(k);
+    if !may_be_at_zero(k, at) {
+        return false;
+    }
+    let Some(parts) = geometry.parts(line, held) else {
+        return false;
+    };
+    let of_others = |(line, part): &(Line, f64)| {
+        let (off, rounding) = at.place(*line);
+        part.abs() * rounding.max(off.abs())
+    };
+    let (gap, rounding) = at.place(line);
+    gap.abs() <= rounding + parts.iter().map(of_others).sum::<f64>()
 }
 
 /// Newton's method converges quadratically, at a singular position by a half: where a step gains less than a tenth, rounding is what is left. Without a least gain a
@@ -183,7 +207,7 @@ pub(super) fn hold_lines<F: Size>(
     let mut before = f64::INFINITY;
     loop {
         let now = Places::new(kernel, context, contacts, [q, v]);
-        let lines = geometry.independent(places);
+        let lines = geometry.spanning(places);
         let (amounts, off) = missing(&lines, |line| now.place(line));
         // Not a number where nothing is known: then nothing is moved.
         if !(off > 1.0 && off < LEAST_GAIN * before) {
@@ -196,7 +220,7 @@ pub(super) fn hold_lines<F: Size>(
         geometry = Geometry::new(kernel, context, contacts, [q, v]);
         before = off;
     }
-    let lines = geometry.independent(rates);
+    let lines = geometry.spanning(rates);
     let mut before = f64::INFINITY;
     loop {
         let now = Places::new(kernel, context, contacts, [q, v]);

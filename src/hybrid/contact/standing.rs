@@ -1,7 +1,7 @@
 //! The contacts as they stand at an instant: what touches, and what of it has no rate.
 
 use super::geometry::{Geometry, Line, multiplier};
-use super::hold::{Places, held_lines, held_with, hold_lines};
+use super::hold::{Places, held_lines, held_with, hold_lines, is_at_zero};
 use super::impact::Impacted;
 use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
@@ -159,8 +159,14 @@ impl Simulation<'_> {
             [&mut q, &mut v],
         );
         let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        // A body that lands flat: its other feet land too, whatever rounding says of their gaps.
+        let lands = |j: usize| {
+            let is_open = before[j] == ContactState::Open && contacts.contacts[j].has_gap();
+            is_open && is_at_zero(j, &places, &at, &geometry)
+        };
         let touching = (before.iter().enumerate())
-            .map(|(j, &state)| match closes(j) {
+            .map(|(j, &state)| match closes(j) || lands(j) {
                 true => Some(Tangent::None),
                 false => tangent_of(state, || false),
             })
