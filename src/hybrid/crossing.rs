@@ -9,7 +9,7 @@ use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
 };
 use super::search::search;
-use crate::integrate::{Motion, OneStep, State};
+use crate::integrate::{LastStep, Motion, OneStep, State};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::Size;
@@ -353,9 +353,10 @@ fn below<F: Size>(
 }
 
 /// The event of a guard that was zero at the start of the segment, or came to zero within rounding, and rose from it by
-/// less than the dense output shows, so that it never was seen to be positive: it is negative at the end of the step, or where
-/// the event of another guard cuts it (`end`), and falls. It has fallen where it first is negative and falls after it was known
-/// to be positive, to a factor of two; and it is in doubt, having turned at zero. The guard, and the state there.
+/// less than the dense output shows, so that it never was seen to be positive: at the end of the step, or where the event of another
+/// guard cuts it (`end`), it is negative and falls, or it has been negative in between by more than rounding. It has fallen where
+/// it first is negative and falls after it was known to be positive, to a factor of two; and it is in doubt, having turned at zero.
+/// The guard, and the state there.
 #[cold]
 fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     method: &mut M,
@@ -374,7 +375,9 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     for (i, &watched) in watched.iter().enumerate() {
         let found = &signs.found[i];
         let is_negative = found.watch == Watch::Violated && found.crossing.is_none();
-        if !(signs.away[i] > 0.0 && is_negative) {
+        // Not seen to be positive where it was known to be, and positive since.
+        let rises = signs.watches[i] == Watch::Violated && signs.away[i] > start;
+        if !(signs.away[i] > 0.0 && (is_negative || rises)) {
             continue;
         }
         let at_end = at_end.get_or_insert_with(|| match end < method.end() {
@@ -390,11 +393,8 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             false => method.state().clone(),
         });
         let guard = (&mode.guards[watched.guard], watched);
-        let mut has_fallen = |equations: &mut Equations<'a, F>, state: &State<F>| {
-            value_at(equations, conditions, guard, state) < 0.0
-                && rate_at(equations, guard.0, state) < 0.0
-        };
-        if !has_fallen(equations, at_end) {
+        let falls_at_end = falls_below(equations, conditions, guard, at_end);
+        if !(falls_at_end || has_sunk(method, equations, conditions, guard, end)) {
             continue;
         }
         let away = signs.away[i] - start;
@@ -411,12 +411,16 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                     method.step_exactly(equations, tau - start)?;
                 }
                 let state = method.state();
-                if has_fallen(equations, state) || tau >= end {
-                    break state.clone();
+                if falls_below(equations, conditions, guard, state) {
+                    break Some(state.clone());
+                }
+                if tau >= end {
+                    break falls_at_end.then(|| state.clone());
                 }
             }
             length *= 2.0;
         };
+        let Some(state) = state else { continue };
         // What happens later is the next segment's.
         signs
             .found
@@ -432,6 +436,37 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         return Ok(Some((watched.guard, state)));
     }
     Ok(None)
+}
+
+/// Whether a guard is negative at a state, and falls.
+fn falls_below<F: Size>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: (&Guard, Watched),
+    state: &State<F>,
+) -> bool {
+    value_at(equations, conditions, guard, state) < 0.0 && rate_at(equations, guard.0, state) < 0.0
+}
+
+/// Parts of a step at whose ends a guard is looked at: a step is a period at most.
+const PARTS: usize = 8;
+
+/// Whether the motion shows a guard to be negative by more than rounding somewhere in the last step up to local time `end`.
+fn has_sunk<F: Size>(
+    method: &dyn LastStep<F>,
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: (&Guard, Watched),
+    end: f64,
+) -> bool {
+    let start = method.start();
+    (1..=PARTS).any(|k| {
+        let t = start.t + k as f64 / PARTS as f64 * (end - start.t);
+        let [q, v, a] = guards::motion(equations, method.motion(), t, true);
+        let state = State { t, q, v, a };
+        value_at(equations, conditions, guard, &state) < 0.0
+            && !is_rounding(equations, conditions, guard, (start, &state))
+    })
 }
 
 /// Searches a guard, unless the window from which it is searched is empty.

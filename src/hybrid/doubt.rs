@@ -16,7 +16,7 @@ use super::plan::Watched;
 use super::problem::{Accuracy, Problem};
 use super::roots::{Search, Watch};
 use super::sensitivity::WatchedGuard;
-use crate::integrate::{Motion, OneStep};
+use crate::integrate::{LastStep, Motion, OneStep};
 use crate::model::name::intern;
 use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::Size;
@@ -165,7 +165,7 @@ impl Doubts {
     fn examine<'a, F: Size>(
         &mut self,
         step: &Searched,
-        method: &mut impl OneStep<F, Equations<'a, F>>,
+        method: &mut dyn LastStep<F>,
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) {
@@ -302,7 +302,7 @@ impl Doubts {
     fn about_small_fall<'a, F: Size>(
         (step, fallen): (&Searched, usize),
         (outlasts, enough): (bool, f64),
-        method: &impl OneStep<F, Equations<'a, F>>,
+        method: &dyn LastStep<F>,
         equations: &mut Equations<'a, F>,
         conditions: &mut Conditions,
     ) -> Option<Doubt> {
@@ -312,7 +312,7 @@ impl Doubts {
         if !outlasts && risen > enough {
             return None;
         }
-        let dense = method.dense().expect("a step was made");
+        let dense = method.motion();
         if guard.value_within(dense, dense.start() + dense.length()) < -enough {
             return None;
         }

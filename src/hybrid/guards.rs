@@ -24,12 +24,22 @@ impl Conditions<'_> {
         context: &mut Context,
         transition: &Transition,
         at: Free<F>,
-        reduce: impl Fn(&[f64]) -> f64,
+        reduce: &dyn Fn(&[f64]) -> f64,
     ) -> f64 {
         kernel.reset(context, &transition.kernel, at, self.next);
-        if !transition.conditional {
-            return reduce(&[]);
+        match transition.conditional {
+            true => self.reduced_after_reset(context, transition, reduce),
+            false => reduce(&[]),
         }
+    }
+
+    /// The same where `next` holds the reset.
+    fn reduced_after_reset(
+        &mut self,
+        context: &mut Context,
+        transition: &Transition,
+        reduce: &dyn Fn(&[f64]) -> f64,
+    ) -> f64 {
         let target = &self.modes[transition.target];
         self.swap_with(context);
         let n = context.held().len();
@@ -57,7 +67,7 @@ impl Conditions<'_> {
         at: Free<F>,
     ) -> f64 {
         let least = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);
-        self.reduced(kernel, context, transition, at, least)
+        self.reduced(kernel, context, transition, at, &least)
     }
 
     /// The same of all but one of its conditions.
@@ -72,7 +82,7 @@ impl Conditions<'_> {
             let others = all.iter().enumerate().filter(|(i, _)| *i != component);
             others.fold(f64::INFINITY, |least, (_, c)| least.min(*c))
         };
-        self.reduced(kernel, context, transition, at, least)
+        self.reduced(kernel, context, transition, at, &least)
     }
 }
 
@@ -84,7 +94,7 @@ fn conditions_in<F: Size>(
     transition: &Transition,
     free: &[usize],
     rates: &[f64],
-    reduce: impl Fn(&[f64]) -> f64,
+    reduce: &dyn Fn(&[f64]) -> f64,
 ) -> f64 {
     let size = kernel.size();
     let q = size.vector(|i| context.held()[free[i]]);
@@ -115,7 +125,7 @@ pub(super) fn watched_value<F: Size>(
         None => kernel.guard(context, &guard.kernel, at),
         Some((t, component)) => {
             let transition = &guard.transitions[t];
-            -conditions.reduced(kernel, context, transition, at, |all| all[component])
+            -conditions.reduced(kernel, context, transition, at, &|all| all[component])
         }
     }
 }
@@ -149,7 +159,7 @@ pub(super) fn value<F: Size>(
 #[inline(always)]
 pub(super) fn motion<F: Size>(
     equations: &mut Equations<F>,
-    dense: &impl Motion<F>,
+    dense: &(impl Motion<F> + ?Sized),
     tau: f64,
     accelerations: bool,
 ) -> [F::Vector; 3] {
@@ -160,7 +170,7 @@ pub(super) fn motion<F: Size>(
 /// The same, with the context set as far as the equations of motion need it.
 pub(super) fn motion_at_stage<F: Size>(
     equations: &mut Equations<F>,
-    dense: &impl Motion<F>,
+    dense: &(impl Motion<F> + ?Sized),
     tau: f64,
     accelerations: bool,
 ) -> [F::Vector; 3] {

@@ -236,20 +236,23 @@ impl<'p> Simulation<'p> {
             self.piece,
         );
         let to = self.here.now.since(self.began);
-        let found = match self.made_by {
-            _ if !is_after_step => Err(now),
-            MadeBy::Taylor => {
-                let method = slots.taylor[index].as_deref();
-                within(&mut equations, method.and_then(|m| m.dense()), to, t)
-            }
+        let dense: Option<&dyn Motion<F>> = match self.made_by {
+            _ if !is_after_step => None,
+            MadeBy::Taylor => slots.taylor[index]
+                .as_deref()
+                .and_then(|m| Some(m.dense()? as _)),
             MadeBy::RadauOfFive => {
                 let method = slots.radau_of_five[index].as_deref();
-                within(&mut equations, method.and_then(|m| m.dense()), to, t)
+                method.and_then(|m| Some(m.dense()? as _))
             }
             MadeBy::RadauOfSeven => {
                 let method = slots.radau_of_seven[index].as_deref();
-                within(&mut equations, method.and_then(|m| m.dense()), to, t)
+                method.and_then(|m| Some(m.dense()? as _))
             }
+        };
+        let found = match is_after_step {
+            true => within(&mut equations, dense, to, t),
+            false => Err(now),
         };
         let [q, v, a] = found.map_err(|from| NotComputed {
             asked: t,
@@ -274,9 +277,9 @@ impl<'p> Simulation<'p> {
 }
 
 /// The motion at time `t`, s, if it is within a step that ends at local time `to`; else when that begins, s.
-fn within<F: Size, M: Motion<F>>(
+fn within<F: Size>(
     equations: &mut Equations<F>,
-    dense: Option<&M>,
+    dense: Option<&dyn Motion<F>>,
     to: f64,
     t: f64,
 ) -> Result<[F::Vector; 3], f64> {

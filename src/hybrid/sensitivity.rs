@@ -6,7 +6,7 @@ use super::locate::rate_at;
 use super::plan::Watched;
 use super::problem::Accuracy;
 use super::roots::{Search, minimum};
-use crate::integrate::{Motion, ORDERS, OneStep, State, System};
+use crate::integrate::{LastStep, Motion, ORDERS, State, System};
 use crate::integrate::{Size, Vector};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
@@ -14,10 +14,6 @@ use crate::model::{Guard, GuardShape, Mode};
 /// Parts of a step among which its least value is looked for: a step is a period at most, in which a guard
 /// turns twice.
 const PARTS: usize = 8;
-
-fn dense_of<'m, 'a, F: Size, M: OneStep<F, Equations<'a, F>>>(method: &'m M) -> &'m M::Motion {
-    method.dense().expect("a step was made")
-}
 
 /// What is watched, with what it is evaluated by.
 pub(super) struct WatchedGuard<'e, 'a, 'c, F: Size> {
@@ -29,7 +25,7 @@ pub(super) struct WatchedGuard<'e, 'a, 'c, F: Size> {
     pub conditions: &'e mut Conditions<'c>,
 }
 
-impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
+impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     /// Its value in a state at local time `t`.
     pub fn value(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
         let mut a = q.size().zeros();
@@ -85,13 +81,9 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
 
     /// Place and value of its least value in the last step but where it rises from the start, or from local time `from`
     /// where that is later; `None` if it only rises.
-    pub fn least<M: OneStep<F, Equations<'a, F>>>(
-        &mut self,
-        from: f64,
-        method: &mut M,
-    ) -> Option<(f64, f64)> {
+    pub fn least(&mut self, from: f64, method: &mut dyn LastStep<F>) -> Option<(f64, f64)> {
         let end = method.state().clone();
-        let (start, dense) = (method.start(), dense_of(method));
+        let (start, dense) = (method.start(), method.motion());
         let rate = |state, own: &mut Self| match own.watched.condition {
             None => rate_at(own.equations, own.guard, state),
             Some(_) => f64::NAN,
@@ -135,7 +127,7 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
 
     /// Whether it rises in the whole of the last step, or falls: where the first coefficient of its slope outweighs
     /// all others. `None`: it may turn, or is no multiple of a coordinate or its rate.
-    fn rises_throughout(&self, dense: &impl Motion<F>) -> Option<bool> {
+    fn rises_throughout(&self, dense: &dyn Motion<F>) -> Option<bool> {
         let GuardShape::Linear {
             index,
             rate,
@@ -160,21 +152,21 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
     }
 
     /// Its value on the dense output at local time `t`.
-    pub fn value_within(&mut self, dense: &impl Motion<F>, t: f64) -> f64 {
+    pub fn value_within(&mut self, dense: &dyn Motion<F>, t: f64) -> f64 {
         let [q, v, _] = motion(self.equations, dense, t, false);
         self.value(t, &q, &v)
     }
 
     /// What errors of one tolerance change it by where the last step is at local time `t`.
-    pub fn error_at(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> f64 {
-        let [q, v, _] = motion(self.equations, dense_of(method), t, false);
+    pub fn error_at(&mut self, t: f64, method: &dyn LastStep<F>) -> f64 {
+        let [q, v, _] = motion(self.equations, method.motion(), t, false);
         self.error(t, &q, &v)
     }
 
     /// Where behind its fall at the end of the last step, which was cut there, it is least up to where the step led
     /// before, local time, and its value.
-    pub fn deepest<M: OneStep<F, Equations<'a, F>>>(&mut self, method: &M) -> (f64, f64) {
-        let (from, dense) = (method.end(), dense_of(method));
+    pub fn deepest(&mut self, method: &dyn LastStep<F>) -> (f64, f64) {
+        let (from, dense) = (method.end(), method.motion());
         let to = dense.start() + dense.length();
         let mut deepest = (from, f64::INFINITY);
         for k in 1..=PARTS {
@@ -192,12 +184,8 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
     /// step. There its accelerations differ from those that the equations ask for; the difference changes
     /// its sign as often as there are coefficients in them, and makes its rate and its change of a
     /// coordinate in the time between two such places.
-    pub fn error_of_dense_output(
-        &mut self,
-        t: f64,
-        method: &impl OneStep<F, Equations<'a, F>>,
-    ) -> f64 {
-        let (start, end, dense) = (method.start().t, method.end(), dense_of(method));
+    pub fn error_of_dense_output(&mut self, t: f64, method: &dyn LastStep<F>) -> f64 {
+        let (start, end, dense) = (method.start().t, method.end(), method.motion());
         let size = self.equations.kernel.size();
         let mut defect = size.zeros();
         for k in 0..PARTS {
@@ -230,11 +218,7 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
 
     /// The value at which it would turn back after the end of the last step, by its slope and curvature
     /// there, which are more accurate than what the search has `found` on the dense output.
-    pub fn would_turn(
-        &mut self,
-        method: &mut impl OneStep<F, Equations<'a, F>>,
-        found: &Search,
-    ) -> f64 {
+    pub fn would_turn(&mut self, method: &mut dyn LastStep<F>, found: &Search) -> f64 {
         let end = method.state().clone();
         let start = method.start();
         let touches = found.crossing.is_some() && found.turn == 0.0;
@@ -242,7 +226,7 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
             return found.turn;
         }
         let before = end.t - (end.t - start.t) / PARTS as f64;
-        let [q, v, a] = motion(self.equations, dense_of(method), before, true);
+        let [q, v, a] = motion(self.equations, method.motion(), before, true);
         let before = State { t: before, q, v, a };
         let [earlier, slope] =
             [&before, &end].map(|state| rate_at(self.equations, self.guard, state));
@@ -256,11 +240,11 @@ impl<'a, F: Size> WatchedGuard<'_, 'a, '_, F> {
 
     /// Whether its fall would be an event where the last step is at local time `t`: one that acts
     /// together with conditions needs the other part.
-    pub fn matters(&mut self, t: f64, method: &impl OneStep<F, Equations<'a, F>>) -> bool {
+    pub fn matters(&mut self, t: f64, method: &dyn LastStep<F>) -> bool {
         if !self.watched.conditional {
             return true;
         }
-        let [q, v, a] = motion(self.equations, dense_of(method), t, true);
+        let [q, v, a] = motion(self.equations, method.motion(), t, true);
         let at = Free {
             q: &q,
             v: &v,

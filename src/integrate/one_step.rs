@@ -9,8 +9,32 @@ use super::tableau::{Coefficients, RadauIia};
 use super::taylor::{Analytic, Taylor, TaylorDense};
 use crate::numerics::{Series, Size};
 
+/// The last step of a one-step method, whichever method it is.
+pub trait LastStep<F: Size> {
+    /// The state the last step started from.
+    fn start(&self) -> &State<F>;
+
+    /// Time to which the last step led, s.
+    fn end(&self) -> f64;
+
+    /// The state the last step led to; computed now if it was not before.
+    fn state(&mut self) -> &State<F>;
+
+    /// The motion within the last step.
+    ///
+    /// # Panics
+    /// If none was made.
+    fn motion(&self) -> &dyn Motion<F>;
+
+    /// Bound of the error of the dense output inside a step, in units of the tolerance, where it is not
+    /// as accurate as the end of the step.
+    fn looseness(&self) -> f64 {
+        0.0
+    }
+}
+
 /// A one-step method with dense output, for systems of type `Y`.
-pub trait OneStep<F: Size, Y> {
+pub trait OneStep<F: Size, Y>: LastStep<F> {
     /// Its dense output.
     type Motion: Motion<F>;
 
@@ -51,15 +75,6 @@ pub trait OneStep<F: Size, Y> {
     /// [`StepError`] if that fails.
     fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError>;
 
-    /// The state the last step started from.
-    fn start(&self) -> &State<F>;
-
-    /// Time to which the last step led, s.
-    fn end(&self) -> f64;
-
-    /// The state the last step led to; computed now if it was not before.
-    fn state(&mut self) -> &State<F>;
-
     /// The motion within the last step.
     fn dense(&self) -> Option<&Self::Motion>;
 
@@ -83,12 +98,6 @@ pub trait OneStep<F: Size, Y> {
     /// where stiffness holds an explicit method back. 0 where it is less than `least`, and for a method that
     /// is not held back.
     fn lag(&self, _system: &Y, _least: f64) -> f64 {
-        0.0
-    }
-
-    /// Bound of the error of the dense output inside a step, in units of the tolerance, where it is not
-    /// as accurate as the end of the step.
-    fn looseness(&self) -> f64 {
         0.0
     }
 
@@ -134,6 +143,31 @@ pub trait Motion<F: Size> {
         let mut two = [0.0; 2];
         self.polynomial(of, factor, 0, &mut two);
         two
+    }
+}
+
+impl<const S: usize, F: Size> LastStep<F> for Radau<S, F>
+where
+    RadauIia<S>: Coefficients<S>,
+{
+    fn start(&self) -> &State<F> {
+        self.start()
+    }
+
+    fn end(&self) -> f64 {
+        self.end()
+    }
+
+    fn state(&mut self) -> &State<F> {
+        Radau::state(self)
+    }
+
+    fn motion(&self) -> &dyn Motion<F> {
+        self.dense().expect("a step was made")
+    }
+
+    fn looseness(&self) -> f64 {
+        self.looseness()
     }
 }
 
@@ -183,6 +217,20 @@ where
         self.step_exactly(system, h)
     }
 
+    fn dense(&self) -> Option<&Dense<S, F>> {
+        self.dense()
+    }
+
+    fn nodes(&self) -> impl Iterator<Item = Node<F>> {
+        self.stages()
+    }
+
+    fn take_counters(&mut self) -> Counters {
+        self.take_counters()
+    }
+}
+
+impl<F: Size> LastStep<F> for Taylor<F> {
     fn start(&self) -> &State<F> {
         self.start()
     }
@@ -192,23 +240,11 @@ where
     }
 
     fn state(&mut self) -> &State<F> {
-        Radau::state(self)
+        self.state()
     }
 
-    fn dense(&self) -> Option<&Dense<S, F>> {
-        self.dense()
-    }
-
-    fn nodes(&self) -> impl Iterator<Item = Node<F>> {
-        self.stages()
-    }
-
-    fn looseness(&self) -> f64 {
-        self.looseness()
-    }
-
-    fn take_counters(&mut self) -> Counters {
-        self.take_counters()
+    fn motion(&self) -> &dyn Motion<F> {
+        self.dense().expect("a step was made")
     }
 }
 
@@ -263,18 +299,6 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
 
     fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
         self.step_exactly(system, h)
-    }
-
-    fn start(&self) -> &State<F> {
-        self.start()
-    }
-
-    fn end(&self) -> f64 {
-        self.end()
-    }
-
-    fn state(&mut self) -> &State<F> {
-        self.state()
     }
 
     fn dense(&self) -> Option<&TaylorDense<F>> {

@@ -70,8 +70,9 @@ impl<'p> Simulation<'p> {
             true => self.resolution(kernel, contacts, k, &standing),
             false => Resolution::Seen,
         };
+        let is_implicit = self.problem.method == Method::Radau && kernel.is_analytic();
         self.accumulation
-            .set_needs_series(hop == Resolution::BySeries);
+            .set_needs_series(is_implicit && hop != Resolution::Seen);
         let unresolved = hop == Resolution::Lost;
         if unresolved && self.rest_unresolved(kernel, contacts)? {
             return Ok(());

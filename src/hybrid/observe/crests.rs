@@ -8,10 +8,10 @@ use crate::numerics::Size;
 
 impl Observers<'_> {
     /// Looks for extremes of all that is represented in a part of a step.
-    pub(super) fn find_extremes<F: Size, M: Motion<F>>(
+    pub(super) fn find_extremes<F: Size>(
         &mut self,
         extremes: &mut Extremes,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         part: Part,
         columns: usize,
     ) {
@@ -38,10 +38,10 @@ impl Observers<'_> {
 
     /// Looks for extremes of what was dissipated and of the work of the inputs: their ends, and where a power
     /// changes its sign.
-    pub(super) fn find_extremes_of_work<F: Size, M: Motion<F>>(
+    pub(super) fn find_extremes_of_work<F: Size>(
         &self,
         extremes: &mut Extremes,
-        step: &Step<F, M>,
+        step: &Step<F>,
         part: Part,
         (columns, (work, whole)): (usize, (Option<&[Polynomial; 2]>, [f64; 2])),
     ) {
@@ -72,7 +72,7 @@ impl Observers<'_> {
 /// secant method, from a place that is off by less than a thousandth of the part, until a step is as short as places
 /// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again. Of the functions the first are the
 /// `n` free coordinates, then their rates.
-fn polish<F: Size, M: Motion<F>>((motion, n): (&M, usize), part: Part, f: usize, tau: f64) -> f64 {
+fn polish<F: Size>((motion, n): (&dyn Motion<F>, usize), part: Part, f: usize, tau: f64) -> f64 {
     let rate = |tau: f64| {
         let (_, v, a) = motion.at(tau);
         if f < n { v[f] } else { a[f - n] }

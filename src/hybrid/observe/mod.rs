@@ -161,9 +161,9 @@ impl Functions {
 }
 
 /// A step that was made, or what its first event has left of it.
-pub(super) struct Step<'s, 'e, F: Size, M> {
+pub(super) struct Step<'s, 'e, F: Size> {
     pub equations: &'s mut Equations<'e, F>,
-    pub motion: &'s M,
+    pub motion: &'s dyn Motion<F>,
     pub mode: &'s Mode,
     /// Room for the full state of a row; its free coordinates are overwritten.
     pub here: &'s mut Here,
@@ -176,7 +176,7 @@ pub(super) struct Step<'s, 'e, F: Size, M> {
     pub work: Option<[f64; 2]>,
 }
 
-impl<F: Size, M> Step<'_, '_, F, M> {
+impl<F: Size> Step<'_, '_, F> {
     /// Up to where it is looked at, in local time, s: its end, or the event where that is before the end. (An event that
     /// rounding does not tell from `start` leaves the step as it was made.)
     fn seen(&self, start: f64) -> f64 {
@@ -380,7 +380,7 @@ impl<'o> Observers<'o> {
     /// Looks at a step: its samples, its extremes, its energies. `Break`: the run ends at a sample, whose time (s) is
     /// given and whose state is in `step.here`.
     #[inline]
-    pub fn step<F: Size, M: Motion<F>>(&mut self, mut step: Step<F, M>) -> ControlFlow<f64> {
+    pub fn step<F: Size>(&mut self, mut step: Step<F>) -> ControlFlow<f64> {
         if self.recording.sees_steps {
             self.show(&mut step);
         }
@@ -410,9 +410,9 @@ impl<'o> Observers<'o> {
 
     /// Ends a step at a sample in it: what is left of it has no samples. Gives the time of the sample, s.
     #[cold]
-    fn cut<F: Size, M: Motion<F>>(
+    fn cut<F: Size>(
         &mut self,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         Sampled { from, tau, t }: Sampled,
         powers: bool,
     ) -> f64 {
@@ -435,7 +435,7 @@ impl<'o> Observers<'o> {
     }
 
     /// Shows a step to the observer.
-    fn show<F: Size, M: Motion<F>>(&mut self, step: &mut Step<F, M>) {
+    fn show<F: Size>(&mut self, step: &mut Step<F>) {
         let clock = step.equations.clock;
         let seconds = |tau: f64| clock.start.plus(tau).seconds();
         let (from, to) = (step.motion.start(), step.end + step.beyond);
@@ -462,9 +462,9 @@ impl<'o> Observers<'o> {
     }
 
     /// Observes a step from local time `start` on.
-    fn observe<F: Size, M: Motion<F>>(
+    fn observe<F: Size>(
         &mut self,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         start: f64,
         powers: bool,
     ) -> ControlFlow<Sampled> {
@@ -521,9 +521,9 @@ impl<'o> Observers<'o> {
     }
 
     /// Takes what there is in a part of a step that is represented; gives its work [dissipated, input], J.
-    fn take<F: Size, M: Motion<F>>(
+    fn take<F: Size>(
         &mut self,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         part: Part,
         (columns, powers): (usize, bool),
     ) -> ControlFlow<Sampled, [f64; 2]> {

@@ -3,16 +3,15 @@
 use super::interpolants::{DEGREES, MOST, place};
 use super::{Functions, Observers, Part, Step};
 use crate::hybrid::guards;
-use crate::integrate::Motion;
 use crate::kernel::Free;
 use crate::numerics::Size;
 use crate::numerics::Vector;
 
 impl Observers<'_> {
     /// Fits polynomials to all functions in a part of a step; false: they do not represent them.
-    pub(super) fn represent<F: Size, M: Motion<F>>(
+    pub(super) fn represent<F: Size>(
         &mut self,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         part: Part,
         (columns, powers): (usize, bool),
     ) -> bool {
@@ -74,9 +73,9 @@ impl Observers<'_> {
     }
 
     /// Evaluates all functions at local time `tau` of the step, into the values at `node`.
-    pub(super) fn evaluate<F: Size, M: Motion<F>>(
+    pub(super) fn evaluate<F: Size>(
         &mut self,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         tau: f64,
         node: usize,
         (columns, powers): (usize, bool),

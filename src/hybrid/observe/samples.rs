@@ -10,7 +10,6 @@ use crate::hybrid::guards;
 use crate::hybrid::instant::Instant;
 use crate::hybrid::outputs::Outputs;
 use crate::hybrid::simulation::{Here, Simulation};
-use crate::integrate::Motion;
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Contacts, Mode};
@@ -280,9 +279,9 @@ impl Observers<'_> {
     }
 
     /// Records the samples that are due in a part of a step.
-    pub(super) fn sample<F: Size, M: Motion<F>>(
+    pub(super) fn sample<F: Size>(
         &mut self,
-        step: &mut Step<F, M>,
+        step: &mut Step<F>,
         part: Part,
         work: Option<&[Polynomial; 2]>,
     ) -> ControlFlow<Sampled> {
