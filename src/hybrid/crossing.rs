@@ -9,7 +9,7 @@ use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
 };
 use super::search::search;
-use crate::integrate::{LastStep, Motion, OneStep, State};
+use crate::integrate::{LastStep, Motion, OneStep, Retake, State};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::Size;
@@ -309,13 +309,13 @@ fn is_coordinate(mode: &Mode, watched: Watched) -> bool {
 /// Guards that were zero at the start of the segment and are not searched before some time of the last step: one that its
 /// dense output does not show to be positive there, by its error, must show it before its fall counts.
 #[cold]
-fn wake<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
-    method: &mut M,
-    equations: &mut Equations<'a, F>,
+fn wake<F: Size>(
+    method: &dyn LastStep<F>,
+    equations: &mut Equations<F>,
     (mode, watched): (&Mode, &[Watched]),
     signs: &mut Signs,
 ) {
-    let dense = method.dense().expect("a step was made");
+    let dense = method.motion();
     for (i, watch) in signs.watches.iter_mut().enumerate() {
         let away = signs.away[i];
         if *watch == Watch::Armed && away > method.start().t && away < method.end() {
@@ -358,8 +358,8 @@ fn below<F: Size>(
 /// it first is negative and falls after it was known to be positive, to a factor of two; and it is in doubt, having turned at zero.
 /// The guard, and the state there.
 #[cold]
-fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
-    method: &mut M,
+fn fallen<'a, F: Size>(
+    method: &mut dyn Retake<F, Equations<'a, F>>,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     (mode, watched): (&Mode, &[Watched]),
@@ -384,7 +384,7 @@ fn fallen<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             true => {
                 let [q, v, a] = guards::motion(
                     equations,
-                    method.dense().expect("a step was made"),
+                    method.motion(),
                     end,
                     true,
                 );

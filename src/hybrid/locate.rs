@@ -11,7 +11,7 @@ use super::guards::{self, Conditions};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind};
 use crate::integrate::Size;
-use crate::integrate::{ORDERS, OneStep, State, System};
+use crate::integrate::{ORDERS, Retake, State, System};
 use crate::model::{Guard, GuardShape};
 
 /// Result of [`land`].
@@ -35,8 +35,8 @@ pub(super) const TAYLOR: f64 = 3.8e-6;
 /// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
 ///
 /// A guard that is no more negative there than rounding makes it, and rises, has turned: it does not fall.
-pub(super) fn land<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
-    method: &mut M,
+pub(super) fn land<'a, F: Size>(
+    method: &mut dyn Retake<F, Equations<'a, F>>,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
@@ -80,8 +80,8 @@ pub(super) fn is_rounding<F: Size>(
     value.abs() <= sum
 }
 
-fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
-    method: &mut M,
+fn land_on<'a, F: Size>(
+    method: &mut dyn Retake<F, Equations<'a, F>>,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
@@ -89,7 +89,7 @@ fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     landed: &mut State<F>,
 ) -> Stoppable<Landing> {
     let start = method.start().t;
-    let window = method.end();
+    let (window, has_exact) = (method.end(), method.has_exact_accelerations());
     // A guard that all but fell at the end of the step before does so within the rounding of the start.
     let mut tau = match crossing.outside > start {
         true => crossing.outside,
@@ -102,7 +102,7 @@ fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         }
         let mut accelerated;
         let mut end = method.state();
-        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(guard) {
+        if !has_exact && depends_on_accelerations(guard) {
             accelerated = end.clone();
             accelerate(equations, &mut accelerated);
             end = &accelerated;
@@ -123,7 +123,7 @@ fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                 true => Landing::On { beyond: 0.0 },
                 false => {
                     let (step, place) = ((start, window), (end, 0.0));
-                    beyond_the_crossing::<F, M>(equations, conditions, guard, place, step, landed)
+                    beyond_the_crossing(equations, conditions, (guard, has_exact), place, step, landed)
                 }
             });
         }
@@ -140,9 +140,7 @@ fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         let step = (start, window);
         if correction.abs() <= TAYLOR * (window - start) {
             let place = (end, correction);
-            return Ok(beyond_the_crossing::<F, M>(
-                equations, conditions, guard, place, step, landed,
-            ));
+            return Ok(beyond_the_crossing(equations, conditions, (guard, has_exact), place, step, landed));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {
             return Ok(Landing::Short);
@@ -158,8 +156,8 @@ fn land_on<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
 /// own value takes to see it, steps as short as the rounding of the start would go on for as long as that
 /// lasts: there the step is retaken in lengths that double until the guard is crossed, or no longer falls.
 #[cold]
-pub(super) fn land_later<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
-    method: &mut M,
+pub(super) fn land_later<'a, F: Size>(
+    method: &mut dyn Retake<F, Equations<'a, F>>,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
@@ -177,13 +175,14 @@ pub(super) fn land_later<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             false => Landing::Hidden,
         });
     }
+    let has_exact = method.has_exact_accelerations();
     // Up to here nothing was seen.
     let mut length = TAYLOR * (window - start);
     loop {
         let tau = (start + length).clamp(start.next_up(), window);
         method.step_exactly(equations, tau - start)?;
         landed.clone_from(method.state());
-        if !M::EXACT_ACCELERATIONS && depends_on_accelerations(guard) {
+        if !has_exact && depends_on_accelerations(guard) {
             accelerate(equations, landed);
         }
         let value = value_at(equations, conditions, guard, landed);
@@ -219,10 +218,10 @@ fn moved<F: Size>(state: &State<F>, by: f64) -> State<F> {
 /// guard's coordinate moves by its own size, or of a part of the time since the start of the `step`, or
 /// of all of that where the guard is no coordinate.
 #[inline(always)]
-fn beyond_the_crossing<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
-    equations: &mut Equations<'a, F>,
+fn beyond_the_crossing<F: Size>(
+    equations: &mut Equations<F>,
     conditions: &mut Conditions,
-    guard: (&Guard, Watched),
+    (guard, has_exact): ((&Guard, Watched), bool),
     (end, correction): (&State<F>, f64),
     step: (f64, f64),
     landed: &mut State<F>,
@@ -251,7 +250,7 @@ fn beyond_the_crossing<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         let value = value_at(equations, conditions, guard, landed);
         if value < 0.0 || !value.is_finite() {
             // What the equations gave at the end is not exact here; a polynomial is as good in both places.
-            if M::EXACT_ACCELERATIONS && !of_accelerations {
+            if has_exact && !of_accelerations {
                 accelerate(equations, landed);
             }
             return Landing::On { beyond };

@@ -42,7 +42,7 @@ pub use crate::numerics::{
 };
 pub(crate) use crate::numerics::{LaneMask, Lanes};
 pub use dense::Dense;
-pub use one_step::{LastStep, Motion, OneStep};
+pub use one_step::{LastStep, Motion, OneStep, Retake};
 pub use radau::Radau;
 pub use report::{Counters, StepError, StepReport};
 pub use stages::stages;

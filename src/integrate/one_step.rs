@@ -33,8 +33,21 @@ pub trait LastStep<F: Size> {
     }
 }
 
+/// A last step that can be made again, for systems of type `Y`.
+pub trait Retake<F: Size, Y>: LastStep<F> {
+    /// Makes the last step again, with exactly the length `h`.
+    ///
+    /// # Errors
+    /// [`StepError`] if that fails.
+    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError>;
+
+    /// Whether the accelerations of [`LastStep::state`] satisfy the equations to rounding, and not to the
+    /// tolerance alone.
+    fn has_exact_accelerations(&self) -> bool;
+}
+
 /// A one-step method with dense output, for systems of type `Y`.
-pub trait OneStep<F: Size, Y>: LastStep<F> {
+pub trait OneStep<F: Size, Y>: Retake<F, Y> {
     /// Its dense output.
     type Motion: Motion<F>;
 
@@ -69,12 +82,6 @@ pub trait OneStep<F: Size, Y>: LastStep<F> {
     /// [`StepError`] when no step, however short, succeeds.
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError>;
 
-    /// Makes the last step again, with exactly the length `h`.
-    ///
-    /// # Errors
-    /// [`StepError`] if that fails.
-    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError>;
-
     /// The motion within the last step.
     fn dense(&self) -> Option<&Self::Motion>;
 
@@ -83,10 +90,6 @@ pub trait OneStep<F: Size, Y>: LastStep<F> {
 
     /// Nodes of a quadrature over the last step, as accurate as the step; none where the dense output is that.
     fn nodes(&self) -> impl Iterator<Item = Node<F>>;
-
-    /// Whether the accelerations of [`Self::state`] satisfy the equations to rounding, and not to the
-    /// tolerance alone.
-    const EXACT_ACCELERATIONS: bool;
 
     /// Whether a restart needs the accelerations.
     const NEEDS_ACCELERATIONS: bool;
@@ -171,13 +174,24 @@ where
     }
 }
 
+impl<const S: usize, F: Size, Y: System<F>> Retake<F, Y> for Radau<S, F>
+where
+    RadauIia<S>: Coefficients<S>,
+{
+    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
+        self.step_exactly(system, h)
+    }
+
+    fn has_exact_accelerations(&self) -> bool {
+        true
+    }
+}
+
 impl<const S: usize, F: Size, Y: System<F>> OneStep<F, Y> for Radau<S, F>
 where
     RadauIia<S>: Coefficients<S>,
 {
     type Motion = Dense<S, F>;
-
-    const EXACT_ACCELERATIONS: bool = true;
 
     const NEEDS_ACCELERATIONS: bool = true;
 
@@ -213,10 +227,6 @@ where
         self.step(system, t_end, h_max)
     }
 
-    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
-        self.step_exactly(system, h)
-    }
-
     fn dense(&self) -> Option<&Dense<S, F>> {
         self.dense()
     }
@@ -248,10 +258,18 @@ impl<F: Size> LastStep<F> for Taylor<F> {
     }
 }
 
+impl<F: Size, Y: Analytic<F>> Retake<F, Y> for Taylor<F> {
+    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
+        self.step_exactly(system, h)
+    }
+
+    fn has_exact_accelerations(&self) -> bool {
+        false
+    }
+}
+
 impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     type Motion = TaylorDense<F>;
-
-    const EXACT_ACCELERATIONS: bool = false;
 
     const NEEDS_ACCELERATIONS: bool = false;
 
@@ -295,10 +313,6 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
             _ => f64::INFINITY,
         };
         self.step(system, t_end, h_max)
-    }
-
-    fn step_exactly(&mut self, system: &mut Y, h: f64) -> Result<StepReport, StepError> {
-        self.step_exactly(system, h)
     }
 
     fn dense(&self) -> Option<&TaylorDense<F>> {
