@@ -382,12 +382,7 @@ fn fallen<'a, F: Size>(
         }
         let at_end = at_end.get_or_insert_with(|| match end < method.end() {
             true => {
-                let [q, v, a] = guards::motion(
-                    equations,
-                    method.motion(),
-                    end,
-                    true,
-                );
+                let [q, v, a] = guards::motion(equations, method.motion(), end, true);
                 State { t: end, q, v, a }
             }
             false => method.state().clone(),

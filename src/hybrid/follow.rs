@@ -15,6 +15,7 @@ use super::simulation::{Simulation, Stop, Violation};
 use crate::integrate::{Motion, Node, OneStep, SERIES, Size, State, StepError};
 use crate::kernel::Context;
 use crate::model::Mode;
+use crate::numerics::Vector;
 use crate::run::Progress;
 use std::ops::ControlFlow;
 
@@ -244,18 +245,18 @@ impl Simulation<'_> {
             }
             if let (Some(contacts), None) = (&mode.contacts, event) {
                 let State { q, v, a, .. } = &mut state;
-                hold(kernel, equations.context, contacts, [q, v]);
-                let here = Conditioning::new(kernel, equations.context, contacts, [q, v]);
+                let context = &mut *equations.context;
+                hold(context, contacts, [q.as_mut_slice(), v.as_mut_slice()]);
+                let here = Conditioning::new(context, contacts, [q.as_slice(), v.as_slice()]);
                 let is_near = match &here {
                     Some(here) => here.is_nearly_singular(mode, &mut self.best_determined)?,
                     None => false,
                 };
                 if let Some(here) = here.filter(|_| is_near || passes) {
                     let before = method.start();
-                    let state = [&before.q, &before.v];
+                    let state = [before.q.as_slice(), before.v.as_slice()];
                     // Over a pole the impulses have no value.
-                    let leaves_out =
-                        passes && here.is_beyond(kernel, equations.context, contacts, state);
+                    let leaves_out = passes && here.is_beyond(equations.context, contacts, state);
                     let mut controlled = kernel.size().repeat(1.0);
                     for i in contacts.constraints.iter().map(|c| c.multiplier) {
                         if leaves_out {

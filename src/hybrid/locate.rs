@@ -123,7 +123,14 @@ fn land_on<'a, F: Size>(
                 true => Landing::On { beyond: 0.0 },
                 false => {
                     let (step, place) = ((start, window), (end, 0.0));
-                    beyond_the_crossing(equations, conditions, (guard, has_exact), place, step, landed)
+                    beyond_the_crossing(
+                        equations,
+                        conditions,
+                        (guard, has_exact),
+                        place,
+                        step,
+                        landed,
+                    )
                 }
             });
         }
@@ -140,7 +147,14 @@ fn land_on<'a, F: Size>(
         let step = (start, window);
         if correction.abs() <= TAYLOR * (window - start) {
             let place = (end, correction);
-            return Ok(beyond_the_crossing(equations, conditions, (guard, has_exact), place, step, landed));
+            return Ok(beyond_the_crossing(
+                equations,
+                conditions,
+                (guard, has_exact),
+                place,
+                step,
+                landed,
+            ));
         }
         if correction.abs() >= correction_before || end.t + correction <= start {
             return Ok(Landing::Short);

@@ -5,6 +5,8 @@
 
 use super::Tape;
 use super::name::intern;
+use crate::kernel::ModeKernel;
+use crate::numerics::Dynamic;
 
 /// A contact, a friction element, a ratchet or one equation of a constraint as the model declares it, for people.
 #[derive(Debug, Clone)]
@@ -39,6 +41,8 @@ pub struct Contacts {
     pub constraints: Box<[Constraint]>,
     /// Whether a gap or a constraint depends on how the ground moves.
     pub moved: bool,
+    /// The functions of the mode, for any number of coordinates: what happens at an instant is compiled once.
+    pub kernel: ModeKernel<Dynamic>,
     /// What the contacts can do.
     pub(super) sets: ContactSets,
     /// What decides whether a set of states may go on, [`Contacts::DECISIONS`] a contact: λ_N, g̈, what is left before it slips

@@ -11,6 +11,7 @@ mod side;
 mod size;
 
 pub use bounded::Bounded;
+pub use buffer::Buffer;
 pub(crate) use complementarity::{Unsolved, solve_complementarity};
 pub(crate) use lanes::{LaneMask, Lanes};
 pub(crate) use linear::{Lu, solve_for};

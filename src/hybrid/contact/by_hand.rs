@@ -2,9 +2,8 @@
 
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
-use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::{Contacts, Transition};
-use crate::numerics::Size;
+use crate::numerics::{Buffer, Size};
 
 use super::ContactState;
 use super::event::GUARDS;
@@ -13,21 +12,16 @@ use super::hold::{Places, hold};
 
 impl<'p> Simulation<'p> {
     /// Takes the first transition of a guard whose condition holds.
-    pub(super) fn take_by_hand<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &'p Contacts,
-        guard: usize,
-    ) -> Stoppable<()> {
+    pub(super) fn take_by_hand(&mut self, contacts: &'p Contacts, guard: usize) -> Stoppable<()> {
         self.set_context();
-        if let Some(k) = self.closed_already(kernel, contacts) {
+        if let Some(k) = self.closed_already(contacts) {
             return self.contact_event(GUARDS * k);
         }
-        self.hold_here(kernel, contacts)?;
+        self.hold_here(contacts)?;
         if self.mode().guards[guard].is_chart() {
-            return self.take_chart_by(kernel, contacts, guard);
+            return self.take_chart_by(contacts, guard);
         }
-        let t = self.chosen(kernel, guard)?;
+        let t = self.chosen(&contacts.kernel, guard)?;
         let transition = &self.mode().guards[guard].transitions[t];
         self.settle_after_reset(transition)?;
         self.commit(transition.name, transition.impact, transition.target)?;
@@ -35,25 +29,20 @@ impl<'p> Simulation<'p> {
     }
 
     /// Goes over to other coordinates, in which the contacts do what they did.
-    fn take_chart_by<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &'p Contacts,
-        guard: usize,
-    ) -> Stoppable<()> {
-        let chosen = self.choose(kernel, guard);
+    fn take_chart_by(&mut self, contacts: &'p Contacts, guard: usize) -> Stoppable<()> {
+        let chosen = self.choose(&contacts.kernel, guard);
         assert_eq!(chosen, Some(0), "a chart has no conditions");
-        let (n, free, size) = (self.here.q.len(), &self.mode().free, kernel.size());
+        let (n, free, size) = (self.here.q.len(), &self.mode().free, contacts.kernel.size());
         let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
         let before = {
             let [q, v, _] = self.here.free(size, free);
-            Places::new(kernel, &self.context, contacts, [&q, &v])
+            Places::new(&self.context, contacts, [&q, &v])
         };
         let discrete = self.context.discrete().to_vec();
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
         let name = self.mode().guards[guard].transitions[0].name;
-        self.check_chart(kernel, contacts, name, (&before, [&q, &v]))?;
-        hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
+        self.check_chart(contacts, name, (&before, [&q, &v]))?;
+        hold(&mut self.context, contacts, [&mut q, &mut v]);
         self.context.discrete_mut().copy_from_slice(&discrete);
         for (i, &of) in free.iter().enumerate() {
             (self.next[of], self.next[n + of]) = (q[i], v[i]);
@@ -63,15 +52,14 @@ impl<'p> Simulation<'p> {
 
     /// Refuses a chart by which a gap, a slip rate, a constraint or a rate of these changes by more than the tolerances tell from
     /// nothing. The context has the discrete states of the new coordinates.
-    fn check_chart<F: Size>(
+    fn check_chart(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
         name: &'static str,
-        (before, [q, v]): (&Places, [&F::Vector; 2]),
+        (before, [q, v]): (&Places, [&Buffer<f64>; 2]),
     ) -> Stoppable<()> {
-        let after = Places::new(kernel, &self.context, contacts, [q, v]);
-        let geometry = Geometry::new(kernel, &mut self.context, contacts, [q, v]);
+        let after = Places::new(&self.context, contacts, [q, v]);
+        let geometry = Geometry::new(&mut self.context, contacts, [q, v]);
         let accuracy = self.accuracy;
         for line in geometry.all() {
             let (of, [place, rate]) = match line {
@@ -82,7 +70,7 @@ impl<'p> Simulation<'p> {
                 Line::Tangent(k) => (contacts.contacts[k].name, ["", "the slip rate"]),
                 Line::Constraint(c) => (contacts.constraints[c].name, ["the value", "the rate"]),
             };
-            let within = |absolute: &[f64], at: &F::Vector| -> f64 {
+            let within = |absolute: &[f64], at: &Buffer<f64>| -> f64 {
                 let along = geometry.along(line).iter().zip(&geometry.own);
                 let within = |i: usize| absolute[i] + accuracy.relative * at[i].abs();
                 along.map(|(along, &i)| along.abs() * within(i)).sum()
@@ -115,13 +103,9 @@ impl<'p> Simulation<'p> {
     }
 
     /// A contact that is open and whose gap is not positive any more: what closes at the instant of a transition comes before it.
-    fn closed_already<F: Size>(
-        &self,
-        kernel: &ModeKernel<F>,
-        contacts: &Contacts,
-    ) -> Option<usize> {
-        let [q, v, _] = self.here.free(kernel.size(), &self.mode().free);
-        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
+    fn closed_already(&self, contacts: &Contacts) -> Option<usize> {
+        let [q, v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
+        let at = Places::new(&self.context, contacts, [&q, &v]);
         let states = ContactState::all(contacts, self.context.discrete());
         (0..states.len()).find(|&k| {
             let line = Line::Normal(k);
@@ -145,15 +129,14 @@ impl<'p> Simulation<'p> {
             .copy_from_slice(&self.next[2 * n..]);
         let target = self.mode();
         let contacts = target.contacts.as_ref().expect("a mode of all sets");
-        let settled = with_kernel!(&target.kernels, k => self.settle_after_reset_by(k, contacts, (transition.name, stays)));
+        let settled = self.settle_after_reset_by(contacts, (transition.name, stays));
         self.here.mode = mode;
         self.context.discrete_mut().copy_from_slice(&discrete);
         settled
     }
 
-    fn settle_after_reset_by<F: Size>(
+    fn settle_after_reset_by(
         &mut self,
-        kernel: &'p ModeKernel<F>,
         contacts: &'p Contacts,
         (name, stays): (&'static str, bool),
     ) -> Stoppable<()> {
@@ -161,19 +144,20 @@ impl<'p> Simulation<'p> {
             // What rests goes on resting by bookkeeping.
             true => {
                 let states = ContactState::all(contacts, self.context.discrete());
-                self.standing(kernel, contacts, (None, &states))
+                self.standing(contacts, (None, &states))
             }
             false => {
-                let (n, free, size) = (self.here.q.len(), &self.mode().free, kernel.size());
+                let (n, free, size) =
+                    (self.here.q.len(), &self.mode().free, contacts.kernel.size());
                 let state = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
-                self.standing_of(kernel, contacts, state)
+                self.standing_of(contacts, state)
                     .map_err(|why| Box::new(Reason::Reset { name, why }))?
             }
         };
-        match self.settle_contacts(kernel, contacts, &mut standing) {
+        match self.settle_contacts(contacts, &mut standing) {
             Err(reason) if matches!(*reason, Reason::NoMotion { .. }) => {
-                self.jam(kernel, contacts, &mut standing, reason)?;
-                self.settle_contacts(kernel, contacts, &mut standing)?;
+                self.jam(contacts, &mut standing, reason)?;
+                self.settle_contacts(contacts, &mut standing)?;
             }
             settled => drop(settled?),
         }

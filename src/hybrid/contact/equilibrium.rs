@@ -11,9 +11,9 @@ use crate::hybrid::equilibrium::{least_squares, to_zero};
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
 use crate::hybrid::unrest::{Tried, Unbalanced};
-use crate::kernel::{Free, ModeKernel};
+use crate::kernel::Free;
 use crate::model::Contacts;
-use crate::numerics::Size;
+use crate::numerics::{Buffer, Size};
 use nalgebra::{DMatrix, DVector};
 
 /// Of contacts, which have no mode by hand.
@@ -24,15 +24,14 @@ pub(super) fn no_rest(why: Unbalanced) -> Box<Reason> {
 
 impl<'p> Simulation<'p> {
     /// Brings coordinates to a static equilibrium of the contacts that touch there; why there is none near.
-    pub(super) fn find_rest<F: Size>(
+    pub(super) fn find_rest(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &'p Contacts,
-        q: &mut F::Vector,
+        q: &mut Buffer<f64>,
     ) -> Result<(), Unbalanced> {
-        let size = kernel.size();
+        let size = contacts.kernel.size();
         let zero = size.zeros();
-        let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
+        let at = Places::new(&self.context, contacts, [q, &zero]);
         let mut states: Vec<ContactState> = (contacts.contacts.iter().enumerate())
             .map(|(k, contact)| {
                 let touches = contact.normal.is_none_or(|_| {
@@ -50,7 +49,7 @@ impl<'p> Simulation<'p> {
             })
             .collect();
         loop {
-            let forces = self.hold_at_rest(kernel, contacts, q, &states)?;
+            let forces = self.hold_at_rest(contacts, q, &states)?;
             let pulls = (0..states.len())
                 .filter(|&k| states[k].is_closed())
                 .filter_map(|k| Some((k, forces[contacts.contacts[k].normal?])))
@@ -62,7 +61,7 @@ impl<'p> Simulation<'p> {
                 Some((k, _)) => states[k] = ContactState::Open,
             }
         }
-        let at = Places::new(kernel, &self.context, contacts, [q, &zero]);
+        let at = Places::new(&self.context, contacts, [q, &zero]);
         let penetrates = |&k: &usize| {
             let (gap, rounding) = at.place(Line::Normal(k));
             contacts.contacts[k].normal.is_some() && gap < -rounding
@@ -76,14 +75,13 @@ impl<'p> Simulation<'p> {
     }
 
     /// The same while contacts do this: the multipliers.
-    fn hold_at_rest<F: Size>(
+    fn hold_at_rest(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        q: &mut F::Vector,
+        q: &mut Buffer<f64>,
         states: &[ContactState],
     ) -> Result<Vec<f64>, Unbalanced> {
-        let size = kernel.size();
+        let size = contacts.kernel.size();
         let n = size.get();
         let (zero, sizes) = (size.zeros(), self.scale(size));
         write_states(contacts, states, self.context.discrete_mut());
@@ -93,7 +91,7 @@ impl<'p> Simulation<'p> {
             Line::Tangent(k) => states[k] == ContactState::Sticks,
         };
         let mut held: Vec<Option<Line>> = vec![None; n];
-        let geometry = Geometry::new(kernel, &mut self.context, contacts, [q, &zero]);
+        let geometry = Geometry::new(&mut self.context, contacts, [q, &zero]);
         let own = geometry.own.clone();
         for line in geometry.all().filter(|&line| holds(line)) {
             held[multiplier(contacts, line)] = Some(line);
@@ -112,9 +110,9 @@ impl<'p> Simulation<'p> {
                 v: &zero,
                 a: &a,
             };
-            let (mut r, bounds) = (size.zeros(), kernel.magnitude(&context, at));
-            kernel.residual(&context, at, &mut r);
-            let places = Places::new(kernel, &context, contacts, [&q, &zero]);
+            let (mut r, bounds) = (size.zeros(), contacts.kernel.magnitude(&context, at));
+            contacts.kernel.residual(&context, at, &mut r);
+            let places = Places::new(&context, contacts, [&q, &zero]);
             let of = |i: usize| match held[i] {
                 None => (r[i], bounds[i]),
                 Some(Line::Tangent(_)) => (0.0, 0.0),
@@ -133,8 +131,8 @@ impl<'p> Simulation<'p> {
                 a: &a,
             };
             let mut out = [size.zero_matrix(), size.zero_matrix(), size.zero_matrix()];
-            kernel.jacobian(&context, at, &mut out);
-            let geometry = Geometry::new(kernel, &mut context, contacts, [&q, &zero]);
+            contacts.kernel.jacobian(&context, at, &mut out);
+            let geometry = Geometry::new(&mut context, contacts, [&q, &zero]);
             let [by_forces, _, by_places] = out;
             DMatrix::from_fn(n, n, |i, j| {
                 let of_own = own.iter().position(|&own| own == j);
@@ -183,15 +181,18 @@ impl<'p> Simulation<'p> {
     }
 
     /// Refuses a state in which, with the contact states that were decided, something is accelerated by more than rounding.
-    pub(super) fn check_rest<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &Contacts,
-    ) -> Stoppable<()> {
-        let (mode, size, scale) = (self.mode(), kernel.size(), self.scale(kernel.size()));
-        self.set_accelerations(kernel)?;
+    pub(super) fn check_rest(&mut self, contacts: &'p Contacts) -> Stoppable<()> {
+        let (mode, size, scale) = (
+            self.mode(),
+            contacts.kernel.size(),
+            self.scale(contacts.kernel.size()),
+        );
+        self.set_accelerations(&contacts.kernel)?;
         let [q, v, a] = self.here.free(size, &mode.free);
-        let mass = kernel.system(&self.context, &q, &v).factorize(&scale);
+        let mass = contacts
+            .kernel
+            .system(&self.context, &q, &v)
+            .factorize(&scale);
         let mass = mass.map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
         let inverse = mass.inverted();
         let at = Free {
@@ -199,7 +200,7 @@ impl<'p> Simulation<'p> {
             v: &v,
             a: &a,
         };
-        let bounds = kernel.magnitude(&self.context, at);
+        let bounds = contacts.kernel.magnitude(&self.context, at);
         let rounding = |i: usize| -> f64 {
             let terms = (0..size.get()).map(|j| inverse[(i, j)].abs() * bounds[j]);
             f64::EPSILON * terms.sum::<f64>()

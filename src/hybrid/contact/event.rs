@@ -11,10 +11,9 @@ use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::problem::Method;
 use crate::hybrid::simulation::{AtZero, Simulation};
 use crate::hybrid::unrest::Restless;
-use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::Contacts;
 use crate::model::name::intern;
-use crate::numerics::{Bounded, ORDERS, Size, Vector};
+use crate::numerics::{Bounded, ORDERS, Vector};
 
 /// How the end of a hop is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,25 +36,20 @@ impl<'p> Simulation<'p> {
         let mode = self.mode();
         let contacts = mode.contacts.as_ref().expect("a mode of all sets");
         let is_by_hand = guard >= GUARDS * contacts.contacts.len();
-        with_kernel!(&mode.kernels, k => match is_by_hand {
-            true => self.take_by_hand(k, contacts, guard),
-            false => self.contact_event_by(k, contacts, guard),
-        })
+        match is_by_hand {
+            true => self.take_by_hand(contacts, guard),
+            false => self.contact_event_by(contacts, guard),
+        }
     }
 
-    fn contact_event_by<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &'p Contacts,
-        guard: usize,
-    ) -> Stoppable<()> {
+    fn contact_event_by(&mut self, contacts: &'p Contacts, guard: usize) -> Stoppable<()> {
         self.set_context();
         let (k, part) = (guard / GUARDS, guard % GUARDS);
         let before = ContactState::all(contacts, self.context.discrete());
         let of = &contacts.contacts[k];
         let closes = part == 0 && before[k] == ContactState::Open && !of.is_ratchet;
         let mut standing = match closes {
-            true => self.closing(kernel, contacts, (k, &before)),
+            true => self.closing(contacts, (k, &before)),
             false => {
                 let stops = match (part, before[k]) {
                     (1, ContactState::Slides(_)) => Some(Line::Tangent(k)),
@@ -63,18 +57,18 @@ impl<'p> Simulation<'p> {
                     (0, ContactState::Open) => Some(Line::Normal(k)),
                     _ => None,
                 };
-                self.standing(kernel, contacts, (stops, &before))
+                self.standing(contacts, (stops, &before))
             }
         };
         let hop = match closes {
-            true => self.resolution(kernel, contacts, k, &standing),
+            true => self.resolution(contacts, k, &standing),
             false => Resolution::Seen,
         };
-        let is_implicit = self.problem.method == Method::Radau && kernel.is_analytic();
+        let is_implicit = self.problem.method == Method::Radau && contacts.kernel.is_analytic();
         self.accumulation
             .set_needs_series(is_implicit && hop != Resolution::Seen);
         let unresolved = hop == Resolution::Lost;
-        if unresolved && self.rest_unresolved(kernel, contacts)? {
+        if unresolved && self.rest_unresolved(contacts)? {
             return Ok(());
         }
         if closes && self.accumulation.is_unresolved(unresolved) {
@@ -84,20 +78,20 @@ impl<'p> Simulation<'p> {
             }));
         }
         let mut strikes = match closes {
-            true => self.strike(kernel, contacts, (k, &before), &mut standing)?,
+            true => self.strike(contacts, (k, &before), &mut standing)?,
             false => None,
         };
-        let after = match self.settle_contacts(kernel, contacts, &mut standing) {
+        let after = match self.settle_contacts(contacts, &mut standing) {
             Err(reason) if matches!(*reason, Reason::NoMotion { .. }) => {
-                self.jam(kernel, contacts, &mut standing, reason)?;
+                self.jam(contacts, &mut standing, reason)?;
                 strikes = Some(k);
-                self.settle_contacts(kernel, contacts, &mut standing)?
+                self.settle_contacts(contacts, &mut standing)?
             }
             settled => settled?,
         };
         let name = verb(contacts, (k, strikes), &before, &after);
         let strikes = strikes.is_some();
-        self.hold_before(kernel, contacts)?;
+        self.hold_before(contacts)?;
         self.doubts.happened(&self.mode().guards[guard]);
         let n = self.here.q.len();
         if before == after && !strikes && self.next[2 * n..] != *self.context.discrete() {
@@ -120,48 +114,35 @@ impl<'p> Simulation<'p> {
 
     /// Brings the state before an event back to what the contacts held there: the end of a step that an event cuts is not. Its
     /// positions are those after it, since no event moves them.
-    fn hold_before<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &Contacts,
-    ) -> Stoppable<()> {
+    fn hold_before(&mut self, contacts: &'p Contacts) -> Stoppable<()> {
         let n = self.here.q.len();
         self.here.q.copy_from_slice(&self.next[..n]);
-        self.hold_here(kernel, contacts)
+        self.hold_here(contacts)
     }
 
     /// Brings the present state to what the contacts hold.
-    pub(super) fn hold_here<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &Contacts,
-    ) -> Stoppable<()> {
+    pub(super) fn hold_here(&mut self, contacts: &'p Contacts) -> Stoppable<()> {
         let free = &self.mode().free;
-        let [mut q, mut v, a] = self.here.free(kernel.size(), free);
-        hold(kernel, &mut self.context, contacts, [&mut q, &mut v]);
-        let here = Conditioning::new(kernel, &mut self.context, contacts, [&q, &v]);
+        let [mut q, mut v, a] = self.here.free(contacts.kernel.size(), free);
+        hold(&mut self.context, contacts, [&mut q, &mut v]);
+        let here = Conditioning::new(&mut self.context, contacts, [&q, &v]);
         if let Some(here) = here {
             here.is_nearly_singular(self.mode(), &mut self.best_determined)?;
         }
         self.here.set_free(free, [&q, &v, &a]);
         self.set_context();
-        self.set_accelerations(kernel)
+        self.set_accelerations(&contacts.kernel)
     }
 
     /// Whether the hop that ends at a contact was high enough for its end to be known by its gap. A hop of the duration T that ends
     /// with the rate u is about |u| T / 4 high. The series of the explicit method shows all that begins with a bounce of the
     /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding.
-    fn resolution<F: Size>(
-        &self,
-        kernel: &ModeKernel<F>,
-        contacts: &Contacts,
-        k: usize,
-        standing: &Standing<F>,
-    ) -> Resolution {
-        let by_implicit = match self.problem.method == Method::Radau && kernel.is_analytic() {
-            true => Resolution::BySeries,
-            false => Resolution::Lost,
-        };
+    fn resolution(&self, contacts: &Contacts, k: usize, standing: &Standing) -> Resolution {
+        let by_implicit =
+            match self.problem.method == Method::Radau && contacts.kernel.is_analytic() {
+                true => Resolution::BySeries,
+                false => Resolution::Lost,
+            };
         let is_explicit = self.made_by == MadeBy::Taylor;
         let lost = if is_explicit {
             Resolution::Lost
@@ -175,7 +156,7 @@ impl<'p> Simulation<'p> {
             return Resolution::Seen;
         };
         let at = [&standing.q, &standing.v];
-        let places = Places::new(kernel, &self.context, contacts, at);
+        let places = Places::new(&self.context, contacts, at);
         let line = Line::Normal(k);
         let (_, rounding) = places.place(line);
         // What a step's polynomials make of it.
@@ -201,15 +182,14 @@ impl<'p> Simulation<'p> {
 
     /// What contacts that have just closed do: an impact, if one of them comes with a rate; by which contact it is
     /// named, if there was one: the first that closes, whichever guard rounding lets fall first.
-    fn strike<F: Size>(
+    fn strike(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
         (k, before): (usize, &[ContactState]),
-        standing: &mut Standing<F>,
+        standing: &mut Standing,
     ) -> Stoppable<Option<usize>> {
         let at = [&standing.q, &standing.v];
-        let places = Places::new(kernel, &self.context, contacts, at);
+        let places = Places::new(&self.context, contacts, at);
         let mut touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
         let mut rests = touches.clone();
         let mut closes = None;
@@ -246,7 +226,7 @@ impl<'p> Simulation<'p> {
             for (i, rate) in places.stated(contacts, k, sticks) {
                 standing.v[i] = rate;
             }
-            self.stand_after_own_law(kernel, contacts, (k, before, &touches), (&places, standing))?;
+            self.stand_after_own_law(contacts, (k, before, &touches), (&places, standing))?;
             return Ok(Some(k));
         }
         let impact = Impact {
@@ -264,15 +244,14 @@ impl<'p> Simulation<'p> {
     }
 
     /// How contacts stand where the model's own law has said the rates after an impact of one of them.
-    fn stand_after_own_law<F: Size>(
+    fn stand_after_own_law(
         &self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
         (k, before, touches): (usize, &[ContactState], &[bool]),
-        (came, standing): (&Places, &mut Standing<F>),
+        (came, standing): (&Places, &mut Standing),
     ) -> Stoppable<()> {
         let at = [&standing.q, &standing.v];
-        let places = Places::new(kernel, &self.context, contacts, at);
+        let places = Places::new(&self.context, contacts, at);
         // What has stuck, as the state that came is held to, and is not set in motion.
         let still: Vec<Line> = (0..touches.len())
             .filter(|&j| before[j] == ContactState::Sticks)
@@ -315,11 +294,10 @@ impl<'p> Simulation<'p> {
     }
 
     /// Where no motion goes on: an impact without collision, if the scene asks for it and there is one; else the reason.
-    pub(super) fn jam<F: Size>(
+    pub(super) fn jam(
         &self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        standing: &mut Standing<F>,
+        standing: &mut Standing,
         reason: Box<Reason>,
     ) -> Stoppable<()> {
         let rests: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
@@ -330,7 +308,7 @@ impl<'p> Simulation<'p> {
         let impact = Impact {
             contacts,
             geometry: &standing.geometry,
-            places: &Places::new(kernel, &self.context, contacts, [&standing.q, &standing.v]),
+            places: &Places::new(&self.context, contacts, [&standing.q, &standing.v]),
             collisions: self.problem.collisions,
             touches: &touches,
             rests: &rests,
@@ -347,11 +325,10 @@ impl<'p> Simulation<'p> {
     }
 
     /// Decides which set follows from how the contacts stand, and makes it and the state `next`.
-    pub(super) fn settle_contacts<F: Size>(
+    pub(super) fn settle_contacts(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &'p Contacts,
-        standing: &mut Standing<F>,
+        standing: &mut Standing,
     ) -> Stoppable<Vec<ContactState>> {
         let [places, rates] = standing.held(contacts);
         let Standing {
@@ -361,17 +338,11 @@ impl<'p> Simulation<'p> {
             touching,
             leaves,
         } = standing;
-        hold_lines(
-            kernel,
-            &mut self.context,
-            contacts,
-            [&places, &rates],
-            [q, v],
-        );
+        hold_lines(&mut self.context, contacts, [&places, &rates], [q, v]);
         let n = self.here.q.len();
         self.next[..n].copy_from_slice(q.as_slice());
         self.next[n..2 * n].copy_from_slice(v.as_slice());
-        let places = Places::new(kernel, &self.context, contacts, [q, v]);
+        let places = Places::new(&self.context, contacts, [q, v]);
         let decision = self
             .decide((contacts, geometry), &places, touching)
             .map_err(Box::new)?;
@@ -397,7 +368,7 @@ impl<'p> Simulation<'p> {
 
 impl Simulation<'_> {
     /// Makes `next` the state in which contacts stand, all of those with a gap open.
-    pub(super) fn leave_open<F: Size>(&mut self, contacts: &Contacts, standing: &Standing<F>) {
+    pub(super) fn leave_open(&mut self, contacts: &Contacts, standing: &Standing) {
         let n = self.here.q.len();
         self.next[..n].copy_from_slice(standing.q.as_slice());
         self.next[n..2 * n].copy_from_slice(standing.v.as_slice());

@@ -1,9 +1,9 @@
 //! Masses, and the lines along which contacts and constraints push.
 
 use super::ContactState;
-use crate::kernel::{Context, ModeKernel};
+use crate::kernel::Context;
 use crate::model::Contacts;
-use crate::numerics::{Dynamic, Lu, Size};
+use crate::numerics::{Buffer, Dynamic, Lu, Size};
 
 /// What is left of a line beside others, as a part of it, where it is taken to depend on them: √ε. What is less cannot be told
 /// from the rounding of a matrix of such lines, which squares it.
@@ -44,18 +44,13 @@ pub(super) fn multiplier(contacts: &Contacts, line: Line) -> usize {
 
 impl Geometry {
     /// At a state of a mode with all coordinates free, whose signals the context is set for.
-    pub fn new<F: Size>(
-        kernel: &ModeKernel<F>,
-        context: &mut Context,
-        contacts: &Contacts,
-        [q, v]: [&F::Vector; 2],
-    ) -> Self {
+    pub fn new(context: &mut Context, contacts: &Contacts, [q, v]: [&Buffer<f64>; 2]) -> Self {
         let present = context.discrete().to_vec();
         let closed = vec![ContactState::Sticks; contacts.contacts.len()];
         write_states(contacts, &closed, context.discrete_mut());
-        let system = kernel.system(context, q, v);
+        let system = contacts.kernel.system(context, q, v);
         context.discrete_mut().copy_from_slice(&present);
-        let own: Vec<usize> = (0..kernel.size().get())
+        let own: Vec<usize> = (0..contacts.kernel.size().get())
             .filter(|&i| !contacts.is_multiplier(i))
             .collect();
         let row = |i: usize| own.iter().map(move |&j| (i, j));

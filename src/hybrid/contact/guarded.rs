@@ -3,11 +3,10 @@
 use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
-use super::hold::held_lines;
+use super::hold::{buffers, held_lines};
 use crate::hybrid::problem::Accuracy;
-use crate::kernel::{Context, ModeKernel};
+use crate::kernel::Context;
 use crate::model::{GuardShape, Mode};
-use crate::numerics::Size;
 
 /// What is known of such a guard from the contacts, whatever rounding makes of its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,11 +21,10 @@ pub(in crate::hybrid) enum Guarded {
 
 /// The guards by hand of which contacts tell what they do, by their indices. `opening`: the guards of the contacts that leave
 /// their gaps now. Where the ground moves gaps, nothing is held.
-pub(in crate::hybrid) fn guarded_by_contacts<F: Size>(
-    kernel: &ModeKernel<F>,
+pub(in crate::hybrid) fn guarded_by_contacts(
     context: &mut Context,
     (mode, accuracy, opening): (&Mode, &Accuracy, &[usize]),
-    state: [&F::Vector; 2],
+    state: [&[f64]; 2],
 ) -> Vec<(usize, Guarded)> {
     let contacts = mode.contacts.as_ref().expect("a mode of all sets");
     let by_hand = GUARDS * contacts.contacts.len()..mode.guards.len();
@@ -51,7 +49,7 @@ pub(in crate::hybrid) fn guarded_by_contacts<F: Size>(
     }
     let states = ContactState::all(contacts, context.discrete());
     let [places, _] = held_lines(contacts, &states);
-    let geometry = Geometry::new(kernel, context, contacts, state);
+    let geometry = Geometry::new(context, contacts, buffers(state).each_ref());
     let of = |(guard, index, factor): (usize, usize, f64)| {
         if geometry.moves(index, &places, None) == Some(0.0) {
             return Some((guard, Guarded::Held));

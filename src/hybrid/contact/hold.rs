@@ -3,9 +3,9 @@
 use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{DEPENDENT, Geometry, Line};
-use crate::kernel::{Context, ModeKernel};
+use crate::kernel::Context;
 use crate::model::Contacts;
-use crate::numerics::Size;
+use crate::numerics::{Buffer, Dynamic, Size};
 
 /// Unit roundoff of a double.
 pub(super) const ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -19,14 +19,9 @@ pub(super) struct Places {
 
 impl Places {
     /// At a state.
-    pub fn new<F: Size>(
-        kernel: &ModeKernel<F>,
-        context: &Context,
-        contacts: &Contacts,
-        [q, v]: [&F::Vector; 2],
-    ) -> Self {
+    pub fn new(context: &Context, contacts: &Contacts, [q, v]: [&Buffer<f64>; 2]) -> Self {
         Places {
-            values: kernel.places(context, q, v),
+            values: contacts.kernel.places(context, q, v),
             contacts: contacts.contacts.len(),
         }
     }
@@ -116,29 +111,37 @@ pub(super) fn held_lines(contacts: &Contacts, states: &[ContactState]) -> [Vec<L
 
 /// Brings coordinates and rates back to where the contacts and constraints of a mode hold them, in the states that the
 /// context says, for whose time it is set.
-pub(in crate::hybrid) fn hold<F: Size>(
-    kernel: &ModeKernel<F>,
-    context: &mut Context,
-    contacts: &Contacts,
-    [q, v]: [&mut F::Vector; 2],
-) {
+pub(in crate::hybrid) fn hold(context: &mut Context, contacts: &Contacts, [q, v]: [&mut [f64]; 2]) {
     let states = ContactState::all(contacts, context.discrete());
     let [places, rates] = held_lines(contacts, &states);
-    hold_lines(kernel, context, contacts, [&places, &rates], [q, v]);
+    if rates.is_empty() {
+        return;
+    }
+    let mut state = buffers([&*q, &*v]);
+    let lines = [&*places, &*rates];
+    hold_lines(context, contacts, lines, state.each_mut());
+    q.copy_from_slice(&state[0]);
+    v.copy_from_slice(&state[1]);
+}
+
+/// Coordinates and rates as the functions of a mode of all sets take them.
+pub(super) fn buffers(state: [&[f64]; 2]) -> [Buffer<f64>; 2] {
+    state.map(|of| Dynamic(of.len()).vector(|i| of[i]))
 }
 
 /// The guards of open contacts whose gap others hold at zero: feet beside those on which a body stands. Such a gap is zero but
 /// for roundings as long as the others are closed.
-pub(in crate::hybrid) fn held_by_others<F: Size>(
-    kernel: &ModeKernel<F>,
+pub(in crate::hybrid) fn held_by_others(
     context: &mut Context,
     contacts: &Contacts,
-    state: [&F::Vector; 2],
+    state: [&[f64]; 2],
 ) -> Vec<usize> {
     let states = ContactState::all(contacts, context.discrete());
-    let at = Places::new(kernel, context, contacts, state);
+    let state = buffers(state);
+    let state = state.each_ref();
+    let at = Places::new(context, contacts, state);
     let held = held_with(contacts, &states, &at, || {
-        Geometry::new(kernel, context, contacts, state)
+        Geometry::new(context, contacts, state)
     });
     held.into_iter().map(|k| GUARDS * k).collect()
 }
@@ -193,20 +196,19 @@ const LEAST_GAIN: f64 = 0.9;
 
 /// Brings given lines back: those whose place, and those whose rate is held. Newton's method, each time by the least
 /// change in the metric of the masses, as long as it comes closer.
-pub(super) fn hold_lines<F: Size>(
-    kernel: &ModeKernel<F>,
+pub(super) fn hold_lines(
     context: &mut Context,
     contacts: &Contacts,
     [places, rates]: [&[Line]; 2],
-    [q, v]: [&mut F::Vector; 2],
+    [q, v]: [&mut Buffer<f64>; 2],
 ) {
     if places.is_empty() && rates.is_empty() {
         return;
     }
-    let mut geometry = Geometry::new(kernel, context, contacts, [q, v]);
+    let mut geometry = Geometry::new(context, contacts, [q, v]);
     let mut before = f64::INFINITY;
     loop {
-        let now = Places::new(kernel, context, contacts, [q, v]);
+        let now = Places::new(context, contacts, [q, v]);
         let lines = geometry.spanning(places);
         let (amounts, off) = missing(&lines, |line| now.place(line));
         // Not a number where nothing is known: then nothing is moved.
@@ -217,13 +219,13 @@ pub(super) fn hold_lines<F: Size>(
             break;
         };
         (geometry.own.iter().zip(change)).for_each(|(&i, change)| q[i] += change);
-        geometry = Geometry::new(kernel, context, contacts, [q, v]);
+        geometry = Geometry::new(context, contacts, [q, v]);
         before = off;
     }
     let lines = geometry.spanning(rates);
     let mut before = f64::INFINITY;
     loop {
-        let now = Places::new(kernel, context, contacts, [q, v]);
+        let now = Places::new(context, contacts, [q, v]);
         let (amounts, off) = missing(&lines, |line| now.rate(line));
         if !(off > 0.0 && off < LEAST_GAIN * before) {
             break;

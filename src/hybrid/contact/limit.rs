@@ -9,7 +9,7 @@ use crate::hybrid::failure::Stoppable;
 use crate::hybrid::instant::Instant;
 use crate::hybrid::simulation::Simulation;
 use crate::input::Side;
-use crate::kernel::{Free, ModeKernel, with_kernel};
+use crate::kernel::Free;
 use crate::model::Contacts;
 use crate::numerics::Size;
 
@@ -21,46 +21,35 @@ impl<'p> Simulation<'p> {
         let relative = self.problem.accuracy.relative;
         let limit = self.accumulation.limit(relative);
         match limit.or_else(|| self.accumulation.at_one_instant(relative)) {
-            Some(limit) => {
-                with_kernel!(&mode.kernels, k => self.rest_contacts_by(k, contacts, limit))
-            }
+            Some(limit) => self.rest_contacts_by(contacts, limit),
             None => Ok(false),
         }
     }
 
     /// The same where hops have become lower than the rounding of the gap, so that the motion does not show them any more: the
     /// limit is where their series ends, however far that is.
-    pub(super) fn rest_unresolved<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &'p Contacts,
-    ) -> Stoppable<bool> {
+    pub(super) fn rest_unresolved(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
         let relative = self.problem.accuracy.relative;
         let limit = self.accumulation.extrapolated(relative);
         match limit.or_else(|| self.accumulation.predicted()) {
-            Some(limit) => self.rest_contacts_by(kernel, contacts, limit),
+            Some(limit) => self.rest_contacts_by(contacts, limit),
             None => Ok(false),
         }
     }
 
-    fn rest_contacts_by<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &'p Contacts,
-        limit: Limit,
-    ) -> Stoppable<bool> {
+    fn rest_contacts_by(&mut self, contacts: &'p Contacts, limit: Limit) -> Stoppable<bool> {
         let accuracy = self.accuracy;
         if limit.at.seconds() >= self.problem.end.time {
             return Ok(false);
         }
         let n = self.here.q.len();
-        let size = kernel.size();
+        let size = contacts.kernel.size();
         let q = size.vector(|i| limit.state[i]);
         let v = size.vector(|i| limit.state[n + i]);
         self.context
             .set_signals(&self.signals, limit.at.seconds(), Side::Right);
-        let geometry = Geometry::new(kernel, &mut self.context, contacts, [&q, &v]);
-        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
+        let geometry = Geometry::new(&mut self.context, contacts, [&q, &v]);
+        let at = Places::new(&self.context, contacts, [&q, &v]);
         // What tolerances, or what the limit is uncertain by, make of what a line is about.
         let within = |line: Line, of: &dyn Fn(usize) -> f64| -> f64 {
             let pairs = geometry.along(line).iter().zip(&geometry.own);
@@ -123,7 +112,7 @@ impl<'p> Simulation<'p> {
             leaves: vec![false; before.len()],
         };
         let now = std::mem::replace(&mut self.here.now, limit.at);
-        let after = self.settle_contacts(kernel, contacts, &mut standing)?;
+        let after = self.settle_contacts(contacts, &mut standing)?;
         // What touches beside those that hold it, in the limit where they rest already.
         if after == before && limit.at.since(now) <= 0.0 {
             self.here.now = now;
@@ -131,24 +120,23 @@ impl<'p> Simulation<'p> {
             return Ok(false);
         }
         let lines = standing.lines_with(&near);
-        self.go_to(kernel, (contacts, &standing, &lines), now, &limit)?;
+        self.go_to((contacts, &standing, &lines), now, &limit)?;
         self.commit("rest", false, self.here.mode)?;
         Ok(true)
     }
 
     /// Goes to a limit, from the last event or the one that is not resolved. Up to the limit the motion goes on as it does; all
     /// impacts that are left happen there, at once: their impulses along `lines`, and the energy that they lose.
-    fn go_to<F: Size>(
+    fn go_to(
         &mut self,
-        kernel: &'p ModeKernel<F>,
-        (contacts, standing, lines): (&Contacts, &Standing<F>, &[Line]),
+        (contacts, standing, lines): (&'p Contacts, &Standing, &[Line]),
         before: Instant,
         limit: &Limit,
     ) -> Stoppable<()> {
         let n = self.here.q.len();
         let duration = limit.at.since(before);
         self.here.now = before;
-        let powers = self.powers(kernel)?;
+        let powers = self.powers(contacts)?;
         let begins = self.here.a.to_vec();
         for i in 0..n {
             let (v, a) = (self.here.v[i], begins[i]);
@@ -156,7 +144,7 @@ impl<'p> Simulation<'p> {
             self.here.v[i] += duration * a;
         }
         self.here.now = limit.at;
-        let ends = self.powers(kernel)?;
+        let ends = self.powers(contacts)?;
         let work = [0, 1].map(|i| 0.5 * duration * (powers[i] + ends[i]));
         for (i, begins) in begins.iter().enumerate() {
             let more = self.here.a[i] - begins;
@@ -187,15 +175,15 @@ impl<'p> Simulation<'p> {
     }
 
     /// [dissipated, input] power here, W, after setting the accelerations.
-    fn powers<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<[f64; 2]> {
+    fn powers(&mut self, contacts: &'p Contacts) -> Stoppable<[f64; 2]> {
         self.set_context();
-        self.set_accelerations(kernel)?;
-        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
+        self.set_accelerations(&contacts.kernel)?;
+        let [q, v, a] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let at = Free {
             q: &q,
             v: &v,
             a: &a,
         };
-        Ok(kernel.powers(&self.context, at))
+        Ok(contacts.kernel.powers(&self.context, at))
     }
 }

@@ -5,11 +5,10 @@
 
 use super::ContactState;
 use super::geometry::{DEPENDENT, Geometry, Line};
-use super::hold::held_lines;
+use super::hold::{buffers, held_lines};
 use crate::hybrid::failure::Reason;
-use crate::kernel::{Context, ModeKernel};
+use crate::kernel::Context;
 use crate::model::{Contacts, Mode};
-use crate::numerics::Size;
 
 /// The least determined force as a part of the best, from which on a singular position is close: a step that has to show the
 /// forces becomes as short as the pole is near, and none leads behind it. At 1/10 that costs a digit of the forces, and more is
@@ -27,17 +26,12 @@ pub(in crate::hybrid) struct Conditioning {
 impl Conditioning {
     /// At a state of a mode, in the states of contacts that the context says, for whose time it is set; `None` without
     /// constraints: dependent contacts are told from each other when they close.
-    pub fn new<F: Size>(
-        kernel: &ModeKernel<F>,
-        context: &mut Context,
-        contacts: &Contacts,
-        state: [&F::Vector; 2],
-    ) -> Option<Self> {
+    pub fn new(context: &mut Context, contacts: &Contacts, state: [&[f64]; 2]) -> Option<Self> {
         if contacts.constraints.is_empty() {
             return None;
         }
         let [places, _] = held_lines(contacts, &ContactState::all(contacts, context.discrete()));
-        let geometry = Geometry::new(kernel, context, contacts, state);
+        let geometry = Geometry::new(context, contacts, buffers(state).each_ref());
         Some(Conditioning { geometry, places })
     }
 
@@ -67,14 +61,13 @@ impl Conditioning {
 
     /// Whether a singular position lies between another state of the same mode and this one: what is left of the least determined
     /// line turns round there.
-    pub fn is_beyond<F: Size>(
+    pub fn is_beyond(
         &self,
-        kernel: &ModeKernel<F>,
         context: &mut Context,
         contacts: &Contacts,
-        before: [&F::Vector; 2],
+        before: [&[f64]; 2],
     ) -> bool {
-        let before = Geometry::new(kernel, context, contacts, before);
+        let before = Geometry::new(context, contacts, buffers(before).each_ref());
         (self.geometry.least_determined(&self.places))
             .is_some_and(|(line, _)| before.turns_round(line, &self.places, &self.geometry))
     }

@@ -5,14 +5,13 @@ use super::hold::{Places, held_lines, held_with, hold_lines, is_at_zero};
 use super::impact::Impacted;
 use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
-use crate::kernel::ModeKernel;
 use crate::model::{Contact, Contacts};
-use crate::numerics::{Size, Vector};
+use crate::numerics::{Buffer, Vector};
 
 /// What is known of the contacts at an instant.
-pub(super) struct Standing<F: Size> {
-    pub q: F::Vector,
-    pub v: F::Vector,
+pub(super) struct Standing {
+    pub q: Buffer<f64>,
+    pub v: Buffer<f64>,
     pub geometry: Geometry,
     /// Of each contact that touches without a rate, what its tangent does.
     pub touching: Vec<Option<Tangent>>,
@@ -20,7 +19,7 @@ pub(super) struct Standing<F: Size> {
     pub leaves: Vec<bool>,
 }
 
-impl<F: Size> Standing<F> {
+impl Standing {
     /// The lines along which impulses may have come: first those of what touches, then those of contacts that are near, which
     /// account only for what the first do not.
     pub fn lines_with(&self, near: &[bool]) -> Vec<Line> {
@@ -70,25 +69,18 @@ impl<F: Size> Standing<F> {
 impl Simulation<'_> {
     /// The contacts as they stand where none closes; `stops`: the slip rate, or the rate of a ratchet, that has come to zero, and with
     /// it all that depend on it.
-    pub(super) fn standing<F: Size>(
+    pub(super) fn standing(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
         (stops, before): (Option<Line>, &[ContactState]),
-    ) -> Standing<F> {
-        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+    ) -> Standing {
+        let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let [places, mut still] = held_lines(contacts, before);
         still.extend(stops);
         let context = &mut self.context;
-        hold_lines(
-            kernel,
-            context,
-            contacts,
-            [&places, &still],
-            [&mut q, &mut v],
-        );
-        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
-        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        hold_lines(context, contacts, [&places, &still], [&mut q, &mut v]);
+        let geometry = Geometry::new(context, contacts, [&q, &v]);
+        let at = Places::new(context, contacts, [&q, &v]);
         let stops = |line: Line| {
             stops == Some(line) || self.is_still_with(&still, line, (&geometry, &at, &v))
         };
@@ -135,15 +127,14 @@ impl Simulation<'_> {
 
     /// The contacts as they stand where one closes, and with it all whose gap is zero within its rounding: these are on
     /// their gaps, with the rates that they come with.
-    pub(super) fn closing<F: Size>(
+    pub(super) fn closing(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
         (k, before): (usize, &[ContactState]),
-    ) -> Standing<F> {
-        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+    ) -> Standing {
+        let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let context = &mut self.context;
-        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        let at = Places::new(context, contacts, [&q, &v]);
         let closes = |j: usize| {
             let (gap, rounding) = at.place(Line::Normal(j));
             let is_open = before[j] == ContactState::Open && !contacts.contacts[j].is_ratchet;
@@ -151,15 +142,9 @@ impl Simulation<'_> {
         };
         let [mut places, rates] = held_lines(contacts, before);
         places.extend((0..before.len()).filter(|&j| closes(j)).map(Line::Normal));
-        hold_lines(
-            kernel,
-            context,
-            contacts,
-            [&places, &rates],
-            [&mut q, &mut v],
-        );
-        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
-        let at = Places::new(kernel, context, contacts, [&q, &v]);
+        hold_lines(context, contacts, [&places, &rates], [&mut q, &mut v]);
+        let geometry = Geometry::new(context, contacts, [&q, &v]);
+        let at = Places::new(context, contacts, [&q, &v]);
         // A body that lands flat: its other feet land too, whatever rounding says of their gaps.
         let lands = |j: usize| {
             let is_open = before[j] == ContactState::Open && contacts.contacts[j].has_gap();

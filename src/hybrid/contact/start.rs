@@ -8,9 +8,8 @@ use super::{ContactState, Tangent};
 use crate::hybrid::failure::{Misfitting, Reason, Stoppable};
 use crate::hybrid::limits::check_bounds;
 use crate::hybrid::simulation::Simulation;
-use crate::kernel::{ModeKernel, with_kernel};
 use crate::model::Contacts;
-use crate::numerics::Size;
+use crate::numerics::Buffer;
 
 impl<'p> Simulation<'p> {
     /// Finds the set of contact states of the initial state: a contact touches where its gap is zero within its rounding, and
@@ -30,8 +29,7 @@ impl<'p> Simulation<'p> {
         let (model, variant) = (&*self.problem.model, self.problem.variant());
         check_bounds(model, variant, parameters, &self.initial.q)?;
         self.set_context();
-        with_kernel!(&mode.kernels, k => self.start_contacts_by(k, contacts))
-            .map_err(|why| *why)?;
+        self.start_contacts_by(contacts).map_err(|why| *why)?;
         self.begun = Some(
             [&*self.here.q, &self.here.v, self.context.discrete()]
                 .concat()
@@ -40,27 +38,23 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    fn start_contacts_by<F: Size>(
-        &mut self,
-        kernel: &'p ModeKernel<F>,
-        contacts: &'p Contacts,
-    ) -> Stoppable<()> {
-        let [mut q, mut v, _] = self.here.free(kernel.size(), &self.mode().free);
+    fn start_contacts_by(&mut self, contacts: &'p Contacts) -> Stoppable<()> {
+        let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let open = vec![ContactState::Open; contacts.contacts.len()];
         write_states(contacts, &open, self.context.discrete_mut());
         if self.problem.project || self.problem.at_rest {
-            self.project(kernel, contacts, [&mut q, &mut v]);
+            self.project(contacts, [&mut q, &mut v]);
         }
         if self.problem.at_rest {
-            self.find_rest(kernel, contacts, &mut q).map_err(no_rest)?;
+            self.find_rest(contacts, &mut q).map_err(no_rest)?;
             write_states(contacts, &open, self.context.discrete_mut());
         }
-        let standing = self.standing_of(kernel, contacts, [q, v]);
+        let standing = self.standing_of(contacts, [q, v]);
         let mut standing = standing.map_err(|why| {
             let mode = self.mode().name;
             Box::new(Reason::Initial { mode, why })
         })?;
-        match self.settle_contacts(kernel, contacts, &mut standing) {
+        match self.settle_contacts(contacts, &mut standing) {
             // The first event is the impact: with all that touches open, a gap falls at once.
             Err(reason)
                 if self.problem.collisions.without_collision
@@ -72,19 +66,18 @@ impl<'p> Simulation<'p> {
         }
         self.take_next();
         match self.problem.at_rest {
-            true => self.check_rest(kernel, contacts),
+            true => self.check_rest(contacts),
             false => Ok(()),
         }
     }
 
     /// The contacts as they stand in a state, by their gaps and rates alone; or why it is not admitted.
-    pub(super) fn standing_of<F: Size>(
+    pub(super) fn standing_of(
         &mut self,
-        kernel: &ModeKernel<F>,
         contacts: &Contacts,
-        [mut q, mut v]: [F::Vector; 2],
-    ) -> Result<Standing<F>, Misfitting> {
-        let at = Places::new(kernel, &self.context, contacts, [&q, &v]);
+        [mut q, mut v]: [Buffer<f64>; 2],
+    ) -> Result<Standing, Misfitting> {
+        let at = Places::new(&self.context, contacts, [&q, &v]);
         let mut places = Vec::new();
         for (c, constraint) in contacts.constraints.iter().enumerate() {
             let line = Line::Constraint(c);
@@ -141,8 +134,8 @@ impl<'p> Simulation<'p> {
             });
         }
         let context = &mut self.context;
-        hold_lines(kernel, context, contacts, [&places, &[]], [&mut q, &mut v]);
-        let geometry = Geometry::new(kernel, context, contacts, [&q, &v]);
+        hold_lines(context, contacts, [&places, &[]], [&mut q, &mut v]);
+        let geometry = Geometry::new(context, contacts, [&q, &v]);
         Ok(Standing {
             q,
             v,
@@ -155,20 +148,15 @@ impl<'p> Simulation<'p> {
     /// Moves a state to the nearest that constraints admit and no contact penetrates, in the metric of the masses, as far as
     /// Newton's method comes closer. Contacts that penetrate are brought to a gap of zero, their rates stay; negative rates of
     /// ratchets are brought to zero.
-    fn project<F: Size>(
-        &mut self,
-        kernel: &ModeKernel<F>,
-        contacts: &Contacts,
-        [q, v]: [&mut F::Vector; 2],
-    ) {
+    fn project(&mut self, contacts: &Contacts, [q, v]: [&mut Buffer<f64>; 2]) {
         let constraints = (0..contacts.constraints.len()).map(Line::Constraint);
         let mut rates: Vec<Line> = constraints.collect();
         let mut places = rates.clone();
         loop {
             let state = [&mut *q, &mut *v];
             let context = &mut self.context;
-            hold_lines(kernel, context, contacts, [&places, &rates], state);
-            let at = Places::new(kernel, &self.context, contacts, [q, v]);
+            hold_lines(context, contacts, [&places, &rates], state);
+            let at = Places::new(&self.context, contacts, [q, v]);
             let is_ratchet = |k: usize| contacts.contacts[k].is_ratchet;
             let is_violated = |k: usize| {
                 let line = Line::Normal(k);

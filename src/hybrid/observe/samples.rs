@@ -13,8 +13,8 @@ use crate::hybrid::simulation::{Here, Simulation};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Contacts, Mode};
-use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
+use crate::numerics::{Size, Vector};
 use crate::run::{ColumnKind, Layout};
 use std::ops::ControlFlow;
 
@@ -259,8 +259,11 @@ pub(in crate::hybrid) fn held<F: Size>(
     [mut q, mut v, a]: [F::Vector; 3],
 ) -> [F::Vector; 3] {
     equations.at(tau);
-    let (kernel, context) = (equations.kernel, &mut *equations.context);
-    hold(kernel, context, contacts, [&mut q, &mut v]);
+    hold(
+        equations.context,
+        contacts,
+        [q.as_mut_slice(), v.as_mut_slice()],
+    );
     let a = equations.acceleration_here(&q, &v).unwrap_or(a);
     [q, v, a]
 }

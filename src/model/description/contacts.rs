@@ -1,12 +1,19 @@
 //! Contacts and constraints of a mode.
 
 use super::{Read, Reader};
+use crate::kernel::ModeKernel;
 use crate::model::reader::{At, text, truth};
 use crate::model::{Constraint, Contact, ContactSets, Contacts, DeclaredContact};
+use crate::numerics::Dynamic;
 
 impl Reader<'_> {
     /// The contacts of a mode with so many guards: first three of each contact, then those of transitions by hand.
-    pub(super) fn contacts(&self, at: &At, guards: usize) -> Read<Contacts> {
+    pub(super) fn contacts(
+        &self,
+        at: &At,
+        guards: usize,
+        kernel: ModeKernel<Dynamic>,
+    ) -> Read<Contacts> {
         let (coordinates, discretes) = (self.dimensions.coordinates, self.dimensions.discretes);
         let count = at.get("contacts", |at| {
             let count = at.list(|_| Ok(()))?.len();
@@ -46,6 +53,7 @@ impl Reader<'_> {
         let decisions = at.get("decisions", |at| self.tape(at, Contacts::DECISIONS * count))?;
         Ok(Contacts {
             follows_motion: Contacts::follow_motion(&contacts, &decisions),
+            kernel,
             moved: at.get("moved", truth)?,
             sets: ContactSets::new(&contacts),
             contacts,

@@ -40,7 +40,7 @@ impl Reader<'_> {
         })
     }
 
-    fn kernel<F: Size>(
+    pub(super) fn kernel<F: Size>(
         &self,
         at: &At,
         size: F,

@@ -5,6 +5,7 @@ mod contacts;
 mod functions;
 mod tapes;
 
+use crate::numerics::Dynamic;
 use functions::Counts;
 
 use super::name::intern;
@@ -228,9 +229,15 @@ impl Reader<'_> {
             meaning: at.get("meaning", text)?,
             held_at: at.get("held_at", |at| at.list_of(n, |at| at.option(held_at)))?,
             drifts: at.get("drifts", |at| at.list_of(n, truth))?,
-            contacts: at.get("contacts", |at| {
-                at.option(|at| self.contacts(at, guards.len()))
-            })?,
+            contacts: {
+                let kernel = || {
+                    let size = Dynamic(free.len());
+                    at.get("kernel", |at| self.kernel(at, size, &guards, counts))
+                };
+                at.get("contacts", |at| {
+                    at.option(|at| self.contacts(at, guards.len(), kernel()?))
+                })?
+            },
             without_series: at.get("without_series", |at| at.option(text))?,
             system: at.get("system", |at| {
                 self.tape(at, free.len() * free.len() + free.len())
