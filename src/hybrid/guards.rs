@@ -159,7 +159,7 @@ pub(super) fn value<F: Size>(
 #[inline(always)]
 pub(super) fn motion<F: Size>(
     equations: &mut Equations<F>,
-    dense: &(impl Motion<F> + ?Sized),
+    dense: &dyn Motion<F>,
     tau: f64,
     accelerations: bool,
 ) -> [F::Vector; 3] {
@@ -170,7 +170,7 @@ pub(super) fn motion<F: Size>(
 /// The same, with the context set as far as the equations of motion need it.
 pub(super) fn motion_at_stage<F: Size>(
     equations: &mut Equations<F>,
-    dense: &(impl Motion<F> + ?Sized),
+    dense: &dyn Motion<F>,
     tau: f64,
     accelerations: bool,
 ) -> [F::Vector; 3] {

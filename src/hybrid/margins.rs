@@ -242,7 +242,7 @@ impl Margins<'_> {
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
-        dense: &impl Motion<F>,
+        dense: &dyn Motion<F>,
         end: &State<F>,
     ) -> Option<f64> {
         let required = mode.requirements.len();
@@ -267,7 +267,7 @@ impl Margins<'_> {
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
-        dense: &impl Motion<F>,
+        dense: &dyn Motion<F>,
         end: &State<F>,
         origin: Instant,
     ) {
@@ -285,12 +285,7 @@ impl Margins<'_> {
     }
 
     /// Sets the values at the start of a step, from which it may be taken again.
-    fn start<F: Size>(
-        &mut self,
-        equations: &mut Equations<F>,
-        mode: &Mode,
-        dense: &impl Motion<F>,
-    ) {
+    fn start<F: Size>(&mut self, equations: &mut Equations<F>, mode: &Mode, dense: &dyn Motion<F>) {
         let [q, v, a] = motion(equations, dense, dense.start(), true);
         let at = Free {
             q: &q,
@@ -306,7 +301,7 @@ impl Margins<'_> {
         &mut self,
         equations: &mut Equations<F>,
         mode: &Mode,
-        dense: &impl Motion<F>,
+        dense: &dyn Motion<F>,
         end: &State<F>,
         (window, row): ((f64, f64), usize),
     ) -> Option<f64> {

@@ -46,40 +46,52 @@ pub(super) fn search<F: Size>(
                 BySeries::PositiveUntil(from) => ((from, window.1), Watch::Armed),
                 BySeries::Nothing => (window, watch),
             };
-            let accelerations = !matches!(
-                guard.shape,
-                GuardShape::General {
-                    accelerations: false,
-                    ..
-                }
-            );
-            // Conditions may depend on more of the inputs than the equations of motion do.
-            let own = watched.condition.is_none() && !watched.conditional;
-            if own {
-                equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
-            }
-            let evaluate = |tau: f64| {
-                let [q, v, a] = match own {
-                    true => motion_at_stage(equations, dense, tau, accelerations),
-                    false => motion(equations, dense, tau, accelerations),
-                };
-                let at = Free {
-                    q: &q,
-                    v: &v,
-                    a: &a,
-                };
-                watched_value(
-                    equations.kernel,
-                    equations.context,
-                    conditions,
-                    guard,
-                    watched,
-                    at,
-                )
-            };
-            *found = search_function(evaluate, window, watch);
+            let of = (guard, watched);
+            *found = search_values(equations, conditions, dense, of, (window, watch));
         }
     }
+}
+
+/// Searches a guard by its values. Compiled once for all methods: a value takes longer than to ask which method it is.
+fn search_values<F: Size>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    dense: &dyn Motion<F>,
+    (guard, watched): (&Guard, Watched),
+    (window, watch): ((f64, f64), Watch),
+) -> Search {
+    let accelerations = !matches!(
+        guard.shape,
+        GuardShape::General {
+            accelerations: false,
+            ..
+        }
+    );
+    // Conditions may depend on more of the inputs than the equations of motion do.
+    let own = watched.condition.is_none() && !watched.conditional;
+    if own {
+        equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
+    }
+    let evaluate = |tau: f64| {
+        let [q, v, a] = match own {
+            true => motion_at_stage(equations, dense, tau, accelerations),
+            false => motion(equations, dense, tau, accelerations),
+        };
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        watched_value(
+            equations.kernel,
+            equations.context,
+            conditions,
+            guard,
+            watched,
+            at,
+        )
+    };
+    search_function(evaluate, window, watch)
 }
 
 /// Local time at a part of a window.
