@@ -133,7 +133,7 @@ impl<'p> Simulation<'p> {
         question.answer(&mut self.expansion)
     }
 
-    /// The least condition of a transition of a guard; leaves the reset in `next`.
+    /// The least condition of a transition of a guard. Overwrites `next`.
     #[inline(always)]
     pub fn least_condition<F: Size>(
         &mut self,
@@ -150,17 +150,28 @@ impl<'p> Simulation<'p> {
     }
 
     /// Whether a transition of a guard may be taken: none of its conditions, of which the least is given, is negative just
-    /// after it, in the motion of its target. Its reset is in `next`.
+    /// after it, in the motion of its target. Overwrites `next`.
     #[inline(always)]
-    pub fn may_take(&mut self, transition: &'p Transition, least: f64) -> bool {
-        least >= 0.0 || (!least.is_nan() && self.holds_just_after(transition))
+    pub fn may_take<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        transition: &'p Transition,
+        (at, least): (Free<F>, f64),
+    ) -> bool {
+        let holds_just_after = |own: &mut Self| own.holds_just_after(kernel, transition, at);
+        least >= 0.0 || (!least.is_nan() && holds_just_after(self))
     }
 
-    /// Whether the conditions of a transition, whose reset is in `next`, hold just after it although one of them is
-    /// negative.
+    /// Whether the conditions of a transition hold just after it although one of them is negative. Overwrites `next`.
     #[cold]
-    fn holds_just_after(&mut self, transition: &'p Transition) -> bool {
+    fn holds_just_after<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        transition: &'p Transition,
+        at: Free<F>,
+    ) -> bool {
         self.expand_signals();
+        kernel.reset(&self.context, &transition.kernel, at, &mut self.next);
         let n = self.here.q.len();
         let (q, rest) = self.next.split_at(n);
         let (v, discrete) = rest.split_at(n);

@@ -158,7 +158,7 @@ impl<'p> Simulation<'p> {
                     || guard.transitions.iter().any(|transition| {
                         self.plan.allowed[transition.target] && {
                             let least = self.least_condition(kernel, transition, at);
-                            self.may_take(transition, least)
+                            self.may_take(kernel, transition, (at, least))
                         }
                     });
                 let from_zero = matches!(departure, Departure::Down { order: 1.. });
@@ -257,7 +257,7 @@ impl<'p> Simulation<'p> {
             let mode = self.mode();
             pivots(&kernel.inertia(&self.context, q, v)).map_err(|not| Reason::Indefinite {
                 mode: mode.name,
-                coordinate: self.problem.model.coordinates[mode.free[not.coordinate]].name,
+                coordinate: self.problem.model.coordinates[mode.free[not.row]].name,
                 pivot: not.pivot,
             })?;
             self.has_inertia[self.here.mode] = true;

@@ -5,6 +5,7 @@ use super::failure::{Reason, Stoppable, Taken};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
+use crate::model::Transition;
 use crate::numerics::Size;
 use crate::run::{EnergyJump, Jump};
 
@@ -28,7 +29,7 @@ impl<'p> Simulation<'p> {
         self.remember(guard, t)
     }
 
-    /// Index of the transition of a guard that happens, and is noted; its reset is left in `next`.
+    /// Index of the transition of a guard that happens, and is noted; makes `next` the state after its reset.
     #[inline(always)]
     pub fn chosen<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<usize> {
         let chosen = self.choose(kernel, guard);
@@ -40,7 +41,20 @@ impl<'p> Simulation<'p> {
         self.doubts.happened(fired);
         self.count(fired.transitions[t].name);
         self.accumulation.compare([&self.here.q, &self.here.v]);
+        self.reset(kernel, &fired.transitions[t]);
         Ok(t)
+    }
+
+    /// Makes `next` the state after the reset of a transition from here.
+    #[inline(always)]
+    pub fn reset<F: Size>(&mut self, kernel: &'p ModeKernel<F>, transition: &'p Transition) {
+        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        kernel.reset(&self.context, &transition.kernel, at, &mut self.next);
     }
 
     /// Counts an event, if it is of those that end the run.
@@ -75,7 +89,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Index of the transition that is taken; its reset is left in `next`.
+    /// Index of the transition that is taken; sets the context, and overwrites `next`.
     #[inline(always)]
     pub fn choose<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Option<usize> {
         self.set_context();
@@ -95,17 +109,13 @@ impl<'p> Simulation<'p> {
             let least = self.least_condition(kernel, transition, at);
             open |= transition.conditional
                 && (self.doubts).may_leave_open((index, mode), (guard, t), least);
-            if self.may_take(transition, least) {
+            if self.may_take(kernel, transition, (at, least)) {
                 chosen = Some(t);
                 break;
             }
         }
         if open {
             self.doubt_choice(kernel, guard, chosen);
-            // The reset was overwritten.
-            if let Some(t) = chosen {
-                self.least_condition(kernel, &mode.guards[guard].transitions[t], at);
-            }
         }
         chosen
     }

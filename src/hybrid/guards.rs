@@ -17,7 +17,7 @@ pub(super) struct Conditions<'a> {
 
 impl Conditions<'_> {
     /// The conditions of a transition out of the present mode, evaluated in its target after the
-    /// reset, reduced by `reduce`. `next` holds the reset afterwards.
+    /// reset, reduced by `reduce`. Overwrites `next`.
     fn reduced<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
@@ -26,11 +26,11 @@ impl Conditions<'_> {
         at: Free<F>,
         reduce: &dyn Fn(&[f64]) -> f64,
     ) -> f64 {
-        kernel.reset(context, &transition.kernel, at, self.next);
-        match transition.conditional {
-            true => self.reduced_after_reset(context, transition, reduce),
-            false => reduce(&[]),
+        if !transition.conditional {
+            return reduce(&[]);
         }
+        kernel.reset(context, &transition.kernel, at, self.next);
+        self.reduced_after_reset(context, transition, reduce)
     }
 
     /// The same where `next` holds the reset.

@@ -64,6 +64,7 @@ impl<'p> Simulation<'p> {
             return None;
         }
         let transition = &guard.transitions[self.choose(kernel, violation.guard)?];
+        self.reset(kernel, transition);
         let n = self.here.q.len();
         let moved = self.here.q[..] != self.next[..n] || self.here.v[..] != self.next[n..2 * n];
         if moved {

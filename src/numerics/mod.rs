@@ -3,6 +3,7 @@
 mod bounded;
 mod buffer;
 mod complementarity;
+mod definite;
 mod lanes;
 mod linear;
 mod persist;
@@ -13,6 +14,7 @@ mod size;
 pub use bounded::Bounded;
 pub use buffer::Buffer;
 pub(crate) use complementarity::{Unsolved, solve_complementarity};
+pub(crate) use definite::{Definite, NotPositive};
 pub(crate) use lanes::{LaneMask, Lanes};
 pub(crate) use linear::{Lu, solve_for};
 pub use linear::{Singular, solve};

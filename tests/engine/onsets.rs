@@ -195,3 +195,29 @@ fn at_an_exact_graze_no_contact_collides_while_it_opens() {
         }
     }
 }
+
+/// A contact that leaves its gap by less than a step of the implicit method shows, and closes in a step at whose end the gap
+/// rises again: the mass would swing 2 µm below the floor and back.
+#[test]
+fn a_gap_that_is_below_zero_in_the_middle_of_a_step_alone_has_closed() {
+    for tolerance in [1e-3, 1e-4, 1e-6, 1e-10] {
+        with_each_method(|| {
+            let mut problem = problem("sunk_mass", &[]);
+            problem.set_initial("y", 1.0).unwrap();
+            problem.set_initial("y.rate", 1e-14).unwrap();
+            problem.set_tolerance(tolerance);
+            problem.end.time = 20.0;
+            problem.record.every = Some(0.1);
+            problem.record.columns.outputs = true;
+            let run = run(&problem);
+            let column = run.trajectory.column("floor.gap").expect("a column");
+            for (i, t) in run.trajectory.t.iter().enumerate() {
+                let gap = run.trajectory.row(i)[column];
+                assert!(gap > -1e-15, "{tolerance:e}, {t}: sinks by {gap:e}");
+            }
+            let force = run.trajectory.column("floor.normal").expect("a column");
+            let last = run.trajectory.row(run.trajectory.t.len() - 1)[force];
+            assert!((last - 1e-6).abs() < 1e-15, "{last:e}");
+        });
+    }
+}

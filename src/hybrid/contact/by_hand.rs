@@ -32,6 +32,7 @@ impl<'p> Simulation<'p> {
     fn take_chart_by(&mut self, contacts: &'p Contacts, guard: usize) -> Stoppable<()> {
         let chosen = self.choose(&contacts.kernel, guard);
         assert_eq!(chosen, Some(0), "a chart has no conditions");
+        self.reset(&contacts.kernel, &self.mode().guards[guard].transitions[0]);
         let (n, free, size) = (self.here.q.len(), &self.mode().free, contacts.kernel.size());
         let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
         let before = {

@@ -64,9 +64,8 @@ impl<'p> Simulation<'p> {
             true => self.resolution(contacts, k, &standing),
             false => Resolution::Seen,
         };
-        let is_implicit = self.problem.method == Method::Radau && contacts.kernel.is_analytic();
         self.accumulation
-            .set_needs_series(is_implicit && hop != Resolution::Seen);
+            .set_needs_series(hop == Resolution::BySeries);
         let unresolved = hop == Resolution::Lost;
         if unresolved && self.rest_unresolved(contacts)? {
             return Ok(());
@@ -138,19 +137,13 @@ impl<'p> Simulation<'p> {
     /// with the rate u is about |u| T / 4 high. The series of the explicit method shows all that begins with a bounce of the
     /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding.
     fn resolution(&self, contacts: &Contacts, k: usize, standing: &Standing) -> Resolution {
-        let by_implicit =
-            match self.problem.method == Method::Radau && contacts.kernel.is_analytic() {
+        let is_explicit = self.made_by == MadeBy::Taylor;
+        let has_series = self.problem.method == Method::Radau && contacts.kernel.is_analytic();
+        if self.signs.unseen() {
+            return match has_series && !is_explicit {
                 true => Resolution::BySeries,
                 false => Resolution::Lost,
             };
-        let is_explicit = self.made_by == MadeBy::Taylor;
-        let lost = if is_explicit {
-            Resolution::Lost
-        } else {
-            by_implicit
-        };
-        if self.signs.unseen() {
-            return lost;
         }
         let Some((last, ..)) = self.accumulation.last() else {
             return Resolution::Seen;
@@ -174,8 +167,8 @@ impl<'p> Simulation<'p> {
         let is_low = height <= told;
         match is_explicit {
             true if places.restitution(k) == 0.0 && height <= rounding => Resolution::Lost,
-            true if by_implicit == Resolution::Lost => Resolution::Seen,
-            _ if is_low || blurs && by_implicit == Resolution::BySeries => by_implicit,
+            _ if has_series && (is_low || blurs) => Resolution::BySeries,
+            false if is_low => Resolution::Lost,
             _ => Resolution::Seen,
         }
     }

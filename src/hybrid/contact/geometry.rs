@@ -3,7 +3,7 @@
 use super::ContactState;
 use crate::kernel::Context;
 use crate::model::Contacts;
-use crate::numerics::{Buffer, Dynamic, Lu, Size};
+use crate::numerics::{Buffer, Definite, Dynamic, Lu, Size};
 
 /// What is left of a line beside others, as a part of it, where it is taken to depend on them: √ε. What is less cannot be told
 /// from the rounding of a matrix of such lines, which squares it.
@@ -29,7 +29,7 @@ pub(super) struct Geometry {
     pub mass: Vec<f64>,
     /// How what the lines are about changes with these coordinates.
     lines: Vec<(Line, Vec<f64>)>,
-    /// The same, times the inverse of the Cholesky factor of the inertia.
+    /// The same, in coordinates in which the inertia is 1.
     scaled: Vec<Vec<f64>>,
 }
 
@@ -70,9 +70,9 @@ impl Geometry {
                 (line, row(i).map(|at| system.mass[at]).collect())
             })
             .collect();
-        let factor = cholesky(&mass, own.len());
+        let factor = inertia(&mass, own.len());
         let scaled = (lines.iter())
-            .map(|(_, along)| forward(&factor, along))
+            .map(|(_, along)| factor.scaled(along))
             .collect();
         Geometry {
             own,
@@ -208,7 +208,7 @@ impl Geometry {
         for &line in lines {
             basis.extend(beside(&self.scaled[self.place(line)], &basis));
         }
-        let scaled = forward(&cholesky(&self.mass, self.own.len()), &along);
+        let scaled = inertia(&self.mass, self.own.len()).scaled(&along);
         let Some(rest) = beside(&scaled, &basis) else {
             return Some(0.0);
         };
@@ -322,6 +322,11 @@ impl Geometry {
     }
 }
 
+/// An inertia, row by row, factorized.
+fn inertia(mass: &[f64], size: usize) -> Definite<Dynamic> {
+    Definite::factorize(Dynamic(size), |i, j| mass[i * size + j])
+}
+
 /// The discrete states of contacts that do so, all of whose forces are determined.
 pub(super) fn write_states(contacts: &Contacts, states: &[ContactState], discrete: &mut [f64]) {
     for (contact, &state) in contacts.contacts.iter().zip(states) {
@@ -376,35 +381,6 @@ fn left_of(vector: &[f64], basis: &[Vec<f64>]) -> (f64, Vec<f64>) {
 /// Sum of products.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// The lower factor of a positive definite matrix, row by row.
-fn cholesky(matrix: &[f64], n: usize) -> Vec<f64> {
-    let mut factor = vec![0.0; n * n];
-    for i in 0..n {
-        for j in 0..=i {
-            let products = (0..j).map(|k| factor[i * n + k] * factor[j * n + k]);
-            let rest = matrix[i * n + j] - products.sum::<f64>();
-            factor[i * n + j] = match i == j {
-                true => rest.sqrt(),
-                false => rest / factor[j * n + j],
-            };
-        }
-    }
-    factor
-}
-
-/// L⁻¹ b of a lower factor.
-fn forward(factor: &[f64], b: &[f64]) -> Vec<f64> {
-    let n = b.len();
-    let mut x = b.to_vec();
-    for i in 0..n {
-        for j in 0..i {
-            x[i] -= factor[i * n + j] * x[j];
-        }
-        x[i] /= factor[i * n + i];
-    }
-    x
 }
 
 #[cfg(test)]
@@ -483,12 +459,5 @@ mod tests {
             assert!((part - expected).abs() < 1e-15, "{part} and {expected}");
         }
         assert_eq!(geometry.parts(all[1], &all[..1]), None);
-    }
-
-    #[test]
-    fn factors_multiply_to_the_matrix() {
-        let factor = cholesky(&[4.0, 2.0, 2.0, 5.0], 2);
-        assert_eq!(factor, [2.0, 0.0, 1.0, 2.0]);
-        assert_eq!(forward(&factor, &[2.0, 5.0]), [1.0, 2.0]);
     }
 }
