@@ -5,7 +5,6 @@ use super::failure::{Reason, Stoppable, Taken};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
-use crate::model::Transition;
 use crate::numerics::Size;
 use crate::run::{EnergyJump, Jump};
 
@@ -32,7 +31,14 @@ impl<'p> Simulation<'p> {
     /// Index of the transition of a guard that happens, and is noted; makes `next` the state after its reset.
     #[inline(always)]
     pub fn chosen<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<usize> {
-        let chosen = self.choose(kernel, guard);
+        self.set_context();
+        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let chosen = self.choose(kernel, guard, at);
         let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
             // Every condition fails at the very state where the guard is crossed.
@@ -41,20 +47,9 @@ impl<'p> Simulation<'p> {
         self.doubts.happened(fired);
         self.count(fired.transitions[t].name);
         self.accumulation.compare([&self.here.q, &self.here.v]);
-        self.reset(kernel, &fired.transitions[t]);
+        let reset = &fired.transitions[t].kernel;
+        kernel.reset(&self.context, reset, at, &mut self.next);
         Ok(t)
-    }
-
-    /// Makes `next` the state after the reset of a transition from here.
-    #[inline(always)]
-    pub fn reset<F: Size>(&mut self, kernel: &'p ModeKernel<F>, transition: &'p Transition) {
-        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
-        };
-        kernel.reset(&self.context, &transition.kernel, at, &mut self.next);
     }
 
     /// Counts an event, if it is of those that end the run.
@@ -89,17 +84,15 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Index of the transition that is taken; sets the context, and overwrites `next`.
+    /// Index of the transition that is taken in the present state `at`, for which the context is set. Overwrites `next`.
     #[inline(always)]
-    pub fn choose<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Option<usize> {
-        self.set_context();
+    pub fn choose<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        guard: usize,
+        at: Free<F>,
+    ) -> Option<usize> {
         let mode = self.mode();
-        let [q, v, a] = self.here.free(kernel.size(), &mode.free);
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
-        };
         let index = self.here.mode;
         let (mut chosen, mut open) = (None, false);
         for (t, transition) in mode.guards[guard].transitions.iter().enumerate() {

@@ -63,8 +63,8 @@ impl<'p> Simulation<'p> {
         if value >= -ROUNDING * magnitude {
             return None;
         }
-        let transition = &guard.transitions[self.choose(kernel, violation.guard)?];
-        self.reset(kernel, transition);
+        let transition = &guard.transitions[self.choose(kernel, violation.guard, at)?];
+        kernel.reset(&self.context, &transition.kernel, at, &mut self.next);
         let n = self.here.q.len();
         let moved = self.here.q[..] != self.next[..n] || self.here.v[..] != self.next[n..2 * n];
         if moved {

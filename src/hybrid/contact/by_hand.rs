@@ -2,6 +2,7 @@
 
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
+use crate::kernel::Free;
 use crate::model::{Contacts, Transition};
 use crate::numerics::{Buffer, Size};
 
@@ -30,25 +31,28 @@ impl<'p> Simulation<'p> {
 
     /// Goes over to other coordinates, in which the contacts do what they did.
     fn take_chart_by(&mut self, contacts: &'p Contacts, guard: usize) -> Stoppable<()> {
-        let chosen = self.choose(&contacts.kernel, guard);
-        assert_eq!(chosen, Some(0), "a chart has no conditions");
-        self.reset(&contacts.kernel, &self.mode().guards[guard].transitions[0]);
-        let (n, free, size) = (self.here.q.len(), &self.mode().free, contacts.kernel.size());
-        let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
-        let before = {
-            let [q, v, _] = self.here.free(size, free);
-            Places::new(&self.context, contacts, [&q, &v])
+        let [chart] = &*self.mode().guards[guard].transitions else {
+            unreachable!("a chart is one transition");
         };
+        let (n, free, size) = (self.here.q.len(), &self.mode().free, contacts.kernel.size());
+        let [q, v, a] = self.here.free(size, free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let before = Places::new(&self.context, contacts, [&q, &v]);
+        (contacts.kernel).reset(&self.context, &chart.kernel, at, &mut self.next);
+        let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
         let discrete = self.context.discrete().to_vec();
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
-        let name = self.mode().guards[guard].transitions[0].name;
-        self.check_chart(contacts, name, (&before, [&q, &v]))?;
+        self.check_chart(contacts, chart.name, (&before, [&q, &v]))?;
         hold(&mut self.context, contacts, [&mut q, &mut v]);
         self.context.discrete_mut().copy_from_slice(&discrete);
         for (i, &of) in free.iter().enumerate() {
             (self.next[of], self.next[n + of]) = (q[i], v[i]);
         }
-        self.take_chart(name)
+        self.take_chart(chart.name)
     }
 
     /// Refuses a chart by which a gap, a slip rate, a constraint or a rate of these changes by more than the tolerances tell from
