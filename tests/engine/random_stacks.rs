@@ -145,7 +145,9 @@ fn random_stacks_of_blocks_keep_all_laws() {
     let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
     let only = asked("DALEMBERT_RANDOM_SCENE");
     let (mut events, mut stops) = (0, Vec::new());
-    for number in only.map_or(0..share, |n| n..n + 1) {
+    // Also one whose accumulations accumulate.
+    let numbers = only.map_or_else(|| (0..share).chain([246]).collect(), |n| vec![n]);
+    for number in numbers {
         let mut stack = Stack::random(&mut Random(number));
         // The dense output of Radau's method is of a lower order than its steps.
         let methods = [
@@ -165,7 +167,8 @@ fn random_stacks_of_blocks_keep_all_laws() {
             stack.check(&run, &of, within);
             events += run.events.len();
             if let Some(failure) = &run.failure {
-                assert!(number >= SHARE, "{of}: {}", failure.reason);
+                let is_known = number >= SHARE && number != 246;
+                assert!(is_known, "{of}: {}", failure.reason);
                 stops.push(format!("{of}: {}", failure.reason));
             }
         }

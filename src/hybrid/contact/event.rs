@@ -71,6 +71,9 @@ impl<'p> Simulation<'p> {
             return Ok(());
         }
         if closes && self.accumulation.is_unresolved(unresolved) {
+            if self.rest_of_rests(contacts)? {
+                return Ok(());
+            }
             return Err(Box::new(Reason::Chattering {
                 transitions: vec![intern(&format!("{} strikes", contacts.contacts[k].name))],
                 missing: Restless::BelowRounding,

@@ -4,7 +4,7 @@ use super::geometry::{Geometry, Line, multiplier};
 use super::hold::Places;
 use super::standing::Standing;
 use super::{ContactState, Tangent};
-use crate::hybrid::accumulation::Limit;
+use crate::hybrid::accumulation::{Limit, Signature};
 use crate::hybrid::failure::Stoppable;
 use crate::hybrid::instant::Instant;
 use crate::hybrid::simulation::Simulation;
@@ -32,6 +32,17 @@ impl<'p> Simulation<'p> {
         let relative = self.problem.accuracy.relative;
         let limit = self.accumulation.extrapolated(relative);
         match limit.or_else(|| self.accumulation.predicted()) {
+            Some(limit) => self.rest_contacts_by(contacts, limit),
+            None => Ok(false),
+        }
+    }
+
+    /// The same where accumulations follow each other ever faster: one body comes to rest on another that still rocks, again and again.
+    /// The limit is that of their own limits, as they have told it best.
+    pub(super) fn rest_of_rests(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
+        let relative = self.problem.accuracy.relative;
+        let limit = self.rests.extrapolated(relative);
+        match limit.or_else(|| self.rests.predicted()) {
             Some(limit) => self.rest_contacts_by(contacts, limit),
             None => Ok(false),
         }
@@ -122,6 +133,12 @@ impl<'p> Simulation<'p> {
         let lines = standing.lines_with(&near);
         self.go_to((contacts, &standing, &lines), now, &limit)?;
         self.commit("rest", false, self.here.mode)?;
+        let signature = Signature {
+            mode: self.here.shown,
+            ..Signature::default()
+        };
+        (self.rests).push(signature.key(), self.here.now, &self.next);
+        self.rests.predict();
         Ok(true)
     }
 
