@@ -110,7 +110,8 @@ pub enum Method {
     #[default]
     Auto,
     /// Radau IIA: implicit, for stiff and non-stiff equations, with 5 or 7 stages: see
-    /// [`crate::integrate::stages`].
+    /// [`crate::integrate::stages`]. Hops of contacts that are lower than its steps tell are followed by Taylor's method where
+    /// the equations have a series.
     Radau,
     /// Taylor series of the motion: the fastest for equations that are not stiff. A problem that may visit a mode
     /// whose equations cannot be expanded is refused ([`super::Reason::NoSeries`]).
