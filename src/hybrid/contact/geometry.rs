@@ -296,6 +296,13 @@ impl Geometry {
         Some(change)
     }
 
+    /// The same change, of rates, with the impulses along the lines that make it.
+    pub fn least_push(&self, lines: &[Line], amounts: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut change = self.pushed(lines, amounts)?;
+        let pushes = change.split_off(self.own.len());
+        Some((change, pushes))
+    }
+
     /// The impulses along some lines that change rates by this, as far as impulses along them do.
     pub fn impulses(&self, lines: &[Line], change: &[f64]) -> Vec<(Line, f64)> {
         let lines = self.independent(lines);

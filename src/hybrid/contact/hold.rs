@@ -2,7 +2,7 @@
 
 use super::ContactState;
 use super::event::GUARDS;
-use super::geometry::{DEPENDENT, Geometry, Line};
+use super::geometry::{DEPENDENT, Geometry, Line, multiplier};
 use crate::kernel::Context;
 use crate::model::Contacts;
 use crate::numerics::{Buffer, Dynamic, Size};
@@ -230,10 +230,14 @@ pub(super) fn hold_lines(
         if !(off > 0.0 && off < LEAST_GAIN * before) {
             break;
         }
-        let Some(change) = geometry.least_change(&lines, &amounts) else {
+        let Some((change, pushes)) = geometry.least_push(&lines, &amounts) else {
             break;
         };
         (geometry.own.iter().zip(change)).for_each(|(&i, change)| v[i] += change);
+        // What brings rates back is an impulse like any other: momentum stays balanced.
+        for (&line, push) in lines.iter().zip(pushes) {
+            v[multiplier(contacts, line)] += push;
+        }
         before = off;
     }
 }
