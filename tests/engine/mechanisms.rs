@@ -141,6 +141,15 @@ fn a_crank_rocker_turns_as_its_one_angle_does() {
         moved.contains(&"x_B") && moved.contains(&"y_B.rate"),
         "{moved:?}"
     );
+    // What a projection changes is no impulse.
+    let names = run.trajectory.columns.iter().map(|column| &*column.name);
+    let impulses: Vec<usize> = (0..)
+        .zip(names)
+        .filter(|(_, n)| n.ends_with("impulse"))
+        .map(|(i, _)| i)
+        .collect();
+    assert!(!impulses.is_empty());
+    assert!(impulses.iter().all(|&i| run.trajectory.row(0)[i] == 0.0));
     let [angle, stored] = ["crank_angle", "energy.stored"].map(|name| column(&run, name));
     let energy = run.trajectory.row(0)[stored];
     let lag = |angle: f64| {

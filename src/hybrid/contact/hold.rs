@@ -234,8 +234,10 @@ pub(super) fn hold_lines(
             break;
         };
         (geometry.own.iter().zip(change)).for_each(|(&i, change)| v[i] += change);
-        // What brings rates back is an impulse like any other: momentum stays balanced.
-        for (&line, push) in lines.iter().zip(pushes) {
+        // What brings rates back is an impulse like any other: momentum stays balanced. That of constraints is left out, since near
+        // a singular position it grows without bound.
+        let of_contacts = |(line, _): &(&Line, f64)| !matches!(line, Line::Constraint(_));
+        for (&line, push) in lines.iter().zip(pushes).filter(of_contacts) {
             v[multiplier(contacts, line)] += push;
         }
         before = off;

@@ -64,7 +64,7 @@ impl<'p> Simulation<'p> {
             }
             settled => drop(settled?),
         }
-        self.take_next();
+        self.take_next(contacts);
         match self.problem.at_rest {
             true => self.check_rest(contacts),
             false => Ok(()),
@@ -178,11 +178,13 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// What was decided is the state here.
-    fn take_next(&mut self) {
+    /// What was decided is the state here. What has brought rates to where they are held is no impulse: the run has not begun.
+    fn take_next(&mut self, contacts: &Contacts) {
         let n = self.here.q.len();
         self.here.q.copy_from_slice(&self.next[..n]);
-        self.here.v.copy_from_slice(&self.next[n..2 * n]);
+        for i in (0..n).filter(|&i| !contacts.is_multiplier(i)) {
+            self.here.v[i] = self.next[n + i];
+        }
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
         self.here.shown = self.shown();
         self.set_context();
