@@ -136,6 +136,8 @@ MODE = (
     Row("held_values", lambda of: of.equations.values_of_held(), "where a mode holds what it holds"),
     Row("places", lambda of: of.equations.places(), "hybrid::contact::hold", is_counted=True,
         exists=lambda of: of.equations.mode.form is not None),
+    Row("lines", lambda of: of.equations.lines(), "hybrid::contact::geometry", is_counted=True,
+        exists=lambda of: of.equations.mode.form is not None),
 )
 """Of each mode, but for the series of its guards, which comes behind them."""
 

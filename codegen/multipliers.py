@@ -352,6 +352,19 @@ class MultiplierEquations(derive.ModeEquations):
         columns += [self.freeze(value) for contact in self.form.contacts for law in (contact.law, contact.held_law) for _, value in law]
         return ca.vertcat(*columns)
 
+    def lines(self):
+        """How equations change with the accelerations of coordinates that are no multipliers, row by row, where every contact sticks:
+        those of these coordinates (their inertia), then what the lines are about, along gap and slip of each contact and along each
+        constraint."""
+        form, name = self.form, lambda symbol: next(i for i, c in enumerate(self.model.coordinates) if c.symbol is symbol)
+        chosen = form.discretes()
+        sticks = [ca.SX(1 if any(symbol is closed for closed in form.closed) else 0) for symbol in chosen]
+        residual = derive.Substitution(chosen, sticks)(self.r)
+        of_contacts = [symbol for pair in zip(form.normals, form.tangents) for symbol in pair if symbol is not None]
+        rows = self.own + [name(symbol) for symbol in [*of_contacts, *[c.multiplier for c in form.constraints]]]
+        slopes = ca.densify(ca.jacobian(residual, ca.vertcat(*[self.a[i] for i in self.own])))
+        return ca.vec(slopes[rows, :].T)
+
     def inertia(self):
         """∂²T/∂v², and for a multiplier one: positive definite as that is."""
         inertia = super().inertia()

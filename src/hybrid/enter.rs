@@ -57,9 +57,7 @@ impl<'p> Simulation<'p> {
         self.signs.clear();
         let mut violation = None;
         let held = match &mode.contacts {
-            Some(contacts) => {
-                held_by_others(&mut self.context, contacts, [q.as_slice(), v.as_slice()])
-            }
+            Some(contacts) => held_by_others(&self.context, contacts, [q.as_slice(), v.as_slice()]),
             None => Vec::new(),
         };
         let guarded = match &mode.contacts {
@@ -67,7 +65,7 @@ impl<'p> Simulation<'p> {
                 let guards = self.at_zero.iter().map(|zero| zero.guard);
                 let opening: Vec<usize> = guards.filter(|g| g % Contacts::GUARDS == 0).collect();
                 let of = (mode, self.accuracy, &*opening);
-                guarded_by_contacts(&mut self.context, of, [q.as_slice(), v.as_slice()])
+                guarded_by_contacts(&self.context, of, [q.as_slice(), v.as_slice()])
             }
             None => Vec::new(),
         };

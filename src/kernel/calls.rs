@@ -342,7 +342,26 @@ impl<F: Size> ModeKernel<F> {
     /// # Panics
     /// If the mode has none by multipliers.
     pub fn places(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> Vec<f64> {
-        let (function, count) = self.places.expect("contacts by multipliers");
+        self.of_contacts(self.places, x, [q, v])
+    }
+
+    /// Inertia of the coordinates that are no multipliers, row by row, then how gaps and slips of contacts and what constraints hold
+    /// change with these coordinates, a row each.
+    ///
+    /// # Panics
+    /// If the mode has none by multipliers.
+    pub fn lines(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> Vec<f64> {
+        self.of_contacts(self.lines, x, [q, v])
+    }
+
+    /// What a function of contacts by multipliers gives, which reads no accelerations.
+    fn of_contacts(
+        &self,
+        function: Option<(Raw, usize)>,
+        x: &Context,
+        [q, v]: [&F::Vector; 2],
+    ) -> Vec<f64> {
+        let (function, count) = function.expect("contacts by multipliers");
         let mut out = vec![0.0; count];
         let at = Free { q, v, a: v };
         // SAFETY: as many outputs as the tables state; accelerations are not read.

@@ -135,6 +135,8 @@ pub struct ModeKernel<F: Size> {
     pub(crate) is_linear: bool,
     /// Of contacts and constraints, with the number of results.
     pub(crate) places: Option<(Raw, usize)>,
+    /// The same of their lines.
+    pub(crate) lines: Option<(Raw, usize)>,
     /// By level of the processor; none where the mode does not go in lanes.
     pub(crate) lanes: Box<[LaneKernel]>,
 }

@@ -47,7 +47,7 @@ impl<'p> Simulation<'p> {
         let discrete = self.context.discrete().to_vec();
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
         self.check_chart(contacts, chart.name, (&before, [&q, &v]))?;
-        hold(&mut self.context, contacts, [&mut q, &mut v]);
+        hold(&self.context, contacts, [&mut q, &mut v]);
         self.context.discrete_mut().copy_from_slice(&discrete);
         for (i, &of) in free.iter().enumerate() {
             (self.next[of], self.next[n + of]) = (q[i], v[i]);
@@ -64,7 +64,7 @@ impl<'p> Simulation<'p> {
         (before, [q, v]): (&Places, [&Buffer<f64>; 2]),
     ) -> Stoppable<()> {
         let after = Places::new(&self.context, contacts, [q, v]);
-        let geometry = Geometry::new(&mut self.context, contacts, [q, v]);
+        let geometry = Geometry::new(&self.context, contacts, [q, v]);
         let accuracy = self.accuracy;
         for line in geometry.all() {
             let (of, [place, rate]) = match line {

@@ -91,7 +91,7 @@ impl<'p> Simulation<'p> {
             Line::Tangent(k) => states[k] == ContactState::Sticks,
         };
         let mut held: Vec<Option<Line>> = vec![None; n];
-        let geometry = Geometry::new(&mut self.context, contacts, [q, &zero]);
+        let geometry = Geometry::new(&self.context, contacts, [q, &zero]);
         let own = geometry.own.clone();
         for line in geometry.all().filter(|&line| holds(line)) {
             held[multiplier(contacts, line)] = Some(line);
@@ -102,17 +102,16 @@ impl<'p> Simulation<'p> {
             let force = |i: usize| if own.contains(&i) { 0.0 } else { x[i] };
             (size.vector(place), size.vector(force))
         };
-        let context = std::cell::RefCell::new(&mut self.context);
         let forces = |x: &Vec<f64>| {
-            let ((q, a), context) = (split(x), context.borrow());
+            let ((q, a), context) = (split(x), &self.context);
             let at = Free {
                 q: &q,
                 v: &zero,
                 a: &a,
             };
-            let (mut r, bounds) = (size.zeros(), contacts.kernel.magnitude(&context, at));
-            contacts.kernel.residual(&context, at, &mut r);
-            let places = Places::new(&context, contacts, [&q, &zero]);
+            let (mut r, bounds) = (size.zeros(), contacts.kernel.magnitude(context, at));
+            contacts.kernel.residual(context, at, &mut r);
+            let places = Places::new(context, contacts, [&q, &zero]);
             let of = |i: usize| match held[i] {
                 None => (r[i], bounds[i]),
                 Some(Line::Tangent(_)) => (0.0, 0.0),
@@ -124,15 +123,15 @@ impl<'p> Simulation<'p> {
             (0..n).map(of).collect()
         };
         let slopes = |x: &Vec<f64>| {
-            let ((q, a), mut context) = (split(x), context.borrow_mut());
+            let ((q, a), context) = (split(x), &self.context);
             let at = Free {
                 q: &q,
                 v: &zero,
                 a: &a,
             };
             let mut out = [size.zero_matrix(), size.zero_matrix(), size.zero_matrix()];
-            contacts.kernel.jacobian(&context, at, &mut out);
-            let geometry = Geometry::new(&mut context, contacts, [&q, &zero]);
+            contacts.kernel.jacobian(context, at, &mut out);
+            let geometry = Geometry::new(context, contacts, [&q, &zero]);
             let [by_forces, _, by_places] = out;
             DMatrix::from_fn(n, n, |i, j| {
                 let of_own = own.iter().position(|&own| own == j);

@@ -126,8 +126,8 @@ impl<'p> Simulation<'p> {
     pub(super) fn hold_here(&mut self, contacts: &'p Contacts) -> Stoppable<()> {
         let free = &self.mode().free;
         let [mut q, mut v, a] = self.here.free(contacts.kernel.size(), free);
-        hold(&mut self.context, contacts, [&mut q, &mut v]);
-        let here = Conditioning::new(&mut self.context, contacts, [&q, &v]);
+        hold(&self.context, contacts, [&mut q, &mut v]);
+        let here = Conditioning::new(&self.context, contacts, [&q, &v]);
         if let Some(here) = here {
             here.is_nearly_singular(self.mode(), &mut self.best_determined)?;
         }
@@ -334,7 +334,7 @@ impl<'p> Simulation<'p> {
             touching,
             leaves,
         } = standing;
-        hold_lines(&mut self.context, contacts, [&places, &rates], [q, v]);
+        hold_lines(&self.context, contacts, [&places, &rates], [q, v]);
         let n = self.here.q.len();
         self.next[..n].copy_from_slice(q.as_slice());
         self.next[n..2 * n].copy_from_slice(v.as_slice());

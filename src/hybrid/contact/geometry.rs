@@ -44,19 +44,12 @@ pub(super) fn multiplier(contacts: &Contacts, line: Line) -> usize {
 
 impl Geometry {
     /// At a state of a mode with all coordinates free, whose signals the context is set for.
-    pub fn new(context: &mut Context, contacts: &Contacts, [q, v]: [&Buffer<f64>; 2]) -> Self {
-        let present = context.discrete().to_vec();
-        let closed = vec![ContactState::Sticks; contacts.contacts.len()];
-        write_states(contacts, &closed, context.discrete_mut());
-        let system = contacts.kernel.system(context, q, v);
-        context.discrete_mut().copy_from_slice(&present);
+    pub fn new(context: &Context, contacts: &Contacts, [q, v]: [&Buffer<f64>; 2]) -> Self {
         let own: Vec<usize> = (0..contacts.kernel.size().get())
             .filter(|&i| !contacts.is_multiplier(i))
             .collect();
-        let row = |i: usize| own.iter().map(move |&j| (i, j));
-        let mass: Vec<f64> = (own.iter().flat_map(|&i| row(i)))
-            .map(|at| system.mass[at])
-            .collect();
+        let mut rows = contacts.kernel.lines(context, q, v);
+        let of_lines = rows.split_off(own.len() * own.len());
         let of_contacts = (contacts.contacts.iter().enumerate()).flat_map(|(k, contact)| {
             let normal = contact.normal.map(|_| Line::Normal(k));
             normal
@@ -65,18 +58,16 @@ impl Geometry {
         });
         let lines = of_contacts.chain((0..contacts.constraints.len()).map(Line::Constraint));
         let lines: Vec<(Line, Vec<f64>)> = lines
-            .map(|line| {
-                let i = multiplier(contacts, line);
-                (line, row(i).map(|at| system.mass[at]).collect())
-            })
+            .zip(of_lines.chunks(own.len()))
+            .map(|(line, row)| (line, row.to_vec()))
             .collect();
-        let factor = inertia(&mass, own.len());
+        let factor = inertia(&rows, own.len());
         let scaled = (lines.iter())
             .map(|(_, along)| factor.scaled(along))
             .collect();
         Geometry {
             own,
-            mass,
+            mass: rows,
             lines,
             scaled,
         }

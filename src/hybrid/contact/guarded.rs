@@ -22,7 +22,7 @@ pub(in crate::hybrid) enum Guarded {
 /// The guards by hand of which contacts tell what they do, by their indices. `opening`: the guards of the contacts that leave
 /// their gaps now. Where the ground moves gaps, nothing is held.
 pub(in crate::hybrid) fn guarded_by_contacts(
-    context: &mut Context,
+    context: &Context,
     (mode, accuracy, opening): (&Mode, &Accuracy, &[usize]),
     state: [&[f64]; 2],
 ) -> Vec<(usize, Guarded)> {

@@ -111,7 +111,7 @@ pub(super) fn held_lines(contacts: &Contacts, states: &[ContactState]) -> [Vec<L
 
 /// Brings coordinates and rates back to where the contacts and constraints of a mode hold them, in the states that the
 /// context says, for whose time it is set.
-pub(in crate::hybrid) fn hold(context: &mut Context, contacts: &Contacts, [q, v]: [&mut [f64]; 2]) {
+pub(in crate::hybrid) fn hold(context: &Context, contacts: &Contacts, [q, v]: [&mut [f64]; 2]) {
     let states = ContactState::all(contacts, context.discrete());
     let [places, rates] = held_lines(contacts, &states);
     if rates.is_empty() {
@@ -132,7 +132,7 @@ pub(super) fn buffers(state: [&[f64]; 2]) -> [Buffer<f64>; 2] {
 /// The guards of open contacts whose gap others hold at zero: feet beside those on which a body stands. Such a gap is zero but
 /// for roundings as long as the others are closed.
 pub(in crate::hybrid) fn held_by_others(
-    context: &mut Context,
+    context: &Context,
     contacts: &Contacts,
     state: [&[f64]; 2],
 ) -> Vec<usize> {
@@ -197,7 +197,7 @@ const LEAST_GAIN: f64 = 0.9;
 /// Brings given lines back: those whose place, and those whose rate is held. Newton's method, each time by the least
 /// change in the metric of the masses, as long as it comes closer.
 pub(super) fn hold_lines(
-    context: &mut Context,
+    context: &Context,
     contacts: &Contacts,
     [places, rates]: [&[Line]; 2],
     [q, v]: [&mut Buffer<f64>; 2],

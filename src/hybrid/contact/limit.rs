@@ -59,7 +59,7 @@ impl<'p> Simulation<'p> {
         let v = size.vector(|i| limit.state[n + i]);
         self.context
             .set_signals(&self.signals, limit.at.seconds(), Side::Right);
-        let geometry = Geometry::new(&mut self.context, contacts, [&q, &v]);
+        let geometry = Geometry::new(&self.context, contacts, [&q, &v]);
         let at = Places::new(&self.context, contacts, [&q, &v]);
         // What tolerances, or what the limit is uncertain by, make of what a line is about.
         let within = |line: Line, of: &dyn Fn(usize) -> f64| -> f64 {

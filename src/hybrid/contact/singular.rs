@@ -26,7 +26,7 @@ pub(in crate::hybrid) struct Conditioning {
 impl Conditioning {
     /// At a state of a mode, in the states of contacts that the context says, for whose time it is set; `None` without
     /// constraints: dependent contacts are told from each other when they close.
-    pub fn new(context: &mut Context, contacts: &Contacts, state: [&[f64]; 2]) -> Option<Self> {
+    pub fn new(context: &Context, contacts: &Contacts, state: [&[f64]; 2]) -> Option<Self> {
         if contacts.constraints.is_empty() {
             return None;
         }
@@ -61,12 +61,7 @@ impl Conditioning {
 
     /// Whether a singular position lies between another state of the same mode and this one: what is left of the least determined
     /// line turns round there.
-    pub fn is_beyond(
-        &self,
-        context: &mut Context,
-        contacts: &Contacts,
-        before: [&[f64]; 2],
-    ) -> bool {
+    pub fn is_beyond(&self, context: &Context, contacts: &Contacts, before: [&[f64]; 2]) -> bool {
         let before = Geometry::new(context, contacts, buffers(before).each_ref());
         (self.geometry.least_determined(&self.places))
             .is_some_and(|(line, _)| before.turns_round(line, &self.places, &self.geometry))

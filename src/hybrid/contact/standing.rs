@@ -77,7 +77,7 @@ impl Simulation<'_> {
         let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let [places, mut still] = held_lines(contacts, before);
         still.extend(stops);
-        let context = &mut self.context;
+        let context = &self.context;
         hold_lines(context, contacts, [&places, &still], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
         let at = Places::new(context, contacts, [&q, &v]);
@@ -133,7 +133,7 @@ impl Simulation<'_> {
         (k, before): (usize, &[ContactState]),
     ) -> Standing {
         let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
-        let context = &mut self.context;
+        let context = &self.context;
         let at = Places::new(context, contacts, [&q, &v]);
         let closes = |j: usize| {
             let (gap, rounding) = at.place(Line::Normal(j));

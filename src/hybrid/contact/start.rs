@@ -133,7 +133,7 @@ impl<'p> Simulation<'p> {
                 Some(_) => Tangent::Slips(slip.signum()),
             });
         }
-        let context = &mut self.context;
+        let context = &self.context;
         hold_lines(context, contacts, [&places, &[]], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
         Ok(Standing {
@@ -154,7 +154,7 @@ impl<'p> Simulation<'p> {
         let mut places = rates.clone();
         loop {
             let state = [&mut *q, &mut *v];
-            let context = &mut self.context;
+            let context = &self.context;
             hold_lines(context, contacts, [&places, &rates], state);
             let at = Places::new(&self.context, contacts, [q, v]);
             let is_ratchet = |k: usize| contacts.contacts[k].is_ratchet;

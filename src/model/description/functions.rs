@@ -70,12 +70,8 @@ impl Reader<'_> {
             functions: ModeFunctions::find(|key| at.get(key, |at| self.value(at)))?,
             outputs: counts.outputs,
             requirements: counts.required,
-            places: at.get("places", |at| {
-                at.option(|at| {
-                    let function = at.get("function", |at| self.value(at))?;
-                    Ok((function, at.get("count", count)?))
-                })
-            })?,
+            places: at.get("places", |at| at.option(|at| self.counted(at)))?,
+            lines: at.get("lines", |at| at.option(|at| self.counted(at)))?,
             series: series("series")?,
             autonomous_series: series("autonomous_series")?,
             guard_series: series("guard_series")?,
@@ -85,6 +81,12 @@ impl Reader<'_> {
             is_linear: at.get("is_linear", truth)?,
             lanes: lanes.collect::<Read<_>>()?,
         })
+    }
+
+    /// A function that says how many results it has.
+    fn counted(&self, at: &At) -> Read<(Raw, usize)> {
+        let function = at.get("function", |at| self.value(at))?;
+        Ok((function, at.get("count", count)?))
     }
 
     /// A function of values by its place.
