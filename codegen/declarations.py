@@ -75,3 +75,5 @@ class Transition:
     location: str
     is_chart: bool = False
     """Whether it leads to the same state in other coordinates; see `Model.chart`."""
+    direction: ca.SX = None
+    """The discrete state with which its guard multiplies a slip rate, if it does: the direction of a contact that slides."""

@@ -134,7 +134,7 @@ MODE = (
     Row("requirement_bounds", lambda of: of.requirement_bounds, "hybrid::margins", takes_radii=True, in_lanes=True),
     Row("held_rates", lambda of: of.equations.freeze(of.equations.rates_of_held), "rates of what a mode holds"),
     Row("held_values", lambda of: of.equations.values_of_held(), "where a mode holds what it holds"),
-    Row("places", lambda of: of.equations.places(), "hybrid::contact::hold", is_counted=True,
+    Row("contact_values", lambda of: of.equations.contact_values(), "hybrid::contact::hold", is_counted=True,
         exists=lambda of: of.equations.mode.form is not None),
     Row("lines", lambda of: of.equations.lines(), "hybrid::contact::geometry", is_counted=True,
         exists=lambda of: of.equations.mode.form is not None),

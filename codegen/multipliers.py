@@ -339,7 +339,7 @@ class MultiplierEquations(derive.ModeEquations):
                               of.slip_acceleration) for k, of in enumerate(self.terms)]
         return ca.vertcat(*columns) if columns else ca.SX(0, 1)
 
-    def places(self):
+    def contact_values(self):
         """Ten a contact: g, ġ, γ, μ_s, μ_k, e, e_T, and what times the unit roundoff bounds the rounding of the first three; four
         a constraint: φ, φ̇ and the same of these; the rates after impacts that the model states, of each contact those and those where
         all that touch stick."""
@@ -353,16 +353,19 @@ class MultiplierEquations(derive.ModeEquations):
         return ca.vertcat(*columns)
 
     def lines(self):
-        """How equations change with the accelerations of coordinates that are no multipliers, row by row, where every contact sticks:
-        those of these coordinates (their inertia), then what the lines are about, along gap and slip of each contact and along each
-        constraint."""
-        form, name = self.form, lambda symbol: next(i for i, c in enumerate(self.model.coordinates) if c.symbol is symbol)
+        """How equations change with the accelerations of coordinates that are no multipliers of this choice, row by row, where every contact
+        sticks: those of these coordinates (their inertia), then what the lines are about, along gap and slip of each contact and along
+        each constraint."""
+        form = self.form
+        index = lambda symbol: next(i for i, c in enumerate(self.model.coordinates) if c.symbol is symbol)
         chosen = form.discretes()
         sticks = [ca.SX(1 if any(symbol is closed for closed in form.closed) else 0) for symbol in chosen]
         residual = derive.Substitution(chosen, sticks)(self.r)
         of_contacts = [symbol for pair in zip(form.normals, form.tangents) for symbol in pair if symbol is not None]
-        rows = self.own + [name(symbol) for symbol in [*of_contacts, *[c.multiplier for c in form.constraints]]]
-        slopes = ca.densify(ca.jacobian(residual, ca.vertcat(*[self.a[i] for i in self.own])))
+        of_lines = [index(symbol) for symbol in [*of_contacts, *[c.multiplier for c in form.constraints]]]
+        others = [i for i in range(len(self.model.coordinates)) if i not in of_lines]
+        slopes = ca.densify(ca.jacobian(residual, ca.vertcat(*[self.a[i] for i in others])))
+        rows = others + of_lines
         return ca.vec(slopes[rows, :].T)
 
     def inertia(self):

@@ -85,6 +85,7 @@ class Expansion:
 
     def build(self):
         """Adds everything to the model."""
+        self._check_friction()
         sets = [states for states in itertools.product(*[c.states() for c in self.contacts]) if self._can_be(states)]
         if len(sets) > MOST_MODES:
             raise NotReducible(f"{len(sets)} sets of contact states")
@@ -96,6 +97,17 @@ class Expansion:
         for contact in self.contacts:
             if contact.gap is not None:
                 _bound(self.model, contact)
+
+    def _check_friction(self):
+        """A normal force that follows from the motion, and friction of something else along its gap or its slip, are not determined
+        apart from each other; that is decided by forces along each of them (`multipliers.py`)."""
+        for contact in self.contacts:
+            if contact.gap is None or contact.slip is None:
+                continue
+            for other in self.contacts:
+                lines = [line.name for line in (other.gap, other.slip) if line]
+                if other is not contact and (contact.slip.name in lines or other.slip and other.slip.name == contact.gap.name):
+                    raise NotReducible(f"friction of `{contact.name}` and `{other.name}` acts along one coordinate")
 
     def _can_be(self, states):
         """A coordinate is where one gap is zero, not two; friction along it holds nothing there."""
@@ -136,14 +148,14 @@ class Expansion:
                 contact.require_normal(mode)
         return mode
 
-    def _add(self, contact, verb, states, target, when, reset=(), provided=None, impact=False):
+    def _add(self, contact, verb, states, target, when, reset=(), provided=None, impact=False, direction=None):
         target = self.modes.get(tuple(target))
         if target is None:
             return
         conditions = None if not provided else ca.vertcat(*provided)
         self.model.transitions.append(Transition(
             f"{contact.name} {verb}", self.modes[states], target, ca.SX(when), conditions,
-            [(symbol, ca.SX(value)) for symbol, value in reset], impact, contact.location))
+            [(symbol, ca.SX(value)) for symbol, value in reset], impact, contact.location, direction=direction))
 
     def _transitions(self, states, i, contact):
         """What contact `i` can do next in a mode."""
@@ -168,7 +180,8 @@ class Expansion:
                           provided=list(self._holds(contact, sticking).values()))
             # The slip rate is zero there but for the landing's rounding; where it starts at zero exactly the guard's root is divided out.
             self._add(contact, "reverses", states, states, stops,
-                      [(contact.direction, -contact.direction), (contact.slip.coordinate.rate, contact.slip.value())])
+                      [(contact.direction, -contact.direction), (contact.slip.coordinate.rate, contact.slip.value())],
+                      direction=contact.direction)
 
     @staticmethod
     def _holds(contact, mode):

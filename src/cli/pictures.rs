@@ -2,7 +2,7 @@
 
 use super::outcome::Failure;
 use crate::record::Units;
-use crate::record::plot::{Format, LEAST, Look};
+use crate::record::plot::{Appearance, Format, LEAST};
 use clap::builder::PossibleValuesParser;
 
 #[derive(Debug, Clone, clap::Args)]
@@ -41,7 +41,7 @@ impl UnitsArguments {
 
 impl PictureArguments {
     /// How pictures look, with all of time and all panels.
-    pub fn look(&self) -> Result<Look, Failure> {
+    pub fn appearance(&self) -> Result<Appearance, Failure> {
         let named = |name: &String| Format::ALL.iter().find(|f| f.ending() == name).copied();
         let mut formats: Vec<Format> = self.plot_format.iter().filter_map(named).collect();
         formats.dedup();
@@ -54,11 +54,11 @@ impl PictureArguments {
                  size, or pdf or svg"
             )));
         }
-        Ok(Look {
+        Ok(Appearance {
             units: self.units.units()?,
             size: self.plot_size,
             formats,
-            ..Look::default()
+            ..Appearance::default()
         })
     }
 }

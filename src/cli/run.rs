@@ -15,7 +15,7 @@ use crate::hybrid::{Invalid, Problem, Reason, check_same, simulate_from, simulat
 use crate::model::Models;
 use crate::page::{Told, run_page};
 use crate::precision::{COMPARED, Ended, estimate, other, unsettled};
-use crate::record::plot::Look;
+use crate::record::plot::Appearance;
 use crate::record::{
     Doubt, Earlier, OutputFolder, ProgressLine, Question, Report, Run, Silent, Sketch,
 };
@@ -110,18 +110,18 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     };
     // Before the simulation, so that a folder that cannot be written costs no time.
     let layout = problem.layout();
-    let look = Look {
+    let appearance = Appearance {
         window: arguments.window.window(),
         panels: arguments.plot_panels.clone(),
-        ..arguments.pictures.look()?
+        ..arguments.pictures.appearance()?
     };
     if arguments.out.is_none() && arguments.resume.is_none() {
         let panels = !arguments.plot_panels.is_empty();
         arguments.pictures.refuse_without_plots()?;
-        refuse_without_plots("--plot-window", look.window.is_some())?;
+        refuse_without_plots("--plot-window", appearance.window.is_some())?;
         refuse_without_plots("--plot-panels", panels)?;
     }
-    let shown = look.check(&layout);
+    let shown = appearance.check(&layout);
     shown.map_err(|message| Failure::wrong_input(format!("--plot-panels: {message}")))?;
     let out = arguments.out.as_ref().or(arguments.resume.as_ref());
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
@@ -136,7 +136,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     let mut outputs = Outputs::new(
         (&layout, problem.end.time),
         folder.as_ref(),
-        (page, look.window),
+        (page, appearance.window),
         compared,
     );
     let mut from = None;
@@ -147,9 +147,9 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         let tally = replayed.map_err(Failure::wrong_input)?;
         // Pictures are drawn from the dense output of the steps, and an earlier run has left no more of it than rows: where nothing is
         // left to run the folder stays as it is.
-        let stays = !page && arguments.out.is_none() && look == Look::default();
+        let stays = !page && arguments.out.is_none() && appearance == Appearance::default();
         if stays && has_ended(problem, &earlier.run) {
-            print::output(Report::new(&earlier.run).in_units(&look.units))?;
+            print::output(Report::new(&earlier.run).in_units(&appearance.units))?;
             return Ok(Outcome::Done);
         }
         if let Some(kept) = kept {
@@ -214,7 +214,7 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
     }
     interrupt::leave();
     // The report is shown also where files cannot be written.
-    let report = Report::new(&run).in_units(&look.units);
+    let report = Report::new(&run).in_units(&appearance.units);
     print::output(&report)?;
     warnings::after(report.summary());
     let Outputs {
@@ -227,14 +227,14 @@ fn once(arguments: &RunArguments, files: &dyn Files, models: Models) -> Result {
         stream.checkpoint = checkpoints.kept;
     }
     let sketch = sketch.unwrap_or_else(|| Sketch::new(&layout));
-    let written = stream.map(|stream| stream.finish(&run, &sketch, &look));
+    let written = stream.map(|stream| stream.finish(&run, &sketch, &appearance));
     if let Some(page) = &arguments.html {
         let told = Told {
             drawing: problem.variant().drawing,
             parameters: &problem.model.parameters,
             scene: &scene.source.json(),
             command: &command_line(),
-            units: &look.units,
+            units: &appearance.units,
         };
         write_page(page, &run_page(&run, &sketch, told))?;
     }

@@ -186,7 +186,7 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                         let is_coordinate = is_coordinate(&i);
                         let to = if is_coordinate { to } else { nearest };
                         let window = (from[i], to);
-                        let what = (watch, Isolation::Place, &mut *found);
+                        let what = (watch, Isolation::Root, &mut *found);
                         match from[i] < to {
                             true => search(equations, conditions, dense, of, window, what),
                             false => *found = Search::nothing(watch),
@@ -253,7 +253,7 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         // is known from its series alone.
         let from_zero = watches[first] == Watch::Dormant && start == 0.0;
         let mut crossing = crossing;
-        if M::EXPLICIT && from_zero && mode.contacts.is_some() && crossing.kind == Kind::Fall {
+        if M::EXPLICIT && from_zero && mode.contacts.is_some() && crossing.kind == Kind::Crossing {
             let found = &mut found[first];
             let (start_of, dense) = (from[first], method.dense().expect("a step was made"));
             let window = (start_of, to);
@@ -424,7 +424,7 @@ fn fallen<'a, F: Size>(
         signs.found[i].crossing = Some(Crossing {
             inside: method.end(),
             outside: method.end(),
-            kind: Kind::Fall,
+            kind: Kind::Crossing,
         });
         signs.found[i].turn = 0.0;
         signs.unseen = true;
@@ -504,7 +504,7 @@ fn put_in_order<F: Size>(
     found.iter_mut().for_each(set_apart);
     let set = first_of_several((start, to), watches, found, |i, _, to, watch, found| {
         let of = (&mode.guards[watched[i].guard], watched[i]);
-        let what = (watch, Isolation::Place, &mut *found);
+        let what = (watch, Isolation::Root, &mut *found);
         search_from(equations, conditions, dense, of, (from[i], to), what);
         set_apart(found);
     });

@@ -110,7 +110,7 @@ pub(super) struct Searched<'s> {
 impl Doubts {
     /// Nothing is known, of a problem with these modes.
     pub fn new(modes: &[Mode]) -> Self {
-        let unknown = |mode: &Mode| vec![f64::INFINITY; place_of(mode, mode.guards.len(), 0)];
+        let unknown = |mode: &Mode| vec![f64::INFINITY; index_of(mode, mode.guards.len(), 0)];
         Doubts {
             errors: vec![Vec::new(); modes.len()],
             errors_of_conditions: modes.iter().map(unknown).collect(),
@@ -253,7 +253,7 @@ impl Doubts {
     /// step make, and either never shows it to be positive by more, or outlasts the fastest decay. Such a step is as long
     /// as it is because its last terms are less than the tolerance, as is all that the guard does in it.
     #[inline(always)]
-    pub fn about_fall<'a, F: Size>(
+    pub fn about_crossing<'a, F: Size>(
         &mut self,
         (step, outlasts): (&Searched, bool),
         method: &impl OneStep<F, Equations<'a, F>>,
@@ -287,7 +287,7 @@ impl Doubts {
                 return None;
             }
         }
-        Self::about_small_fall(
+        Self::about_small_crossing(
             (step, fallen),
             (outlasts, enough),
             method,
@@ -299,7 +299,7 @@ impl Doubts {
     /// The same of the guard of an index, where its slope does not tell at once. There is none if it was more than `enough`
     /// at the start of the step, which tells nothing where the step outlasts the fastest decay, or comes to less than −`enough`.
     #[inline(never)]
-    fn about_small_fall<'a, F: Size>(
+    fn about_small_crossing<'a, F: Size>(
         (step, fallen): (&Searched, usize),
         (outlasts, enough): (bool, f64),
         method: &dyn LastStep<F>,
@@ -331,7 +331,7 @@ impl Doubts {
         (guard, transition): (usize, usize),
         least: f64,
     ) -> bool {
-        let error = self.errors_of_conditions[index][place_of(mode, guard, transition)];
+        let error = self.errors_of_conditions[index][index_of(mode, guard, transition)];
         let certain = least.abs() > error * self.most_tolerances;
         self.steps > 0 && !certain
     }
@@ -343,7 +343,7 @@ impl Doubts {
         (guard, transition): (usize, usize),
         error: f64,
     ) {
-        let known = &mut self.errors_of_conditions[index][place_of(mode, guard, transition)];
+        let known = &mut self.errors_of_conditions[index][index_of(mode, guard, transition)];
         if *known == f64::INFINITY {
             *known = error;
         }
@@ -363,9 +363,9 @@ impl Doubts {
     }
 }
 
-/// Place of a transition of a guard among all of a mode.
+/// Index of a transition of a guard among all of a mode.
 #[inline(always)]
-fn place_of(mode: &Mode, guard: usize, transition: usize) -> usize {
+fn index_of(mode: &Mode, guard: usize, transition: usize) -> usize {
     let before = mode.guards[..guard].iter().map(|g| g.transitions.len());
     before.sum::<usize>() + transition
 }

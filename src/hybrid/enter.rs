@@ -92,7 +92,7 @@ impl<'p> Simulation<'p> {
                         let until = self.signs.positive_until(contact);
                         self.signs.remember(Watch::of(own), until);
                     }
-                    Guarded::Falls => {
+                    Guarded::LeavesBelow => {
                         self.signs.remember(Watch::Violated, 0.0);
                         violation = violation.or(Some(Violation {
                             guard: watched.guard,

@@ -34,6 +34,7 @@ impl<'p> Simulation<'p> {
             self.here.mode = m;
             self.here.q.copy_from_slice(&self.initial.q);
             self.here.v.copy_from_slice(&self.initial.v);
+            (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
             self.apply_drift();
             let why = match self.misfit_of(m) {
                 Some(why) => Err(why.into()),
@@ -65,6 +66,8 @@ impl<'p> Simulation<'p> {
         let mode = self.mode();
         let size = kernel.size();
         self.set_context();
+        // A belt slides under what is at rest.
+        self.follow_slip_rates(kernel);
         let [mut q, v, zero] = self.here.free(size, &mode.free);
         let sizes = self.scale(size);
         let [q, v, zero] = {
@@ -91,8 +94,6 @@ impl<'p> Simulation<'p> {
         self.here.set_free(&mode.free, [&q, &v, &zero]);
         let entered = self.enter(kernel).map_err(Unbalanced::Stops)?;
         let moves = entered.map(|violation| mode.guards[violation.guard].name);
-        let (discrete, initial) = (self.context.discrete_mut(), &self.initial.discrete);
-        discrete.copy_from_slice(initial);
         self.margins.clear();
         match moves {
             None => Ok(()),

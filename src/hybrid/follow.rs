@@ -159,7 +159,7 @@ impl Simulation<'_> {
                 let searched = Searched::of((self.here.mode, mode), watched, &self.signs, problem);
                 let step = (&searched, outlasts);
                 if let Some(doubt) =
-                    (self.doubts).about_fall(step, method, &mut equations, &mut conditions)
+                    (self.doubts).about_crossing(step, method, &mut equations, &mut conditions)
                 {
                     // Of a decay that is over the implicit method can tell.
                     if !(chooses && outlasts) {

@@ -98,6 +98,8 @@ pub struct Initial {
     pub v: Vec<f64>,
     /// All discrete states.
     pub discrete: Vec<f64>,
+    /// Of each discrete state whether it was stated. The direction in which a contact slides is that of its slip rate otherwise.
+    pub stated: Vec<bool>,
     /// Mode; `None`: the mode with the fewest free coordinates that holds the state.
     pub mode: Option<usize>,
 }
@@ -215,6 +217,7 @@ impl Problem {
                 q: vec![0.0; n],
                 v: vec![0.0; n],
                 discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
+                stated: vec![false; model.discretes.len()],
                 mode: None,
             },
             project: false,
@@ -302,7 +305,7 @@ impl Problem {
         } else if let Some(i) = model.coordinate(name) {
             initial.q[i] = value;
         } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
-            initial.discrete[i] = value;
+            (initial.discrete[i], initial.stated[i]) = (value, true);
         } else {
             let known = model.coordinates.iter().map(|c| c.name);
             let known = known.chain(model.discretes.iter().map(|d| d.name));

@@ -27,7 +27,7 @@ pub(super) enum Held {
 
 impl Held {
     /// Index among coordinates, then velocities, of so many each; and the value.
-    fn place(self, coordinates: usize) -> (usize, f64) {
+    fn index(self, coordinates: usize) -> (usize, f64) {
         match self {
             Held::At(i, value) => (i, value),
             Held::Rate(i, value) => (coordinates + i, value),
@@ -158,7 +158,7 @@ impl Simulation<'_> {
         self.next[..2 * n].copy_from_slice(&limit.state);
         self.next[2 * n..].copy_from_slice(self.context.discrete());
         for held in self.holds(&self.modes[target]) {
-            let (place, value) = held.place(n);
+            let (place, value) = held.index(n);
             self.next[place] = value;
         }
         self.commit("rest", false, target)
@@ -192,7 +192,7 @@ impl Simulation<'_> {
         let n = self.here.q.len();
         let mut told = 0;
         for held in self.holds(mode) {
-            let (place, value) = held.place(n);
+            let (place, value) = held.index(n);
             let absolute = match held {
                 Held::At(i, _) => accuracy.q_absolute[i],
                 Held::Rate(i, _) => accuracy.v_absolute[i],
@@ -264,7 +264,7 @@ impl Simulation<'_> {
     /// What a mode holds that a limit does not satisfy.
     fn unfit(&self, mode: &'static str, held: Held, limit: &Limit) -> Unfit {
         let coordinates = &self.problem.model.coordinates;
-        let (place, value) = held.place(coordinates.len());
+        let (place, value) = held.index(coordinates.len());
         let (holds, unit) = match held {
             Held::At(i, _) => (
                 coordinates[i].name.to_owned(),

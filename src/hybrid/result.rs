@@ -2,8 +2,8 @@
 
 use super::failure::Reason;
 use crate::run::{
-    ErrorEstimate, Event, Layout, Ledger, Peak, Place, Reached, Solver, Subject, Tally, Trajectory,
-    Uncertain,
+    ErrorEstimate, Event, HybridState, Layout, Ledger, Peak, Reached, Solver, Subject, Tally,
+    Trajectory, Uncertain,
 };
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ pub struct Run {
     /// not looked for.
     pub peaks: Vec<(usize, Peak)>,
     /// Where the run ended; of a run that stopped early, the last admissible point.
-    pub end: Place,
+    pub end: HybridState,
     /// Work done by the integrator.
     pub solver: Solver,
     /// Balance of energies; `None` where it was not kept.
@@ -47,7 +47,7 @@ pub struct Failure {
     /// What went wrong and what can be done about it, without the place.
     pub reason: Reason,
     /// Where it went wrong.
-    pub at: Place,
+    pub at: HybridState,
 }
 
 impl Run {

@@ -70,7 +70,7 @@ fn search_values<F: Size>(
     // Conditions may depend on more of the inputs than the equations of motion do.
     let own = watched.condition.is_none() && !watched.conditional;
     if own {
-        equations.foresee(&roots::FIRST_PLACES.map(|s| at_part(s, window)));
+        equations.foresee(&roots::FIRST_POINTS.map(|s| at_part(s, window)));
     }
     let evaluate = |tau: f64| {
         let [q, v, a] = match own {
@@ -237,7 +237,7 @@ fn search_series<F: Size>(
     let degree = (1..expanded).rev().find(|&k| power(k) != 0.0);
     let count = degree.map_or(1, |degree| degree + 1);
     // Where nothing moves but what drifts.
-    let is_plain = watch == Watch::Armed && isolation == Isolation::Place && window.0 == tau;
+    let is_plain = watch == Watch::Armed && isolation == Isolation::Root && window.0 == tau;
     if count <= 2
         && is_plain
         && let Some(straight) = straight_crossing(constant, power(1), window.1 - tau)

@@ -6,7 +6,7 @@ use super::problem::Problem;
 use super::result::{Failure, Run};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
-use crate::run::{Place, Progress, Subject};
+use crate::run::{HybridState, Progress, Subject};
 use std::time::Instant as WallClock;
 
 /// Simulates a problem to its end, or until something stops it; the run then says why.
@@ -107,8 +107,8 @@ impl Simulation<'_> {
             .collect()
     }
 
-    fn place(&mut self) -> Place {
-        Place {
+    fn place(&mut self) -> HybridState {
+        HybridState {
             t: self.here.now.seconds(),
             j: self.here.j,
             mode: self.here.shown,

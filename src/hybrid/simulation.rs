@@ -320,6 +320,12 @@ impl<'p> Simulation<'p> {
         self.choose_initial_mode()?;
         self.here.shown = self.here.mode;
         self.set_context();
+        let kernels = &self.mode().kernels;
+        with_kernel!(kernels, k => self.follow_slip_rates(k));
+        if self.context.discrete() != self.initial.discrete {
+            let discrete = self.context.discrete();
+            self.begun = Some([&*self.here.q, &*self.here.v, discrete].concat().into());
+        }
         self.check_start(parameters)
     }
 

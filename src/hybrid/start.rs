@@ -32,7 +32,11 @@ impl<'p> Simulation<'p> {
         }
         self.here.mode = start;
         self.here.a.fill(0.0);
-        (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
+        let discrete = match &self.begun {
+            Some(begun) => &begun[2 * self.here.q.len()..],
+            None => &self.initial.discrete,
+        };
+        (self.context.discrete_mut()).copy_from_slice(discrete);
         self.margins.clear();
         self.set_context();
         if let Some(reason) = refused {
@@ -89,6 +93,30 @@ impl<'p> Simulation<'p> {
         }
         (self.context.discrete_mut()).copy_from_slice(&self.next[2 * n..]);
         Some(Ok(transition.target))
+    }
+}
+
+impl<'p> Simulation<'p> {
+    /// Lets the direction in which a contact slides be that of its slip rate, where the scene does not state it.
+    pub fn follow_slip_rates<F: Size>(&mut self, kernel: &'p ModeKernel<F>) {
+        let mode = self.mode();
+        let [q, v, a] = self.here.free(kernel.size(), &mode.free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        for guard in &mode.guards {
+            let Some(direction) = guard.direction.filter(|&d| !self.initial.stated[d]) else {
+                continue;
+            };
+            self.context.discrete_mut()[direction] = 1.0;
+            let rate = kernel.guard(&self.context, &guard.kernel, at);
+            self.context.discrete_mut()[direction] = match rate == 0.0 {
+                true => self.initial.discrete[direction],
+                false => rate.signum(),
+            };
+        }
     }
 }
 

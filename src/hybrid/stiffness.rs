@@ -34,7 +34,7 @@ const IDLE: u32 = 8;
 const TERM: u32 = 1024;
 
 /// Steps of a segment between two looks at the rate of its fastest decay.
-const LOOK: u32 = 8;
+const BETWEEN_DECAYS: u32 = 8;
 
 /// Steps still to be made, from which on a run by the explicit method alone is refused where decays that are over set
 /// their length: it would take minutes to years, and the implicit method a second.
@@ -231,7 +231,7 @@ impl Stiffness {
     #[inline(always)]
     pub fn outlasts_decay(&mut self, h: f64, rate: impl FnOnce() -> f64) -> bool {
         let (known, events) = (&mut self.rate_at_events, &mut self.events);
-        let looks = *known * h >= 1.0 || *events % LOOK == 0;
+        let looks = *known * h >= 1.0 || *events % BETWEEN_DECAYS == 0;
         *events = events.wrapping_add(1);
         if looks {
             *known = rate();
@@ -250,7 +250,7 @@ impl Stiffness {
     /// Counts the time constants of the fastest decay in a row of steps that are longer than it.
     fn decay(&mut self, h: f64, rate: impl FnOnce() -> f64) {
         self.steps = self.steps.wrapping_add(1);
-        if self.steps % LOOK == LOOK / 2 {
+        if self.steps % BETWEEN_DECAYS == BETWEEN_DECAYS / 2 {
             self.rate = rate();
         }
         self.decayed = match self.rate * h >= 1.0 {

@@ -341,8 +341,8 @@ impl<F: Size> ModeKernel<F> {
     ///
     /// # Panics
     /// If the mode has none by multipliers.
-    pub fn places(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> Vec<f64> {
-        self.of_contacts(self.places, x, [q, v])
+    pub fn contact_values(&self, x: &Context, q: &F::Vector, v: &F::Vector) -> Vec<f64> {
+        self.of_contacts(self.contact_values, x, [q, v])
     }
 
     /// Inertia of the coordinates that are no multipliers, row by row, then how gaps and slips of contacts and what constraints hold

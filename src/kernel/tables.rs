@@ -134,7 +134,7 @@ pub struct ModeKernel<F: Size> {
     pub(crate) inertia_is_fixed: bool,
     pub(crate) is_linear: bool,
     /// Of contacts and constraints, with the number of results.
-    pub(crate) places: Option<(Raw, usize)>,
+    pub(crate) contact_values: Option<(Raw, usize)>,
     /// The same of their lines.
     pub(crate) lines: Option<(Raw, usize)>,
     /// By level of the processor; none where the mode does not go in lanes.

@@ -101,7 +101,7 @@ impl Contacts {
     pub const DECISIONS: usize = 5;
 
     /// Numbers that the function of places gives for each contact.
-    pub const PLACES: usize = 10;
+    pub const VALUES: usize = 10;
 
     /// The same for each constraint.
     pub const HELD: usize = 4;

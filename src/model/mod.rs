@@ -329,6 +329,8 @@ pub struct Guard {
     pub unit: &'static str,
     /// Its dependence, which decides how its roots are isolated.
     pub shape: GuardShape,
+    /// The discrete state, ±1, with which it multiplies a slip rate, if it does: the direction of a contact that slides.
+    pub direction: Option<usize>,
     /// The generated guard and its derivative along the flow.
     pub kernel: GuardKernel,
     /// Transitions this guard can trigger, tried in order: the first whose condition holds is taken.

@@ -5,7 +5,7 @@ use super::plots::{Column, Plot};
 use super::table::number;
 use super::{Cell, Page, Table};
 use crate::model::Parameter;
-use crate::record::plot::{Grouped, Look, grouped, portraits, symbol};
+use crate::record::plot::{Appearance, Grouped, grouped, portraits, symbol};
 use crate::record::{ColumnKind, Run, Sketch, Summary, Units};
 
 /// What a page tells besides the run.
@@ -27,7 +27,7 @@ pub struct Told<'a> {
 pub fn run_page(run: &Run, sketch: &Sketch, told: Told) -> String {
     let summary = Summary::new(run);
     // A page shows all of a run; what to look at is chosen on it.
-    let everything = Look::default();
+    let everything = Appearance::default();
     let (groups, constants) = grouped(run, sketch, &everything);
     let drawn: Vec<usize> = groups.iter().flat_map(|g| g.columns.clone()).collect();
     let motion = Motion::new(run, sketch, told.drawing, &drawn);

@@ -31,11 +31,11 @@ impl SparseClock {
     #[inline]
     pub fn due(&mut self) -> Option<Instant> {
         self.left -= 1;
-        (self.left == 0).then(|| self.look())
+        (self.left == 0).then(|| self.read())
     }
 
     #[cold]
-    fn look(&mut self) -> Instant {
+    fn read(&mut self) -> Instant {
         let now = Instant::now();
         self.stride = next(self.stride, now - self.last);
         self.left = self.stride;

@@ -20,7 +20,9 @@ use crate::run::Reached;
 use crate::run::Recorder;
 use crate::run::Tally;
 use crate::run::Uncertain;
-use crate::run::{EnergyJump, Event, Jump, Ledger, Place, Snapshot, Solver, Subject, Trajectory};
+use crate::run::{
+    EnergyJump, Event, HybridState, Jump, Ledger, Snapshot, Solver, Subject, Trajectory,
+};
 use crate::run::{Layout, Quantity};
 
 /// Why a run cannot be read.
@@ -313,9 +315,9 @@ fn values<'a>(
     names.map(value).collect()
 }
 
-fn end(end: &End, layout: &Layout) -> Result<Place, String> {
+fn end(end: &End, layout: &Layout) -> Result<HybridState, String> {
     let of = |quantities: &[Quantity], map| values(quantities.iter().map(|q| q.name.as_str()), map);
-    Ok(Place {
+    Ok(HybridState {
         t: end.t,
         j: end.j,
         mode: mode(layout, &end.mode)?,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::folder::{StagedFile, Staging, io_error};
 use super::kept::CHECKPOINT;
-use super::plot::{Look, overview_of, phase_portraits_of};
+use super::plot::{Appearance, overview_of, phase_portraits_of};
 use super::sketch::Sketch;
 use super::summary::SUMMARY;
 use super::table::{EVENTS, EventsTable, METADATA, TRAJECTORY, TrajectoryTable, write_metadata};
@@ -125,9 +125,14 @@ impl Stream {
         Ok(())
     }
 
-    /// Writes everything else of the run, with pictures as `look` says, and puts all of it in the place of the files of
+    /// Writes everything else of the run, with pictures as `appearance` says, and puts all of it in the place of the files of
     /// the last one.
-    pub fn finish(mut self, run: &Run, sketch: &Sketch, look: &Look) -> Result<(), FolderError> {
+    pub fn finish(
+        mut self,
+        run: &Run,
+        sketch: &Sketch,
+        appearance: &Appearance,
+    ) -> Result<(), FolderError> {
         self.write();
         if let Some(error) = self.failed {
             return Err(error);
@@ -146,9 +151,13 @@ impl Stream {
         if let Some(kept) = &self.checkpoint {
             staging.file(CHECKPOINT, |out| Ok(serde_json::to_writer(out, kept)?))?;
         }
-        staging.picture(OVERVIEW, &overview_of(run, sketch, look), look.formats())?;
-        if let Some(portraits) = phase_portraits_of(run, sketch, look) {
-            staging.picture(PHASE, &portraits, look.formats())?;
+        staging.picture(
+            OVERVIEW,
+            &overview_of(run, sketch, appearance),
+            appearance.formats(),
+        )?;
+        if let Some(portraits) = phase_portraits_of(run, sketch, appearance) {
+            staging.picture(PHASE, &portraits, appearance.formats())?;
         }
         staging.put_in_place()
     }
@@ -179,6 +188,6 @@ impl Run {
         for event in &self.events {
             stream.event(&event.jump(), Some([&event.before, &event.after]));
         }
-        stream.finish(self, &Sketch::of(self), &Look::default())
+        stream.finish(self, &Sketch::of(self), &Appearance::default())
     }
 }

@@ -8,7 +8,7 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 
 use super::number::push_exact;
 use crate::hybrid::Run;
-use crate::run::Place;
+use crate::run::HybridState;
 use crate::run::Quantity;
 use crate::run::{Gain, Impacts};
 
@@ -285,7 +285,7 @@ fn named(quantities: &[Quantity], values: &[f64]) -> Named<f64> {
     Named(names.zip(values.iter().copied()).collect())
 }
 
-fn point(run: &Run, place: &Place) -> Point {
+fn point(run: &Run, place: &HybridState) -> Point {
     Point {
         t: place.t,
         j: place.j,

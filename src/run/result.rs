@@ -156,7 +156,7 @@ pub struct EnergyJump {
 
 /// A point of a run in hybrid time.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Place {
+pub struct HybridState {
     /// Time (s).
     pub t: f64,
     /// Number of transitions so far.

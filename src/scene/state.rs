@@ -174,6 +174,9 @@ pub(crate) fn initial(
             .map(|s| s.rate.map_or(0.0, Checked::number))
             .collect(),
         discrete: discrete.collect(),
+        stated: (model.discretes.iter())
+            .map(|d| entry(d.name).is_some())
+            .collect(),
         mode,
     })
 }

@@ -65,7 +65,7 @@ fn graze_with_a_tiny_excess() {
         let g = |t: f64| 1.0 - (1.0 + excess) * t.sin();
         for end in [1.58, 2.0, 3.0, 6.0] {
             let event = crossing(search(g, 0.0, end, Watch::Armed, 0.0), g);
-            assert_eq!(event.kind, Kind::Fall);
+            assert_eq!(event.kind, Kind::Crossing);
             assert_near(event.outside, time, 1e-15 / (2.0_f64 * excess).sqrt());
         }
         // From below: never reached.
@@ -106,7 +106,7 @@ fn triple_root() {
     let third = 1.0 / 3.0;
     let g = |t: f64| (third - t).powi(3);
     let event = crossing(search(g, 0.0, 1.0, Watch::Armed, 0.0), g);
-    assert_eq!((event.inside, event.kind), (third, Kind::Fall));
+    assert_eq!((event.inside, event.kind), (third, Kind::Crossing));
     let p: Polynomial<4> = product(&[&[third, -1.0], &[third, -1.0], &[third, -1.0]]);
     let event = crossing(p.search(0.0, 1.0, Watch::Armed, 0.0), |s| p.value(s));
     assert_near(event.outside, third, f64::EPSILON.cbrt());
@@ -125,7 +125,7 @@ fn event_at_the_start() {
             }),
         ] {
             if impact > 0.0 {
-                assert_eq!(event.kind, Kind::Fall);
+                assert_eq!(event.kind, Kind::Crossing);
                 assert_near(event.outside, impact, 1e-16);
             } else {
                 assert_eq!(event.kind, Kind::LeavesNegative);
@@ -173,7 +173,7 @@ fn a_pole_is_not_a_zero() {
 fn a_kink_at_zero_is_a_fall() {
     let g = |t: f64| if t < 0.3 { 0.3 - t } else { 5.0 * (0.3 - t) };
     let event = crossing(search(g, 0.0, 1.0, Watch::Armed, 0.0), g);
-    assert_eq!((event.inside, event.kind), (0.3, Kind::Fall));
+    assert_eq!((event.inside, event.kind), (0.3, Kind::Crossing));
 }
 
 // Reference 10q.
@@ -250,7 +250,7 @@ fn exactly_zero_stays_dormant_at_six_evaluations() {
             .crossing
             .unwrap()
             .kind,
-        Kind::Fall
+        Kind::Crossing
     );
 }
 
@@ -263,14 +263,14 @@ fn short_flights_after_a_zero_of_any_order() {
             let event = crossing(search(g, 0.0, 1.0, Watch::Dormant, 0.0), g);
             assert_eq!(
                 (event.inside, event.kind),
-                (flight, Kind::Fall),
+                (flight, Kind::Crossing),
                 "{order} {flight:e}"
             );
             let mut p = polynomial([0.0; 6]);
             p.coefficients[order as usize] = flight;
             p.coefficients[order as usize + 1] = -1.0;
             let event = crossing(p.search(0.0, 1.0, Watch::Dormant, 0.0), |s| p.value(s));
-            assert_eq!((event.inside, event.kind), (flight, Kind::Fall));
+            assert_eq!((event.inside, event.kind), (flight, Kind::Crossing));
             // Upside down it leaves to the negative side, at once.
             let mirrored = polynomial(p.coefficients.map(|c| -c));
             let event = mirrored
@@ -312,9 +312,9 @@ fn rounding_noise_on_a_lift_off_does_not_decide_its_sign() {
     // t − sin t ~ t³/6 has no correct digit below t = 1e-5.
     let g = |t: f64| (t - t.sin()) * (0.5 - t);
     let event = crossing(search(g, 0.0, 1.0, Watch::Dormant, 0.0), g);
-    assert_eq!((event.inside, event.kind), (0.5, Kind::Fall));
+    assert_eq!((event.inside, event.kind), (0.5, Kind::Crossing));
     let event = crossing(search(g, 0.0, 1.0, Watch::Dormant, 1e-16), g);
-    assert_eq!((event.inside, event.kind), (0.5, Kind::Fall));
+    assert_eq!((event.inside, event.kind), (0.5, Kind::Crossing));
 }
 
 #[test]
@@ -322,12 +322,12 @@ fn a_window_may_start_anywhere() {
     let start = 0.45152398;
     let g = |t: f64| (t - start) * (1e-9 - (t - start));
     let event = crossing(search(g, start, start + 1.0, Watch::Dormant, 0.0), g);
-    assert_eq!(event.kind, Kind::Fall);
+    assert_eq!(event.kind, Kind::Crossing);
     assert_near(event.outside, start + 1e-9, 1e-16);
     // A polynomial that is dormant at 1/4 with a double zero, and falls at 3/4.
     let p: Polynomial<4> = product(&[&[-0.25, 1.0], &[-0.25, 1.0], &[0.75, -1.0]]);
     let event = crossing(p.search(0.25, 1.0, Watch::Dormant, 0.0), |s| p.value(s));
-    assert_eq!((event.inside, event.kind), (0.75, Kind::Fall));
+    assert_eq!((event.inside, event.kind), (0.75, Kind::Crossing));
 }
 
 #[test]
@@ -337,7 +337,10 @@ fn exact_touches_are_found() {
             product(&[&[place, -1.0], &[place, -1.0], &[3.0, -1.0], &[2.0, 1.0]]);
         let event = crossing(p.search(0.0, 1.0, Watch::Armed, 0.0), |s| p.value(s));
         // At the double zero the value is exact; beside it, it may be negative by rounding.
-        assert!(matches!(event.kind, Kind::Touch | Kind::Fall), "{event:?}");
+        assert!(
+            matches!(event.kind, Kind::Touch | Kind::Crossing),
+            "{event:?}"
+        );
         assert_near(event.inside, place, f64::EPSILON.sqrt());
         for place in [place, 0.3, 0.1 + 0.2] {
             let g = |t: f64| (t - place) * (t - place) * t.cos();
@@ -359,7 +362,7 @@ fn a_touch_from_below_and_an_inflection_are_told_apart() {
     assert_eq!(p.search(0.0, 1.0, Watch::Violated, 0.0), quiet);
     let p: Polynomial<4> = product(&[&[0.5, -1.0], &[0.5, -1.0], &[0.5, -1.0]]);
     let event = crossing(p.search(0.0, 1.0, Watch::Armed, 0.0), |s| p.value(s));
-    assert_eq!((event.inside, event.kind), (0.5, Kind::Fall));
+    assert_eq!((event.inside, event.kind), (0.5, Kind::Crossing));
 }
 
 #[test]
@@ -405,7 +408,7 @@ fn coinciding_events_are_a_set() {
     );
     assert_eq!((set.time, set.resolved), (Some(0.5_f64.next_up()), true));
     let kinds = found.map(|f| f.crossing.map(|c| c.kind));
-    assert_eq!(kinds, [Some(Kind::Fall), None, Some(Kind::Touch)]);
+    assert_eq!(kinds, [Some(Kind::Crossing), None, Some(Kind::Touch)]);
     assert_eq!(found[1].watch, Watch::Armed);
 }
 

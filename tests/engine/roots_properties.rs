@@ -21,7 +21,7 @@ fn all_events(
             prop_assert!(from < event.outside && event.outside <= to);
             prop_assert_eq!(event.outside, event.inside.next_up());
             match event.kind {
-                Kind::Fall => prop_assert!(g(event.inside) >= 0.0 && g(event.outside) < 0.0),
+                Kind::Crossing => prop_assert!(g(event.inside) >= 0.0 && g(event.outside) < 0.0),
                 Kind::Touch => prop_assert!(g(event.inside) == 0.0 && g(event.outside) >= 0.0),
                 Kind::LeavesNegative => prop_assert!(g(event.outside) < 0.0),
                 Kind::Jump | Kind::Pole => prop_assert!(false, "{:?} of a polynomial", event),

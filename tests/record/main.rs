@@ -15,8 +15,8 @@ use std::path::Path;
 use dalembert::record::plot::{Chart, Curve, Dimension, Style, overview, phase_portraits};
 use dalembert::record::table::{write_events, write_metadata, write_trajectory};
 use dalembert::record::{
-    ColumnKind, Event, Failure, ModeNames, OutputFolder, Place, Quantity, Recorder, Report, Run,
-    Snapshot, Summary,
+    ColumnKind, Event, Failure, HybridState, ModeNames, OutputFolder, Quantity, Recorder, Report,
+    Run, Snapshot, Summary,
 };
 use proptest::prelude::*;
 use synthetic::{bouncing_ball, tank_like};
@@ -152,7 +152,7 @@ fn a_curve_has_both_sides_of_every_transition_in_order() {
 
 /// The run as it would have been left by a failure half-way.
 fn stopped(mut run: Run) -> Run {
-    let place = Place {
+    let place = HybridState {
         t: 1.25,
         j: 2,
         mode: 0,
@@ -265,7 +265,7 @@ fn pictures_of_long_runs_stay_small() {
 fn an_empty_run_has_a_picture() {
     let mut run = bouncing_ball(1.0, 1, 0);
     run.events.clear();
-    run.end = Place {
+    run.end = HybridState {
         mode: 0,
         t: 0.0,
         j: 0,

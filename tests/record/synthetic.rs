@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use dalembert::record::{
-    ColumnKind, EnergyJump, Event, Layout, Ledger, ModeNames, Peak, Place, Quantity, Reached,
+    ColumnKind, EnergyJump, Event, HybridState, Layout, Ledger, ModeNames, Peak, Quantity, Reached,
     Recorder, Run, Snapshot, Solver, Subject, Tally, Uncertain,
 };
 
@@ -112,7 +112,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             digests: vec![],
         },
         trajectory: recorder.finish(),
-        end: Place {
+        end: HybridState {
             t: end,
             j: bounces + 1,
             mode: 1,
@@ -343,7 +343,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
         },
         layout,
         trajectory: recorder.finish(),
-        end: Place {
+        end: HybridState {
             t: end,
             j: changes as u64,
             mode,

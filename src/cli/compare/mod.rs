@@ -18,7 +18,7 @@ use super::run::refusal;
 use super::{models, print, room};
 use crate::hybrid::simulate_with;
 use crate::model::Model;
-use crate::record::plot::Look;
+use crate::record::plot::Appearance;
 use crate::record::{OutputFolder, Run, Silent, Sketch};
 use crate::scene::Scene;
 
@@ -55,7 +55,7 @@ pub struct CompareArguments {
 struct Comparison<'m> {
     model: &'m Model,
     /// How its plots look.
-    look: Look,
+    appearance: Appearance,
     /// Names of the choices that vary.
     choices: Vec<&'static str>,
     cases: Vec<Case>,
@@ -90,13 +90,13 @@ pub fn compare(arguments: &CompareArguments) -> Result {
         .as_deref()
         .map(OutputFolder::new)
         .transpose()?;
-    let look = Look {
+    let appearance = Appearance {
         window: arguments.window.window(),
-        ..arguments.pictures.look()?
+        ..arguments.pictures.appearance()?
     };
     if folder.is_none() {
         arguments.pictures.refuse_without_plots()?;
-        refuse_without_plots("--plot-window", look.window.is_some())?;
+        refuse_without_plots("--plot-window", appearance.window.is_some())?;
     }
     interrupt::listen()?;
 
@@ -112,7 +112,7 @@ pub fn compare(arguments: &CompareArguments) -> Result {
     });
     let comparison = Comparison {
         model,
-        look,
+        appearance,
         choices: varied.iter().map(|&i| model.choices[i].name).collect(),
         cases: cases.collect(),
     };

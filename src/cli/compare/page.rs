@@ -11,7 +11,7 @@ impl Comparison<'_> {
     pub fn page(&self, scene: &Scene) -> String {
         let title = scene.problem.title.as_deref().unwrap_or(self.model.name);
         let mut page = Page::new(&format!("{title}: compared"));
-        page.set_units(&self.look.units);
+        page.set_units(&self.appearance.units);
         page.paragraph(&format!("{}: {}", self.model.name, self.choices.join(", ")));
         for case in &self.cases {
             if let Some(reason) = case.reason() {

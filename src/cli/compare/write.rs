@@ -74,7 +74,7 @@ impl Display for Comparison<'_> {
                 .chain(cases.iter().map(Case::outcome)),
         );
         for measure in self.measures() {
-            let (factor, unit) = self.look.units.show(1.0, &measure.unit);
+            let (factor, unit) = self.appearance.units.show(1.0, &measure.unit);
             let value =
                 |x: &Option<f64>| x.map_or("–".to_owned(), |x| rounded(x * factor, DIGITS));
             let values = measure.values.iter().map(value);
@@ -105,8 +105,8 @@ impl Comparison<'_> {
             for i in self.coordinates() {
                 let name = self.model.coordinates[i].name;
                 let chart = self.chart(i, ColumnKind::Coordinate);
-                let picture = chart.picture(PLOT, &self.look);
-                files.picture(name, &picture, self.look.formats())?;
+                let picture = chart.picture(PLOT, &self.appearance);
+                files.picture(name, &picture, self.appearance.formats())?;
             }
             Ok(())
         })

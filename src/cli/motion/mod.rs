@@ -13,7 +13,7 @@ use super::pictures::{PictureArguments, WindowArguments, refuse_without_plots};
 use super::print;
 use crate::motion::{Channel, Given, Measures, Ordinate, Unit, ordinate};
 use crate::record::OutputFolder;
-use crate::record::plot::Look;
+use crate::record::plot::Appearance;
 use crate::scene::{Record, SceneError};
 
 /// Periods of a spectrum that names none: from `FIRST` to `LAST`, s, spread evenly by their logarithm.
@@ -120,17 +120,17 @@ struct Report<'a> {
     files: Vec<File<'a>>,
     periods: Vec<f64>,
     damping: f64,
-    look: Look,
+    appearance: Appearance,
 }
 
 pub fn motion(arguments: &MotionArguments) -> Result {
-    let look = Look {
+    let appearance = Appearance {
         window: arguments.window.window(),
-        ..arguments.pictures.look()?
+        ..arguments.pictures.appearance()?
     };
     if arguments.out.is_none() {
         arguments.pictures.refuse_without_plots()?;
-        refuse_without_plots("--plot-window", look.window.is_some())?;
+        refuse_without_plots("--plot-window", appearance.window.is_some())?;
     }
     let out = arguments.out.as_ref();
     let folder = out.map(|path| OutputFolder::new(path)).transpose()?;
@@ -151,7 +151,7 @@ pub fn motion(arguments: &MotionArguments) -> Result {
         files: files?,
         periods,
         damping: arguments.damping,
-        look,
+        appearance,
     };
     if let Some(folder) = &folder {
         report.write(folder)?;

@@ -12,7 +12,7 @@ impl Report<'_> {
     pub fn page(&self) -> String {
         let names: Vec<String> = self.files.iter().map(|file| file.name()).collect();
         let mut page = Page::new(&format!("Ground motion: {}", names.join(", ")));
-        page.set_units(&self.look.units);
+        page.set_units(&self.appearance.units);
         for (name, file) in names.iter().zip(&self.files) {
             let motion = &file.record.motion;
             page.paragraph(&format!("{name}: {}", motion.format.name()));

@@ -55,8 +55,8 @@ impl Report<'_> {
             files.file(MEASURES, |out| self.measures(out))?;
             files.file(SPECTRA, |out| self.spectra(out))?;
             for (name, chart) in self.charts() {
-                let picture = chart.picture(SIZE, &self.look);
-                files.picture(name, &picture, self.look.formats())?;
+                let picture = chart.picture(SIZE, &self.appearance);
+                files.picture(name, &picture, self.appearance.formats())?;
             }
             Ok(())
         })

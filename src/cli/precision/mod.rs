@@ -16,7 +16,7 @@ use super::pictures::PictureArguments;
 use super::print;
 use super::run::refusal;
 use crate::precision::Study;
-use crate::record::plot::Look;
+use crate::record::plot::Appearance;
 use crate::record::{OutputFolder, Silent};
 use crate::scene::Scene;
 
@@ -87,7 +87,7 @@ struct Precision {
     /// Wanted errors.
     errors: Vec<f64>,
     /// How its plot looks.
-    look: Look,
+    appearance: Appearance,
 }
 
 pub fn precision(arguments: &PrecisionArguments) -> Result {
@@ -99,7 +99,7 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
     let problem = &scene.problem;
     let folder = arguments.out.as_deref().map(OutputFolder::new);
     let folder = folder.transpose()?;
-    let look = arguments.pictures.look()?;
+    let appearance = arguments.pictures.appearance()?;
     if folder.is_none() {
         arguments.pictures.refuse_without_plots()?;
     }
@@ -117,7 +117,7 @@ pub fn precision(arguments: &PrecisionArguments) -> Result {
         title: problem.title.clone().unwrap_or(problem.model.name.into()),
         study: study.map_err(|reason| refusal(&scene, &reason))?,
         errors: arguments.error.clone(),
-        look,
+        appearance,
     };
     if let Some(folder) = &folder {
         precision.write(folder)?;

@@ -11,7 +11,7 @@ impl Precision {
     /// Time against error, what the runs were compared with, advice, and the table of runs.
     pub fn page(&self, scene: &Scene) -> String {
         let mut page = Page::new(&format!("{}: precision", self.title));
-        page.set_units(&self.look.units);
+        page.set_units(&self.appearance.units);
         if !self.study.is_complete() {
             page.alarm("Interrupted: some of the runs are missing.");
         }

@@ -20,8 +20,8 @@ impl Precision {
     pub fn write(&self, folder: &OutputFolder) -> Result<(), FolderError> {
         folder.replace(|files| {
             files.file(TABLE, |out| self.table(out))?;
-            let picture = self.chart().picture(SIZE, &self.look);
-            files.picture(PLOT, &picture, self.look.formats())
+            let picture = self.chart().picture(SIZE, &self.appearance);
+            files.picture(PLOT, &picture, self.appearance.formats())
         })
     }
 
@@ -220,7 +220,7 @@ impl Display for Precision {
 impl Precision {
     /// Heads of the table of runs, with the reader's units.
     pub(super) fn heads(&self) -> [String; 11] {
-        let unit = |unit: &str| self.look.units.show(1.0, unit).1;
+        let unit = |unit: &str| self.appearance.units.show(1.0, unit).1;
         [
             "method",
             "tolerance",
@@ -251,7 +251,7 @@ impl Precision {
                 method_name(row.method).to_owned(),
                 format!("{:.0e}", row.tolerance),
             ];
-            let cells = cells(&row.verdict, bound, &self.look.units);
+            let cells = cells(&row.verdict, bound, &self.appearance.units);
             first.into_iter().chain(cells).collect()
         };
         self.sorted().into_iter().map(row).collect()

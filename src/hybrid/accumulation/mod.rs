@@ -231,26 +231,26 @@ impl Accumulation {
         (self.count > 1).then(|| self.at(0).since(self.at(1)))
     }
 
-    /// Place of the event so many before the last.
+    /// Slot of the event so many before the last.
     #[inline]
-    fn place(&self, back: usize) -> usize {
+    fn slot(&self, back: usize) -> usize {
         (self.count - 1 - back) % ROOM
     }
 
     #[inline]
     fn at(&self, back: usize) -> Instant {
-        Instant::of_parts(self.times[self.place(back)])
+        Instant::of_parts(self.times[self.slot(back)])
     }
 
     /// The mode that an event has led to ([`Signature::key`]).
     fn mode(&self, back: usize) -> usize {
-        (self.keys[self.place(back)] >> 32) as usize
+        (self.keys[self.slot(back)] >> 32) as usize
     }
 
     /// Coordinates, velocities and discrete states after an event.
     #[inline]
     fn record(&self, back: usize) -> &[f64] {
-        let start = self.first + self.place(back) * self.stride;
+        let start = self.first + self.slot(back) * self.stride;
         &self.records[start..][..self.absolute.len() + self.discretes]
     }
 
@@ -265,7 +265,7 @@ impl Accumulation {
     /// Whether two events are the same but for time and state.
     #[inline]
     fn are_alike(&self, one: usize, other: usize) -> bool {
-        if self.keys[self.place(one)] != self.keys[self.place(other)] {
+        if self.keys[self.slot(one)] != self.keys[self.slot(other)] {
             return false;
         }
         let mut pairs = self.discrete(one).iter().zip(self.discrete(other));
@@ -278,7 +278,7 @@ impl Accumulation {
     pub fn foreseen(&self) -> f64 {
         let known = LONGEST_PATTERN.min(self.count.saturating_sub(2) / 2);
         // What has happened, and in which mode.
-        let event = |back: usize| (self.keys[self.place(back)], self.mode(back + 1));
+        let event = |back: usize| (self.keys[self.slot(back)], self.mode(back + 1));
         let Some(p) = (1..=known).find(|&p| event(p) == event(0)) else {
             return f64::INFINITY;
         };

@@ -9,7 +9,7 @@ use crate::numerics::{Buffer, Size};
 use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
-use super::hold::{Places, hold};
+use super::hold::{ContactValues, hold};
 
 impl<'p> Simulation<'p> {
     /// Takes the first transition of a guard whose condition holds.
@@ -41,7 +41,7 @@ impl<'p> Simulation<'p> {
             v: &v,
             a: &a,
         };
-        let before = Places::new(&self.context, contacts, [&q, &v]);
+        let before = ContactValues::new(&self.context, contacts, [&q, &v]);
         (contacts.kernel).reset(&self.context, &chart.kernel, at, &mut self.next);
         let [mut q, mut v] = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
         let discrete = self.context.discrete().to_vec();
@@ -61,9 +61,9 @@ impl<'p> Simulation<'p> {
         &mut self,
         contacts: &Contacts,
         name: &'static str,
-        (before, [q, v]): (&Places, [&Buffer<f64>; 2]),
+        (before, [q, v]): (&ContactValues, [&Buffer<f64>; 2]),
     ) -> Stoppable<()> {
-        let after = Places::new(&self.context, contacts, [q, v]);
+        let after = ContactValues::new(&self.context, contacts, [q, v]);
         let geometry = Geometry::new(&self.context, contacts, [q, v]);
         let accuracy = self.accuracy;
         for line in geometry.all() {
@@ -83,7 +83,7 @@ impl<'p> Simulation<'p> {
             for (what, [before, after], within) in [
                 (
                     place,
-                    [before.place(line), after.place(line)],
+                    [before.position(line), after.position(line)],
                     within(&accuracy.q_absolute, q),
                 ),
                 (
@@ -110,7 +110,7 @@ impl<'p> Simulation<'p> {
     /// A contact that is open and whose gap is not positive any more: what closes at the instant of a transition comes before it.
     fn closed_already(&self, contacts: &Contacts) -> Option<usize> {
         let [q, v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
-        let at = Places::new(&self.context, contacts, [&q, &v]);
+        let at = ContactValues::new(&self.context, contacts, [&q, &v]);
         let states = ContactState::all(contacts, self.context.discrete());
         (0..states.len()).find(|&k| {
             let line = Line::Normal(k);
@@ -118,7 +118,7 @@ impl<'p> Simulation<'p> {
             let is_open =
                 states[k] == ContactState::Open && contacts.contacts[k].has_gap() && !opens_now;
             let (rate, rounding) = at.rate(line);
-            is_open && at.place(line).0 <= 0.0 && rate < -rounding
+            is_open && at.position(line).0 <= 0.0 && rate < -rounding
         })
     }
 

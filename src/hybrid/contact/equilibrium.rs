@@ -6,7 +6,7 @@
 
 use super::ContactState;
 use super::geometry::{Geometry, Line, multiplier, write_states};
-use super::hold::{Places, ROUNDOFF};
+use super::hold::{ContactValues, ROUNDOFF};
 use crate::hybrid::equilibrium::{least_squares, to_zero};
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
@@ -31,12 +31,12 @@ impl<'p> Simulation<'p> {
     ) -> Result<(), Unbalanced> {
         let size = contacts.kernel.size();
         let zero = size.zeros();
-        let at = Places::new(&self.context, contacts, [q, &zero]);
+        let at = ContactValues::new(&self.context, contacts, [q, &zero]);
         let mut states: Vec<ContactState> = (contacts.contacts.iter().enumerate())
             .map(|(k, contact)| {
                 let touches = contact.normal.is_none_or(|_| {
                     let (opening, rounding) = match contact.is_ratchet {
-                        false => at.place(Line::Normal(k)),
+                        false => at.position(Line::Normal(k)),
                         true => at.rate(Line::Normal(k)),
                     };
                     opening <= rounding
@@ -61,9 +61,9 @@ impl<'p> Simulation<'p> {
                 Some((k, _)) => states[k] = ContactState::Open,
             }
         }
-        let at = Places::new(&self.context, contacts, [q, &zero]);
+        let at = ContactValues::new(&self.context, contacts, [q, &zero]);
         let penetrates = |&k: &usize| {
-            let (gap, rounding) = at.place(Line::Normal(k));
+            let (gap, rounding) = at.position(Line::Normal(k));
             contacts.contacts[k].normal.is_some() && gap < -rounding
         };
         match (0..states.len()).find(penetrates) {
@@ -111,12 +111,12 @@ impl<'p> Simulation<'p> {
             };
             let (mut r, bounds) = (size.zeros(), contacts.kernel.magnitude(context, at));
             contacts.kernel.residual(context, at, &mut r);
-            let places = Places::new(context, contacts, [&q, &zero]);
+            let places = ContactValues::new(context, contacts, [&q, &zero]);
             let of = |i: usize| match held[i] {
                 None => (r[i], bounds[i]),
                 Some(Line::Tangent(_)) => (0.0, 0.0),
                 Some(line) => {
-                    let (value, rounding) = places.place(line);
+                    let (value, rounding) = places.position(line);
                     (value, rounding / ROUNDOFF)
                 }
             };

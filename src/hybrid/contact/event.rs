@@ -1,7 +1,7 @@
 //! From the fall of a contact's guard to the set of contact states that follows.
 
 use super::geometry::{Line, write_states};
-use super::hold::{Places, hold, hold_lines};
+use super::hold::{ContactValues, hold, hold_lines};
 use super::impact::Impact;
 use super::standing::{Standing, tangent_at};
 use super::{Conditioning, ContactState, Tangent};
@@ -152,9 +152,9 @@ impl<'p> Simulation<'p> {
             return Resolution::Seen;
         };
         let at = [&standing.q, &standing.v];
-        let places = Places::new(&self.context, contacts, at);
+        let places = ContactValues::new(&self.context, contacts, at);
         let line = Line::Normal(k);
-        let (_, rounding) = places.place(line);
+        let (_, rounding) = places.position(line);
         // What a step's polynomials make of it.
         let geometry = &standing.geometry;
         let of_steps: f64 = (geometry.along(line).iter().zip(&geometry.own))
@@ -185,7 +185,7 @@ impl<'p> Simulation<'p> {
         standing: &mut Standing,
     ) -> Stoppable<Option<usize>> {
         let at = [&standing.q, &standing.v];
-        let places = Places::new(&self.context, contacts, at);
+        let places = ContactValues::new(&self.context, contacts, at);
         let mut touches: Vec<bool> = standing.touching.iter().map(Option::is_some).collect();
         let mut rests = touches.clone();
         let mut closes = None;
@@ -244,10 +244,10 @@ impl<'p> Simulation<'p> {
         &self,
         contacts: &Contacts,
         (k, before, touches): (usize, &[ContactState], &[bool]),
-        (came, standing): (&Places, &mut Standing),
+        (came, standing): (&ContactValues, &mut Standing),
     ) -> Stoppable<()> {
         let at = [&standing.q, &standing.v];
-        let places = Places::new(&self.context, contacts, at);
+        let places = ContactValues::new(&self.context, contacts, at);
         // What has stuck, as the state that came is held to, and is not set in motion.
         let still: Vec<Line> = (0..touches.len())
             .filter(|&j| before[j] == ContactState::Sticks)
@@ -304,7 +304,7 @@ impl<'p> Simulation<'p> {
         let impact = Impact {
             contacts,
             geometry: &standing.geometry,
-            places: &Places::new(&self.context, contacts, [&standing.q, &standing.v]),
+            places: &ContactValues::new(&self.context, contacts, [&standing.q, &standing.v]),
             collisions: self.problem.collisions,
             touches: &touches,
             rests: &rests,
@@ -338,7 +338,7 @@ impl<'p> Simulation<'p> {
         let n = self.here.q.len();
         self.next[..n].copy_from_slice(q.as_slice());
         self.next[n..2 * n].copy_from_slice(v.as_slice());
-        let places = Places::new(&self.context, contacts, [q, v]);
+        let places = ContactValues::new(&self.context, contacts, [q, v]);
         let decision = self
             .decide((contacts, geometry), &places, touching)
             .map_err(Box::new)?;

@@ -78,14 +78,14 @@ impl Geometry {
         self.lines.iter().map(|(line, _)| *line)
     }
 
-    fn place(&self, line: Line) -> usize {
+    fn index(&self, line: Line) -> usize {
         let found = self.lines.iter().position(|(known, _)| *known == line);
         found.expect("every multiplier has its line")
     }
 
     /// How what a line is about changes with the coordinates.
     pub fn along(&self, line: Line) -> &[f64] {
-        &self.lines[self.place(line)].1
+        &self.lines[self.index(line)].1
     }
 
     /// Those of some lines that do not depend on those before them.
@@ -93,7 +93,7 @@ impl Geometry {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut kept = Vec::new();
         for &line in lines {
-            if let Some(new) = beside(&self.scaled[self.place(line)], &basis) {
+            if let Some(new) = beside(&self.scaled[self.index(line)], &basis) {
                 basis.push(new);
                 kept.push(line);
             }
@@ -114,7 +114,7 @@ impl Geometry {
             let left = (lines.iter().enumerate())
                 .filter(|(i, _)| !kept.contains(i))
                 .map(|(i, &line)| {
-                    let (part, unit) = left_of(&self.scaled[self.place(line)], &basis);
+                    let (part, unit) = left_of(&self.scaled[self.index(line)], &basis);
                     (part * self.strength(line), i, unit)
                 });
             let most = left.max_by(|(a, i, _), (b, j, _)| a.total_cmp(b).then(j.cmp(i)));
@@ -148,7 +148,7 @@ impl Geometry {
         let longest = lines.iter().map(length).fold(0.0, f64::max);
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let determined = |&line: &Line| {
-            let (part, unit) = left_of(&self.scaled[self.place(line)], &basis);
+            let (part, unit) = left_of(&self.scaled[self.index(line)], &basis);
             basis.push(unit);
             (line, part * length(&line) / longest)
         };
@@ -162,7 +162,7 @@ impl Geometry {
     pub fn volume(&self, lines: &[Line]) -> f64 {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let left = |&line: &Line| {
-            let scaled = &self.scaled[self.place(line)];
+            let scaled = &self.scaled[self.index(line)];
             let (part, unit) = left_of(scaled, &basis);
             basis.push(unit);
             part * dot(scaled, scaled).sqrt()
@@ -175,9 +175,9 @@ impl Geometry {
         let left = |geometry: &Geometry| {
             let mut basis: Vec<Vec<f64>> = Vec::new();
             for &before in lines.iter().take_while(|&&before| before != line) {
-                basis.extend(beside(&geometry.scaled[geometry.place(before)], &basis));
+                basis.extend(beside(&geometry.scaled[geometry.index(before)], &basis));
             }
-            left_of(&geometry.scaled[geometry.place(line)], &basis).1
+            left_of(&geometry.scaled[geometry.index(line)], &basis).1
         };
         dot(&left(self), &left(at)) < 0.0
     }
@@ -197,13 +197,13 @@ impl Geometry {
             .collect();
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for &line in lines {
-            basis.extend(beside(&self.scaled[self.place(line)], &basis));
+            basis.extend(beside(&self.scaled[self.index(line)], &basis));
         }
         let scaled = inertia(&self.mass, self.own.len()).scaled(&along);
         let Some(rest) = beside(&scaled, &basis) else {
             return Some(0.0);
         };
-        let unit = beside(&self.scaled[self.place(with?)], &basis)?;
+        let unit = beside(&self.scaled[self.index(with?)], &basis)?;
         let moves = dot(&rest, &unit);
         basis.push(unit);
         beside(&scaled, &basis).is_none().then_some(moves)
@@ -211,7 +211,7 @@ impl Geometry {
 
     /// Whether two lines are the same but for their sign.
     pub fn are_parallel(&self, one: Line, other: Line) -> bool {
-        let [a, b] = [one, other].map(|line| &self.scaled[self.place(line)]);
+        let [a, b] = [one, other].map(|line| &self.scaled[self.index(line)]);
         let (length, product) = (dot(a, a), dot(a, b));
         let differs = |sign: f64| {
             let rest: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - sign * b).collect();
@@ -224,10 +224,10 @@ impl Geometry {
     pub fn compliance(&self, lines: &[Line], held: &[Line]) -> Vec<f64> {
         let mut basis: Vec<Vec<f64>> = Vec::new();
         for &line in held {
-            basis.extend(beside(&self.scaled[self.place(line)], &basis));
+            basis.extend(beside(&self.scaled[self.index(line)], &basis));
         }
         let left = |line: &Line| {
-            let mut rest = self.scaled[self.place(*line)].clone();
+            let mut rest = self.scaled[self.index(*line)].clone();
             for unit in basis.iter().chain(&basis) {
                 let part = dot(&rest, unit);
                 rest.iter_mut().zip(unit).for_each(|(x, u)| *x -= part * u);
@@ -241,7 +241,7 @@ impl Geometry {
 
     /// How much a unit force along a line moves.
     pub fn strength(&self, line: Line) -> f64 {
-        let scaled = &self.scaled[self.place(line)];
+        let scaled = &self.scaled[self.index(line)];
         dot(scaled, scaled).sqrt()
     }
 
@@ -253,7 +253,7 @@ impl Geometry {
         for (i, pushes) in forces.iter().enumerate() {
             let mut left = vec![0.0; self.own.len()];
             for &(line, part) in pushes {
-                let along = &self.scaled[self.place(line)];
+                let along = &self.scaled[self.index(line)];
                 left.iter_mut().zip(along).for_each(|(x, a)| *x += part * a);
             }
             let length = dot(&left, &left).sqrt();

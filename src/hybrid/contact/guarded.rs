@@ -16,7 +16,7 @@ pub(in crate::hybrid) enum Guarded {
     /// It rises from zero, as the gap of a contact does that opens now, by its guard.
     Rises(usize),
     /// It falls below zero as one opens.
-    Falls,
+    LeavesBelow,
 }
 
 /// The guards by hand of which contacts tell what they do, by their indices. `opening`: the guards of the contacts that leave
@@ -59,7 +59,7 @@ pub(in crate::hybrid) fn guarded_by_contacts(
             let moves = factor * geometry.moves(index, &places, Some(line))?;
             let told = match moves > 0.0 {
                 true => Guarded::Rises(opens),
-                false => Guarded::Falls,
+                false => Guarded::LeavesBelow,
             };
             Some((guard, told))
         })

@@ -12,30 +12,30 @@ pub(super) const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Gaps, rates and coefficients at a state, each with its rounding.
 #[derive(Debug)]
-pub(super) struct Places {
+pub(super) struct ContactValues {
     values: Vec<f64>,
     contacts: usize,
 }
 
-impl Places {
+impl ContactValues {
     /// At a state.
     pub fn new(context: &Context, contacts: &Contacts, [q, v]: [&Buffer<f64>; 2]) -> Self {
-        Places {
-            values: contacts.kernel.places(context, q, v),
+        ContactValues {
+            values: contacts.kernel.contact_values(context, q, v),
             contacts: contacts.contacts.len(),
         }
     }
 
     fn of(&self, k: usize, index: usize) -> f64 {
-        self.values[k * Contacts::PLACES + index]
+        self.values[k * Contacts::VALUES + index]
     }
 
     fn held(&self, c: usize, index: usize) -> f64 {
-        self.values[self.contacts * Contacts::PLACES + c * Contacts::HELD + index]
+        self.values[self.contacts * Contacts::VALUES + c * Contacts::HELD + index]
     }
 
     /// What a line is about: a gap or a constraint, and its rounding.
-    pub fn place(&self, line: Line) -> (f64, f64) {
+    pub fn position(&self, line: Line) -> (f64, f64) {
         match line {
             Line::Normal(k) => (self.of(k, 0), self.of(k, 7) * ROUNDOFF),
             Line::Constraint(c) => (self.held(c, 0), self.held(c, 2) * ROUNDOFF),
@@ -66,7 +66,7 @@ impl Places {
             true => (&own.held_law, own.law.len()),
             false => (&own.law, 0),
         };
-        let begin = self.contacts * Contacts::PLACES
+        let begin = self.contacts * Contacts::VALUES
             + contacts.constraints.len() * Contacts::HELD
             + before
                 .map(|c| c.law.len() + c.held_law.len())
@@ -139,7 +139,7 @@ pub(in crate::hybrid) fn held_by_others(
     let states = ContactState::all(contacts, context.discrete());
     let state = buffers(state);
     let state = state.each_ref();
-    let at = Places::new(context, contacts, state);
+    let at = ContactValues::new(context, contacts, state);
     let held = held_with(contacts, &states, &at, || {
         Geometry::new(context, contacts, state)
     });
@@ -150,7 +150,7 @@ pub(in crate::hybrid) fn held_by_others(
 pub(super) fn held_with<G: std::borrow::Borrow<Geometry>>(
     contacts: &Contacts,
     states: &[ContactState],
-    at: &Places,
+    at: &ContactValues,
     geometry: impl FnOnce() -> G,
 ) -> Vec<usize> {
     let is_open = |&k: &usize| contacts.contacts[k].has_gap() && states[k] == ContactState::Open;
@@ -166,15 +166,15 @@ pub(super) fn held_with<G: std::borrow::Borrow<Geometry>>(
 }
 
 /// Whether a gap could be zero if others held it there.
-fn may_be_at_zero(k: usize, at: &Places) -> bool {
-    let (gap, rounding) = at.place(Line::Normal(k));
+fn may_be_at_zero(k: usize, at: &ContactValues) -> bool {
+    let (gap, rounding) = at.position(Line::Normal(k));
     // Of lines with greater parts it is not told that they depend.
     gap.abs() <= rounding / DEPENDENT
 }
 
 /// Whether a gap that others determine is zero within its rounding and what theirs make of it: a foot far from two that are
 /// close together moves by several of their roundings.
-pub(super) fn is_at_zero(k: usize, held: &[Line], at: &Places, geometry: &Geometry) -> bool {
+pub(super) fn is_at_zero(k: usize, held: &[Line], at: &ContactValues, geometry: &Geometry) -> bool {
     let line = Line::Normal(k);
     if !may_be_at_zero(k, at) {
         return false;
@@ -183,10 +183,10 @@ pub(super) fn is_at_zero(k: usize, held: &[Line], at: &Places, geometry: &Geomet
         return false;
     };
     let of_others = |(line, part): &(Line, f64)| {
-        let (off, rounding) = at.place(*line);
+        let (off, rounding) = at.position(*line);
         part.abs() * rounding.max(off.abs())
     };
-    let (gap, rounding) = at.place(line);
+    let (gap, rounding) = at.position(line);
     gap.abs() <= rounding + parts.iter().map(of_others).sum::<f64>()
 }
 
@@ -208,9 +208,9 @@ pub(super) fn hold_lines(
     let mut geometry = Geometry::new(context, contacts, [q, v]);
     let mut before = f64::INFINITY;
     loop {
-        let now = Places::new(context, contacts, [q, v]);
+        let now = ContactValues::new(context, contacts, [q, v]);
         let lines = geometry.spanning(places);
-        let (amounts, off) = missing(&lines, |line| now.place(line));
+        let (amounts, off) = missing(&lines, |line| now.position(line));
         // Not a number where nothing is known: then nothing is moved.
         if !(off > 1.0 && off < LEAST_GAIN * before) {
             break;
@@ -225,7 +225,7 @@ pub(super) fn hold_lines(
     let lines = geometry.spanning(rates);
     let mut before = f64::INFINITY;
     loop {
-        let now = Places::new(context, contacts, [q, v]);
+        let now = ContactValues::new(context, contacts, [q, v]);
         let (amounts, off) = missing(&lines, |line| now.rate(line));
         if !(off > 0.0 && off < LEAST_GAIN * before) {
             break;

@@ -11,7 +11,7 @@
 
 use super::Tangent;
 use super::geometry::{Geometry, Line};
-use super::hold::Places;
+use super::hold::ContactValues;
 use super::phase::{About, Member, OfLines, Outcome, Phase};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::problem::{Collisions, ImpactLaw, ImpactOrder};
@@ -36,7 +36,7 @@ pub(super) struct Impacted {
 pub(super) struct Impact<'a> {
     pub contacts: &'a Contacts,
     pub geometry: &'a Geometry,
-    pub places: &'a Places,
+    pub places: &'a ContactValues,
     pub collisions: Collisions,
     /// Of each contact, whether it touches.
     pub touches: &'a [bool],

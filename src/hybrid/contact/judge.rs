@@ -6,7 +6,7 @@
 //! count once, whatever the names of their sets.
 
 use super::geometry::{Geometry, Line, write_states};
-use super::hold::{Places, held_lines};
+use super::hold::{ContactValues, held_lines};
 use super::many::{all_of_many, count, to_try};
 use super::share::{Dropped, Forces, Sharing};
 use super::unforced::Unforced;
@@ -73,7 +73,7 @@ impl<'p> Simulation<'p> {
     pub(super) fn decide(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
-        places: &Places,
+        places: &ContactValues,
         touching: &[Option<Tangent>],
     ) -> Result<Decision, Reason> {
         self.expand_signals();
@@ -195,7 +195,7 @@ impl<'p> Simulation<'p> {
     fn admitted(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
-        places: &Places,
+        places: &ContactValues,
         touching: &[Option<Tangent>],
         (states, sharing): (Vec<ContactState>, Sharing),
     ) -> Option<Admitted> {

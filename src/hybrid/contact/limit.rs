@@ -1,7 +1,7 @@
 //! The set of contact states at the limit of an accumulation: a contact rests where the limit has neither gap nor rate.
 
 use super::geometry::{Geometry, Line, multiplier};
-use super::hold::Places;
+use super::hold::ContactValues;
 use super::standing::Standing;
 use super::{ContactState, Tangent};
 use crate::hybrid::accumulation::{Limit, Signature};
@@ -60,7 +60,7 @@ impl<'p> Simulation<'p> {
         self.context
             .set_signals(&self.signals, limit.at.seconds(), Side::Right);
         let geometry = Geometry::new(&self.context, contacts, [&q, &v]);
-        let at = Places::new(&self.context, contacts, [&q, &v]);
+        let at = ContactValues::new(&self.context, contacts, [&q, &v]);
         // What tolerances, or what the limit is uncertain by, make of what a line is about.
         let within = |line: Line, of: &dyn Fn(usize) -> f64| -> f64 {
             let pairs = geometry.along(line).iter().zip(&geometry.own);
@@ -75,7 +75,7 @@ impl<'p> Simulation<'p> {
         let before = ContactState::all(contacts, self.context.discrete());
         let is_near = |k: usize| {
             let normal = Line::Normal(k);
-            at.place(normal).0.abs() <= within(normal, &of_place)
+            at.position(normal).0.abs() <= within(normal, &of_place)
         };
         let near: Vec<bool> = (0..before.len())
             .map(|k| contacts.contacts[k].has_gap() && is_near(k))

@@ -8,7 +8,7 @@
 //! not, and sticks, or slips either way. Outcomes with the same rates count once.
 
 use super::geometry::{Geometry, Line, dot};
-use super::hold::{Places, ROUNDOFF};
+use super::hold::{ContactValues, ROUNDOFF};
 use super::many::{self, Answer, Answers, Asked, all_of_many, answers, to_try};
 use crate::model::Contacts;
 use crate::numerics::{Dynamic, Lu, Size, Unsolved};
@@ -99,7 +99,7 @@ enum Friction {
 pub(super) struct Phase<'a> {
     pub contacts: &'a Contacts,
     pub geometry: &'a Geometry,
-    pub places: &'a Places,
+    pub places: &'a ContactValues,
     /// Rates before it, of all lines.
     pub rates: &'a OfLines,
     pub members: &'a [Member],

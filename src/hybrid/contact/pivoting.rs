@@ -1,7 +1,7 @@
 //! What a pivoting method is asked about accelerations, and what it says.
 
 use super::geometry::{Geometry, Line};
-use super::hold::Places;
+use super::hold::ContactValues;
 use super::many::{Answer, Answers, Asked, Friction, answers};
 use super::unforced::Unforced;
 use super::{ContactState, Tangent};
@@ -15,7 +15,7 @@ impl<'p> Simulation<'p> {
     pub(super) fn answers(
         &self,
         (contacts, geometry): (&'p Contacts, &Geometry),
-        places: &Places,
+        places: &ContactValues,
         (touching, unforced): (&[Option<Tangent>], &Unforced),
     ) -> Result<Vec<Answers<ContactState>>, Unsolved> {
         let bare = |k: usize| contacts.contacts[k].normal.is_none();

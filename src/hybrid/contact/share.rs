@@ -8,7 +8,7 @@
 //! that they can hold. Such a corner is what a mode can say, and the contacts stick until no corner is left.
 
 use super::geometry::{DEPENDENT, Geometry, Line};
-use super::hold::{Places, held_lines};
+use super::hold::{ContactValues, held_lines};
 use super::many::MAY_BE_ZERO;
 use super::{ContactState, Tangent};
 use crate::model::Contacts;
@@ -50,7 +50,7 @@ impl Sharing {
     pub fn new(
         contacts: &Contacts,
         geometry: &Geometry,
-        at: &Places,
+        at: &ContactValues,
         states: &[ContactState],
     ) -> Option<Self> {
         let [places, _] = held_lines(contacts, states);
@@ -142,7 +142,12 @@ impl Sharing {
     }
 
     /// The corners of all shares that keep each contact within what it can hold, as far as rounding tells. `forces`: any share.
-    pub fn corners(&self, geometry: &Geometry, at: &Places, forces: &[Forces]) -> Vec<Dropped> {
+    pub fn corners(
+        &self,
+        geometry: &Geometry,
+        at: &ContactValues,
+        forces: &[Forces],
+    ) -> Vec<Dropped> {
         let count = self.missing;
         if self.changes.len() != count {
             return Vec::new();
@@ -209,7 +214,7 @@ impl Sharing {
     }
 
     /// The friction of the first contact of a line.
-    fn friction(&self, contact: usize, at: &Places, forces: &Forces) -> Friction {
+    fn friction(&self, contact: usize, at: &ContactValues, forces: &Forces) -> Friction {
         let joined = self.joined.iter().filter(|(_, first)| *first == contact);
         let all = joined.map(|(of, _)| *of).chain([contact]);
         let limit: Vec<_> = all

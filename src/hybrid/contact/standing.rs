@@ -1,7 +1,7 @@
 //! The contacts as they stand at an instant: what touches, and what of it has no rate.
 
 use super::geometry::{Geometry, Line, multiplier};
-use super::hold::{Places, held_lines, held_with, hold_lines, is_at_zero};
+use super::hold::{ContactValues, held_lines, held_with, hold_lines, is_at_zero};
 use super::impact::Impacted;
 use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
@@ -80,7 +80,7 @@ impl Simulation<'_> {
         let context = &self.context;
         hold_lines(context, contacts, [&places, &still], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
-        let at = Places::new(context, contacts, [&q, &v]);
+        let at = ContactValues::new(context, contacts, [&q, &v]);
         let stops = |line: Line| {
             stops == Some(line) || self.is_still_with(&still, line, (&geometry, &at, &v))
         };
@@ -113,7 +113,7 @@ impl Simulation<'_> {
         &self,
         others: &[Line],
         line: Line,
-        (geometry, at, v): (&Geometry, &Places, &V),
+        (geometry, at, v): (&Geometry, &ContactValues, &V),
     ) -> bool {
         let accuracy = &self.accuracy;
         let (rate, rounding) = at.rate(line);
@@ -134,9 +134,9 @@ impl Simulation<'_> {
     ) -> Standing {
         let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let context = &self.context;
-        let at = Places::new(context, contacts, [&q, &v]);
+        let at = ContactValues::new(context, contacts, [&q, &v]);
         let closes = |j: usize| {
-            let (gap, rounding) = at.place(Line::Normal(j));
+            let (gap, rounding) = at.position(Line::Normal(j));
             let is_open = before[j] == ContactState::Open && !contacts.contacts[j].is_ratchet;
             is_open && (j == k || gap <= rounding)
         };
@@ -144,7 +144,7 @@ impl Simulation<'_> {
         places.extend((0..before.len()).filter(|&j| closes(j)).map(Line::Normal));
         hold_lines(context, contacts, [&places, &rates], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
-        let at = Places::new(context, contacts, [&q, &v]);
+        let at = ContactValues::new(context, contacts, [&q, &v]);
         // A body that lands flat: its other feet land too, whatever rounding says of their gaps.
         let lands = |j: usize| {
             let is_open = before[j] == ContactState::Open && contacts.contacts[j].has_gap();
@@ -167,7 +167,7 @@ impl Simulation<'_> {
 }
 
 /// What the tangent of a contact that touches does, by its slip rate.
-pub(super) fn tangent_at(contact: &Contact, k: usize, places: &Places) -> Tangent {
+pub(super) fn tangent_at(contact: &Contact, k: usize, places: &ContactValues) -> Tangent {
     let (slip, rounding) = places.rate(Line::Tangent(k));
     match contact.tangent {
         None => Tangent::None,

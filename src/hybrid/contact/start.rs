@@ -2,7 +2,7 @@
 
 use super::equilibrium::no_rest;
 use super::geometry::{Geometry, Line, write_states};
-use super::hold::{Places, hold_lines};
+use super::hold::{ContactValues, hold_lines};
 use super::standing::Standing;
 use super::{ContactState, Tangent};
 use crate::hybrid::failure::{Misfitting, Reason, Stoppable};
@@ -77,11 +77,12 @@ impl<'p> Simulation<'p> {
         contacts: &Contacts,
         [mut q, mut v]: [Buffer<f64>; 2],
     ) -> Result<Standing, Misfitting> {
-        let at = Places::new(&self.context, contacts, [&q, &v]);
+        let at = ContactValues::new(&self.context, contacts, [&q, &v]);
         let mut places = Vec::new();
         for (c, constraint) in contacts.constraints.iter().enumerate() {
             let line = Line::Constraint(c);
-            for ((value, rounding), is_rate) in [(at.place(line), false), (at.rate(line), true)] {
+            for ((value, rounding), is_rate) in [(at.position(line), false), (at.rate(line), true)]
+            {
                 // What is not a number is not zero.
                 let is_zero = value.abs() <= rounding;
                 if !is_zero {
@@ -99,7 +100,7 @@ impl<'p> Simulation<'p> {
         for (k, contact) in contacts.contacts.iter().enumerate() {
             if contact.normal.is_some() {
                 let (opening, rounding) = match contact.is_ratchet {
-                    false => at.place(Line::Normal(k)),
+                    false => at.position(Line::Normal(k)),
                     true => at.rate(Line::Normal(k)),
                 };
                 // What is not a number is not positive.
@@ -156,12 +157,12 @@ impl<'p> Simulation<'p> {
             let state = [&mut *q, &mut *v];
             let context = &self.context;
             hold_lines(context, contacts, [&places, &rates], state);
-            let at = Places::new(&self.context, contacts, [q, v]);
+            let at = ContactValues::new(&self.context, contacts, [q, v]);
             let is_ratchet = |k: usize| contacts.contacts[k].is_ratchet;
             let is_violated = |k: usize| {
                 let line = Line::Normal(k);
                 let (held, (value, rounding)) = match is_ratchet(k) {
-                    false => (&places, at.place(line)),
+                    false => (&places, at.position(line)),
                     true => (&rates, at.rate(line)),
                 };
                 contacts.contacts[k].normal.is_some() && !held.contains(&line) && value < -rounding

@@ -6,7 +6,7 @@
 //! judge, who knows each rounding and looks at the derivatives.
 
 use super::geometry::{Geometry, Line, write_states};
-use super::hold::Places;
+use super::hold::ContactValues;
 use super::judge::{BACKWARDS, FORWARDS, GAP, SLIP, point};
 use super::many::MAY_BE_ZERO;
 use super::{ContactState, Tangent};
@@ -31,21 +31,21 @@ pub(super) struct Unforced {
 impl Unforced {
     /// How what a line is about moves with forces.
     fn moves(&self, of: Line, forces: &[(Line, f64)]) -> f64 {
-        let row = self.place(of) * self.lines.len();
+        let row = self.index(of) * self.lines.len();
         let parts = forces.iter();
         parts
-            .map(|&(line, force)| self.compliance[row + self.place(line)] * force)
+            .map(|&(line, force)| self.compliance[row + self.index(line)] * force)
             .sum()
     }
 
-    fn place(&self, line: Line) -> usize {
+    fn index(&self, line: Line) -> usize {
         let found = self.lines.iter().position(|known| *known == line);
         found.expect("every line is there")
     }
 
     /// The acceleration of what a line is about.
     pub fn acceleration(&self, of: Line) -> f64 {
-        self.accelerations[self.place(of)].0
+        self.accelerations[self.index(of)].0
     }
 
     /// The most friction that one without a gap can hold.
@@ -57,7 +57,7 @@ impl Unforced {
     /// that stick beside the first of their line, `joined`, are none of these.
     pub fn rules_out(
         &self,
-        places: &Places,
+        places: &ContactValues,
         states: &[ContactState],
         touching: &[Option<Tangent>],
         (unknown, joined): (&[Line], &[(usize, usize)]),
@@ -111,7 +111,7 @@ impl<'a> Forced<'a> {
     /// The forces that hold what a set holds; `None` if they are not determined.
     fn new(
         unforced: &'a Unforced,
-        places: &Places,
+        places: &ContactValues,
         (states, touching): (&[ContactState], &[Option<Tangent>]),
         unknown: &[Line],
     ) -> Option<Self> {
@@ -172,7 +172,7 @@ impl<'a> Forced<'a> {
 
     /// The acceleration of what a line is about under the forces that are known.
     fn without_unknown(&self, of: Line) -> Rough {
-        let own = self.unforced.accelerations[self.unforced.place(of)];
+        let own = self.unforced.accelerations[self.unforced.index(of)];
         self.known.iter().fold(own, |sum, &(line, force)| {
             add(sum, self.unforced.moves(of, &[(line, 1.0)]), force)
         })
@@ -194,7 +194,7 @@ impl<'a> Forced<'a> {
     }
 
     /// The most friction of a contact that sticks.
-    fn most_friction(&self, k: usize, places: &Places) -> Rough {
+    fn most_friction(&self, k: usize, places: &ContactValues) -> Rough {
         match self.force(Line::Normal(k)) {
             Some(push) => add((0.0, 0.0), places.static_friction(k), push),
             None => self.unforced.bounds[k][0],
@@ -216,7 +216,7 @@ impl<'p> Simulation<'p> {
     pub(super) fn unforced(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
-        places: &Places,
+        places: &ContactValues,
         touching: &[Option<Tangent>],
     ) -> Option<Unforced> {
         let without_forces: Vec<ContactState> = (contacts.contacts.iter().zip(touching))

@@ -259,7 +259,7 @@ fn search<const W: usize>(coefficients: &[Lanes<W>], lane: usize, dormant: bool)
     search_window(own, window, (watch, &mut search));
     match search.crossing {
         None if search.watch == Watch::Armed => Some(f64::INFINITY),
-        Some(crossing) if crossing.kind == Kind::Fall => Some(crossing.outside),
+        Some(crossing) if crossing.kind == Kind::Crossing => Some(crossing.outside),
         _ => None,
     }
 }

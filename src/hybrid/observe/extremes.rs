@@ -1,6 +1,6 @@
 //! Largest and smallest values of what a run records, and when it first takes them.
 
-use super::interpolants::{Interpolants, place};
+use super::interpolants::{Interpolants, point};
 use crate::numerics::{Memory, Persist};
 use crate::run::{ColumnKind, Layout, Peak};
 use std::ops::Range;
@@ -135,7 +135,7 @@ impl Extremes {
         for value in of.range(function) {
             let peak = self.peaks[column];
             if value > peak.max || value < peak.min {
-                let t = time(place(of.node_of(function, value)));
+                let t = time(point(of.node_of(function, value)));
                 self.note(column, t, value);
             }
         }

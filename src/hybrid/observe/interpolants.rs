@@ -37,8 +37,8 @@ const HALF: [f64; 17] = [
     0.5,
 ];
 
-/// Place of a node of the highest degree in a window of length 1.
-pub const fn place(node: usize) -> f64 {
+/// Abscissa of a node of the highest degree in a window of length 1.
+pub const fn point(node: usize) -> f64 {
     match node {
         0..=16 => HALF[node],
         _ => 1.0 - HALF[MOST - node],
@@ -51,7 +51,7 @@ const COSINES: [f64; 2 * MOST] = {
     let mut j = 0;
     while j < 2 * MOST {
         // cos 2φ = 1 − 2 sin² φ
-        cosines[j] = 1.0 - 2.0 * place(if j <= MOST { j } else { 2 * MOST - j });
+        cosines[j] = 1.0 - 2.0 * point(if j <= MOST { j } else { 2 * MOST - j });
         j += 1;
     }
     cosines
@@ -290,18 +290,18 @@ impl Interpolants {
     /// Gives the places between nodes at which the polynomial of a function changes its sign, as the nodes tell.
     pub fn sign_changes(&self, function: usize, found: &mut impl FnMut(f64)) {
         let polynomial = self.polynomial(function);
-        let point = |node: usize| (place(node), self.value_at(node, function));
+        let point = |node: usize| (point(node), self.value_at(node, function));
         let stride = MOST / self.degree;
         for node in (stride..=MOST).step_by(stride) {
             let (left, right) = (point(node - stride), point(node));
             if left.1 > 0.0 && right.1 < 0.0 {
-                found(polynomial.fall(left, right, f64::EPSILON));
+                found(polynomial.crossing(left, right, f64::EPSILON));
             } else if left.1 < 0.0 && right.1 > 0.0 {
                 let flipped = |point: (f64, f64)| (point.0, -point.1);
                 found(
                     polynomial
                         .times(-1.0)
-                        .fall(flipped(left), flipped(right), f64::EPSILON),
+                        .crossing(flipped(left), flipped(right), f64::EPSILON),
                 );
             } else if right.1 == 0.0 {
                 found(right.0);
@@ -405,7 +405,7 @@ impl Polynomial {
 
     /// Where it falls through zero between a place where it is positive and one where it is negative, by the
     /// method of false position (Illinois): until places are `close`.
-    pub fn fall(&self, mut left: (f64, f64), mut right: (f64, f64), close: f64) -> f64 {
+    pub fn crossing(&self, mut left: (f64, f64), mut right: (f64, f64), close: f64) -> f64 {
         let (mut last, mut before) = (0, f64::INFINITY);
         loop {
             let place = left.0 + (right.0 - left.0) * (left.1 / (left.1 - right.1));
@@ -442,7 +442,7 @@ mod tests {
         for node in (0..=MOST).step_by(MOST / degree) {
             let values = interpolants.values_mut(node);
             for (value, f) in values.iter_mut().zip(functions) {
-                *value = f(place(node));
+                *value = f(point(node));
             }
         }
         interpolants.fit(degree);

@@ -1,6 +1,6 @@
 //! The representation of a step's functions by polynomials, as good as the tolerance asks for.
 
-use super::interpolants::{DEGREES, MOST, place};
+use super::interpolants::{DEGREES, MOST, point};
 use super::{Functions, Observers, Part, Step};
 use crate::hybrid::guards;
 use crate::kernel::Free;
@@ -32,7 +32,7 @@ impl Observers<'_> {
                 }
                 match stands {
                     true => self.interpolants.copy_values(0, node),
-                    false => self.evaluate(step, part.time(place(node)), node, (columns, powers)),
+                    false => self.evaluate(step, part.time(point(node)), node, (columns, powers)),
                 }
             }
             before = stride;

@@ -3,7 +3,7 @@
 //! As a function of φ, with 2s − 1 = −cos φ, a polynomial Σ cₖ Tₖ has derivatives that are bounded by Σ kⁿ|cₖ|
 //! everywhere (`interpolants`), so that its values at two points bound it between them.
 
-use super::interpolants::{Interpolants, MOST, Polynomial, place};
+use super::interpolants::{Interpolants, MOST, Polynomial, point};
 
 /// How often the interval between two nodes is halved at most: at the start of a fall from rest a rate is zero to the
 /// fifth order and more, and bounds alone would look at its neighbourhood for ever. What is then left is a thousandth of
@@ -71,7 +71,7 @@ impl SummitSearch {
     /// The interval between two nodes.
     fn between(&self, nodes: [usize; 2]) -> Ends {
         Ends(nodes.map(|node| {
-            let (left, right) = (place(node), place(MOST - node));
+            let (left, right) = (point(node), point(MOST - node));
             self.point(left, [right - left, 2.0 * (left * right).sqrt()])
         }))
     }
@@ -102,7 +102,7 @@ impl SummitSearch {
         if is_bent_one_way || room <= self.least || halvings == MOST_HALVINGS {
             if rises > 0.0 && falls < 0.0 {
                 let (from, to) = ((left.s, left.slope), (right.s, right.slope));
-                let place = self.of[1].fall(from, to, Interpolants::CLOSE);
+                let place = self.of[1].crossing(from, to, Interpolants::CLOSE);
                 self.note(place, self.of[0].value(place));
             }
             return;

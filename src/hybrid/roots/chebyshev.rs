@@ -23,8 +23,8 @@ const HALF: [f64; 9] = [
     0.5,
 ];
 
-/// Place of a sample in a window of length 1, exact relative to its distance from the left end.
-pub(super) const fn place(node: usize) -> f64 {
+/// Abscissa of a sample in a window of length 1, exact relative to its distance from the left end.
+pub(super) const fn point(node: usize) -> f64 {
     if node == NODES {
         // sin²(15π/64)
         0.4509914298352197
@@ -37,22 +37,22 @@ pub(super) const fn place(node: usize) -> f64 {
 
 /// Where a search on a window of length 1 looks first: at the samples of degree 4, and at two more of
 /// those of degree 8.
-pub const FIRST_PLACES: [f64; 8] = [
-    place(0),
-    place(DEGREE / 4),
-    place(DEGREE / 2),
-    place(3 * DEGREE / 4),
-    place(DEGREE),
-    place(Interpolant::test_sample(4)),
-    place(DEGREE / 8),
-    place(5 * DEGREE / 8),
+pub const FIRST_POINTS: [f64; 8] = [
+    point(0),
+    point(DEGREE / 4),
+    point(DEGREE / 2),
+    point(3 * DEGREE / 4),
+    point(DEGREE),
+    point(Interpolant::test_sample(4)),
+    point(DEGREE / 8),
+    point(5 * DEGREE / 8),
 ];
 
 /// cos(jπ/16).
 const fn cosine(j: usize) -> f64 {
     let j = j % 32;
     // cos 2φ = 1 − 2 sin² φ
-    1.0 - 2.0 * place(if j <= 16 { j } else { 32 - j })
+    1.0 - 2.0 * point(if j <= 16 { j } else { 32 - j })
 }
 
 const COSINES: [f64; 32] = {
@@ -231,7 +231,7 @@ impl Interpolant {
             0.25 * (lower + upper)
         };
         let sample = Self::test_sample(self.degree);
-        let difference = self.expansion.value(place(sample)) - values[sample];
+        let difference = self.expansion.value(point(sample)) - values[sample];
         difference.abs() <= foretold + self.degree as f64 * noise + self.rounding
     }
 }
@@ -302,7 +302,7 @@ mod tests {
     #[test]
     fn an_analytic_function_is_reproduced_with_its_derivative() {
         let f = |s: f64| (2.0 * s).exp() * (3.0 * s).cos();
-        let values = std::array::from_fn(|j| f(place(j)));
+        let values = std::array::from_fn(|j| f(point(j)));
         let interpolant = Interpolant::through(&values, DEGREE);
         let slope = interpolant.expansion.derivative();
         for k in 0..=100 {
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_zero_of_order_three_is_divided_out() {
-        let distances = std::array::from_fn(place);
+        let distances = std::array::from_fn(point);
         let values = distances.map(|s| s * s * s * (1e-6 - s));
         for degree in [8, 16] {
             let (interpolant, _) = Interpolant::deflated(&values, &distances, 3, degree);

@@ -3,55 +3,55 @@
 //! A bracket of an event ends where two doubles are neighbours, and halving *by count* reaches that
 //! in at most 64 halvings whatever the scale: near zero it searches magnitudes before digits.
 
-/// Place of `x` in the ordered list of all doubles; both zeros have place 0.
-fn place(x: f64) -> i64 {
+/// Ordinal of `x` in the ordered list of all doubles; both zeros have ordinal 0.
+fn ordinal(x: f64) -> i64 {
     let bits = x.to_bits() as i64;
     // Sign and magnitude to two's complement: i64::MIN is the sign bit alone.
     if bits < 0 { i64::MIN - bits } else { bits }
 }
 
-/// Inverse of [`place`].
-fn at_place(place: i64) -> f64 {
-    if place < 0 {
-        f64::from_bits((i64::MIN - place) as u64)
+/// Inverse of [`ordinal`].
+fn of_ordinal(ordinal: i64) -> f64 {
+    if ordinal < 0 {
+        f64::from_bits((i64::MIN - ordinal) as u64)
     } else {
-        f64::from_bits(place as u64)
+        f64::from_bits(ordinal as u64)
     }
 }
 
 /// Number of steps from `left` to `right` along the doubles, for `left ≤ right`.
 pub(super) fn steps(left: f64, right: f64) -> u64 {
     // The difference fits u64 though not i64; two's complement wraps to it.
-    place(right).wrapping_sub(place(left)) as u64
+    ordinal(right).wrapping_sub(ordinal(left)) as u64
 }
 
 /// The double `count` steps above `x` (below, if negative), not beyond `low` or `high`.
 pub(super) fn moved(x: f64, count: i64, low: f64, high: f64) -> f64 {
-    let target = place(x).saturating_add(count);
-    if target <= place(low) {
+    let target = ordinal(x).saturating_add(count);
+    if target <= ordinal(low) {
         low
-    } else if target >= place(high) {
+    } else if target >= ordinal(high) {
         high
     } else {
-        at_place(target)
+        of_ordinal(target)
     }
 }
 
 /// The next double above.
 pub(super) fn above(x: f64) -> f64 {
-    at_place(place(x) + 1)
+    of_ordinal(ordinal(x) + 1)
 }
 
 /// The next double below.
 pub(super) fn below(x: f64) -> f64 {
-    at_place(place(x) - 1)
+    of_ordinal(ordinal(x) - 1)
 }
 
 /// The double half-way by count between `left` and `right`, rounded towards `left`.
 pub(super) fn middle(left: f64, right: f64) -> f64 {
-    let (l, r) = (place(left), place(right));
+    let (l, r) = (ordinal(left), ordinal(right));
     // ⌊(l + r)/2⌋ without overflow: common bits, and half of the differing ones.
-    at_place((l & r) + ((l ^ r) >> 1))
+    of_ordinal((l & r) + ((l ^ r) >> 1))
 }
 
 #[cfg(test)]

@@ -26,12 +26,12 @@ pub(super) trait Expansion: Copy {
 
 /// Ascending places in (0, 1), at most `N`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Places<const N: usize> {
+pub(super) struct Extrema<const N: usize> {
     values: [f64; N],
     len: usize,
 }
 
-impl<const N: usize> Places<N> {
+impl<const N: usize> Extrema<N> {
     pub(super) fn new() -> Self {
         Self {
             values: [0.0; N],
@@ -51,14 +51,14 @@ impl<const N: usize> Places<N> {
 
 /// The extrema of `f` in (0, 1), ascending, each to a neighbouring double as far as f′ decides.
 /// `N` is at least the degree of `f`.
-pub(super) fn extrema<const N: usize>(f: &impl Expansion) -> Places<N> {
+pub(super) fn extrema<const N: usize>(f: &impl Expansion) -> Extrema<N> {
     let mut ladder = [f.derivative(); N];
     let mut last = 0;
     while ladder[last].count() == Count::Unknown {
         ladder[last + 1] = ladder[last].derivative();
         last += 1;
     }
-    let mut places = Places::new();
+    let mut places = Extrema::new();
     if ladder[last].count() == Count::One {
         places = roots_between(&ladder[last], &places);
     }
@@ -69,8 +69,8 @@ pub(super) fn extrema<const N: usize>(f: &impl Expansion) -> Places<N> {
 }
 
 /// Roots in (0, 1) of `f`, of which `extrema` are the extrema. A root at an extremum counts once.
-fn roots_between<const N: usize>(f: &impl Expansion, extrema: &Places<N>) -> Places<N> {
-    let mut roots = Places::new();
+fn roots_between<const N: usize>(f: &impl Expansion, extrema: &Extrema<N>) -> Extrema<N> {
+    let mut roots = Extrema::new();
     let mut left = (0.0, f.value(0.0));
     let ends = extrema.as_slice().iter().copied().chain([1.0]);
     for end in ends {

@@ -318,7 +318,7 @@ pub(super) fn crossing_beside(
     narrow((&mut l, &mut r), point);
     narrow((&mut l, &mut r), if here < 0.0 { before } else { after });
     let (l, r) = close(value, l, r);
-    Search::found(l.0, r.0, Kind::Fall, Watch::Violated)
+    Search::found(l.0, r.0, Kind::Crossing, Watch::Violated)
 }
 
 /// The fall about a place `s` that is off by rounding only, in a bracket that is as wide as leaves no doubt about the
@@ -347,7 +347,7 @@ pub(super) fn certain_crossing<const N: usize>(
     let is_straight = 0.5 * bend * margin * margin <= f64::EPSILON * s * s * slope.abs();
     let is_within = from <= before && after <= to;
     (is_straight && is_within && at_before > 0.0 && at_after < 0.0)
-        .then(|| Search::found(before, after, Kind::Fall, Watch::Violated))
+        .then(|| Search::found(before, after, Kind::Crossing, Watch::Violated))
 }
 
 /// Whether a step of [`step`] to a place s leaves no more than [`NEAR`] to the root: it leaves about its cube times the
@@ -383,9 +383,9 @@ fn root<const N: usize>(guard: &Armed<N>, left: Point, right: Point, s: f64) -> 
         let is_within = l.0 < next && next < r.0;
         let is_last = step.abs() <= LAST_STEP * s;
         let bend = [slope, curvature];
-        if isolation == Isolation::Place {
+        if isolation == Isolation::Root {
             if is_within && is_near(step, next, bend) {
-                isolated = Some(Search::found(next, next, Kind::Fall, Watch::Violated));
+                isolated = Some(Search::found(next, next, Kind::Crossing, Watch::Violated));
             }
         } else if is_last {
             let window = (left.0, right.0);
@@ -446,7 +446,7 @@ mod tests {
             let others = std::array::from_fn(|k| place(7 * i + 1009 * k + 3));
             let polynomial = with_root(root, &others);
             let [near, bracket] =
-                [Isolation::Place, Isolation::Bracket].map(|how| crossing(&polynomial, how));
+                [Isolation::Root, Isolation::Bracket].map(|how| crossing(&polynomial, how));
             let width = bracket.outside - bracket.inside;
             assert_eq!(near.inside, near.outside);
             let off = f64::max(

@@ -1,9 +1,9 @@
 //! A guard that is any smooth function.
 
 use super::bracket::{Point, departure};
-use super::chebyshev::{DEGREE, Interpolant, NODES, SAMPLES, place};
+use super::chebyshev::{DEGREE, Interpolant, NODES, SAMPLES, point};
 use super::doubles::moved;
-use super::extrema::{Expansion, Places, extrema};
+use super::extrema::{Expansion, Extrema, extrema};
 use super::walk::{Pieces, walk};
 use super::{Crossing, Kind, Search, Watch};
 
@@ -59,7 +59,7 @@ struct Samples {
 
 impl Samples {
     fn new(from: f64, to: f64) -> Self {
-        let mut nodes = std::array::from_fn(|j| from + place(j) * (to - from));
+        let mut nodes = std::array::from_fn(|j| from + point(j) * (to - from));
         nodes[DEGREE] = to;
         Self {
             from,
@@ -303,7 +303,7 @@ impl Guard<'_> {
         } else if inside.1 - outside.1 > 0.5 * (before - after) {
             Kind::Jump
         } else {
-            Kind::Fall
+            Kind::Crossing
         }
     }
 }
@@ -314,7 +314,7 @@ struct Cut<'g, 'f> {
     guard: &'g mut Guard<'f>,
     samples: &'g Samples,
     interpolant: Interpolant,
-    extrema: Places<NODES>,
+    extrema: Extrema<NODES>,
     /// The guard's own values at the ends, divided as well.
     ends: (f64, f64),
     order: usize,
@@ -337,7 +337,7 @@ impl<'g, 'f> Cut<'g, 'f> {
             guard,
             samples,
             interpolant,
-            extrema: Places::new(),
+            extrema: Extrema::new(),
             ends,
             order,
             noise,
@@ -412,7 +412,7 @@ impl Pieces for Cut<'_, '_> {
         // A continuous guard changes from a double to the next by a few roundings.
         let continuous = self.interpolant.magnitude / f64::from(1_u32 << HALF_DIGITS);
         if inside.1 - outside.1 <= continuous {
-            Kind::Fall
+            Kind::Crossing
         } else {
             let own = |guard: &mut Guard, point: Point| (point.0, guard.value(point.0));
             let (inside, outside) = (own(self.guard, inside), own(self.guard, outside));

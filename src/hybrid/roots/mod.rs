@@ -70,7 +70,7 @@ mod quadratic;
 mod walk;
 
 pub(super) use bracket::minimum;
-pub use chebyshev::FIRST_PLACES;
+pub use chebyshev::FIRST_POINTS;
 pub use earliest::{Earliest, earliest};
 pub(super) use earliest::{at_most_one, first_of_several};
 pub use function::search;
@@ -107,7 +107,7 @@ impl Watch {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// From ≥ 0 to < 0, continuously as far as it was resolved.
-    Fall,
+    Crossing,
     /// Down to exactly 0 and back up: a tangent touch.
     Touch,
     /// A dormant guard left zero downwards. `inside` is where it last was not below zero, or the
@@ -136,9 +136,9 @@ pub struct Crossing {
 pub(super) enum Isolation {
     /// By a bracket at whose ends the signs are certain, some rounding errors wide.
     Bracket,
-    /// By a place, `inside` and `outside` in one, before or behind it by some 10⁻⁹ of itself: for a caller who goes on
+    /// By the root itself, `inside` and `outside` in one, before or behind it by some 10⁻⁹ of itself: for a caller who goes on
     /// from there by Newton's method.
-    Place,
+    Root,
 }
 
 /// Answer of a search on one window.

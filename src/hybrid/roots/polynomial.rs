@@ -1,7 +1,7 @@
 //! A guard that is a polynomial, such as a coordinate on the dense output of a step.
 
 use super::bracket::{close, departure};
-use super::extrema::{Count, Expansion, Places, extrema};
+use super::extrema::{Count, Expansion, Extrema, extrema};
 use super::first_crossing::first_crossing;
 use super::walk::{Pieces, walk};
 use super::{Isolation, Kind, Search, Watch};
@@ -195,7 +195,7 @@ impl<const N: usize> Polynomial<N> {
     /// Closes in on neighbouring doubles.
     fn close_in(&self, found: &mut Search) {
         if let Some(crossing) = &mut found.crossing
-            && crossing.kind == Kind::Fall
+            && crossing.kind == Kind::Crossing
         {
             let [left, right] = [crossing.inside, crossing.outside].map(|s| (s, self.value(s)));
             let (left, right) = close(&mut |s| self.value(s), left, right);
@@ -342,7 +342,7 @@ impl<const N: usize> Expansion for Polynomial<N> {
 struct Monotone<'p, const N: usize> {
     polynomial: &'p Polynomial<N>,
     /// The extrema inside the window; the nodes lie at its ends and at these.
-    extrema: Places<N>,
+    extrema: Extrema<N>,
     from: f64,
     to: f64,
     noise: f64,
@@ -351,7 +351,7 @@ struct Monotone<'p, const N: usize> {
 impl<'p, const N: usize> Monotone<'p, N> {
     /// The extrema are those on [0, 1], so they do not depend on how the window is split.
     fn new(polynomial: &'p Polynomial<N>, from: f64, to: f64, noise: f64) -> Self {
-        let mut inside = Places::new();
+        let mut inside = Extrema::new();
         for &s in extrema::<N>(polynomial).as_slice() {
             if from < s && s < to {
                 inside.push(s);
@@ -428,7 +428,7 @@ mod tests {
                 coefficients: [b * c0, b * c1 + c0, b * c2 + c1, c2, 0.0, 0.0],
             };
             let mut found = Search::nothing(Watch::Dormant);
-            quotient.search_of_multiple(1, 1.0, Isolation::Place, &mut found);
+            quotient.search_of_multiple(1, 1.0, Isolation::Root, &mut found);
             assert_eq!(found.crossing, None, "{i}");
             let least = least_of_multiple(&quotient);
             assert!(found.turn <= least, "{i}: {:e} {least:e}", found.turn);

@@ -35,7 +35,7 @@ pub(super) fn first_crossing<const N: usize>(
         let s = if from < s && s < to { s } else { to };
         let derivatives = [c1 + 2.0 * c2 * s, 2.0 * c2];
         let event = match isolation {
-            Isolation::Place => Some(Search::found(s, s, Kind::Fall, Watch::Violated)),
+            Isolation::Root => Some(Search::found(s, s, Kind::Crossing, Watch::Violated)),
             Isolation::Bracket => certain_crossing(polynomial, (from, to), s, margin, derivatives),
         };
         let event = event.unwrap_or_else(|| {
@@ -64,7 +64,7 @@ pub(super) fn first_crossing<const N: usize>(
 }
 
 /// The first event of an armed guard that is `value` + `slope` · τ in 0 < τ ≤ `length`, by a place in τ
-/// ([`Isolation::Place`]), or that there is none; `None` where rounding decides.
+/// ([`Isolation::Root`]), or that there is none; `None` where rounding decides.
 #[inline(always)]
 pub(in crate::hybrid) fn straight_crossing(value: f64, slope: f64, length: f64) -> Option<Search> {
     let change = slope * length;
@@ -74,7 +74,7 @@ pub(in crate::hybrid) fn straight_crossing(value: f64, slope: f64, length: f64) 
         Some(Search::above(end - margin))
     } else if value > 0.0 && end < -margin {
         let place = -value / slope;
-        Some(Search::found(place, place, Kind::Fall, Watch::Violated))
+        Some(Search::found(place, place, Kind::Crossing, Watch::Violated))
     } else {
         None
     }
@@ -110,7 +110,7 @@ mod tests {
             let polynomial = Polynomial {
                 coefficients: [value, slope / length * length, 0.0],
             };
-            polynomial.search_armed((0.0, 1.0), 0.0, Isolation::Place, &mut expected);
+            polynomial.search_armed((0.0, 1.0), 0.0, Isolation::Root, &mut expected);
             let Some(found) = straight_crossing(value, slope / length, length) else {
                 assert_eq!(i % 4, 0, "{value} {slope}");
                 continue;

@@ -19,7 +19,7 @@ pub(super) trait Pieces {
     fn own(&mut self, x: f64) -> f64;
     /// What a change of sign between two neighbouring doubles is.
     fn kind(&mut self, _inside: Point, _outside: Point) -> Kind {
-        Kind::Fall
+        Kind::Crossing
     }
 }
 
@@ -85,7 +85,7 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
                     let kind = pieces.kind(l, r);
                     let event = Search::found(l.0, r.0, kind, Watch::Violated);
                     return Some(match kind {
-                        Kind::Fall => event.turning(right.1),
+                        Kind::Crossing => event.turning(right.1),
                         _ => event,
                     });
                 }
@@ -105,7 +105,7 @@ pub(super) fn walk(pieces: &mut impl Pieces, mut watch: Watch) -> Option<Search>
 /// dormant, so that they are not events of their own.
 fn touch(inside: f64, outside: f64, value: f64, noise: f64) -> Search {
     if value < 0.0 {
-        return Search::found(inside, outside, Kind::Fall, Watch::Violated);
+        return Search::found(inside, outside, Kind::Crossing, Watch::Violated);
     }
     let watch = if value <= noise {
         Watch::Dormant

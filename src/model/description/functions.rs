@@ -70,7 +70,7 @@ impl Reader<'_> {
             functions: ModeFunctions::find(|key| at.get(key, |at| self.value(at)))?,
             outputs: counts.outputs,
             requirements: counts.required,
-            places: at.get("places", |at| at.option(|at| self.counted(at)))?,
+            contact_values: at.get("contact_values", |at| at.option(|at| self.counted(at)))?,
             lines: at.get("lines", |at| at.option(|at| self.counted(at)))?,
             series: series("series")?,
             autonomous_series: series("autonomous_series")?,

@@ -260,6 +260,9 @@ impl Reader<'_> {
             text: at.get("text", text)?,
             unit: at.get("unit", text)?,
             shape: at.get("shape", |at| self.shape(at, free))?,
+            direction: at.get("direction", |at| {
+                at.option(|at| at.index(self.dimensions.discretes))
+            })?,
             kernel: GuardKernel {
                 dimensions: self.dimensions.clone(),
                 free,

@@ -9,33 +9,33 @@ use plotters::style::RGBColor;
 pub(super) const UNITS: f64 = 10.0;
 
 /// A place in [`UNITS`], from the upper left corner to the right and down.
-pub(super) type Place = (i32, i32);
+pub(super) type Position = (i32, i32);
 
 /// What a picture consists of. Lengths are in [`UNITS`].
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Mark {
     Line {
-        path: Vec<Place>,
+        path: Vec<Position>,
         width: u32,
         colour: RGBColor,
     },
     Polygon {
-        path: Vec<Place>,
+        path: Vec<Position>,
         colour: RGBColor,
     },
     Rectangle {
-        corners: [Place; 2],
+        corners: [Position; 2],
         colour: RGBColor,
     },
     Disc {
-        centre: Place,
+        centre: Position,
         radius: u32,
         colour: RGBColor,
     },
     /// With marks of subscripts, and no dots.
     Text {
         text: String,
-        at: Place,
+        at: Position,
         anchor: Anchor,
         font: Font,
     },
@@ -97,7 +97,7 @@ pub(super) fn units(pixels: f64) -> i32 {
     (pixels * UNITS).round() as i32
 }
 
-fn point((x, y): (f64, f64)) -> Place {
+fn point((x, y): (f64, f64)) -> Position {
     (units(x), units(y))
 }
 

@@ -1,8 +1,8 @@
 //! A single pair of axes: comparisons, studies, phase portraits.
 
+use super::appearance::{Appearance, windowed};
 use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, Font, Picture, picture};
-use super::look::{Look, windowed};
 use super::palette::INK;
 use super::panel::{
     Area, Curve, curves, entries, grid, horizontal_axis, legend, legend_height, range,
@@ -96,17 +96,17 @@ pub fn comparison(quantity: &Quantity, runs: Vec<Curve>) -> Chart {
 impl Chart {
     /// The chart as SVG, `width` × `height` pixels.
     pub fn svg(&self, size: (f64, f64)) -> String {
-        self.picture(size, &Look::default()).svg()
+        self.picture(size, &Appearance::default()).svg()
     }
 
-    /// The picture of the chart, in the size that `look` has or else in `size`. A window is one of time: it cuts the
+    /// The picture of the chart, in the size that `appearance` has or else in `size`. A window is one of time: it cuts the
     /// curves of a chart over time.
-    pub fn picture(&self, size: (f64, f64), look: &Look) -> Picture {
-        let (width, height) = look.size.unwrap_or(size);
+    pub fn picture(&self, size: (f64, f64), appearance: &Appearance) -> Picture {
+        let (width, height) = appearance.size.unwrap_or(size);
         let mut shown = self.clone();
         if self.x.unit == "s" && self.x.scale == Scale::Linear {
             for curve in &mut shown.curves {
-                curve.points = windowed(curve.points.iter().copied(), look.window);
+                curve.points = windowed(curve.points.iter().copied(), appearance.window);
             }
         }
         picture(width, height, |canvas| {
@@ -116,7 +116,7 @@ impl Chart {
                 width,
                 height,
             };
-            shown.draw(canvas, area, &look.units);
+            shown.draw(canvas, area, &appearance.units);
         })
     }
 

@@ -86,7 +86,10 @@ fn cut(curve: &[(f64, f64)], left: f64, drawn: &[bool]) -> Vec<Vec<(f64, f64)>> 
         if drawn[piece] {
             let border = |i: usize| left + i as f64 * PIECE;
             let window = (border(piece), border(until));
-            parts.push(super::look::windowed(curve.iter().copied(), Some(window)));
+            parts.push(super::appearance::windowed(
+                curve.iter().copied(),
+                Some(window),
+            ));
         }
         piece = until;
     }

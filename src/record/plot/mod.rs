@@ -3,13 +3,13 @@
 //! The layout is made here, in pixels; what a picture then consists of is the same for every format. Symbols, units and colours follow
 //! the names and units of the model, and a run of any length gives a file of bounded size.
 
+mod appearance;
 mod axis;
 mod canvas;
 mod chart;
 mod coincide;
 mod decimate;
 mod format;
-mod look;
 pub(crate) mod marked;
 #[cfg(feature = "cli")]
 mod matrix;
@@ -27,11 +27,11 @@ mod symbol;
 #[cfg(feature = "png-pdf")]
 mod typeface;
 
+pub use appearance::{Appearance, LEAST};
 pub use axis::Scale;
 pub use canvas::Picture;
 pub use chart::{Chart, Dimension, comparison};
 pub use format::Format;
-pub use look::{LEAST, Look};
 #[cfg(feature = "cli")]
 pub(crate) use matrix::scatter_matrix;
 pub use overview::overview;

@@ -1,8 +1,8 @@
 //! A run on one page: everything over the same time.
 
+use super::appearance::{Appearance, Asked, windowed};
 use super::axis::{Axis, Scale};
 use super::canvas::{Anchor, Canvas, Font, Picture, picture, text_width};
-use super::look::{Asked, Look, windowed};
 use super::palette::{ALARM, INK, LINE_COLOURS};
 use super::panel::{
     Area, Curve, ROW, SMALL, TEXT, curves, entries, grid, horizontal_axis, legend, legend_height,
@@ -54,17 +54,17 @@ struct Panel {
 /// with the modes and the transitions underneath, as SVG. Quantities of the same kind and unit
 /// share a panel where each is readable there; those that never change are listed.
 pub fn overview(run: &Run) -> String {
-    overview_of(run, &Sketch::of(run), &Look::default()).svg()
+    overview_of(run, &Sketch::of(run), &Appearance::default()).svg()
 }
 
-/// The same from a sketch of a run, as `look` says, whose panels are those of the run.
-pub(crate) fn overview_of(run: &Run, sketch: &Sketch, look: &Look) -> Picture {
-    let (panels, constants) = panels(run, sketch, look);
-    let time = time_axis(run, sketch, look);
-    let strip = Strip::new(run, sketch, look.window);
-    let with_curves = |panel| (panel_curves(sketch, &panel, look), panel);
+/// The same from a sketch of a run, as `appearance` says, whose panels are those of the run.
+pub(crate) fn overview_of(run: &Run, sketch: &Sketch, appearance: &Appearance) -> Picture {
+    let (panels, constants) = panels(run, sketch, appearance);
+    let time = time_axis(run, sketch, appearance);
+    let strip = Strip::new(run, sketch, appearance.window);
+    let with_curves = |panel| (panel_curves(sketch, &panel, appearance), panel);
     let panels: Vec<(Vec<Curve>, Panel)> = panels.into_iter().map(with_curves).collect();
-    let width = look.size.map_or(WIDTH, |size| size.0);
+    let width = appearance.size.map_or(WIDTH, |size| size.0);
     let inner = width - LEFT - RIGHT;
     let notes = wrapped(&constants, inner);
     let legends = panels
@@ -77,7 +77,7 @@ pub(crate) fn overview_of(run: &Run, sketch: &Sketch, look: &Look) -> Picture {
         + notes.len() as f64 * ROW
         + 2.0 * GAP;
     let count = panels.len() as f64;
-    let panel_height = match look.size {
+    let panel_height = match appearance.size {
         Some((_, height)) => ((height - without_panels) / count.max(1.0)).max(LEAST_PANEL),
         None => PANEL,
     };
@@ -101,7 +101,13 @@ pub(crate) fn overview_of(run: &Run, sketch: &Sketch, look: &Look) -> Picture {
                 width: inner,
                 height: panel_height,
             };
-            let y = Axis::new(Scale::Linear, &panel.unit, &look.units, panel.range, 0.06);
+            let y = Axis::new(
+                Scale::Linear,
+                &panel.unit,
+                &appearance.units,
+                panel.range,
+                0.06,
+            );
             grid(canvas, last, &time, &y, &axis_title(sketch, panel));
             curves(canvas, last, &time, &y, c, false);
             top += panel_height + GAP;
@@ -145,11 +151,11 @@ fn head(canvas: &mut Canvas, run: &Run, width: f64) {
 }
 
 /// The axis of the window, or from the first instant of a run to its end.
-fn time_axis(run: &Run, sketch: &Sketch, look: &Look) -> Axis {
+fn time_axis(run: &Run, sketch: &Sketch, appearance: &Appearance) -> Axis {
     let times = sketch.times().chain([run.end.t]);
     let all = range(times, |_| true).unwrap_or((0.0, 0.0));
-    let shown = look.window.unwrap_or(all);
-    Axis::new(Scale::Linear, "s", &look.units, shown, 0.0)
+    let shown = appearance.window.unwrap_or(all);
+    Axis::new(Scale::Linear, "s", &appearance.units, shown, 0.0)
 }
 
 /// The order of groups where none is asked for: the response before what causes it.
@@ -163,8 +169,8 @@ const ORDER: [ColumnKind; 6] = [
 ];
 
 /// Divides the columns among panels; also a sentence about those that never change.
-fn panels(run: &Run, sketch: &Sketch, look: &Look) -> (Vec<Panel>, String) {
-    let asked = look.asked(&run.layout).unwrap_or_default();
+fn panels(run: &Run, sketch: &Sketch, appearance: &Appearance) -> (Vec<Panel>, String) {
+    let asked = appearance.asked(&run.layout).unwrap_or_default();
     let asked = match asked.is_empty() {
         true => ORDER.map(Asked::Group).to_vec(),
         false => asked,
@@ -179,12 +185,12 @@ fn panels(run: &Run, sketch: &Sketch, look: &Look) -> (Vec<Panel>, String) {
         };
         for i in columns {
             let column = &sketch.columns()[i];
-            let values = windowed(sketch.curve(i), look.window);
+            let values = windowed(sketch.curve(i), appearance.window);
             let Some(range) = range(values.iter().map(|p| p.1), |_| true) else {
                 continue;
             };
             if !varies(range) && !in_one {
-                let (value, unit) = look.units.show(range.0, &column.unit);
+                let (value, unit) = appearance.units.show(range.0, &column.unit);
                 let value = rounded(value, 6).replace('-', "−");
                 let constant = format!("{} = {value} {unit}", column.name);
                 constants.push(constant.replace(' ', NO_BREAK));
@@ -217,8 +223,12 @@ pub(crate) struct Grouped {
 }
 
 /// How a run's columns are divided among panels; also a sentence about those that never change.
-pub(crate) fn grouped(run: &Run, sketch: &Sketch, look: &Look) -> (Vec<Grouped>, String) {
-    let (panels, constants) = panels(run, sketch, look);
+pub(crate) fn grouped(
+    run: &Run,
+    sketch: &Sketch,
+    appearance: &Appearance,
+) -> (Vec<Grouped>, String) {
+    let (panels, constants) = panels(run, sketch, appearance);
     let grouped = |panel: Panel| Grouped {
         columns: panel.columns.iter().map(|c| c.0).collect(),
     };
@@ -249,7 +259,7 @@ impl Panel {
     }
 }
 
-fn panel_curves(sketch: &Sketch, panel: &Panel, look: &Look) -> Vec<Curve> {
+fn panel_curves(sketch: &Sketch, panel: &Panel, appearance: &Appearance) -> Vec<Curve> {
     let curve = |&(i, _): &(usize, (f64, f64))| {
         let column = &sketch.columns()[i];
         // Of a rate the symbol says it all, and a lone one has it beside its axis.
@@ -260,7 +270,7 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, look: &Look) -> Vec<Curve> {
         };
         Curve {
             label,
-            points: windowed(sketch.curve(i), look.window),
+            points: windowed(sketch.curve(i), appearance.window),
             ..Curve::default()
         }
     };

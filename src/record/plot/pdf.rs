@@ -1,6 +1,6 @@
 //! Pictures as PDF of one page, by pdf-writer. Texts are texts, to be searched and copied, in a subset of the typeface.
 
-use super::canvas::{Mark, Picture, Place, UNITS};
+use super::canvas::{Mark, Picture, Position, UNITS};
 use super::typeface::Typeface;
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
@@ -164,7 +164,7 @@ fn fill_with(out: &mut Content, colour: RGBColor) {
     out.set_fill_rgb(r, g, b);
 }
 
-fn line(out: &mut Content, path: &[Place]) {
+fn line(out: &mut Content, path: &[Position]) {
     for (i, &(x, y)) in path.iter().enumerate() {
         match i {
             0 => out.move_to(x as f32, y as f32),
@@ -173,7 +173,7 @@ fn line(out: &mut Content, path: &[Place]) {
     }
 }
 
-fn disc(out: &mut Content, (x, y): Place, r: f32) {
+fn disc(out: &mut Content, (x, y): Position, r: f32) {
     let (x, y, k) = (x as f32, y as f32, QUARTER * r);
     out.move_to(x + r, y);
     out.cubic_to(x + r, y + k, x + k, y + r, x, y + r);

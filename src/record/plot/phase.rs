@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
+use super::appearance::Appearance;
 use super::canvas::{Anchor, Canvas, Picture, picture};
 use super::chart::{Chart, Dimension};
-use super::look::Look;
 use super::palette::{PAPER, line};
 use super::panel::{Area, Curve, SMALL, range};
 use super::symbol::symbol;
@@ -22,17 +22,21 @@ const PIECES: usize = 16_000;
 
 /// Draws the phase portrait of every coordinate that moves, as SVG; `None` when none does.
 pub fn phase_portraits(run: &Run) -> Option<String> {
-    phase_portraits_of(run, &Sketch::of(run), &Look::default()).map(|picture| picture.svg())
+    phase_portraits_of(run, &Sketch::of(run), &Appearance::default()).map(|picture| picture.svg())
 }
 
-/// The same from a sketch of a run, as `look` says; of a long one what is kept whole.
-pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Option<Picture> {
-    let charts = portraits(run, sketch, look);
+/// The same from a sketch of a run, as `appearance` says; of a long one what is kept whole.
+pub(crate) fn phase_portraits_of(
+    run: &Run,
+    sketch: &Sketch,
+    appearance: &Appearance,
+) -> Option<Picture> {
+    let charts = portraits(run, sketch, appearance);
     if charts.is_empty() {
         return None;
     }
     let (across, down) = (charts.len().min(ACROSS), charts.len().div_ceil(ACROSS));
-    let (width, height) = match look.size {
+    let (width, height) = match appearance.size {
         Some((width, height)) => (width / across as f64, height / down as f64),
         None => SIZE,
     };
@@ -45,7 +49,7 @@ pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Opt
                 width,
                 height,
             };
-            let (inner, [x, y]) = chart.draw(canvas, area, &look.units);
+            let (inner, [x, y]) = chart.draw(canvas, area, &appearance.units);
             let at = |p: &(f64, f64)| inner.at(x.position(p.0), y.position(p.1));
             let path: Vec<_> = chart.curves[0].points.iter().map(at).collect();
             way(canvas, &path);
@@ -57,10 +61,10 @@ pub(crate) fn phase_portraits_of(run: &Run, sketch: &Sketch, look: &Look) -> Opt
 }
 
 /// The phase portraits of the coordinates that move, as charts of a path in the plane.
-pub(crate) fn portraits(run: &Run, sketch: &Sketch, look: &Look) -> Vec<Chart> {
+pub(crate) fn portraits(run: &Run, sketch: &Sketch, appearance: &Appearance) -> Vec<Chart> {
     let coordinates = run.layout.range(ColumnKind::Coordinate);
     let velocities = run.layout.range(ColumnKind::Velocity);
-    let of = |(q, v)| portrait(sketch, (q, v), look.window);
+    let of = |(q, v)| portrait(sketch, (q, v), appearance.window);
     coordinates.zip(velocities).filter_map(of).collect()
 }
 

@@ -1,7 +1,7 @@
 //! The letters of PNG and PDF: DejaVu Sans, which travels inside, so that a picture is the same on every machine. Its
 //! licence is `assets/dejavu-LICENSE`.
 
-use super::canvas::{Anchor, Font, Place, UNITS};
+use super::canvas::{Anchor, Font, Position, UNITS};
 use super::marked::{END_SUB, SUB};
 use ttf_parser::{Face, GlyphId};
 
@@ -29,7 +29,7 @@ pub(super) struct Glyph {
 /// A text with the places of its glyphs.
 pub(super) struct Line {
     pub glyphs: Vec<Glyph>,
-    at: Place,
+    at: Position,
     upwards: bool,
     /// From the place of the text to the start of its line, along and up.
     start: (f64, f64),
@@ -63,7 +63,7 @@ impl Typeface {
     }
 
     /// Places the letters of a text. Letters that the family does not have are its empty box.
-    pub fn line(&self, text: &str, at: Place, anchor: Anchor, font: Font) -> Line {
+    pub fn line(&self, text: &str, at: Position, anchor: Anchor, font: Font) -> Line {
         let full = font.size * UNITS;
         let (mut along, mut size, mut up) = (0.0, full, 0.0);
         let mut glyphs = Vec::new();

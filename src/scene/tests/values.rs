@@ -32,6 +32,7 @@ fn smallest_scene_takes_every_default() {
             discrete: (scene.model.discretes.iter())
                 .map(|d| d.values[0])
                 .collect(),
+            stated: vec![false; scene.model.discretes.len()],
             mode: None
         }
     );

@@ -8,14 +8,14 @@ use crate::scene::shape::{Key, Object, Quantity, Shape};
 /// The quantities at the paths that a study names; none of a path where no number with a unit stands, and none at all where
 /// the scene is not known.
 #[derive(Default)]
-pub(super) struct Places {
+pub(super) struct Quantities {
     /// All paths that it names.
     pub known: Vec<(String, Option<Quantity>)>,
     /// The path whose values `stripes`, `ida` or `critical` state.
     pub intensity: String,
 }
 
-impl Places {
+impl Quantities {
     /// The number at a path with the bounds that the scene sets, if one stands there.
     pub fn quantity(&self, path: &str) -> Option<&Quantity> {
         let found = self.known.iter().find(|(known, _)| known == path);
@@ -44,7 +44,7 @@ pub(super) const IDA_RESOLUTION: f64 = 0.02;
 pub(super) const CRITICAL_RESOLUTION: f64 = 1e-9;
 
 /// The shape of a study.
-pub(super) fn study(places: &Places) -> Object {
+pub(super) fn study(places: &Quantities) -> Object {
     let path = || Shape::Text;
     let keys = vec![
         Key::new("$schema", "JSON Schema of this file, for editors", Shape::Text),
@@ -122,7 +122,7 @@ pub(super) fn study(places: &Places) -> Object {
 }
 
 /// An object whose keys are paths: those that are known, or any.
-fn by_path(places: &Places, shape: &dyn Fn(&str) -> Shape) -> Shape {
+fn by_path(places: &Quantities, shape: &dyn Fn(&str) -> Shape) -> Shape {
     if places.known.is_empty() {
         return Object::new("path", Vec::new()).others(shape("")).into();
     }
@@ -134,7 +134,7 @@ fn by_path(places: &Places, shape: &dyn Fn(&str) -> Shape) -> Shape {
 }
 
 /// A single value at a path.
-fn level(places: &Places, path: &str) -> Shape {
+fn level(places: &Quantities, path: &str) -> Shape {
     match places.quantity(path) {
         Some(quantity) => quantity.clone().into(),
         None => Shape::Any,
@@ -142,7 +142,7 @@ fn level(places: &Places, path: &str) -> Shape {
 }
 
 /// Values at a path: a list, or so many between two.
-fn levels(places: &Places, path: &str) -> Shape {
+fn levels(places: &Quantities, path: &str) -> Shape {
     let list = Shape::List(Box::new(level(places, path)));
     let bound = || level_number(places, path);
     let range = Object::new(
@@ -169,12 +169,12 @@ fn levels(places: &Places, path: &str) -> Shape {
 }
 
 /// A number at a path, within its bounds.
-fn level_number(places: &Places, path: &str) -> Quantity {
+fn level_number(places: &Quantities, path: &str) -> Quantity {
     let quantity = places.quantity(path).cloned();
     quantity.unwrap_or_else(|| Quantity::any(""))
 }
 
-fn random(places: &Places) -> Object {
+fn random(places: &Quantities) -> Object {
     let coefficient = Bounds {
         maximum: 1.0,
         ..Bounds::at_least(-1.0)
@@ -214,7 +214,7 @@ fn random(places: &Places) -> Object {
 }
 
 /// The distribution of the value at a path.
-fn distribution(places: &Places, path: &str) -> Shape {
+fn distribution(places: &Quantities, path: &str) -> Shape {
     let number = || places.any(path);
     let positive = || Quantity::positive(number().unit);
     let sample = |name: &'static str, meaning: &str, keys: Vec<Key>| {
@@ -294,7 +294,7 @@ fn distribution(places: &Places, path: &str) -> Shape {
     )
 }
 
-fn stripes(places: &Places) -> Object {
+fn stripes(places: &Quantities) -> Object {
     Object::new(
         "key of stripes",
         vec![
@@ -309,7 +309,7 @@ fn stripes(places: &Places) -> Object {
     )
 }
 
-fn ida(places: &Places) -> Object {
+fn ida(places: &Quantities) -> Object {
     let number = || Quantity::positive(places.any(&places.intensity).unit);
     let part = Bounds {
         maximum: 0.5,
@@ -343,7 +343,7 @@ fn ida(places: &Places) -> Object {
     )
 }
 
-fn critical(places: &Places) -> Object {
+fn critical(places: &Quantities) -> Object {
     let number = || level_number(places, &places.intensity);
     let part = Bounds {
         maximum: 0.5,

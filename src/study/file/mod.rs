@@ -24,7 +24,7 @@ use crate::scene::source::Span;
 use crate::scene::template::{Change, Template};
 use crate::scene::tree::{self, Node, Value};
 use crate::scene::{Disk, Files, decode, set};
-use format::Places;
+use format::Quantities;
 
 /// A study that was checked: which cases it has, what is run for each, what is measured.
 pub(crate) struct Study {
@@ -58,7 +58,7 @@ pub(crate) enum SecondRuns {
 struct Names<'t> {
     /// Every path with the span that names it first, and the names on it.
     paths: Vec<(Span, Vec<Span>)>,
-    places: Places,
+    places: Quantities,
     template: &'t Template,
 }
 
@@ -101,7 +101,7 @@ pub(crate) type Room<'r> = dyn Fn(f64) -> Result<(), String> + 'r;
 
 /// JSON Schema of study files.
 pub fn schema() -> serde_json::Value {
-    let shape = format::study(&Places::default());
+    let shape = format::study(&Quantities::default());
     crate::scene::schema_of(&shape, "dalembert study")
 }
 
@@ -110,7 +110,7 @@ fn study(root: Node, folder: &Path, models: &Models, room: &Room) -> Result<Stud
     let Some(Value::Text(scene)) = root.get("scene").map(|node| &node.value) else {
         check(
             &root,
-            &format::study(&Places::default()).into(),
+            &format::study(&Quantities::default()).into(),
             &mut errors,
         );
         errors.check()?;
@@ -294,9 +294,9 @@ impl<'t> Names<'t> {
             }
         }
         let mut paths: Vec<(Span, Vec<Span>)> = Vec::new();
-        let mut places = Places {
+        let mut places = Quantities {
             intensity,
-            ..Places::default()
+            ..Quantities::default()
         };
         for span in spans {
             if paths.iter().any(|(known, _)| known.text() == span.text()) {

@@ -8,7 +8,7 @@ pub const LEAST: (f64, f64) = (320.0, 200.0);
 
 /// How pictures look; by default everything, in the size and the units that suit it.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Look {
+pub struct Appearance {
     /// Units of axes.
     pub units: Units,
     /// What is shown of time, from and to, s; the whole run where there is none.
@@ -39,7 +39,7 @@ const GROUPS: [(&str, ColumnKind); 6] = [
     ("inputs", ColumnKind::Input),
 ];
 
-impl Look {
+impl Appearance {
     /// Formats of the files.
     pub fn formats(&self) -> &[Format] {
         match self.formats[..] {
@@ -152,21 +152,21 @@ mod tests {
             coordinates: vec![Quantity::new("x", "m", ""), Quantity::new("a", "rad", "")],
             ..Layout::default()
         };
-        let look = |panels: &[&str]| Look {
+        let appearance = |panels: &[&str]| Appearance {
             panels: panels.iter().map(|p| (*p).to_owned()).collect(),
-            ..Look::default()
+            ..Appearance::default()
         };
-        let asked = look(&["energies", "x"]).asked(&layout).unwrap();
+        let asked = appearance(&["energies", "x"]).asked(&layout).unwrap();
         assert_eq!(
             asked,
             [Asked::Group(ColumnKind::Energy), Asked::Columns(vec![0])]
         );
-        let error = look(&["z"]).check(&layout).unwrap_err();
+        let error = appearance(&["z"]).check(&layout).unwrap_err();
         assert!(
             error.contains("`z`") && error.contains("coordinates"),
             "{error}"
         );
-        let error = look(&["x+a"]).check(&layout).unwrap_err();
+        let error = appearance(&["x+a"]).check(&layout).unwrap_err();
         assert!(error.contains("`x,a`"), "{error}");
     }
 }
