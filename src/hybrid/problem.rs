@@ -29,6 +29,9 @@ pub struct Problem {
     /// and under the inputs at t = 0, with the contact forces that hold it. A run says by how much coordinates were moved, as
     /// after a projection.
     pub at_rest: bool,
+    /// Of each discrete state, whether its initial value is stated though it is the default. The direction in which a contact slides is
+    /// that of its slip rate otherwise.
+    pub stated: Vec<bool>,
     /// Coordinates frozen in addition: modes in which one of them is free are left out.
     pub freeze: Vec<usize>,
     /// Where it ends.
@@ -98,8 +101,6 @@ pub struct Initial {
     pub v: Vec<f64>,
     /// All discrete states.
     pub discrete: Vec<f64>,
-    /// Of each discrete state whether it was stated. The direction in which a contact slides is that of its slip rate otherwise.
-    pub stated: Vec<bool>,
     /// Mode; `None`: the mode with the fewest free coordinates that holds the state.
     pub mode: Option<usize>,
 }
@@ -217,11 +218,11 @@ impl Problem {
                 q: vec![0.0; n],
                 v: vec![0.0; n],
                 discrete: model.discretes.iter().map(|d| d.values[0]).collect(),
-                stated: vec![false; model.discretes.len()],
                 mode: None,
             },
             project: false,
             at_rest: false,
+            stated: vec![false; model.discretes.len()],
             freeze: Vec::new(),
             end: End {
                 time: 1.0,
@@ -305,7 +306,7 @@ impl Problem {
         } else if let Some(i) = model.coordinate(name) {
             initial.q[i] = value;
         } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
-            (initial.discrete[i], initial.stated[i]) = (value, true);
+            (initial.discrete[i], self.stated[i]) = (value, true);
         } else {
             let known = model.coordinates.iter().map(|c| c.name);
             let known = known.chain(model.discretes.iter().map(|d| d.name));

@@ -107,7 +107,11 @@ impl<'p> Simulation<'p> {
             a: &a,
         };
         for guard in &mode.guards {
-            let Some(direction) = guard.direction.filter(|&d| !self.initial.stated[d]) else {
+            let is_stated = |d: usize| {
+                let default = self.problem.model.discretes[d].values[0];
+                self.problem.stated[d] || self.initial.discrete[d] != default
+            };
+            let Some(direction) = guard.direction.filter(|&d| !is_stated(d)) else {
                 continue;
             };
             self.context.discrete_mut()[direction] = 1.0;

@@ -78,6 +78,7 @@ pub(super) fn scene_of(
             .and_then(|initial| initial.get("project"))
             .is_some_and(Checked::flag),
         at_rest: state::at_rest(&checked),
+        stated: state::stated(model, &checked),
         freeze,
         end,
         limits: Limits::default(),

@@ -72,7 +72,14 @@ pub(crate) fn at_rest(scene: &Checked) -> bool {
     })
 }
 
-/// The initial state. What the scene does not say is zero, or where the modes hold it.
+/// Of each discrete state, whether the scene says what it is at first.
+pub(crate) fn stated(model: &Model, scene: &Checked) -> Vec<bool> {
+    let entry = |name: &str| scene.get("initial").and_then(|initial| initial.get(name));
+    let stated = model.discretes.iter().map(|d| entry(d.name).is_some());
+    stated.collect()
+}
+
+/// The initial state. What the scene does not say is zero, or where every mode in which it may start holds it.
 pub(crate) fn initial(
     model: &Model,
     variant: &Variant,
@@ -174,9 +181,6 @@ pub(crate) fn initial(
             .map(|s| s.rate.map_or(0.0, Checked::number))
             .collect(),
         discrete: discrete.collect(),
-        stated: (model.discretes.iter())
-            .map(|d| entry(d.name).is_some())
-            .collect(),
         mode,
     })
 }
@@ -194,11 +198,15 @@ fn named_mode(model: &Model, variant: &Variant, name: &Checked) -> Result<usize,
         })
 }
 
-/// The value at which the modes that hold a coordinate hold it, if there is one and they agree.
+/// The value at which all modes hold a coordinate, if they agree.
 fn held_by_all(modes: &[Holding], i: usize) -> Option<f64> {
-    let mut held = modes.iter().filter_map(|(_, at)| at[i]);
-    let first = held.next()?;
-    held.all(|other| other == first).then_some(first)
+    let [(_, first), others @ ..] = modes else {
+        return None;
+    };
+    others
+        .iter()
+        .all(|(_, at)| at[i] == first[i])
+        .then_some(first[i])?
 }
 
 /// What a scene says about a coordinate.

@@ -20,6 +20,9 @@ mod page;
 #[cfg(feature = "png-pdf")]
 mod pictures;
 mod precision;
+#[path = "../common/random.rs"]
+mod random;
+mod random_models;
 mod run;
 mod sizes;
 mod study;

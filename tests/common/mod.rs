@@ -1,6 +1,8 @@
 //! Helpers of the tests that simulate.
 #![allow(dead_code)] // each test file uses some of them
 
+pub mod random;
+
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::model::models;
 use dalembert::record::{Run, Silent};

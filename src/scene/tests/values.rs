@@ -32,7 +32,6 @@ fn smallest_scene_takes_every_default() {
             discrete: (scene.model.discretes.iter())
                 .map(|d| d.values[0])
                 .collect(),
-            stated: vec![false; scene.model.discretes.len()],
             mode: None
         }
     );

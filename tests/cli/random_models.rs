@@ -1,0 +1,170 @@
+//! Random models whose gaps and slips are coordinates, each in both forms: a mode for each set of contact states, and one mode with
+//! multipliers. Impacts, friction and rests that were derived for the one must be what complementarity decides in the other.
+//!
+//! `DALEMBERT_RANDOM_SCENES=300` runs as many, `DALEMBERT_RANDOM_SCENE=17` one of them.
+
+use super::random::Random;
+use super::{dalembert, json};
+use serde_json::json;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+/// Models in the suite: each is derived and compiled twice.
+const SHARE: u64 = 8;
+
+/// A model file, and how many coordinates it has.
+fn model(random: &mut Random) -> (String, usize) {
+    let n = 1 + (random.next() % 3) as usize;
+    let mut text = String::from(
+        "from codegen.model import *\n\nmodel = Model(\"Random\", source=\"test model: random lines\")\n\
+         one = model.parameter(\"one\", \"m\", 1.0, \"length\", above=0)\n\
+         m = model.parameter(\"m\", \"kg\", 1.0, \"mass\", above=0)\n\
+         k = model.parameter(\"k\", \"N/m\", 1.0, \"stiffness\", above=0)\n\
+         c = model.parameter(\"c\", \"N s/m\", 1.0, \"damping\", above=0)\n\
+         N = model.parameter(\"N\", \"N\", 1.0, \"force\", above=0)\n\
+         F = model.input(\"F\", \"N\", \"force\")\n",
+    );
+    let mut say = |line: String| writeln!(text, "{line}").unwrap();
+    let masses: Vec<f64> = (0..n).map(|_| random.within(0.5, 2.0)).collect();
+    for i in 0..n {
+        say(format!(
+            "x{i} = model.coordinate(\"x{i}\", \"m\", \"place {i}\")"
+        ));
+        say(format!(
+            "model.kinetic({:.4} * m * x{i}.rate**2 / 2)",
+            masses[i]
+        ));
+    }
+    for i in 0..n {
+        for j in 0..i {
+            if random.next().is_multiple_of(3) {
+                let most = 0.4 * (masses[i] * masses[j]).sqrt();
+                let (part, at) = (random.within(-most, most), random.next() as usize % n);
+                let factor = random.one_of(&["1", "cos"]);
+                let factor = factor.replace("cos", &format!("cos(x{at} / one)"));
+                say(format!(
+                    "model.kinetic({part:.4} * m * x{i}.rate * x{j}.rate * {factor})"
+                ));
+            }
+            if random.next().is_multiple_of(3) {
+                let stiffness = random.within(1.0, 20.0);
+                say(format!(
+                    "model.potential({stiffness:.4} * k * (x{i} - x{j})**2 / 2)"
+                ));
+            }
+        }
+    }
+    for i in 0..n {
+        let [stiffness, weight, damping, force] =
+            [(1.0, 20.0), (-10.0, 10.0), (0.0, 0.5), (-1.0, 1.0)]
+                .map(|range| random.either(0.0, range));
+        say(format!(
+            "model.potential({stiffness:.4} * k * x{i}**2 / 2 + {weight:.4} * N * x{i})"
+        ));
+        say(format!(
+            "model.dissipation({damping:.4} * c * x{i}.rate**2 / 2)"
+        ));
+        say(format!("model.force(x{i}, {force:.4} * F)"));
+        let kind = *random.one_of(&["", "stop", "friction", "stop friction", "stop end"]);
+        let mu = random.within(0.1, 0.8);
+        let kinetic = mu * random.within(0.6, 1.0);
+        let side = *random.one_of(&[1.0, -1.0]);
+        if kind.contains("stop") {
+            let slip = match n {
+                1 => String::new(),
+                _ if random.next().is_multiple_of(3) => {
+                    let along = (i + 1 + random.next() as usize % (n - 1)) % n;
+                    format!(", slip=x{along}, static={mu:.4}, kinetic={kinetic:.4}")
+                }
+                _ => String::new(),
+            };
+            let (at, e) = (random.within(0.1, 0.6), random.either(0.0, (0.1, 0.9)));
+            say(format!(
+                "model.contact(\"stop{i}\", gap={side} * x{i} + {at:.4} * one, restitution={e:.4}{slip})"
+            ));
+        }
+        if kind.contains("end") {
+            let at = random.within(0.1, 0.6);
+            say(format!(
+                "model.contact(\"end{i}\", gap={} * x{i} + {at:.4} * one)",
+                -side
+            ));
+        }
+        if kind.contains("friction") || i == 0 && kind.is_empty() {
+            let (holds, slides) = (5.0 * mu, 5.0 * kinetic);
+            say(format!(
+                "model.friction(\"base{i}\", slip=x{i}, normal=N, static={holds:.4}, kinetic={slides:.4})"
+            ));
+        }
+    }
+    (text, n)
+}
+
+/// Runs the model of a folder; the summary, and the coordinates and rates at the end.
+fn run(folder: &Path, form: &str, scene: &serde_json::Value) -> (serde_json::Value, Vec<f64>) {
+    let mut scene = scene.clone();
+    scene["model"] = json!(format!("./{form}"));
+    let file = format!("{form}.json");
+    fs::write(folder.join(&file), scene.to_string()).unwrap();
+    let out = format!("out_{form}");
+    let assert = dalembert(folder)
+        .args(["run", &file, "--out", &out])
+        .assert();
+    let output = assert.get_output();
+    let path = folder.join(&out).join("summary.json");
+    assert!(path.exists(), "{}", super::stderr(output));
+    let summary = json(&path);
+    let of = |what: &str| {
+        let values = summary["end"][what].as_object().unwrap().iter();
+        let own = values.filter(|(name, _)| name.starts_with('x'));
+        own.map(|(_, value)| value.as_f64().unwrap())
+            .collect::<Vec<_>>()
+    };
+    let state = [of("q"), of("v")].concat();
+    (summary, state)
+}
+
+#[test]
+fn random_models_move_alike_in_both_forms() {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
+    let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
+    let numbers = match asked("DALEMBERT_RANDOM_SCENE") {
+        Some(number) => number..number + 1,
+        None => 0..share,
+    };
+    let mut events = 0;
+    for number in numbers {
+        let mut random = Random(number);
+        let (text, n) = model(&mut random);
+        let folder = tempfile::tempdir().unwrap();
+        for (form, more) in [("reduced", ""), ("multipliers", "model.multipliers()\n")] {
+            fs::create_dir(folder.path().join(form)).unwrap();
+            let file = folder.path().join(form).join("model.py");
+            fs::write(file, format!("{text}{more}")).unwrap();
+        }
+        let rates = (0..n).map(|i| (format!("x{i}.rate"), json!(random.within(-2.0, 2.0))));
+        let scene = json!({
+            "initial": rates.collect::<serde_json::Map<_, _>>(),
+            "inputs": { "F": { "sine": {
+                "amplitude": random.within(0.0, 15.0),
+                "angular_frequency": random.within(1.0, 8.0),
+            } } },
+            "end": 3.0,
+            "accuracy": { "relative": 1e-11 },
+            "record": { "every": 0.1 },
+        });
+        let [(one, a), (other, b)] =
+            ["reduced", "multipliers"].map(|form| run(folder.path(), form, &scene));
+        let of = format!("model {number}:\n{text}{scene}");
+        assert_eq!(one["failure"], other["failure"], "{of}");
+        for (a, b) in a.iter().zip(&b) {
+            assert!(
+                (a - b).abs() <= 1e-7 * (1.0 + a.abs()),
+                "{a} and {b} in {of}"
+            );
+        }
+        events += one["events"]["total"].as_u64().unwrap();
+    }
+    println!("{events} events");
+}
