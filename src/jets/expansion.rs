@@ -138,21 +138,46 @@ impl Expansion {
         &self.given.a[coordinate]
     }
 
+    /// Lets nothing be known of what follows where the mass matrix may be singular within the errors ΔM of its entries. What is solved by
+    /// it is off by |M⁻¹| times what is left of the equations as long as B = |M⁻¹| ΔM is well below 1 (Neumann's series): where its
+    /// spectral radius is. That is at most the 8th root of the largest row sum of B⁸, which hardly depends on units.
+    fn check_inverse(&mut self, mode: &Mode) {
+        let count = mode.free.len();
+        let error = |i: usize, j: usize| self.system[mode.system.results[count * j + i]][0].error;
+        let (sums, products) = (&mut self.accelerations[..count], &mut self.left[..count]);
+        sums.fill(1.0);
+        for _ in 0..8 {
+            for (i, product) in products.iter_mut().enumerate() {
+                *product = (0..count).map(|j| error(i, j) * sums[j]).sum();
+            }
+            for (i, sum) in sums.iter_mut().enumerate() {
+                let inverse = |j: usize| self.inverse[i * count + j].abs();
+                *sum = (0..count).map(|j| inverse(j) * products[j]).sum();
+            }
+        }
+        let is_regular = sums.iter().all(|&sum| sum < 0.5f64.powi(8));
+        if !is_regular {
+            self.inverse[..count * count].fill(f64::NAN);
+        }
+    }
+
     /// The accelerations of order `k`, and rates and coordinates that follow from them.
     fn move_on(&mut self, mode: &Mode, k: usize) {
         let free = &mode.free;
         let count = free.len();
         mode.system.expand(k, &self.given, &mut self.system);
-        let entry = |place: usize| &self.system[mode.system.results[place]];
         if k == 0 {
-            let mass = |i: usize, j: usize| entry(count * j + i)[0].value;
+            let mass =
+                |i: usize, j: usize| self.system[mode.system.results[count * j + i]][0].value;
             let ones = Dynamic(count).repeat(1.0);
             match Lu::<f64, Dynamic>::factorize(mass, &ones) {
                 Ok(mass) => mass.inverse(|i, j, entry| self.inverse[i * count + j] = entry),
                 // Then nothing is known of what follows: errors without bound.
                 Err(_) => self.inverse[..count * count].fill(f64::NAN),
             }
+            self.check_inverse(mode);
         }
+        let entry = |place: usize| &self.system[mode.system.results[place]];
         // M₀ a_k + rest = 0.
         let rest = &mut self.rest[..count];
         for (i, rest) in rest.iter_mut().enumerate() {

@@ -217,6 +217,11 @@ impl ContactSets {
 }
 
 impl Contact {
+    /// Whether others are to hold its slip, by these discrete states.
+    pub fn is_dropped(&self, discrete: &[f64]) -> bool {
+        self.dropped.is_some_and(|i| discrete[i] != 0.0)
+    }
+
     /// Whether it has a gap that closes: neither friction alone nor a ratchet does.
     pub fn has_gap(&self) -> bool {
         self.normal.is_some() && !self.is_ratchet

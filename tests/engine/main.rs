@@ -11,6 +11,7 @@ mod chains;
 mod charts;
 mod contacts;
 mod coulomb;
+mod dead_centres;
 mod derivatives;
 mod doubts;
 mod driven;

@@ -3,7 +3,7 @@
 //!
 //! `DALEMBERT_RANDOM_SCENES=10000` runs as many, `DALEMBERT_RANDOM_SCENE=17` one of them.
 
-use super::random_scenes::Random;
+use crate::common::random::Random;
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::Sine;

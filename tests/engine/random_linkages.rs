@@ -1,6 +1,6 @@
 //! Four-bar linkages with random bars, held by constraints, against the same linkage in the angle of its crank alone.
 
-use super::random_scenes::Random;
+use crate::common::random::Random;
 use crate::common::*;
 use dalembert::hybrid::Method;
 

@@ -1,7 +1,7 @@
 //! Random stacks of two blocks on shaking ground: gaps, complementarity, momentum and the energy ledger in every row.
 
 use super::multipliers::sine;
-use super::random_scenes::Random;
+use crate::common::random::Random;
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::record::{Run, Silent};

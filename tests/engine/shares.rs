@@ -1,6 +1,6 @@
 //! Contacts that stick although not all of their forces are determined: as long as some share of them holds.
 
-use super::random_scenes::Random;
+use crate::common::random::Random;
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem};
 use dalembert::input::{Interpolation, Outside, Table};

@@ -333,6 +333,7 @@ impl<'p> Simulation<'p> {
             geometry,
             touching,
             leaves,
+            ..
         } = standing;
         hold_lines(&self.context, contacts, [&places, &rates], [q, v]);
         let n = self.here.q.len();

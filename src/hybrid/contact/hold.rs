@@ -190,8 +190,8 @@ pub(super) fn is_at_zero(k: usize, held: &[Line], at: &ContactValues, geometry: 
     gap.abs() <= rounding + parts.iter().map(of_others).sum::<f64>()
 }
 
-/// Newton's method converges quadratically, at a singular position by a half: where a step gains less than a tenth, rounding is what is left. Without a least gain a
-/// residual that falls by one unit in its last place each time goes on for millions of steps.
+/// Newton's method converges quadratically, at a singular position by a half: where a step gains less than a tenth, rounding is what is
+/// left. Without a least gain a residual that falls by one unit in its last place each time goes on for millions of steps.
 const LEAST_GAIN: f64 = 0.9;
 
 /// Brings given lines back: those whose place, and those whose rate is held. Newton's method, each time by the least
@@ -206,11 +206,20 @@ pub(super) fn hold_lines(
         return;
     }
     let mut geometry = Geometry::new(context, contacts, [q, v]);
-    let mut before = f64::INFINITY;
+    let (mut first, mut before) = (Vec::new(), f64::INFINITY);
     loop {
         let now = ContactValues::new(context, contacts, [q, v]);
         let lines = geometry.spanning(places);
-        let (amounts, off) = missing(&lines, |line| now.position(line));
+        let (amounts, off) = missing(&lines, |line| {
+            let (value, rounding) = now.position(line);
+            let known = first.iter().find(|(known, _)| *known == line);
+            let at_first = known.map_or(value, |(_, value)| *value);
+            if known.is_none() {
+                first.push((line, value));
+            }
+            // A gap that is a coordinate alone is known to any number of digits: it is zero beside what it was.
+            (value, rounding.max(ROUNDOFF * at_first.abs()))
+        });
         // Not a number where nothing is known: then nothing is moved.
         if !(off > 1.0 && off < LEAST_GAIN * before) {
             break;
@@ -245,7 +254,7 @@ pub(super) fn hold_lines(
 }
 
 /// What is missing to zero along some lines, and the most of it in units of its rounding.
-fn missing(lines: &[Line], value: impl Fn(Line) -> (f64, f64)) -> (Vec<f64>, f64) {
+fn missing(lines: &[Line], mut value: impl FnMut(Line) -> (f64, f64)) -> (Vec<f64>, f64) {
     let mut most = 0.0_f64;
     let amounts = (lines.iter())
         .map(|&line| {

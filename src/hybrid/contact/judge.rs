@@ -319,7 +319,58 @@ impl<'p> Simulation<'p> {
                 return None;
             }
         }
-        Some(orders)
+        self.keeps_dropped(contacts, candidate, touching)
+            .then_some(orders)
+    }
+
+    /// Whether the slips that others are to hold do stay zero. Where lines depend on each other at this position alone, as a mechanism
+    /// passes a dead centre, such a slip is zero for an instant, and goes on with another sign.
+    fn keeps_dropped(
+        &mut self,
+        contacts: &'p Contacts,
+        candidate: &Candidate,
+        touching: &[Option<Tangent>],
+    ) -> bool {
+        let touch = (0..touching.len()).filter(|&k| touching[k].is_some());
+        let dropped: Vec<usize> = touch
+            .filter(|&k| candidate.states[k] == ContactState::Sticks)
+            .filter(|&k| contacts.contacts[k].is_dropped(&candidate.discrete))
+            .map(|k| k * Contacts::DECISIONS + SLIP)
+            .collect();
+        if dropped.is_empty() {
+            return true;
+        }
+        let mode: &Mode = self.mode();
+        let at = point(&self.next, self.here.q.len(), &candidate.discrete);
+        let (tape, expansion) = (&contacts.decisions, &mut self.expansion);
+        expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
+        // Where the coordinates change, those to come tell how a slip goes on.
+        let mut charts = (mode.guards.iter().enumerate())
+            .filter(|(_, guard)| guard.transitions.iter().any(|t| t.is_chart))
+            .peekable();
+        if charts.peek().is_some() {
+            expansion.expand(mode, &mode.guard_values, 0);
+            let value = |guard: usize| expansion.result(&mode.guard_values, guard)[0];
+            if charts.any(|(guard, _)| value(guard).sign().is_none()) {
+                return true;
+            }
+        }
+        for k in 0..ORDERS {
+            expansion.expand(mode, tape, k);
+            let leaves = |&index: &usize| expansion.result(tape, index)[k].sign().is_some();
+            if dropped.iter().any(leaves) {
+                return false;
+            }
+            let mut own = (0..mode.free.len()).filter(|&i| !contacts.is_multiplier(i));
+            let rests = |i: usize| {
+                at.v[mode.free[i]] == 0.0
+                    && expansion.acceleration(mode.free[i])[0].sign().is_none()
+            };
+            if k == 0 && own.all(rests) {
+                break;
+            }
+        }
+        true
     }
 }
 
@@ -363,11 +414,8 @@ fn asked(
         if contact.normal.is_some() {
             asked.push((of(PUSH), 1.0));
         }
-        let is_dropped = contact
-            .dropped
-            .is_some_and(|i| candidate.discrete[i] != 0.0);
         match state {
-            ContactState::Sticks if !is_dropped => {
+            ContactState::Sticks if !contact.is_dropped(&candidate.discrete) => {
                 asked.extend([(of(FORWARDS), 1.0), (of(BACKWARDS), 1.0)]);
             }
             ContactState::Slides(direction) if tangent == Tangent::Still => {

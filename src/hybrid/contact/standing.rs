@@ -17,6 +17,8 @@ pub(super) struct Standing {
     pub touching: Vec<Option<Tangent>>,
     /// Of each contact, whether it leaves its gap with a rate.
     pub leaves: Vec<bool>,
+    /// A line that vanishes, and with it its rate: nothing brings that to zero.
+    pub vanishing: Option<Line>,
 }
 
 impl Standing {
@@ -46,7 +48,7 @@ impl Standing {
         let places: Vec<Line> = constraints.chain(normals).collect();
         let still = touching().filter(|(_, t)| *t == Tangent::Still);
         let rates = (places.iter().copied()).chain(still.map(|(k, _)| Line::Tangent(k)));
-        let rates = rates.collect();
+        let rates = rates.filter(|line| self.vanishing != Some(*line)).collect();
         [places, rates]
     }
 
@@ -76,8 +78,11 @@ impl Simulation<'_> {
     ) -> Standing {
         let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let [places, mut still] = held_lines(contacts, before);
-        still.extend(stops);
         let context = &self.context;
+        let at = ContactValues::new(context, contacts, [&q, &v]);
+        let geometry = Geometry::new(context, contacts, [&q, &v]);
+        let vanishing = stops.filter(|&line| self.vanishes(line, (&geometry, &at, &v)));
+        still.extend(stops.filter(|_| vanishing.is_none()));
         hold_lines(context, contacts, [&places, &still], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
         let at = ContactValues::new(context, contacts, [&q, &v]);
@@ -104,7 +109,23 @@ impl Simulation<'_> {
             geometry,
             touching,
             leaves: vec![false; before.len()],
+            vanishing,
         }
+    }
+
+    /// Whether the rate of a line has come to zero since the line itself vanishes there, as the slip of a crank does at its dead
+    /// centre: to bring to zero what rounding leaves of it changes rates of coordinates by more than the tolerances tell from nothing.
+    fn vanishes(
+        &self,
+        line: Line,
+        (geometry, at, v): (&Geometry, &ContactValues, &Buffer<f64>),
+    ) -> bool {
+        let accuracy = &self.accuracy;
+        let (rate, _) = at.rate(line);
+        let change = geometry.least_change(&[line], &[-rate]).unwrap_or_default();
+        (change.iter().zip(&geometry.own)).any(|(change, &i)| {
+            change.abs() > accuracy.v_absolute[i] + accuracy.relative * v[i].abs()
+        })
     }
 
     /// Whether a line is still with some others, which are. Of two belts with speeds of their own one alone stops, although their
@@ -162,6 +183,7 @@ impl Simulation<'_> {
             geometry,
             touching,
             leaves: vec![false; before.len()],
+            vanishing: None,
         }
     }
 }

@@ -143,6 +143,7 @@ impl<'p> Simulation<'p> {
             geometry,
             touching,
             leaves,
+            vanishing: None,
         })
     }
 
@@ -155,8 +156,8 @@ impl<'p> Simulation<'p> {
         let mut places = rates.clone();
         loop {
             let state = [&mut *q, &mut *v];
-            let context = &self.context;
-            hold_lines(context, contacts, [&places, &rates], state);
+            hold_lines(&self.context, contacts, [&places, &rates], state);
+            self.close_gaps(contacts, &places, [q, v]);
             let at = ContactValues::new(&self.context, contacts, [q, v]);
             let is_ratchet = |k: usize| contacts.contacts[k].is_ratchet;
             let is_violated = |k: usize| {
@@ -176,6 +177,23 @@ impl<'p> Simulation<'p> {
                 &mut places
             };
             held.push(Line::Normal(k));
+        }
+    }
+
+    /// Brings each of some gaps alone to zero, as long as it comes closer: a gap that is a coordinate is known to any number of
+    /// digits, of which bringing several back at once leaves some.
+    fn close_gaps(&self, contacts: &Contacts, places: &[Line], [q, v]: [&mut Buffer<f64>; 2]) {
+        for &line in places {
+            let mut before = f64::INFINITY;
+            loop {
+                let at = ContactValues::new(&self.context, contacts, [q, v]);
+                let (value, rounding) = at.position(line);
+                if !(value.abs() > rounding && value.abs() < before) {
+                    break;
+                }
+                hold_lines(&self.context, contacts, [&[line], &[]], [q, v]);
+                before = value.abs();
+            }
         }
     }
 

@@ -1,0 +1,26 @@
+"""A leg with a foot, pinned to the rim of a wheel: foot and wheel on rough ground hold the whole, but where the foot is at a dead centre."""
+
+from codegen.model import *
+
+model = Model("Foot and wheel", source="test model: contacts that hold each other at one position alone")
+g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
+L = model.parameter("L", "m", 0.5, "from each centre to the pin", above=0)
+R = model.parameter("R", "m", 0.1662, "wheel", above=0)
+a = model.parameter("a", "m", 0.3853, "foot behind the centre of the leg", above=0)
+c = model.parameter("c", "m", 0.2820, "foot below the centre of the leg", above=0)
+m_leg = model.parameter("m_leg", "kg", 0.7409, "mass of the leg", above=0)
+I_leg = model.parameter("I_leg", "kg m^2", 0.0253, "its moment of inertia", above=0)
+m_wheel = model.parameter("m_wheel", "kg", 1.0199, "mass of the wheel", above=0)
+I_wheel = model.parameter("I_wheel", "kg m^2", 0.0772, "its moment of inertia", above=0)
+model.gravity(g)
+x_l = model.coordinate("x_l", "m", "leg, to the right")
+y_l = model.coordinate("y_l", "m", "leg, height")
+p_l = model.coordinate("p_l", "rad", "leg, tilt")
+x_w = model.coordinate("x_w", "m", "wheel, to the right")
+y_w = model.coordinate("y_w", "m", "wheel, height")
+p_w = model.coordinate("p_w", "rad", "wheel, turn")
+model.rigid_body(m_leg, I_leg, (x_l, y_l), p_l)
+model.rigid_body(m_wheel, I_wheel, (x_w, y_w), p_w)
+model.constraint("pin", (x_l + L * cos(p_l) - x_w + L * cos(p_w), y_l + L * sin(p_l) - y_w + L * sin(p_w)))
+model.contact("foot", gap=y_l - a * sin(p_l) - c * cos(p_l), slip=x_l - a * cos(p_l) + c * sin(p_l), static=0.7262, kinetic=0.6052)
+model.contact("wheel", gap=y_w - R, slip=x_w + R * p_w, static=0.9034, kinetic=0.7528)
