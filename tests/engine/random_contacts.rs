@@ -206,6 +206,17 @@ fn check(scene: &Scene, run: &Run, of: &str, [vertical, horizontal, ledger]: [f6
         assert!(upwards.abs() < vertical, "{of}, {t}: {upwards:e} upwards");
         assert!(across.abs() < horizontal, "{of}, {t}: {across:e} across");
     }
+    // No row is beyond the extremes, which are those of the motion between the rows.
+    for (column, peak) in &run.peaks {
+        let values = (0..run.trajectory.t.len()).map(|i| run.trajectory.row(i)[*column]);
+        let values = values.filter(|value| !value.is_nan());
+        let size = peak.max.abs().max(peak.min.abs());
+        let within = 1e-9 * size.max(1e-3);
+        for value in values {
+            let is_inside = peak.min - within <= value && value <= peak.max + within;
+            assert!(is_inside, "{of}: column {column}: {value} beyond {peak:?}");
+        }
+    }
     let energy = run.energy.as_ref().unwrap();
     let turnover = energy.initial.abs()
         + energy.final_.abs()

@@ -27,8 +27,8 @@ impl Observers<'_> {
             let time = |place: f64| seconds(part.time(place));
             let summits = extremes.update(&self.interpolants, f, column, rate, time);
             for place in summits.into_iter().flatten() {
-                let n = step.equations.kernel.size().get();
-                let tau = polish((step.motion, n), part, f, part.time(place));
+                let free = self.functions.free;
+                let tau = polish((step.motion, free), part, f, part.time(place));
                 self.evaluate(step, tau, Interpolants::SPARE, (columns, false));
                 let value = self.interpolants.value_at(Interpolants::SPARE, f);
                 extremes.note(column, seconds(tau), value);
@@ -71,7 +71,7 @@ impl Observers<'_> {
 /// Goes from a place near an extremum of a function to it, where its derivative is that of the motion: by the
 /// secant method, from a place that is off by less than a thousandth of the part, until a step is as short as places
 /// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again. Of the functions the first are the
-/// `n` free coordinates, then their rates.
+/// `n` free coordinates that are no multipliers, then their rates.
 fn polish<F: Size>((motion, n): (&dyn Motion<F>, usize), part: Part, f: usize, tau: f64) -> f64 {
     let rate = |tau: f64| {
         let (_, v, a) = motion.at(tau);
