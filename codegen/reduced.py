@@ -99,15 +99,19 @@ class Expansion:
                 _bound(self.model, contact)
 
     def _check_friction(self):
-        """A normal force that follows from the motion, and friction of something else along its gap or its slip, are not determined
-        apart from each other; that is decided by forces along each of them (`multipliers.py`)."""
-        for contact in self.contacts:
-            if contact.gap is None or contact.slip is None:
+        """Where a gap holds a coordinate, friction along it has nothing to do, unless its partner moves. And a normal force that follows
+        from the motion, and friction of something else along its gap or its slip, are not determined apart from each other. Both is
+        decided by forces along each of them (`multipliers.py`)."""
+        with_gap = [contact for contact in self.contacts if contact.gap is not None]
+        for contact, other in itertools.product(with_gap, self.contacts):
+            if other is contact:
                 continue
-            for other in self.contacts:
-                lines = [line.name for line in (other.gap, other.slip) if line]
-                if other is not contact and (contact.slip.name in lines or other.slip and other.slip.name == contact.gap.name):
-                    raise NotReducible(f"friction of `{contact.name}` and `{other.name}` acts along one coordinate")
+            along_gap = other.slip is not None and other.slip.name == contact.gap.name
+            if along_gap and not other.slip.offset.is_zero():
+                raise NotReducible(f"friction of `{other.name}` against what moves acts along the gap of `{contact.name}`")
+            lines = [line.name for line in (other.gap, other.slip) if line]
+            if contact.slip is not None and (along_gap or contact.slip.name in lines):
+                raise NotReducible(f"friction of `{contact.name}` and `{other.name}` acts along one coordinate")
 
     def _can_be(self, states):
         """A coordinate is where one gap is zero, not two; friction along it holds nothing there."""

@@ -7,12 +7,14 @@
 
 use super::accumulation::Limit;
 use super::failure::{Reason, Stoppable};
+use super::instant::Instant;
 use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
 use super::unrest::{Restless, Unfit};
 use crate::integrate::ORDERS;
-use crate::kernel::{Free, with_kernel};
+use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{Guard, GuardShape, Mode};
+use crate::numerics::Size;
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
@@ -38,7 +40,7 @@ impl Held {
 /// Height of a hop, in roundings of its coordinate, whose duration is told to a quarter of all digits: ε^(−1/4).
 const TOLD: f64 = (1u64 << 13) as f64;
 
-impl Simulation<'_> {
+impl<'p> Simulation<'p> {
     /// The mode and the limit of an accumulation that the last events make certain, where a rest fits it.
     pub fn rest(&self) -> Option<(usize, Limit)> {
         if !self.plan.rests(self.here.mode) {
@@ -152,6 +154,11 @@ impl Simulation<'_> {
     /// Enters a mode that fits the limit of an accumulation.
     fn come_to_rest(&mut self, target: usize, limit: &Limit) -> Stoppable<()> {
         let n = self.here.q.len();
+        if self.observers.ledger.is_some() && limit.at.since(self.here.now) > 0.0 {
+            let (before, mode) = (self.here.now, self.mode());
+            let work = with_kernel!(&mode.kernels, k => self.go_on_to(k, before, limit.at))?;
+            self.take_limit(limit, work);
+        }
         self.here.now = limit.at;
         self.here.q.copy_from_slice(&limit.state[..n]);
         self.here.v.copy_from_slice(&limit.state[n..]);
@@ -162,6 +169,61 @@ impl Simulation<'_> {
             self.next[place] = value;
         }
         self.commit("rest", false, target)
+    }
+
+    /// Lets the motion go on from an instant to a limit as if nothing happened between them. Gives its work [dissipated, input], J.
+    pub(super) fn go_on_to<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        before: Instant,
+        limit: Instant,
+    ) -> Stoppable<[f64; 2]> {
+        let duration = limit.since(before);
+        self.here.now = before;
+        let powers = self.powers(kernel)?;
+        let begins = self.here.a.to_vec();
+        for i in 0..begins.len() {
+            let (v, a) = (self.here.v[i], begins[i]);
+            self.here.q[i] += duration * (v + 0.5 * duration * a);
+            self.here.v[i] += duration * a;
+        }
+        self.here.now = limit;
+        let ends = self.powers(kernel)?;
+        for (i, begins) in begins.iter().enumerate() {
+            let more = self.here.a[i] - begins;
+            self.here.q[i] += duration * duration / 6.0 * more;
+            self.here.v[i] += 0.5 * duration * more;
+        }
+        Ok([0, 1].map(|i| 0.5 * duration * (powers[i] + ends[i])))
+    }
+
+    /// [dissipated, input] power here, W, after setting the accelerations.
+    fn powers<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<[f64; 2]> {
+        self.set_context();
+        self.set_accelerations(kernel)?;
+        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        Ok(kernel.powers(&self.context, at))
+    }
+
+    /// Takes the state of a limit: all impacts that are left happen there, at once. The ledger has the energy that they lose, and the
+    /// work till there.
+    pub(super) fn take_limit(&mut self, limit: &Limit, work: [f64; 2]) {
+        let n = self.here.q.len();
+        let energies = (self.observers.ledger.is_some())
+            .then(|| (self.stored_energy(), self.ground_momenta()));
+        self.here.q.copy_from_slice(&limit.state[..n]);
+        self.here.v.copy_from_slice(&limit.state[n..]);
+        self.set_context();
+        let jump = energies.map(|before| self.energy_jump(before));
+        if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, jump) {
+            ledger.add_work(work);
+            ledger.add_jump(jump);
+        }
     }
 
     /// The rest that a limit of events in some modes comes to: of those declared for these modes that fit it the

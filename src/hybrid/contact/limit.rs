@@ -9,7 +9,6 @@ use crate::hybrid::failure::Stoppable;
 use crate::hybrid::instant::Instant;
 use crate::hybrid::simulation::Simulation;
 use crate::input::Side;
-use crate::kernel::Free;
 use crate::model::Contacts;
 use crate::numerics::Size;
 
@@ -152,23 +151,7 @@ impl<'p> Simulation<'p> {
         limit: &Limit,
     ) -> Stoppable<()> {
         let n = self.here.q.len();
-        let duration = limit.at.since(before);
-        self.here.now = before;
-        let powers = self.powers(contacts)?;
-        let begins = self.here.a.to_vec();
-        for i in 0..n {
-            let (v, a) = (self.here.v[i], begins[i]);
-            self.here.q[i] += duration * (v + 0.5 * duration * a);
-            self.here.v[i] += duration * a;
-        }
-        self.here.now = limit.at;
-        let ends = self.powers(contacts)?;
-        let work = [0, 1].map(|i| 0.5 * duration * (powers[i] + ends[i]));
-        for (i, begins) in begins.iter().enumerate() {
-            let more = self.here.a[i] - begins;
-            self.here.q[i] += duration * duration / 6.0 * more;
-            self.here.v[i] += 0.5 * duration * more;
-        }
+        let work = self.go_on_to(&contacts.kernel, before, limit.at)?;
         let geometry = &standing.geometry;
         let change: Vec<f64> = (geometry.own.iter())
             .map(|&i| standing.v[i] - self.here.v[i])
@@ -179,29 +162,7 @@ impl<'p> Simulation<'p> {
             let of_line = impulses.iter().find(|(known, _)| *known == line);
             self.next[n + i] = self.here.v[i] + of_line.map_or(0.0, |(_, impulse)| *impulse);
         }
-        let energies = (self.observers.ledger.is_some())
-            .then(|| (self.stored_energy(), self.ground_momenta()));
-        self.here.q.copy_from_slice(&limit.state[..n]);
-        self.here.v.copy_from_slice(&limit.state[n..]);
-        self.set_context();
-        let jump = energies.map(|before| self.energy_jump(before));
-        if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, jump) {
-            ledger.add_work(work);
-            ledger.add_jump(jump);
-        }
+        self.take_limit(limit, work);
         Ok(())
-    }
-
-    /// [dissipated, input] power here, W, after setting the accelerations.
-    fn powers(&mut self, contacts: &'p Contacts) -> Stoppable<[f64; 2]> {
-        self.set_context();
-        self.set_accelerations(&contacts.kernel)?;
-        let [q, v, a] = self.here.free(contacts.kernel.size(), &self.mode().free);
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
-        };
-        Ok(contacts.kernel.powers(&self.context, at))
     }
 }
