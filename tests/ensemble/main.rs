@@ -259,6 +259,23 @@ fn modes_that_do_not_go_in_lanes_are_run_alone() {
 }
 
 #[test]
+fn what_constraints_hold_is_brought_back_in_ensembles_too() {
+    let mut pendulum = problem("constrained_pendulum", &[]);
+    pendulum.end.time = 20.0;
+    set_size(&mut pendulum, 1e-6, 1.0, 3.0);
+    let pendulums = variations(&pendulum, 9, |p, x| {
+        p.set_initial("x", 1.0).unwrap();
+        p.set_initial("y.rate", x).unwrap();
+    });
+    let ends = together(&pendulums, processor_level(), 1);
+    assert_eq!(difference(&alone(&pendulums), &ends), 0.0);
+    for end in &ends {
+        let off = end.state[0].hypot(end.state[1]) - 1.0;
+        assert!(off.abs() < 4.0 * f64::EPSILON, "{off:e}");
+    }
+}
+
+#[test]
 fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours() {
     let blocks = shaken_blocks(1e-6, 37);
     let all = together(&blocks, 0, 1);
