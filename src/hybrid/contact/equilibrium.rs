@@ -200,9 +200,10 @@ impl<'p> Simulation<'p> {
             a: &a,
         };
         let bounds = contacts.kernel.magnitude(&self.context, at);
+        // What is below the normal numbers has no digits: terms of which all have become that small are zero.
         let rounding = |i: usize| -> f64 {
             let terms = (0..size.get()).map(|j| inverse[(i, j)].abs() * bounds[j]);
-            f64::EPSILON * terms.sum::<f64>()
+            (f64::EPSILON * terms.sum::<f64>()).max(f64::MIN_POSITIVE)
         };
         let moved =
             (0..size.get()).find(|&i| !contacts.is_multiplier(i) && a[i].abs() > rounding(i));
