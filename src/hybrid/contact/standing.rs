@@ -1,6 +1,6 @@
 //! The contacts as they stand at an instant: what touches, and what of it has no rate.
 
-use super::geometry::{Geometry, Line, multiplier};
+use super::geometry::{DEPENDENT, Geometry, Line, multiplier};
 use super::hold::{ContactValues, held_lines, held_with, hold_lines, is_at_zero};
 use super::impact::Impacted;
 use super::{ContactState, Tangent};
@@ -114,7 +114,8 @@ impl Simulation<'_> {
     }
 
     /// Whether the rate of a line has come to zero since the line itself vanishes there, as the slip of a crank does at its dead
-    /// centre: to bring to zero what rounding leaves of it changes rates of coordinates by more than the tolerances tell from nothing.
+    /// centre: to bring to zero what rounding leaves of it changes rates of coordinates by more than the tolerances, or √ε of what is typical of
+    /// them, tell from nothing.
     fn vanishes(
         &self,
         line: Line,
@@ -124,7 +125,9 @@ impl Simulation<'_> {
         let (rate, _) = at.rate(line);
         let change = geometry.least_change(&[line], &[-rate]).unwrap_or_default();
         (change.iter().zip(&geometry.own)).any(|(change, &i)| {
-            change.abs() > accuracy.v_absolute[i] + accuracy.relative * v[i].abs()
+            // An event is landed on to a rounding of the time since the last one.
+            let landing = DEPENDENT * self.rate_sizes[i];
+            change.abs() > landing.max(accuracy.v_absolute[i] + accuracy.relative * v[i].abs())
         })
     }
 
