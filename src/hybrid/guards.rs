@@ -17,7 +17,7 @@ pub(super) struct Conditions<'a> {
 
 impl Conditions<'_> {
     /// The conditions of a transition out of the present mode, evaluated in its target after the
-    /// reset, reduced by `reduce`. Overwrites `next`.
+    /// reset, reduced by `reduce`; NaN where the accelerations are not determined there. Overwrites `next`.
     fn reduced<F: Size>(
         &mut self,
         kernel: &ModeKernel<F>,
@@ -30,32 +30,11 @@ impl Conditions<'_> {
             return reduce(&[]);
         }
         kernel.reset(context, &transition.kernel, at, self.next);
-        self.reduced_after_reset(context, transition, reduce)
-    }
-
-    /// The same where `next` holds the reset.
-    fn reduced_after_reset(
-        &mut self,
-        context: &mut Context,
-        transition: &Transition,
-        reduce: &dyn Fn(&[f64]) -> f64,
-    ) -> f64 {
         let target = &self.modes[transition.target];
-        self.swap_with(context);
-        let n = context.held().len();
-        let condition = with_kernel!(&target.kernels, k => {
-            conditions_in(k, context, transition, &target.free, &self.next[n..2 * n], reduce)
-        });
-        self.swap_with(context);
-        condition
-    }
-
-    /// Exchanges coordinates and discrete states with those of a context.
-    #[inline(always)]
-    fn swap_with(&mut self, context: &mut Context) {
-        let n = context.held().len();
-        self.next[..n].swap_with_slice(context.held_mut());
-        self.next[2 * n..].swap_with_slice(context.discrete_mut());
+        let after = (&*self.next, &*target.free);
+        let conditions =
+            with_kernel!(&target.kernels, k => k.conditions(context, &transition.kernel, after));
+        conditions.map_or(f64::NAN, reduce)
     }
 
     /// The smallest condition of a transition; +∞ if it has none.
@@ -84,31 +63,6 @@ impl Conditions<'_> {
         };
         self.reduced(kernel, context, transition, at, &least)
     }
-}
-
-/// The conditions in their target mode, whose coordinates and discrete states the context holds. NaN
-/// where the accelerations are not determined.
-fn conditions_in<F: Size>(
-    kernel: &ModeKernel<F>,
-    context: &mut Context,
-    transition: &Transition,
-    free: &[usize],
-    rates: &[f64],
-    reduce: &dyn Fn(&[f64]) -> f64,
-) -> f64 {
-    let size = kernel.size();
-    let q = size.vector(|i| context.held()[free[i]]);
-    let v = size.vector(|i| rates[free[i]]);
-    let system = kernel.system(context, &q, &v);
-    let Ok(a) = system.accelerations(&size.repeat(1.0)) else {
-        return f64::NAN;
-    };
-    let at = Free {
-        q: &q,
-        v: &v,
-        a: &a,
-    };
-    reduce(kernel.conditions(context, &transition.kernel, at))
 }
 
 /// Value of what is watched, in the present mode.

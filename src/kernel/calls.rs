@@ -542,32 +542,48 @@ impl<F: Size> ModeKernel<F> {
         }
     }
 
-    /// The conditions of a transition into this mode, which is taken only if none is negative; none
-    /// if the transition is unconditional.
+    /// The conditions of a transition into this mode, where its reset leads: at the coordinates, rates and discrete states `after` it, of
+    /// which those with the indices `free` are free, and the time of the context. `None` where the accelerations are not determined.
+    ///
+    /// # Panics
+    /// If `after` has not one entry for each coordinate, rate and discrete state, or the mode has another number of free coordinates.
     pub fn conditions<'x>(
         &self,
         x: &'x mut Context,
         transition: &TransitionKernel,
-        at: Free<F>,
-    ) -> &'x [f64] {
+        (after, free): (&[f64], &[usize]),
+    ) -> Option<&'x [f64]> {
+        let (n, size) = (self.dimensions.coordinates, self.size);
+        assert_eq!(after.len(), 2 * n + self.dimensions.discretes);
+        assert_eq!(free.len(), size.get(), "the free coordinates of the mode");
+        let [q, v] = [0, n].map(|from| size.vector(|i| after[from + free[i]]));
+        let out = x.conditions.as_mut_ptr();
+        let raw = RawContext {
+            h: after.as_ptr(),
+            d: after[2 * n..].as_ptr(),
+            ..*x.raw(&self.dimensions)
+        };
+        let (at_q, at_v) = (pointer(&q, size), pointer(&v, size));
+        let (mass, load) = size.matrix_and_vector(|out| {
+            if size.get() > 0 {
+                // SAFETY: F × F and F outputs, one behind the other; `a` is not read.
+                unsafe { (self.functions.system)(at_q, at_v, at_v, &raw, out) }
+            }
+        });
+        let system: LinearSystem<F> = LinearSystem { mass, load };
+        let a: F::Vector = system.accelerations(&size.repeat(1.0)).ok()?;
         let Some((function, free, count)) = transition.condition else {
-            return &[];
+            return Some(&[]);
         };
         assert_eq!(
             free,
-            self.size.get(),
+            size.get(),
             "a condition is evaluated in the target mode"
         );
-        let out = x.conditions[..count].as_mut_ptr();
+        assert!(Arc::ptr_eq(&self.dimensions, &transition.dimensions));
+        assert!(count <= x.conditions.len());
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
-        unsafe {
-            x.call(
-                function,
-                &transition.dimensions,
-                at.pointers(self.size),
-                out,
-            )
-        }
-        &x.conditions[..count]
+        unsafe { function(at_q, at_v, pointer(&a, size), &raw, out) }
+        Some(&x.conditions[..count])
     }
 }
