@@ -71,10 +71,11 @@ fn taken<F: Size>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<&'stati
             refuses(|| kernel.reset(&x, transition, at, &mut out)),
         );
         if transition.conditions() > 0 {
-            let mut x = context(own.0);
+            let (mut x, after) = (context(own.0), room(own.0));
+            let after = (&*after, &*own.1.free);
             expect_refusal(
                 "conditions",
-                refuses(|| kernel.conditions(&mut x, transition, at).len()),
+                refuses(|| kernel.conditions(&mut x, transition, after).is_some()),
             );
         }
     }
@@ -216,10 +217,9 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
             kernel.reset(&x, &transition.kernel, at, &mut out);
             expect(transition.name, is_written(&out));
             let target = &variant.modes[transition.target];
+            let free = &target.free;
             with_kernel!(&target.kernels, target => {
-                let rest = target.size().zeros();
-                let at = Free { q: &rest, v: &rest, a: &rest };
-                let _ = target.conditions(&mut x, &transition.kernel, at);
+                let _ = target.conditions(&mut x, &transition.kernel, (&out, free));
             });
         }
     }

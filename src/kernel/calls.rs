@@ -543,7 +543,7 @@ impl<F: Size> ModeKernel<F> {
     }
 
     /// The conditions of a transition into this mode, where its reset leads: at the coordinates, rates and discrete states `after` it, of
-    /// which those with the indices `free` are free, and the time of the context. `None` where the accelerations are not determined.
+    /// which those with the indices `free` are free, and the time of the context; none if the transition is unconditional. `None` where the accelerations are not determined.
     ///
     /// # Panics
     /// If `after` has not one entry for each coordinate, rate and discrete state, or the mode has another number of free coordinates.
@@ -553,9 +553,17 @@ impl<F: Size> ModeKernel<F> {
         transition: &TransitionKernel,
         (after, free): (&[f64], &[usize]),
     ) -> Option<&'x [f64]> {
+        let Some((function, of_target, count)) = transition.condition else {
+            return Some(&[]);
+        };
         let (n, size) = (self.dimensions.coordinates, self.size);
+        assert!(
+            Arc::ptr_eq(&self.dimensions, &transition.dimensions) && of_target == size.get(),
+            "a condition is evaluated in the target mode"
+        );
         assert_eq!(after.len(), 2 * n + self.dimensions.discretes);
         assert_eq!(free.len(), size.get(), "the free coordinates of the mode");
+        assert!(count <= x.conditions.len());
         let [q, v] = [0, n].map(|from| size.vector(|i| after[from + free[i]]));
         let out = x.conditions.as_mut_ptr();
         let raw = RawContext {
@@ -572,16 +580,6 @@ impl<F: Size> ModeKernel<F> {
         });
         let system: LinearSystem<F> = LinearSystem { mass, load };
         let a: F::Vector = system.accelerations(&size.repeat(1.0)).ok()?;
-        let Some((function, free, count)) = transition.condition else {
-            return Some(&[]);
-        };
-        assert_eq!(
-            free,
-            size.get(),
-            "a condition is evaluated in the target mode"
-        );
-        assert!(Arc::ptr_eq(&self.dimensions, &transition.dimensions));
-        assert!(count <= x.conditions.len());
         // SAFETY: room for `count` outputs; the number of free coordinates was checked.
         unsafe { function(at_q, at_v, pointer(&a, size), &raw, out) }
         Some(&x.conditions[..count])
