@@ -52,6 +52,24 @@ fn a_yoke_turns_back_at_its_dead_centres_and_loses_what_friction_takes() {
 }
 
 #[test]
+fn a_yoke_starts_at_its_dead_centre() {
+    with_each_method(|| {
+        for start in [0.0, PI, -PI] {
+            let problem = problem("dead_centre", &[]);
+            let problem = started(problem, &[("phi", start), ("phi.rate", 10.0)]);
+            let run = run(&problem);
+            balanced(&run);
+            let turns: Vec<f64> = run.events.iter().map(|event| event.before.q[0]).collect();
+            for (k, angle) in turns.iter().enumerate() {
+                let centre = start + (k + 1) as f64 * PI;
+                assert!((angle - centre).abs() < 1e-11, "{angle} and {centre}");
+            }
+            assert!(turns.len() >= 5, "{turns:?}");
+        }
+    });
+}
+
+#[test]
 fn a_slider_on_a_rod_turns_back_where_crank_and_rod_are_in_line() {
     with_each_method(|| {
         let problem = problem("rod_and_guide", &[]);

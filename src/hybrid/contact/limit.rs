@@ -120,7 +120,7 @@ impl<'p> Simulation<'p> {
             geometry,
             touching,
             leaves: vec![false; before.len()],
-            vanishing: None,
+            vanishing: Vec::new(),
         };
         let now = std::mem::replace(&mut self.here.now, limit.at);
         let after = self.settle_contacts(contacts, &mut standing)?;

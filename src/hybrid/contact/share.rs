@@ -46,7 +46,8 @@ pub(super) struct Sharing {
 }
 
 impl Sharing {
-    /// Of a set of contact states; `None` if gaps and constraints that it holds depend on each other.
+    /// Of a set of contact states; `None` if gaps and constraints that it holds depend on each other, or it holds a slip by a force
+    /// that has no effect.
     pub fn new(
         contacts: &Contacts,
         geometry: &Geometry,
@@ -64,6 +65,14 @@ impl Sharing {
                 Some(&of) => joined.push((k, of)),
                 None => first.push(k),
             }
+        }
+        // A force along a line that vanishes holds nothing; beside others, these hold the slip or do not.
+        let holds_nothing = |&k: &usize| {
+            let is_alone = contacts.contacts[k].dropped.is_none();
+            is_alone && geometry.independent(&[Line::Tangent(k)]).is_empty()
+        };
+        if first.iter().any(holds_nothing) {
+            return None;
         }
         let mut unknown = places.clone();
         unknown.extend(first.iter().copied().map(Line::Tangent));

@@ -17,8 +17,8 @@ pub(super) struct Standing {
     pub touching: Vec<Option<Tangent>>,
     /// Of each contact, whether it leaves its gap with a rate.
     pub leaves: Vec<bool>,
-    /// A line that vanishes, and with it its rate: nothing brings that to zero.
-    pub vanishing: Option<Line>,
+    /// Lines that vanish, and with them their rates: nothing brings these to zero.
+    pub vanishing: Vec<Line>,
 }
 
 impl Standing {
@@ -48,7 +48,9 @@ impl Standing {
         let places: Vec<Line> = constraints.chain(normals).collect();
         let still = touching().filter(|(_, t)| *t == Tangent::Still);
         let rates = (places.iter().copied()).chain(still.map(|(k, _)| Line::Tangent(k)));
-        let rates = rates.filter(|line| self.vanishing != Some(*line)).collect();
+        let rates = rates
+            .filter(|line| !self.vanishing.contains(line))
+            .collect();
         [places, rates]
     }
 
@@ -109,14 +111,14 @@ impl Simulation<'_> {
             geometry,
             touching,
             leaves: vec![false; before.len()],
-            vanishing,
+            vanishing: vanishing.into_iter().collect(),
         }
     }
 
     /// Whether the rate of a line has come to zero since the line itself vanishes there, as the slip of a crank does at its dead
     /// centre: to bring to zero what rounding leaves of it changes rates of coordinates by more than the tolerances, or √ε of what is typical of
     /// them, tell from nothing.
-    fn vanishes(
+    pub(super) fn vanishes(
         &self,
         line: Line,
         (geometry, at, v): (&Geometry, &ContactValues, &Buffer<f64>),
@@ -186,7 +188,7 @@ impl Simulation<'_> {
             geometry,
             touching,
             leaves: vec![false; before.len()],
-            vanishing: None,
+            vanishing: Vec::new(),
         }
     }
 }

@@ -137,13 +137,18 @@ impl<'p> Simulation<'p> {
         let context = &self.context;
         hold_lines(context, contacts, [&places, &[]], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
+        let at = ContactValues::new(context, contacts, [&q, &v]);
+        let is_still = |k: &usize| touching[*k] == Some(Tangent::Still);
+        let still = (0..touching.len()).filter(is_still).map(Line::Tangent);
+        let vanishing = still.filter(|&line| self.vanishes(line, (&geometry, &at, &v)));
+        let vanishing = vanishing.collect();
         Ok(Standing {
             q,
             v,
             geometry,
             touching,
             leaves,
-            vanishing: None,
+            vanishing,
         })
     }
 
