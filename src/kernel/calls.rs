@@ -543,7 +543,8 @@ impl<F: Size> ModeKernel<F> {
     }
 
     /// The conditions of a transition into this mode, where its reset leads: at the coordinates, rates and discrete states `after` it, of
-    /// which those with the indices `free` are free, and the time of the context; none if the transition is unconditional. `None` where the accelerations are not determined.
+    /// which those with the indices `free` are free, and the time of the context. A transition without conditions has none of them;
+    /// `None` where the accelerations are not determined.
     ///
     /// # Panics
     /// If `after` has not one entry for each coordinate, rate and discrete state, or the mode has another number of free coordinates.

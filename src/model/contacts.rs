@@ -100,7 +100,7 @@ impl Contacts {
     /// Results of the tape of decisions for each contact.
     pub const DECISIONS: usize = 5;
 
-    /// Numbers that the function of places gives for each contact.
+    /// Numbers that the function of contact values gives for each contact.
     pub const VALUES: usize = 10;
 
     /// The same for each constraint.

@@ -116,8 +116,8 @@ impl Simulation<'_> {
     }
 
     /// Whether the rate of a line has come to zero since the line itself vanishes there, as the slip of a crank does at its dead
-    /// centre: to bring to zero what rounding leaves of it changes rates of coordinates by more than the tolerances, or √ε of what is typical of
-    /// them, tell from nothing.
+    /// centre. To bring to zero what rounding leaves of it would then change rates of coordinates by more than the tolerances tell from
+    /// nothing, and by more than √ε of what is typical of them.
     pub(super) fn vanishes(
         &self,
         line: Line,
