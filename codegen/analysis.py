@@ -9,12 +9,12 @@ MOST_IN_LANES = 6
 
 
 def goes_in_lanes(variant, i):
-    """Whether trajectories in a mode can go side by side: it and its guards are analytic, nothing drifts, nothing is brought back to what
-    contacts or constraints hold, each crossing of a guard is an event under any conditions, and few coordinates are free."""
+    """Whether trajectories in a mode can go side by side: it and its guards are analytic, nothing that it holds moves, nothing is brought
+    back to what contacts or constraints hold, each crossing of a guard is an event under any conditions, and few coordinates are free."""
     equations = variant.modes[i]
     analytic = all(variant.functions[i, row.name].symbol for row in functions.OF_EACH_MODE if row.series)
     guards = [any(t.condition is None for t in transitions) for _, transitions in equations.guards]
-    stays = not equations.mode.drift and equations.mode.form is None
+    stays = not equations.mode.drift and not equations.mode.lines and equations.mode.form is None
     return 0 < len(equations.free) <= MOST_IN_LANES and analytic and stays and all(guards)
 
 

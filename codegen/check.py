@@ -172,12 +172,13 @@ def _least_pivot(rows):
 
 def _check_guard(model, transition):
     """A guard depends on something that may change in its mode."""
-    held = {name for name, value in transition.source.held.items() if value is not None}
+    depending = {line.name for line in transition.source.lines}
+    held = {name for name, value in transition.source.held.items() if value is not None and name not in depending}
     fixed = {p.symbol.element_hash() for p in model.parameters}
     for c in model.coordinates:
         if c.name in held:
             fixed.add(c.symbol.element_hash())
-        if c.name in transition.source.held:
+        if c.name in transition.source.held and c.name not in depending:
             fixed |= {c.symbol.rate.element_hash(), c.symbol.acceleration.element_hash()}
     if all(s.element_hash() in fixed for s in ca.symvar(transition.guard)):
         raise ModelError(f"guard of `{transition.name}`: `{units.short(transition.guard)}` never changes in mode"
@@ -205,7 +206,8 @@ def _check_reset(model, transition):
         if name in rates:
             coordinate, is_rate = rates[name]
             holds = target.drift.get(coordinate.name, ca.SX(0)) if is_rate else target.held.get(coordinate.name)
-            if coordinate.name in target.held and holds is not None and graph.structure(value) != graph.structure(holds):
+            depends = any(line.name == coordinate.name for line in target.lines)
+            if coordinate.name in target.held and not depends and holds is not None and graph.structure(value) != graph.structure(holds):
                 raise ModelError(
                     f"{what}: the reset sets `{name}` to `{units.short(value)}`, but mode `{target.name}` holds it at"
                     f" `{units.short(holds)}`: what a mode holds is set as it is entered; leave it out", transition.location)

@@ -22,11 +22,17 @@ FREE, ENGAGED = "free", "engaged"
 
 @dataclass
 class Line:
-    """A number that is, but for its sign, one coordinate or its rate and what parameters add: sign × coordinate + offset."""
+    """A number that is, but for its sign, one coordinate or its rate and what parameters add: sign × coordinate + offset. The
+    coordinate may be a line of its own (`lines.py`), which is solved for one of the model."""
 
     coordinate: ca.SX
     sign: int
     offset: ca.SX
+    solved: ca.SX = None
+    """The coordinate of the model that is held where the line is."""
+
+    def __post_init__(self):
+        self.solved = self.coordinate if self.solved is None else self.solved
 
     @property
     def name(self):
@@ -106,10 +112,9 @@ class Contact:
             mode.requirements.append(Requirement(
                 self.normal, f"the normal force of `{self.name}` would pull", self.location, may_vanish=True))
 
-    def is_reducible(self):
-        """Whether its gap and its slip are coordinates, and its impacts are Newton's without a slip that turns back."""
-        plain = not self.is_ratchet and (self.permanent or not self.law and self.tangential_restitution.is_zero())
-        return plain and isinstance(self.gap, Line | None) and isinstance(self.slip, Line | None)
+    def has_plain_law(self):
+        """Whether its impacts are Newton's without a slip that turns back, and it is no ratchet."""
+        return not self.is_ratchet and (self.permanent or not self.law and self.tangential_restitution.is_zero())
 
     def slip_rate_of(self, x):
         """The slip rate as an expression in coordinates and rates (`derive.Configuration`)."""
@@ -121,7 +126,7 @@ class Contact:
 
     def normal_force(self, mode, **discrete):
         """λ_N in a mode where it is closed, with discrete states as given."""
-        return self.normal if self.gap is None else self.gap.sign * mode.reaction(self.gap.coordinate, **discrete)
+        return self.normal if self.gap is None else self.gap.sign * mode.reaction(self.gap.solved, **discrete)
 
 
 # ---- declarations ---------------------------------------------------------------------------------
@@ -164,7 +169,7 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
     rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates + model.motions])
     by_rate = slip_expression is not None and bool(rates.numel()) and ca.depends_on(slip_expression, rates)
     gap = None if gap is None else as_line(model, gap_expression, False) or Smooth()
-    slip = None if slip is None else _slip_line(model, slip_expression, by_rate) or Smooth()
+    slip = None if slip is None else slip_line(model, slip_expression, by_rate) or Smooth()
     for known in model.contacts:
         lines = isinstance(slip, Line) and isinstance(known.slip, Line) and gap is None and known.gap is None
         if lines and known.slip.name == slip.name:
@@ -335,7 +340,7 @@ def as_line(model, expression, of_rates):
     return None
 
 
-def _slip_line(model, expression, by_rate):
+def slip_line(model, expression, by_rate):
     """The slip rate as a line, from itself or from the place along which a contact slips."""
     line = as_line(model, expression, by_rate)
     return line if by_rate or line is None else Line(line.coordinate, line.sign, ca.SX(0))

@@ -5,7 +5,9 @@ With the motions z of the ground appended as prescribed coordinates, the residua
     r_i = Σ_bodies m J_iᵀ(J a + J̇ v) + I φ_i φ̈ + d/dt ∂T/∂v_i − ∂T/∂q_i + ∂V/∂q_i + ∂D/∂v_i − Q_i
 
 (virtual power over the bodies; Lagrange's equations for what is not a body). A frozen coordinate
-stays in the energies and only its motion is removed, so that its r_i is the reaction.
+stays in the energies and only its motion is removed, so that its r_i is the reaction. One that a mode holds along a line
+(`lines.py`) depends on free ones, and is replaced by what it is of them; by the power that is left, Jᵀ r of J = ∂q/∂y takes the place
+of r, where y has the lines in place of what depends on others.
 """
 
 from dataclasses import dataclass
@@ -110,6 +112,18 @@ def _index(model, name):
     return next(i for i, c in enumerate(model.coordinates + model.motions) if c.name == name)
 
 
+def along_lines(model, lines):
+    """∂q/∂y, where of the coordinates y those that `lines` are solved for stand for these lines."""
+    q = ca.vertcat(*[c.symbol for c in model.coordinates])
+    size = q.numel()
+    result = ca.SX.eye(size)
+    for line in lines:
+        unit = ca.SX.zeros(1, size)
+        unit[_index(model, line.name)] = 1
+        result[_index(model, line.name), :] = unit - ca.jacobian(line.rest, q) @ result
+    return ca.densify(ca.simplify(result))
+
+
 @dataclass
 class Substitution:
     """Replacement of symbols by expressions."""
@@ -140,12 +154,18 @@ class ModeEquations:
         for name, expression in model.hand_written.items():
             residual[_index(model, name)] = expression
         residual = self.freeze(residual)
-        self.raw_reactions = residual
+        self.raw_reactions = self._along_lines(residual, model.lines)
         self.placeholders = self._placeholders()
-        frictionless = residual
+        frictionless = self._along_lines(residual, mode.lines)
         residual = ca.SX(residual)
         for k, (coordinate, force, _) in enumerate(mode.forces):
-            residual[_index(model, coordinate.name())] -= self.place(force, model.location(mode.forces, k))
+            direction = self.freeze(self._direction(coordinate))
+            residual[:count] -= direction * self.place(force, model.location(mode.forces, k))
+        residual = self._along_lines(residual, mode.lines)
+        if mode.lines:
+            # What holds a line acts along it alone: friction along another, which it does not hold, is none of it.
+            for i in set(range(count)) - set(self.free):
+                residual[i] = self.raw_reactions[i]
 
         symbols = [c.symbol for c in model.coordinates]
         pick = lambda column: ca.vertcat(*[column[i] for i in self.free]) if self.free else ca.SX(0, 1)
@@ -177,10 +197,26 @@ class ModeEquations:
                     f" defined: take the one of that mode, {self.mode.name}.reaction({entry[2]})", location)
         return self.placeholders(expression)
 
+    def _direction(self, coordinate):
+        """How a coordinate, or a line, changes with the coordinates of the model."""
+        x = configuration(self.model)
+        line = next((line for line in self.model.lines if line.symbol is coordinate), None)
+        place = coordinate if line is None else line.value
+        return ca.densify(ca.jacobian(place, x.q[:len(self.model.coordinates)])).T
+
+    def _along_lines(self, residual, of):
+        """The residual of the coordinates of which lines stand for those they are solved for."""
+        if not of:
+            return residual
+        count = len(self.model.coordinates)
+        along = self.freeze(along_lines(self.model, of))
+        return ca.densify(ca.vertcat(along.T @ residual[:count], residual[count:]))
+
     def _freeze(self, held):
         old, new = [], []
+        depending = {line.name for line in self.mode.lines}
         for i, declaration in enumerate(self.model.coordinates):
-            if declaration.name not in self.mode.held:
+            if declaration.name not in self.mode.held or declaration.name in depending:
                 continue
             value = self.mode.held[declaration.name]
             symbol = declaration.symbol
@@ -193,7 +229,33 @@ class ModeEquations:
             symbol = motion.symbol
             old += [symbol, symbol.rate, symbol.acceleration]
             new += [ca.SX(0)] * 3
+        for line in self.mode.lines:
+            symbol, place = line.coordinate, self._dependent(line, held, Substitution(old, new))
+            rates = [place]
+            for _ in range(3):
+                rates.append(self._rate(rates[-1], held))
+            old += [symbol, symbol.rate, symbol.acceleration, symbol.jerk]
+            new += rates
         return Substitution(old, new)
+
+    def _dependent(self, line, held, known):
+        """What the coordinate is that a line is solved for, in those that are free: where the line is held, or was as the mode began."""
+        coordinates = ca.vertcat(*[c.symbol for c in self.model.coordinates])
+        value = self.mode.held[line.name]
+        at = ca.substitute(line.value, coordinates, held) if value is None else ca.SX(value)
+        return at - known(line.rest)
+
+    def _rate(self, expression, held):
+        """The rate of what depends on free coordinates, their derivatives, and what drifts."""
+        free = [c.symbol for c in self.model.coordinates if c.name not in self.mode.held]
+        column = lambda pick: ca.vertcat(ca.SX(0, 1), *[pick(symbol) for symbol in free])
+        q, v, a, j = column(lambda s: s), column(lambda s: s.rate), column(lambda s: s.acceleration), column(lambda s: s.jerk)
+        drift = ca.vertcat(*[ca.SX(self.mode.drift.get(c.name, 0)) for c in self.model.coordinates])
+        result = ca.SX(0)
+        for of, rates in ((q, v), (v, a), (a, j), (held, drift)):
+            if of.numel():
+                result += ca.jtimes(expression, of, rates)
+        return result
 
     def _placeholders(self):
         old, new = [], []
@@ -210,10 +272,25 @@ class ModeEquations:
                 new.append(value)
         return Substitution(old, new)
 
-    def values_of_held(self):
-        """Coordinates where the mode holds them; the others as they are."""
-        at = [self.mode.held.get(c.name) for c in self.model.coordinates]
-        return ca.vertcat(*[self.held[i] if value is None else ca.SX(value) for i, value in enumerate(at)])
+    def all_coordinates(self):
+        """Every coordinate, those that the mode holds among them."""
+        return self.freeze(ca.vertcat(ca.SX(0, 1), *[c.symbol for c in self.model.coordinates]))
+
+    def all_rates(self):
+        """Their rates."""
+        return self.freeze(ca.vertcat(ca.SX(0, 1), *[c.symbol.rate for c in self.model.coordinates]))
+
+    def all_accelerations(self):
+        """Their accelerations."""
+        return self.freeze(ca.vertcat(ca.SX(0, 1), *[c.symbol.acceleration for c in self.model.coordinates]))
+
+    def roundings(self):
+        """What, times the unit roundoff, bounds the rounding of each coordinate that depends on others, then of its rate; 0 of those
+        that do not."""
+        of = {line.name for line in self.mode.lines}
+        chosen = [ca.SX(s if c.name in of else 0) for rate in (False, True) for c in self.model.coordinates
+                  for s in [c.symbol.rate if rate else c.symbol]]
+        return ca.vertcat(*[graph.running_error(self.freeze(entry)) for entry in chosen])
 
     def _check_linear_in_accelerations(self):
         mass = ca.jacobian(self.r, self.a)
@@ -281,14 +358,16 @@ class ModeEquations:
             power_in += force * coordinate.rate
         for coordinate, force, against in mode.forces:
             force = self.place(force)
-            dissipated -= force * (coordinate.rate - against)
+            rate = ca.dot(self._direction(coordinate), x.v[:len(model.coordinates)])
+            dissipated -= force * (rate - against)
             power_in += force * against
         count = len(model.coordinates)
         for i, reaction in self.reactions:
             if i >= count:
                 power_in += reaction * model.motions[i - count].symbol.rate
             elif model.coordinates[i].name in mode.drift:
-                power_in += reaction * mode.drift[model.coordinates[i].name]
+                name = model.coordinates[i].name
+                power_in += reaction * mode.line_drift.get(name, mode.drift[name])
         return self.freeze(ca.vertcat(dissipated, power_in))
 
 

@@ -111,11 +111,13 @@ def _inputs(model):
         signal += len(i.signals)
 
 
-def _held_at(value):
-    """Where a coordinate is held; None: wherever it was."""
+def _held_at(mode, name):
+    """Where a coordinate is held; None: wherever it was, or on a line that is held wherever it was."""
+    value = mode.held.get(name)
     if value is None:
         return None
-    value = ca.SX(value)
+    line = next((line for line in mode.lines if line.name == name), None)
+    value = ca.SX(value) if line is None else ca.simplify(ca.SX(value) - line.rest)
     return {"number": _number(value)} if value.is_constant() else {"expression": units.short(value)}
 
 
@@ -175,8 +177,9 @@ def _mode(variant, i, equations, tables):
     kernel |= analysis.facts(variant, i)
     return {
         "name": mode.name, "meaning": mode.meaning, "free": list(equations.free),
-        "held_at": [_held_at(mode.held.get(c.name)) for c in model.coordinates],
+        "held_at": [_held_at(mode, c.name) for c in model.coordinates],
         "drifts": [c.name in mode.drift for c in model.coordinates],
+        "depends": [any(line.name == c.name for line in mode.lines) for c in model.coordinates],
         "guards": [_guard(variant, i, g, derived, tables) for g in range(len(equations.guards))],
         "requirements": [
             {"text": units.short(r.expression, 200), "failure": r.failure, "unit": _unit(model, r.expression),

@@ -362,15 +362,34 @@ def _reset(model, source, target, transition):
         values[d.name] = d.symbol
     values.update((symbol.name(), expression) for symbol, expression in transition.reset)
     transition.changes = [symbol.name() for symbol, _ in transition.reset]
+    depending = {line.name for line in target.mode.lines}
     for c in model.coordinates:
-        if c.name in target.mode.held:
+        if c.name in target.mode.held and c.name not in depending:
             value = target.mode.held[c.name]
             if value is not None:
                 values[c.name] = ca.SX(value)
             values[c.name + ".rate"] = target.mode.drift.get(c.name, ca.SX(0))
     order = [c.name for c in model.coordinates]
     order += [c.name + ".rate" for c in model.coordinates] + [d.name for d in model.discretes]
-    return source.place(ca.vertcat(*[values[key] for key in order]), transition.location)
+    after = ca.vertcat(*[values[key] for key in order])
+    if depending:
+        after = _with_dependent(model, target, after, depending)
+    return source.place(after, transition.location)
+
+
+def _with_dependent(model, target, after, depending):
+    """A column of q⁺, v⁺, d⁺ with the coordinates that depend on others in the target as they follow from these."""
+    count, names = len(model.coordinates), [c.name for c in model.coordinates]
+    state = [c.symbol for c in model.coordinates] + [c.symbol.rate for c in model.coordinates]
+    known = ca.vertcat(*state, target.held)
+    values = ca.vertcat(after[:2 * count], after[:count])
+    every = ca.vertcat(target.all_coordinates(), target.all_rates())
+    chosen = [k for k in range(2 * count) if names[k % count] in depending]
+    followed = ca.substitute(every[chosen], known, values)
+    result = ca.SX(after)
+    for k, value in zip(chosen, ca.vertsplit(followed)):
+        result[k] = value
+    return result
 
 
 def _stays(model, equations, reset):

@@ -42,6 +42,7 @@ class Mode:
         self.forces, self.requirements = [], []
         self.form = None
         self.contact_states = {}
+        self.lines, self.line_drift = [], {}
 
     @property
     def identifier(self):
@@ -99,7 +100,7 @@ class Model:
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
         self.contacts, self.constraints, self.switched_off, self.by_multipliers = [], [], [], False
-        self.charts, self.requirements = [], []
+        self.charts, self.requirements, self.lines = [], [], []
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)

@@ -1,17 +1,19 @@
-"""The modes that follow from contacts: one for each set of contact states where gaps and slips are coordinates, which it freezes.
+"""The modes that follow from contacts: one for each set of contact states where gaps and slips solve for coordinates, which it freezes.
 
 This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts (Newton's law) and rests follow. Constraints
-freeze theirs in all modes. Where there is no such form, one mode serves all sets (`multipliers.py`).
+freeze theirs in all modes. Where there is no such form, one mode serves all sets (`multipliers.py`). It is written in the coordinates
+of `lines.py`, where each gap and each slip is one.
 """
 
 import itertools
 
 import casadi as ca
 
-from . import contact_outputs, derive, limits, multipliers
-from .contacts import CLOSED, OPEN, SLIDES, STICKS, as_line
+from . import contact_outputs, derive, limits, lines, multipliers
+from .contacts import CLOSED, OPEN, SLIDES, STICKS
 from .declarations import Requirement, Transition
 from .errors import ModelError
+from .exact import Exact, lifted
 
 MOST_MODES = 16
 """Most sets of contact states for which modes are generated, each with its own code."""
@@ -44,17 +46,29 @@ def _reduce(model):
         return "it has modes by hand or charts"
     if model.by_multipliers:
         return "multipliers are asked for"
-    bent = next((contact for contact in model.contacts if not contact.is_reducible()), None)
+    bent = next((contact for contact in model.contacts if not contact.has_plain_law()), None)
     if bent is not None:
-        return (f"`{bent.name}` is a ratchet, has a law of its own or a tangential restitution, or has a gap or a slip that is no"
-                " coordinate")
+        return f"`{bent.name}` is a ratchet, has a law of its own or a tangential restitution"
     placeholders = dict(model.placeholders)
     try:
+        lines.solve(model)
+        _check_reactions(model)
         Expansion(model).build()
-    except NotReducible as why:
-        model.modes, model.transitions, model.rests, model.placeholders = [], [], [], placeholders
+    except (NotReducible, lines.NotSolved) as why:
+        model.modes, model.transitions, model.rests, model.placeholders, model.lines = [], [], [], placeholders, []
         return str(why)
     return ""
+
+
+def _check_reactions(model):
+    """The reaction of a coordinate that a line is solved for is the force along the line: another one than a model means that asks for
+    it, or for the equations, by its name."""
+    solved = {line.name for line in model.lines}
+    asked = {name for _, _, name, _ in model.placeholders.values()} | model.hand_written.keys()
+    for name in sorted(solved & asked):
+        raise NotReducible(f"the model says what holds `{name}`, which depends on others")
+    if any(contact.sides is not None for contact in model.contacts) and solved:
+        raise NotReducible("a gap opens to two sides, and another line depends on several coordinates")
 
 
 def _need_no_sides(model, why_not):
@@ -67,7 +81,9 @@ def _need_no_sides(model, why_not):
 
 def _bound(model, contact):
     """A gap is not negative: a bound of its coordinate, where the model has given none."""
-    declaration = next(c for c in model.coordinates if c.name == contact.gap.name)
+    declaration = next((c for c in model.coordinates if c.name == contact.gap.name), None)
+    if declaration is None:
+        return
     side = "minimum" if contact.gap.sign > 0 else "maximum"
     if declaration.extra[side] is None:
         value = contact.gap.value()
@@ -81,6 +97,9 @@ class Expansion:
         self.model, self.contacts = model, model.contacts
         self.constrained = _constrained(model)
         self.modes = {}
+        by = {line.name: line.symbol for line in model.lines}
+        self.coordinates = [by.get(c.name, c.symbol) for c in model.coordinates]
+        self.names = [symbol.name() for symbol in self.coordinates]
         self.mass = _mass(model)
 
     def build(self):
@@ -112,6 +131,10 @@ class Expansion:
             lines = [line.name for line in (other.gap, other.slip) if line]
             if contact.slip is not None and (along_gap or contact.slip.name in lines):
                 raise NotReducible(f"friction of `{contact.name}` and `{other.name}` acts along one coordinate")
+        slips = [contact.slip.name for contact in self.contacts if contact.slip is not None and contact.gap is None]
+        for contact in self.contacts:
+            if contact.gap is None and slips.count(contact.slip.name) > 1:
+                raise NotReducible(f"friction of `{contact.name}` and of another acts along one coordinate")
 
     def _can_be(self, states):
         """A coordinate is where one gap is zero, not two; friction along it holds nothing there."""
@@ -127,46 +150,91 @@ class Expansion:
         model, freeze, drift = self.model, [], []
         for constraint in model.constraints:
             line = constraint.line
-            freeze.append(line.coordinate if constraint.is_rate else (line.coordinate, line.value()))
+            freeze.append(line.solved if constraint.is_rate else (line.solved, line.value()))
             if constraint.is_rate and not line.offset.is_zero():
-                drift.append((line.coordinate, line.value()))
+                drift.append((line.solved, line.value()))
         for contact, state in zip(self.contacts, states):
             if contact.gap and state != OPEN:
-                freeze.append((contact.gap.coordinate, contact.gap.value()))
+                freeze.append((contact.gap.solved, contact.gap.value()))
         for contact, state in zip(self.contacts, states):
             if state == STICKS and not self._holder(states, contact.slip.name):
-                freeze.append(contact.slip.coordinate)
+                freeze.append(contact.slip.solved)
                 if not contact.slip.offset.is_zero():
-                    drift.append((contact.slip.coordinate, contact.slip.value()))
+                    drift.append((contact.slip.solved, contact.slip.value()))
         mode = model._mode(_words(self.contacts, states), "", freeze, drift)
+        mode.lines = [line for line in model.lines if line.name in mode.held]
+        self._drift(mode)
         mode.location = [*self.contacts, *model.constraints][0].location
         mode.contact_states = {contact.name: state for contact, state in zip(self.contacts, states)}
         for constraint in model.constraints:
             constraint.force_of_line(mode)  # an output: reactions are known before equations are made
         for contact, state in zip(self.contacts, states):
             if state == SLIDES:
-                mode.friction(contact.slip.coordinate, normal=contact.normal_force(mode), coefficient=contact.kinetic,
-                              direction=contact.slip.sign * contact.direction, against=contact.slip.value())
+                force = -contact.kinetic * contact.normal_force(mode) * contact.slip.sign * contact.direction
+                mode.forces.append((contact.slip.coordinate, force, ca.SX(contact.slip.value())))
                 model.locations[id(mode.forces), len(mode.forces) - 1] = contact.location
             if not contact.permanent:
                 contact.require_normal(mode)
         return mode
 
+    def _drift(self, mode):
+        """Where a line is held that was where it is, the coordinate that it is solved for was there with all others that drift."""
+        x = derive.configuration(self.model)
+        for line in mode.lines:
+            own = mode.drift.get(line.name, ca.SX(0))
+            mode.line_drift[line.name] = own
+            slopes = ca.jacobian(line.rest, x.q)
+            along = sum((slopes[k] * mode.drift[c.name] for k, c in enumerate(self.model.coordinates) if c.name in mode.drift), ca.SX(0))
+            if mode.held[line.name] is not None or along.is_zero():
+                continue
+            if not limits.is_of_parameters(self.model, along):
+                raise NotReducible(f"`{line.name}` is held on a line that depends on what drifts, and bends")
+            mode.drift[line.name] = own - along
+
     def _add(self, contact, verb, states, target, when, reset=(), provided=None, impact=False, direction=None):
         target = self.modes.get(tuple(target))
         if target is None:
             return
-        conditions = None if not provided else ca.vertcat(*provided)
+        conditions = None if not provided else self._in_coordinates(ca.vertcat(*provided))
         self.model.transitions.append(Transition(
-            f"{contact.name} {verb}", self.modes[states], target, ca.SX(when), conditions,
-            [(symbol, ca.SX(value)) for symbol, value in reset], impact, contact.location, direction=direction))
+            f"{contact.name} {verb}", self.modes[states], target, self._in_coordinates(ca.SX(when)), conditions,
+            self._reset(reset, target if impact else None), impact, contact.location, direction=direction))
+
+    def _in_coordinates(self, expression):
+        """An expression with lines and their rates in the coordinates of the model and their rates."""
+        of = self.model.lines
+        if not of:
+            return expression
+        symbols = [symbol for line in of for symbol in (line.symbol, line.symbol.rate)]
+        values = [value for line in of for value in (line.value, line.rate(self.model))]
+        return ca.substitute(expression, ca.vertcat(*symbols), ca.vertcat(*values))
+
+    def _reset(self, reset, target):
+        """What is reset, lines among it, as coordinates of the model: those that lines are solved for follow. What the target of an
+        impact holds is left out."""
+        given = {symbol.name(): (symbol, self._in_coordinates(ca.SX(value))) for symbol, value in reset}
+        x = derive.configuration(self.model)
+        for line in self.model.lines:
+            place, rate = line.symbol, line.symbol.rate
+            if place.name() in given:
+                _, value = given.pop(place.name())
+                given[line.name] = (line.coordinate, value - line.rest)
+            slopes = ca.jacobian(line.rest, x.q)
+            along = [symbol for k, symbol in enumerate(ca.vertsplit(x.v)) if not slopes[k].is_zero()]
+            if rate.name() in given or any(symbol.name() in given for symbol in along):
+                _, value = given.pop(rate.name(), (None, line.rate(self.model)))
+                after = ca.vertcat(*[given[s.name()][1] if s.name() in given else s for s in ca.vertsplit(x.v)])
+                given[line.coordinate.rate.name()] = (line.coordinate.rate, value - slopes @ after)
+        held = [symbol.element_hash() for c in self.model.coordinates if target is not None and c.name in target.held
+                for symbol in (c.symbol, c.symbol.rate)]
+        return [(symbol, value) for symbol, value in given.values() if symbol.element_hash() not in held]
 
     def _transitions(self, states, i, contact):
         """What contact `i` can do next in a mode."""
         mode, state = self.modes[states], states[i]
         with_state = lambda new: [*states[:i], new, *states[i + 1:]]
         if state == OPEN:
-            if mode.is_free(contact.gap.coordinate):
+            if mode.is_free(contact.gap.solved):
                 self._strike(states, i)
                 for rest in contact.states()[1:]:
                     self._rest(states, self._joined(with_state(rest), contact))
@@ -191,7 +259,7 @@ class Expansion:
     def _holds(contact, mode):
         """By direction: what is left before static friction lets a slip begin that way."""
         limit = contact.static * contact.normal_force(mode)
-        force = contact.slip.sign * mode.reaction(contact.slip.coordinate)
+        force = contact.slip.sign * mode.reaction(contact.slip.solved)
         return {+1: limit + force, -1: limit - force}
 
     def _joined(self, states, contact):
@@ -225,7 +293,7 @@ class Expansion:
     def _strike(self, states, i):
         """The impacts of a gap that closes: Newton's law for its rate, Coulomb's for the impulses (Moreau 1988)."""
         contact = self.contacts[i]
-        pressed, loose = self._reached(states, contact)
+        pressed, loose, beyond = self._reached(states, contact)
         if len(pressed) > 1 or pressed and (contact.slip or pressed[0].slip):
             raise NotReducible(f"the impact of `{contact.name}` acts on several contacts with friction")
         if contact.sides is not None and (pressed or loose):
@@ -233,35 +301,50 @@ class Expansion:
         slides = [+1, -1] if contact.slip else []
         ways = [(opens, slip) for opens in ([True, False] if pressed else [False]) for slip in slides + [0]]
         for opens, slip in ways:
-            self._outcome(states, i, (pressed, loose), opens, slip)
+            self._outcome(states, i, (pressed, sorted(loose + beyond) if opens else loose), opens, slip)
 
     def _reached(self, states, contact):
-        """The closed contacts that an impulse at a gap acts on, and the coordinates whose rates it changes besides."""
-        names = [c.name for c in self.model.coordinates]
+        """The closed contacts that an impulse at a gap acts on, the coordinates whose rates it changes besides, and those whose rates
+        it changes where such a contact opens."""
+        names, beyond = self.names, set()
         start = names.index(contact.gap.name)
-        found, pressed, loose, pending = {start}, [], [], [start]
+        pressed, loose = self._moved(states, [start])
+        if pressed:
+            # Each may open, and pass the impulse on.
+            opened = [names.index(other.gap.name) for other in pressed]
+            behind, more = self._moved(states, [start, *opened])
+            if behind:
+                raise NotReducible(f"the impact of `{contact.name}` acts on contacts behind others")
+            beyond = set(more) - set(loose)
+        if contact.slip and names.index(contact.slip.name) not in loose:
+            loose.append(names.index(contact.slip.name))
+        elif contact.slip and {contact.gap.name, contact.slip.name} - {c.name for c in self.model.coordinates}:
+            # Several motions may be admissible, or none, which is told where all are judged.
+            raise NotReducible(f"friction of `{contact.name}` acts on its normal force")
+        return pressed, sorted(loose), sorted(beyond)
+
+    def _moved(self, states, rows):
+        """The closed contacts that impulses along some coordinates act on, and the coordinates besides whose rates they change."""
+        found, pressed, loose, pending = set(rows), [], [], list(rows)
         while pending:
             row = pending.pop()
-            for k in range(len(names)):
-                if k in found or self.mass[row, k].is_zero() or names[k] in self.constrained:
+            for k, name in enumerate(self.names):
+                if k in found or self.mass[row, k].is_zero() or name in self.constrained:
                     continue
                 found.add(k)
-                holder = self._holder(states, names[k])
+                holder = self._holder(states, name)
                 if holder is not None:
                     pressed.append(holder)
                 else:
                     loose.append(k)
                     pending.append(k)
-        if contact.slip and names.index(contact.slip.name) not in loose:
-            loose.append(names.index(contact.slip.name))
-        return pressed, sorted(loose)
+        return pressed, loose
 
     def _outcome(self, states, i, reached, opens, slip):
         """One way in which an impact may end: whether the pressed contact opens, and which way this one slips (0: not)."""
         contact, (pressed, loose) = self.contacts[i], reached
         pushed = pressed[0] if pressed else None
-        names = [c.name for c in self.model.coordinates]
-        coordinates = [c.symbol for c in self.model.coordinates]
+        names, coordinates = self.names, self.coordinates
         gap = names.index(contact.gap.name)
         along = names.index(contact.slip.name) if contact.slip else None
         free = list(loose) + ([names.index(pushed.gap.name)] if opens else [])
@@ -304,9 +387,6 @@ class Expansion:
             rate = other.slip.sign * after[place] + other.slip.offset
             # Where the impact leaves no slip rate, the direction stays as it was.
             reset.append((other.direction, other.direction * (1 - 2 * (other.direction * rate < 0))))
-        if keeps:
-            held = self.modes.get(tuple(target))
-            reset = [(s, v) for s, v in reset if not _is_held(held, s)]
         self._add(contact, "strikes", states, target, contact.gap.sign * contact.gap.coordinate + contact.gap.offset,
                   reset, conditions, impact=True)
 
@@ -336,17 +416,19 @@ class Expansion:
         return solved, push
 
 
-def _is_held(mode, symbol):
-    """Whether a reset of a coordinate or a rate is what a mode holds anyway."""
-    return mode is not None and any(
-        c.symbol.element_hash() == symbol.element_hash() or c.symbol.rate.element_hash() == symbol.element_hash()
-        for c in mode.model.coordinates if c.name in mode.held)
-
-
 def _mass(model):
-    """∂²T/∂v² of all coordinates, frozen or not."""
+    """∂²T/∂v² of all coordinates, frozen or not, those of lines among them."""
     rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates])
-    return ca.densify(ca.simplify(ca.hessian(derive.kinetic_energy(model), rates)[0]))
+    mass = ca.densify(ca.simplify(ca.hessian(derive.kinetic_energy(model), rates)[0]))
+    if not model.lines:
+        return mass
+    along = derive.along_lines(model, model.lines)
+    mass = ca.densify(ca.simplify(along.T @ mass @ along))
+    numbers, size = {}, mass.shape[0]
+    for i, j in itertools.product(range(size), range(size)):
+        if Exact().is_zero(lifted(mass[i, j], numbers)):
+            mass[i, j] = 0
+    return mass
 
 
 def _words(contacts, states):
@@ -358,9 +440,6 @@ def _constrained(model):
     """Names of the coordinates that constraints hold, each by one alone."""
     names = []
     for constraint in model.constraints:
-        constraint.line = as_line(model, constraint.expression, constraint.is_rate)
-        if constraint.line is None:
-            raise NotReducible(f"`{constraint.name}` holds no coordinate")
         names.append(constraint.line.name)
     by_contacts = {line.name for c in model.contacts for line in (c.gap, c.slip) if line}
     if len(set(names)) < len(names) or by_contacts & set(names):

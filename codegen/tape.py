@@ -153,11 +153,11 @@ def of(column, places):
 
 
 def places(model, equations, signals):
-    """The instruction for each symbol of a mode. What it holds is a coordinate that moves as it says."""
+    """The instruction for each symbol of a mode."""
     found = {}
     for i, c in enumerate(model.coordinates):
         for kind, symbol in (("Coordinate", c.symbol), ("Rate", c.symbol.rate),
-                             ("Acceleration", c.symbol.acceleration), ("Coordinate", equations.held[i])):
+                             ("Acceleration", c.symbol.acceleration), ("Held", equations.held[i])):
             found[symbol.element_hash()] = (kind, i)
     for kind, symbols in (
         ("Signal", ca.vertsplit(signals)), ("Discrete", [d.symbol for d in model.discretes]),

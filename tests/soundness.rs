@@ -205,8 +205,14 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
     kernel.requirements(&x, at, &mut out);
     expect("requirements", is_written(&out));
     let mut out = unwritten(coordinates);
-    kernel.held_rates(&x, &mut out);
-    expect("held_rates", is_written(&out));
+    kernel.drift(&x, &mut out);
+    expect("drift", is_written(&out));
+    kernel.coordinates(&x, at, &mut out);
+    expect("coordinates", is_written(&out));
+    kernel.rates(&x, at, &mut out);
+    expect("rates", is_written(&out));
+    kernel.accelerations(&x, at, &mut out);
+    expect("accelerations", is_written(&out));
 
     for guard in &mode.guards {
         let _ = kernel.guard(&x, &guard.kernel, at);

@@ -10,7 +10,7 @@
 use super::guards::Conditions;
 use super::simulation::Simulation;
 use crate::jets::{Expansion, ORDERS, Point};
-use crate::kernel::{Free, ModeKernel};
+use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{Mode, Transition};
 use crate::numerics::Size;
 
@@ -123,6 +123,11 @@ impl<'p> Simulation<'p> {
             at: Point {
                 q: &self.here.q,
                 v: &self.here.v,
+                held: self.context.held(),
+                drift: match self.plan.moves[self.here.mode] {
+                    true => &self.drift,
+                    false => &[],
+                },
                 discrete: self.context.discrete(),
             },
             sizes: [&self.sizes, &self.rate_sizes],
@@ -175,12 +180,21 @@ impl<'p> Simulation<'p> {
         let n = self.here.q.len();
         let (q, rest) = self.next.split_at(n);
         let (v, discrete) = rest.split_at(n);
+        let target = &self.modes[transition.target];
+        let mut drift = vec![0.0; n];
+        with_kernel!(&target.kernels, k => k.drift(&self.context, &mut drift));
         (0..transition.kernel.conditions()).all(|index| {
             let question = Question {
-                mode: &self.modes[transition.target],
+                mode: target,
                 tape: &transition.conditions,
                 index,
-                at: Point { q, v, discrete },
+                at: Point {
+                    q,
+                    v,
+                    held: q,
+                    drift: &drift,
+                    discrete,
+                },
                 sizes: [&self.sizes, &self.rate_sizes],
                 within: 0.0,
                 vanishing: 0,

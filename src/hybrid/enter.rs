@@ -31,8 +31,8 @@ impl<'p> Simulation<'p> {
     pub fn enter<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<Option<Violation>> {
         self.set_context();
         let mode = self.mode();
-        if self.plan.drifts[self.here.mode] {
-            kernel.held_rates(&self.context, &mut self.drift);
+        if self.plan.moves[self.here.mode] {
+            kernel.drift(&self.context, &mut self.drift);
         }
         let [q, v, _] = self.here.free(kernel.size(), &mode.free);
         self.check_inertia(kernel, [&q, &v])?;
@@ -182,6 +182,14 @@ impl<'p> Simulation<'p> {
         }
         self.here.a.fill(0.0);
         self.here.set_free(&mode.free, [&q, &v, &a]);
+        if self.plan.moves[self.here.mode] {
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            self.here.set_all(kernel, &self.context, at);
+        }
         Ok(violation)
     }
 
@@ -197,7 +205,7 @@ impl<'p> Simulation<'p> {
         needs_accelerations: bool,
     ) -> Stoppable<bool> {
         let mode = self.mode();
-        if self.plan.drifts[self.here.mode] || self.check_inertia(kernel, [&q, &v]).is_err() {
+        if self.plan.moves[self.here.mode] || self.check_inertia(kernel, [&q, &v]).is_err() {
             return Ok(false);
         }
         self.signs.clear();

@@ -36,6 +36,7 @@ impl<'p> Simulation<'p> {
             self.here.v.copy_from_slice(&self.initial.v);
             (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
             self.apply_drift();
+            self.follow_others();
             let why = match self.misfit_of(m) {
                 Some(why) => Err(why.into()),
                 None => with_kernel!(&modes[m].kernels, k => self.rest_in_mode(k)),
@@ -92,6 +93,14 @@ impl<'p> Simulation<'p> {
             [q, v, zero]
         };
         self.here.set_free(&mode.free, [&q, &v, &zero]);
+        if self.plan.moves[self.here.mode] {
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &zero,
+            };
+            self.here.set_all(kernel, &self.context, at);
+        }
         let entered = self.enter(kernel).map_err(Unbalanced::Stops)?;
         let moves = entered.map(|violation| mode.guards[violation.guard].name);
         self.margins.clear();

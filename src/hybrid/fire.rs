@@ -243,6 +243,14 @@ impl<'p> Simulation<'p> {
             .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
         self.here.a.fill(0.0);
         self.here.set_free(&mode.free, [&q, &v, &a]);
+        if self.plan.moves[self.here.mode] {
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            kernel.accelerations(&self.context, at, &mut self.here.a);
+        }
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use super::guards::Conditions;
 use super::inertia::vanished;
 use super::instant::Instant;
 use super::margins::Ended;
-use super::observe::{Step, copy_drifting};
+use super::observe::Step;
 use super::segment::Stay;
 use super::simulation::{Simulation, Stop, Violation};
 use crate::integrate::{Motion, Node, OneStep, SERIES, Size, State, StepError};
@@ -47,7 +47,7 @@ impl Simulation<'_> {
         let &Stay {
             kernel,
             mode,
-            drifts,
+            moves,
             chooses,
             looks_at_ends,
             ..
@@ -56,7 +56,7 @@ impl Simulation<'_> {
         let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
         if !goes_on {
             self.began = self.here.now;
-            if drifts {
+            if moves {
                 self.at_start.copy_from_slice(&self.here.q);
             }
         }
@@ -71,7 +71,7 @@ impl Simulation<'_> {
                 false => f64::INFINITY,
             },
             held: &self.at_start,
-            drift: if drifts { &self.drift } else { &[] },
+            drift: if moves { &self.drift } else { &[] },
         };
         let mut equations = Equations::new(
             kernel,
@@ -278,8 +278,8 @@ impl Simulation<'_> {
             self.here.now = start.plus(state.t);
             self.here
                 .set_free(&mode.free, [&state.q, &state.v, &state.a]);
-            if drifts {
-                copy_drifting(&mut self.here.q, &mode.drifts, equations.context.held());
+            if moves {
+                self.here.set_all(kernel, equations.context, at);
             }
 
             // 9. Observers of the state, and progress.

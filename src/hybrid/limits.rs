@@ -31,9 +31,9 @@ pub(super) struct Margins<'p> {
     /// Outputs, and room for their values.
     pub outputs: Outputs,
     pub output_values: Box<[f64]>,
-    /// Room for the reactions, and for the rates of frozen coordinates.
+    /// Room for the reactions, and for all coordinates or their rates.
     pub reactions: Box<[f64]>,
-    pub rates: Box<[f64]>,
+    pub all: Box<[f64]>,
 }
 
 impl Persist for Margins<'_> {
@@ -73,7 +73,7 @@ impl<'p> Margins<'p> {
             output_values: zeros(outputs.count()),
             outputs,
             reactions: zeros(model.coordinates.len() + model.motions.len()),
-            rates: zeros(model.coordinates.len()),
+            all: zeros(model.coordinates.len()),
         }
     }
 
@@ -131,7 +131,7 @@ impl<'p> Margins<'p> {
                 discrete: None,
                 offset: true,
             }),
-            None if mode.drifts[i] && !rate => Some(general),
+            None if mode.depends[i] || mode.drifts[i] && !rate => Some(general),
             None => None,
         }
     }

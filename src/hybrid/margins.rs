@@ -63,20 +63,26 @@ impl Margins<'_> {
             .any(|limit| matches!(limit.of, Observed::Output(_)))
         {
             let (outputs, values) = (&mut self.outputs, &mut self.output_values);
-            outputs.evaluate(kernel, context, mode, at, values);
+            outputs.evaluate(kernel, context, at, values);
         }
         let own = self.values[of_model..].iter_mut().zip(&self.own);
         for (out, limit) in own {
             let free = |i| mode.free.iter().position(|&free| free == i);
             let value = match limit.of {
-                Observed::Coordinate(i) => free(i).map_or(context.held()[i], |k| at.q[k]),
-                Observed::Rate(i) => match free(i) {
-                    Some(k) => at.v[k],
-                    None => {
-                        kernel.held_rates(context, &mut self.rates);
-                        self.rates[i]
-                    }
-                },
+                Observed::Coordinate(i) => free(i).map_or_else(
+                    || {
+                        kernel.coordinates(context, at, &mut self.all);
+                        self.all[i]
+                    },
+                    |k| at.q[k],
+                ),
+                Observed::Rate(i) => free(i).map_or_else(
+                    || {
+                        kernel.rates(context, at, &mut self.all);
+                        self.all[i]
+                    },
+                    |k| at.v[k],
+                ),
                 Observed::Reaction(i) => {
                     kernel.reactions(context, at, &mut self.reactions);
                     self.reactions[i]

@@ -4,7 +4,7 @@ use super::advance::MadeBy;
 use super::equations::{Clock, Equations};
 use super::guards::motion;
 use super::instant::Instant;
-use super::observe::{copy_drifting, held};
+use super::observe::held;
 use super::outputs::Outputs;
 use super::problem::Problem;
 use super::simulation::Simulation;
@@ -144,7 +144,7 @@ impl<'s> Moment<'s> {
         let mut outputs = Outputs::new(self.problem);
         let mut values = vec![0.0; outputs.count()];
         with_kernel!(&self.mode.kernels, k => self.with(k.size(), |at| {
-            outputs.evaluate(k, self.context, self.mode, at, &mut values);
+            outputs.evaluate(k, self.context, at, &mut values);
         }));
         values
     }
@@ -202,7 +202,7 @@ impl<'p> Simulation<'p> {
         view.v.copy_from_slice(&self.here.v);
         view.a.fill(0.0);
         view.t = t;
-        let drifts = self.plan.drifts[index];
+        let moves = self.plan.moves[index];
         if t == now {
             self.set_context();
             let [q, v, _] = self.here.free(kernel.size(), &mode.free);
@@ -210,12 +210,20 @@ impl<'p> Simulation<'p> {
             let a = system.accelerations(&self.scale(kernel.size()));
             let a = a.unwrap_or_else(|_| kernel.size().repeat(f64::NAN));
             (mode.free.iter().zip(a.as_slice())).for_each(|(&full, &a)| view.a[full] = a);
+            if moves {
+                let at = Free {
+                    q: &q,
+                    v: &v,
+                    a: &a,
+                };
+                kernel.accelerations(&self.context, at, &mut view.a);
+            }
             return Ok(());
         }
         let scale = self.scale(kernel.size());
         let is_after_step = self.stage.is_after_step();
         let slots = self.solvers.slots();
-        if !drifts {
+        if !moves {
             self.context.held_mut().copy_from_slice(&self.here.q);
         }
         let mut equations = Equations::new(
@@ -228,7 +236,7 @@ impl<'p> Simulation<'p> {
                 until: (f64::INFINITY, f64::INFINITY),
                 commanded: f64::INFINITY,
                 held: &self.at_start,
-                drift: if drifts { &self.drift } else { &[] },
+                drift: if moves { &self.drift } else { &[] },
             },
             self.problem.accuracy.relative,
             scale,
@@ -266,11 +274,18 @@ impl<'p> Simulation<'p> {
             }
             None => [q, v, a],
         };
-        if drifts {
-            copy_drifting(&mut view.q, &mode.drifts, equations.context.held());
-        }
         for (i, &full) in mode.free.iter().enumerate() {
             (view.q[full], view.v[full], view.a[full]) = (q[i], v[i], a[i]);
+        }
+        if moves {
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
+            kernel.coordinates(equations.context, at, &mut view.q);
+            kernel.rates(equations.context, at, &mut view.v);
+            kernel.accelerations(equations.context, at, &mut view.a);
         }
         Ok(())
     }

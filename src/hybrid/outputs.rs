@@ -4,7 +4,6 @@ use super::problem::Problem;
 use super::validate::Unknown;
 use crate::formula::{Formula, FormulaError, Given, Names};
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::model::Mode;
 use crate::numerics::Size;
 use crate::run::{Layout, Quantity};
 
@@ -158,7 +157,6 @@ impl Outputs {
         &mut self,
         kernel: &ModeKernel<F>,
         context: &Context,
-        mode: &Mode,
         at: Free<F>,
         out: &mut [f64],
     ) {
@@ -166,12 +164,9 @@ impl Outputs {
         if self.own.is_empty() {
             return;
         }
-        self.q.copy_from_slice(context.held());
-        kernel.held_rates(context, &mut self.v);
-        self.a.fill(0.0);
-        for (i, &full) in mode.free.iter().enumerate() {
-            (self.q[full], self.v[full], self.a[full]) = (at.q[i], at.v[i], at.a[i]);
-        }
+        kernel.coordinates(context, at, &mut self.q);
+        kernel.rates(context, at, &mut self.v);
+        kernel.accelerations(context, at, &mut self.a);
         if self.reads_reactions {
             kernel.reactions(context, at, &mut self.reactions);
         }

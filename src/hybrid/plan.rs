@@ -9,8 +9,8 @@ use crate::model::{Contacts, Guard, Rest};
 pub(super) struct Plan {
     /// Per mode: whether the scene may visit it.
     pub allowed: Vec<bool>,
-    /// Per mode: whether some frozen coordinate drifts.
-    pub drifts: Vec<bool>,
+    /// Per mode: whether something that it holds moves.
+    pub moves: Vec<bool>,
     /// Per mode: what is watched.
     pub watched: Vec<Vec<Watched>>,
     /// The rests that the scene may visit, in the order of the file.
@@ -38,7 +38,7 @@ impl Plan {
         let modes = &problem.automaton().modes;
         let allowed: Vec<bool> = modes
             .iter()
-            .map(|m| problem.freeze.iter().all(|frozen| !m.free.contains(frozen)))
+            .map(|m| problem.freeze.iter().all(|&frozen| m.freezes(frozen)))
             .collect();
         if !allowed.contains(&true) {
             let names = problem
@@ -69,7 +69,9 @@ impl Plan {
         Ok(Plan {
             rests,
             allowed,
-            drifts: modes.iter().map(|m| m.drifts.contains(&true)).collect(),
+            moves: (modes.iter())
+                .map(|m| (0..m.drifts.len()).any(|i| m.moves(i)))
+                .collect(),
             watched,
         })
     }

@@ -164,7 +164,7 @@ impl<'p> Simulation<'p> {
         self.here.v.copy_from_slice(&limit.state[n..]);
         self.next[..2 * n].copy_from_slice(&limit.state);
         self.next[2 * n..].copy_from_slice(self.context.discrete());
-        for held in self.holds(&self.modes[target]) {
+        for held in self.holds(&self.modes[target], &limit.state) {
             let (place, value) = held.index(n);
             self.next[place] = value;
         }
@@ -253,7 +253,7 @@ impl<'p> Simulation<'p> {
         let accuracy = self.accuracy;
         let n = self.here.q.len();
         let mut told = 0;
-        for held in self.holds(mode) {
+        for held in self.holds(mode, &limit.state) {
             let (place, value) = held.index(n);
             let absolute = match held {
                 Held::At(i, _) => accuracy.q_absolute[i],
@@ -275,13 +275,15 @@ impl<'p> Simulation<'p> {
         Ok(told)
     }
 
-    /// Everything that a mode holds: values, and rates.
-    fn holds<'m>(&self, mode: &'m Mode) -> impl Iterator<Item = Held> + use<'m> {
-        let mut rates = vec![0.0; self.here.v.len()];
-        let mut values = rates.clone();
+    /// Everything that a mode holds at a state q, v: values, and rates.
+    fn holds<'m>(&self, mode: &'m Mode, state: &[f64]) -> impl Iterator<Item = Held> + use<'m> {
+        let n = self.here.v.len();
+        let [mut values, mut rates] = [vec![0.0; n], vec![0.0; n]];
         with_kernel!(&mode.kernels, k => {
-            k.held_rates(&self.context, &mut rates);
-            k.held_values(&self.context, &mut values);
+            let [q, v] = [0, n].map(|from| k.size().vector(|i| state[from + mode.free[i]]));
+            let at = Free { q: &q, v: &v, a: &v };
+            k.coordinates(&self.context, at, &mut values);
+            k.rates(&self.context, at, &mut rates);
         });
         let held = (0..rates.len()).filter(|i| !mode.free.contains(i));
         held.flat_map(move |i| {

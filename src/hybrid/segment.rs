@@ -17,8 +17,8 @@ pub(super) struct Stay<'p, F: Size> {
     pub mode: &'p Mode,
     /// Typical sizes of the free coordinates.
     pub scale: F::Vector,
-    /// Whether some frozen coordinate drifts.
-    pub drifts: bool,
+    /// Whether something moves that the mode holds.
+    pub moves: bool,
     /// Whether the method follows from what is seen of the stiffness.
     pub chooses: bool,
     /// Whether something is evaluated at the end of every step with the inputs there; the explicit method
@@ -140,16 +140,16 @@ impl<'p> Simulation<'p> {
     {
         let (problem, mode) = (self.problem, self.mode());
         let is_explicit = <M as OneStep<F, Equations<F>>>::EXPLICIT;
-        let drifts = self.plan.drifts[self.here.mode];
+        let moves = self.plan.moves[self.here.mode];
         let stay = Stay {
             kernel,
             mode,
             scale: self.scale(kernel.size()),
-            drifts,
+            moves,
             chooses: kernel.is_analytic()
                 && (problem.method == Method::Auto || self.accumulation.needs_series()),
             looks_at_ends: is_explicit
-                || drifts
+                || moves
                 || mode.contacts.is_some()
                 || !mode.requirements.is_empty()
                 || !kernel.mass_is_constant()

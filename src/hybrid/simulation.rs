@@ -19,7 +19,7 @@ use super::visited::Visited;
 use crate::input::{Side, Signals};
 use crate::jets::Expansion;
 use crate::kernel::with_kernel;
-use crate::kernel::{Context, Free};
+use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::Mode;
 use crate::numerics::Size;
 use crate::numerics::Vector;
@@ -94,7 +94,7 @@ pub(super) struct Simulation<'p> {
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
-    /// All coordinates at the start of the segment, where some drift.
+    /// All coordinates at the start of the segment, where something moves that the mode holds.
     pub at_start: Box<[f64]>,
     /// Rates of the frozen coordinates in the present mode.
     pub drift: Box<[f64]>,
@@ -318,11 +318,13 @@ impl<'p> Simulation<'p> {
             return self.start_at_rest(parameters);
         }
         self.choose_initial_mode()?;
+        self.follow_others();
         self.here.shown = self.here.mode;
         self.set_context();
         let kernels = &self.mode().kernels;
         with_kernel!(kernels, k => self.follow_slip_rates(k));
-        if self.context.discrete() != self.initial.discrete {
+        let follows = self.here.q[..] != self.initial.q || self.here.v[..] != self.initial.v;
+        if follows || self.context.discrete() != self.initial.discrete {
             let discrete = self.context.discrete();
             self.begun = Some([&*self.here.q, &*self.here.v, discrete].concat().into());
         }
@@ -505,7 +507,7 @@ impl<'p> Simulation<'p> {
                     (self.observers.outputs).reactions(k, &self.context, at, &mut reactions);
                 }
                 if !outputs.is_empty() {
-                    self.observers.outputs.evaluate(k, &self.context, mode, at, &mut outputs);
+                    self.observers.outputs.evaluate(k, &self.context, at, &mut outputs);
                 }
             });
         }
@@ -540,5 +542,12 @@ impl Here {
         for (i, &full) in free.iter().enumerate() {
             (self.q[full], self.v[full], self.a[full]) = (q[i], v[i], a[i]);
         }
+    }
+
+    /// Sets what a mode holds though it moves, for whose time the context is set, and the free coordinates.
+    pub fn set_all<F: Size>(&mut self, kernel: &ModeKernel<F>, context: &Context, at: Free<F>) {
+        kernel.coordinates(context, at, &mut self.q);
+        kernel.rates(context, at, &mut self.v);
+        kernel.accelerations(context, at, &mut self.a);
     }
 }

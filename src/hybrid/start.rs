@@ -172,14 +172,25 @@ impl Simulation<'_> {
         self.misfit(&self.modes[mode])
     }
 
-    /// The first coordinate whose state does not fit a mode. Leaves the rates of the mode in `drift`.
+    /// The first coordinate whose state does not fit a mode. One that depends on others fits where it follows from them, but for
+    /// roundings. Leaves where the mode holds all, and their rates, in `next`.
     fn misfit(&mut self, mode: &Mode) -> Option<Misfitting> {
         let model = &self.problem.model;
-        let held = &mut self.next[..self.here.q.len()];
-        with_kernel!(&mode.kernels, k => {
-            k.held_rates(&self.context, &mut self.drift);
-            k.held_values(&self.context, held);
+        let n = self.here.q.len();
+        self.context.held_mut().copy_from_slice(&self.here.q);
+        let (held, rest) = self.next.split_at_mut(n);
+        let rates = &mut rest[..n];
+        let roundings = with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
+            let at = Free { q: &q, v: &v, a: &a };
+            k.coordinates(&self.context, at, held);
+            k.rates(&self.context, at, rates);
+            k.roundings(&self.context, at)
         });
+        let differ = |one: f64, other: f64, entry: usize| {
+            let rounding = roundings.get(entry).map_or(0.0, |bound| f64::EPSILON * bound);
+            one != other && (one - other).abs() > rounding
+        };
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
             let (coordinate, unit) = (c.name, c.unit);
             if let Some(minimum) = c.minimum
@@ -195,14 +206,14 @@ impl Simulation<'_> {
                 return None;
             }
             match mode.held_at[i] {
-                Some(_) if self.here.q[i] != held[i] => Some(Misfitting::HeldAt {
+                Some(_) if differ(self.here.q[i], held[i], i) => Some(Misfitting::HeldAt {
                     coordinate,
                     held: held[i],
                     unit,
                 }),
-                _ if self.here.v[i] != self.drift[i] => Some(Misfitting::HeldRate {
+                _ if differ(self.here.v[i], rates[i], n + i) => Some(Misfitting::HeldRate {
                     coordinate,
-                    held: self.drift[i],
+                    held: rates[i],
                     unit,
                 }),
                 _ => None,
@@ -210,15 +221,35 @@ impl Simulation<'_> {
         })
     }
 
-    /// A scene that names a drifting mode need not state the drift's rate.
+    /// A scene that names a mode need not state the rates of what moves although the mode holds it.
     pub fn apply_drift(&mut self) {
         let mode = self.mode();
+        self.context.held_mut().copy_from_slice(&self.here.q);
         let mut rates = vec![0.0; self.here.v.len()];
-        with_kernel!(&mode.kernels, k => k.held_rates(&self.context, &mut rates));
-        for (i, &drifts) in mode.drifts.iter().enumerate() {
-            if drifts && self.here.v[i] == 0.0 {
-                self.here.v[i] = rates[i];
+        with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
+            let at = Free { q: &q, v: &v, a: &a };
+            k.rates(&self.context, at, &mut rates);
+        });
+        for (i, &rate) in rates.iter().enumerate() {
+            if mode.moves(i) && self.here.v[i] == 0.0 {
+                self.here.v[i] = rate;
             }
         }
+    }
+
+    /// Lets what depends on others in the present mode follow from them to the last digit.
+    pub fn follow_others(&mut self) {
+        let mode = self.mode();
+        if !mode.depends.contains(&true) {
+            return;
+        }
+        self.context.held_mut().copy_from_slice(&self.here.q);
+        with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
+            let at = Free { q: &q, v: &v, a: &a };
+            k.coordinates(&self.context, at, &mut self.here.q);
+            k.rates(&self.context, at, &mut self.here.v);
+        });
     }
 }

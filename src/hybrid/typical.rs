@@ -39,7 +39,11 @@ impl Problem {
             }
             context.held_mut().copy_from_slice(&self.initial.q);
             let mut held = vec![0.0; self.initial.q.len()];
-            with_kernel!(&mode.kernels, k => k.held_values(&context, &mut held));
+            with_kernel!(&mode.kernels, k => {
+                let free = |all: &[f64]| k.size().vector(|i| all[mode.free[i]]);
+                let [q, v] = [&self.initial.q, &self.initial.v].map(|all| free(all));
+                k.coordinates(&context, Free { q: &q, v: &v, a: &v }, &mut held);
+            });
             context.held_mut().copy_from_slice(&held);
             let watched = plan.watched[m].iter().filter(|w| w.condition.is_none());
             let general = watched.map(|w| &mode.guards[w.guard]);

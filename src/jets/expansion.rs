@@ -11,8 +11,12 @@ use crate::numerics::{self, Bounded, Dynamic, Lu, Size};
 pub(crate) struct Point<'a> {
     /// All coordinates.
     pub q: &'a [f64],
-    /// All velocities; of a coordinate that the mode holds, that of its drift.
+    /// All velocities.
     pub v: &'a [f64],
+    /// All coordinates where the mode holds them, or where they were as it began.
+    pub held: &'a [f64],
+    /// Rates of these; empty where nothing drifts.
+    pub drift: &'a [f64],
     /// Discrete states.
     pub discrete: &'a [f64],
 }
@@ -44,6 +48,7 @@ impl Expansion {
         Expansion {
             given: Operands {
                 q: rows(coordinates),
+                held: rows(coordinates),
                 v: rows(coordinates),
                 a: rows(coordinates),
                 signals: rows(signals),
@@ -106,6 +111,9 @@ impl Expansion {
             given.q[i][0] = known(at.q[i], 0);
             given.v[i][0] = known(at.v[i], 1);
             given.q[i][1] = given.v[i][0];
+            given.held[i] = Powers::default();
+            given.held[i][0] = Bounded::exact(at.held[i]);
+            given.held[i][1] = Bounded::exact(at.drift.get(i).copied().unwrap_or(0.0));
         }
         for (rows, tape) in [
             (&mut self.system, &mode.system),

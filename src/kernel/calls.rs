@@ -426,32 +426,60 @@ impl<F: Size> ModeKernel<F> {
         });
     }
 
-    /// Constant rates of the frozen coordinates (0 where one rests or is free).
+    /// Constant rates at which what the context holds drifts while the mode lasts (0 where it rests or is free).
     ///
     /// # Panics
     /// If `out` has not one entry a coordinate.
-    pub fn held_rates(&self, x: &Context, out: &mut [f64]) {
-        self.of_held(self.functions.held_rates, x, out);
-    }
-
-    /// Coordinates as the mode holds them; those that it leaves free or holds wherever they were as the context has
-    /// them.
-    ///
-    /// # Panics
-    /// If `out` has not one entry a coordinate.
-    pub fn held_values(&self, x: &Context, out: &mut [f64]) {
-        self.of_held(self.functions.held_values, x, out);
-    }
-
-    /// What a function of the mode gives that has one output a coordinate and does not depend on those that are free.
-    fn of_held(&self, function: Raw, x: &Context, out: &mut [f64]) {
-        assert_eq!(out.len(), self.dimensions.coordinates);
+    pub fn drift(&self, x: &Context, out: &mut [f64]) {
         let none = self.size.zeros();
         let at = Free {
             q: &none,
             v: &none,
             a: &none,
         };
+        self.of_all(self.functions.drift, x, at, out);
+    }
+
+    /// All coordinates: those that are free, and where the mode holds the others: at a value, where the context has them, or where
+    /// they follow from those that are free.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
+    pub fn coordinates(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        self.of_all(self.functions.coordinates, x, at, out);
+    }
+
+    /// Their rates.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
+    pub fn rates(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        self.of_all(self.functions.rates, x, at, out);
+    }
+
+    /// Their accelerations.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a coordinate.
+    pub fn accelerations(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        self.of_all(self.functions.accelerations, x, at, out);
+    }
+
+    /// What, times the unit roundoff, bounds the rounding of all coordinates that depend on others, then of their rates; 0 of
+    /// those that do not. Empty where none does.
+    pub fn roundings(&self, x: &Context, at: Free<F>) -> Vec<f64> {
+        let Some((function, count)) = self.roundings else {
+            return Vec::new();
+        };
+        let mut out = vec![0.0; count];
+        // SAFETY: there is room for all.
+        unsafe { self.call(function, x, at, out.as_mut_ptr()) };
+        out
+    }
+
+    /// What a function of the mode gives that has one output a coordinate.
+    fn of_all(&self, function: Raw, x: &Context, at: Free<F>, out: &mut [f64]) {
+        assert_eq!(out.len(), self.dimensions.coordinates);
         // SAFETY: the length was checked.
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }

@@ -111,8 +111,10 @@ functions! {
     momenta,
     requirements,
     requirement_bounds,
-    held_rates,
-    held_values,
+    drift,
+    coordinates,
+    rates,
+    accelerations,
 }
 
 /// The generated functions of one mode with F free coordinates.
@@ -137,6 +139,8 @@ pub struct ModeKernel<F: Size> {
     pub(crate) contact_values: Option<(Raw, usize)>,
     /// The same of their lines.
     pub(crate) lines: Option<(Raw, usize)>,
+    /// Of what the mode holds and depends on what is free.
+    pub(crate) roundings: Option<(Raw, usize)>,
     /// By level of the processor; none where the mode does not go in lanes.
     pub(crate) lanes: Box<[LaneKernel]>,
 }

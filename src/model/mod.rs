@@ -280,7 +280,7 @@ pub struct ParametricBound {
 pub enum HeldAt {
     /// At a number.
     Number(f64),
-    /// At what follows from the parameters, as text: [`crate::kernel::ModeKernel::held_values`] gives the value.
+    /// At what follows from parameters, or from free coordinates, as text: [`crate::kernel::ModeKernel::coordinates`] gives the value.
     Expression(&'static str),
 }
 
@@ -304,6 +304,8 @@ pub struct Mode {
     pub margins: Box<[Option<GuardShape>]>,
     /// Rate of each frozen coordinate that drifts (a belt); false: it rests. One entry a coordinate.
     pub drifts: Box<[bool]>,
+    /// Whether a frozen coordinate depends on free ones (a wheel that does not slip). One entry a coordinate.
+    pub depends: Box<[bool]>,
     /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
     pub without_series: Option<&'static str>,
     /// Contacts and constraints that hold by multipliers in this mode, if it is one of all sets of contact states.
@@ -424,6 +426,18 @@ impl Variant {
     /// Whether contacts or constraints are held by multipliers.
     pub fn has_multipliers(&self) -> bool {
         self.modes.iter().any(|mode| mode.contacts.is_some())
+    }
+}
+
+impl Mode {
+    /// Whether a coordinate stays where it is: it is neither free nor depends on what is.
+    pub fn freezes(&self, i: usize) -> bool {
+        !self.free.contains(&i) && !self.depends[i]
+    }
+
+    /// Whether a coordinate moves although the mode holds it: it drifts, or depends on free ones.
+    pub fn moves(&self, i: usize) -> bool {
+        self.drifts[i] || self.depends[i]
     }
 }
 

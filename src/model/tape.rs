@@ -22,8 +22,10 @@ pub struct Tape {
 pub enum Instruction {
     /// A number.
     Constant(f64),
-    /// A coordinate of the model; one that the mode holds, too.
+    /// A free coordinate of the model.
     Coordinate(usize),
+    /// Where the mode holds a coordinate, or any was as it began.
+    Held(usize),
     /// Its rate.
     Rate(usize),
     /// Its acceleration.
@@ -96,6 +98,7 @@ pub(crate) type Powers = [Bounded; JET_ORDERS];
 #[derive(Debug)]
 pub(crate) struct Operands {
     pub q: Vec<Powers>,
+    pub held: Vec<Powers>,
     pub v: Vec<Powers>,
     pub a: Vec<Powers>,
     pub signals: Vec<Powers>,
@@ -145,6 +148,7 @@ impl Tape {
             let next = match *instruction {
                 Instruction::Constant(value) => still(value),
                 Instruction::Coordinate(i) => given.q[i][k],
+                Instruction::Held(i) => given.held[i][k],
                 Instruction::Rate(i) => given.v[i][k],
                 Instruction::Acceleration(i) => given.a[i][k],
                 Instruction::Signal(i) => given.signals[i][k],

@@ -7,7 +7,8 @@ use super::format;
 use super::interpret::under;
 use super::wording::{listing, shown};
 use crate::hybrid::Initial;
-use crate::kernel::{Context, with_kernel};
+use crate::kernel::{Context, Free, with_kernel};
+use crate::numerics::Size;
 use crate::model::{Discrete, HeldAt, Mode, Model, Variant};
 
 /// The coordinates to freeze, increasing. Each must be held still by some mode, or no equations
@@ -29,10 +30,10 @@ pub(crate) fn freeze(
                 key: coordinate.to_owned(),
             };
             errors.push(SceneError::new(kind, &name.place));
-        } else if variant.modes.iter().all(|mode| mode.free.contains(&i)) {
+        } else if !variant.modes.iter().any(|mode| mode.freezes(i)) {
             let kind = SceneErrorKind::NeverFrozen { coordinate };
             let held = model.own_coordinates().iter().enumerate();
-            let held = held.filter(|(i, _)| variant.modes.iter().any(|m| !m.free.contains(i)));
+            let held = held.filter(|(i, _)| variant.modes.iter().any(|m| m.freezes(*i)));
             let held = listing(held.map(|(_, c)| c.name));
             errors
                 .push(SceneError::new(kind, &name.place).help(format!("modes hold {held} still")));
@@ -54,10 +55,16 @@ fn holding<'m>(model: &Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Hol
     let values = parameters.filter(|_| depends).map(|parameters| {
         let context = Context::new(model, parameters);
         let mut values = vec![0.0; model.coordinates.len()];
-        with_kernel!(&mode.kernels, k => k.held_values(&context, &mut values));
+        with_kernel!(&mode.kernels, k => {
+            let none = k.size().zeros();
+            let at = Free { q: &none, v: &none, a: &none };
+            k.coordinates(&context, at, &mut values);
+        });
         values
     });
     let at = mode.held_at.iter().enumerate().map(|(i, at)| match at {
+        // Where free coordinates have it: the engine knows.
+        _ if mode.depends[i] => None,
         Some(HeldAt::Number(value)) => Some(*value),
         Some(HeldAt::Expression(_)) => values.as_ref().map(|values| values[i]),
         None => None,
@@ -89,7 +96,7 @@ pub(crate) fn initial(
 ) -> Option<Initial> {
     let object = scene.get("initial");
     let entry = |key: &str| object.and_then(|o| o.get(key));
-    let keeps_frozen = |mode: &Mode| freeze.iter().all(|i| !mode.free.contains(i));
+    let keeps_frozen = |mode: &Mode| freeze.iter().all(|&i| mode.freezes(i));
 
     let mode = match entry("mode") {
         Some(name) => Some(errors.note(named_mode(model, variant, name))?),
@@ -104,7 +111,7 @@ pub(crate) fn initial(
         .collect();
     if let (Some(i), Some(at)) = (mode, entry("mode")) {
         let mode = &variant.modes[i];
-        if let Some(&i) = freeze.iter().find(|i| mode.free.contains(i)) {
+        if let Some(&i) = freeze.iter().find(|&&i| !mode.freezes(i)) {
             let (name, coordinate) = (mode.name, model.coordinates[i].name);
             let message =
                 format!("mode `{name}` leaves `{coordinate}` free, but the scene freezes it");
@@ -238,7 +245,7 @@ impl<'s> Given<'s> {
         // The rate at which a mode lets a coordinate drift is a function of the model.
         let moving = self
             .rate
-            .filter(|rate| rate.number() != 0.0 && !mode.drifts[i])?;
+            .filter(|rate| rate.number() != 0.0 && !mode.moves(i))?;
         Some((format!("mode `{}` holds `{name}` still", mode.name), moving))
     }
 }

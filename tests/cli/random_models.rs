@@ -1,4 +1,4 @@
-//! Random models whose gaps and slips are coordinates, each in both forms: a mode for each set of contact states, and one mode with
+//! Random models whose gaps, slips and constraints solve for coordinates, each in both forms: a mode for each set of contact states, and one mode with
 //! multipliers. Impacts, friction and rests that were derived for the one must be what complementarity decides in the other.
 //!
 //! `DALEMBERT_RANDOM_SCENES=300` runs as many, `DALEMBERT_RANDOM_SCENE=17` one of them.
@@ -12,6 +12,20 @@ use std::path::Path;
 
 /// Models in the suite: each is derived and compiled twice.
 const SHARE: u64 = 6;
+
+/// A line that solves for a coordinate of so many: itself, or with what another adds.
+fn line(random: &mut Random, i: usize, n: usize) -> String {
+    if n == 1 || random.next().is_multiple_of(2) {
+        return format!("x{i}");
+    }
+    let j = (i + 1 + random.next() as usize % (n - 1)) % n;
+    let part = random.within(-0.8, 0.8);
+    let other = random.one_of(&["x", "part * x", "part * one * sin(x / one)"]);
+    let other = other
+        .replace('x', &format!("x{j}"))
+        .replace("part", &format!("{part:.4}"));
+    format!("(x{i} - {other})")
+}
 
 /// A model file, and how many coordinates it has.
 fn model(random: &mut Random) -> (String, usize) {
@@ -80,9 +94,10 @@ fn model(random: &mut Random) -> (String, usize) {
                 }
                 _ => String::new(),
             };
+            let gap = line(random, i, n);
             let (at, e) = (random.within(0.1, 0.6), random.either(0.0, (0.1, 0.9)));
             say(format!(
-                "model.contact(\"stop{i}\", gap={side} * x{i} + {at:.4} * one, restitution={e:.4}{slip})"
+                "model.contact(\"stop{i}\", gap={side} * {gap} + {at:.4} * one, restitution={e:.4}{slip})"
             ));
         }
         if kind.contains("end") {
@@ -94,12 +109,14 @@ fn model(random: &mut Random) -> (String, usize) {
         }
         if kind.contains("friction") || i == 0 && kind.is_empty() {
             let (holds, slides) = (5.0 * mu, 5.0 * kinetic);
-            let belt = random.within(-1.0, 1.0);
-            let belt = random
-                .one_of(&[String::new(), format!(".rate - {belt:.4} * speed")])
-                .clone();
+            let (place, belt) = (line(random, i, n), random.within(-1.0, 1.0));
+            let belt = match place.len() {
+                2 => format!("x{i}.rate - {belt:.4} * speed"),
+                _ => place.clone(),
+            };
+            let slip = random.one_of(&[place, belt]).clone();
             say(format!(
-                "model.friction(\"base{i}\", slip=x{i}{belt}, normal=N, static={holds:.4}, kinetic={slides:.4})"
+                "model.friction(\"base{i}\", slip={slip}, normal=N, static={holds:.4}, kinetic={slides:.4})"
             ));
         }
     }
@@ -136,7 +153,7 @@ fn random_models_move_alike_in_both_forms() {
     let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
     let numbers = match asked("DALEMBERT_RANDOM_SCENE") {
         Some(number) => number..number + 1,
-        None => 0..share,
+        None => asked("DALEMBERT_FROM").unwrap_or(0)..share,
     };
     let mut events = 0;
     for number in numbers {
@@ -171,7 +188,14 @@ fn random_models_move_alike_in_both_forms() {
         }
         for run in [&one, &other] {
             let imbalance = run["energy"]["imbalance"].as_f64().unwrap();
-            assert!(imbalance.abs() < 1e-9, "{imbalance:e} J in {of}");
+            // Masses are of 1 kg: what is stored may be a small difference of kinetic and potential energy.
+            let largest = |name: &String, extreme| run["peaks"][name][extreme].as_f64().unwrap();
+            let rates = (0..n).map(|i| format!("x{i}.rate"));
+            let kinetic: f64 = rates
+                .map(|name| largest(&name, "max").max(-largest(&name, "min")).powi(2))
+                .sum();
+            let bound = 1e-10 * (10.0 + kinetic);
+            assert!(imbalance.abs() < bound, "{imbalance:e} J in {of}");
         }
         for name in (0..n).flat_map(|i| [format!("x{i}"), format!("x{i}.rate")]) {
             for extreme in ["min", "max"] {

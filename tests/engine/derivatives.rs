@@ -52,7 +52,13 @@ impl<const F: usize> Point<F> {
             context.held_mut()[i] = c.minimum.map_or(q, |m| m + q.abs());
         }
         let mut held = vec![0.0; model.coordinates.len()];
-        kernel.held_values(&context, &mut held);
+        let free = SVector::from_fn(|i, _| context.held()[mode.free[i]]);
+        let at = Free {
+            q: &free,
+            v: &free,
+            a: &free,
+        };
+        kernel.coordinates(&context, at, &mut held);
         context.held_mut().copy_from_slice(&held);
         let [signals, rates] = context.signals_mut();
         signals.fill_with(|| random.next());
@@ -69,7 +75,7 @@ impl<const F: usize> Point<F> {
         }
         let held = context.held().to_vec();
         let mut drift = vec![0.0; held.len()];
-        kernel.held_rates(&context, &mut drift);
+        kernel.drift(&context, &mut drift);
         let rate = |i: usize| model.coordinates[mode.free[i]].rate_scale;
         Point {
             context,

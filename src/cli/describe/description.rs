@@ -145,10 +145,12 @@ pub struct Mode {
 #[derive(Debug, Serialize)]
 pub struct Held {
     pub coordinate: &'static str,
-    /// Where, a number or an expression in the parameters; `None`: wherever it was.
+    /// Where, a number or an expression in the parameters, and in free coordinates if it depends on these; `None`: wherever it was.
     pub at: Option<At>,
     /// Whether it moves at a given rate.
     pub drifts: bool,
+    /// Whether it depends on free coordinates.
+    pub depends: bool,
 }
 
 /// Where a coordinate is held.
@@ -369,6 +371,7 @@ impl Mode {
                 model::HeldAt::Expression(text) => At::Expression(text),
             }),
             drifts: mode.drifts[i],
+            depends: mode.depends[i],
         };
         Mode {
             name: mode.name,

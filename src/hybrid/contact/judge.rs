@@ -378,7 +378,15 @@ impl<'p> Simulation<'p> {
 pub(super) fn point<'a>(next: &'a [f64], coordinates: usize, discrete: &'a [f64]) -> Point<'a> {
     let (q, rest) = next.split_at(coordinates);
     let v = &rest[..coordinates];
-    Point { q, v, discrete }
+    // With multipliers all coordinates are free.
+    let (held, drift) = (q, &[][..]);
+    Point {
+        q,
+        v,
+        held,
+        drift,
+        discrete,
+    }
 }
 
 impl Candidate {

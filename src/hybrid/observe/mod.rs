@@ -25,6 +25,7 @@ use super::outputs::Outputs;
 use super::problem::{Problem, Record};
 use super::simulation::Here;
 use crate::integrate::Motion;
+use crate::kernel::Free;
 use crate::model::{Contacts, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Memory, Persist};
@@ -90,8 +91,8 @@ impl Persist for Observers<'_> {
     }
 }
 
-/// What is represented in the present mode, in this order: free coordinates, their rates, reactions, outputs,
-/// stored energy, powers.
+/// What is represented in the present mode, in this order: free coordinates, their rates, reactions, outputs, coordinates that
+/// depend on free ones, their rates, stored energy, powers.
 #[derive(Debug)]
 struct Functions {
     /// Columns of all but the powers.
@@ -105,7 +106,9 @@ struct Functions {
     stored: bool,
     /// Number of free coordinates that are columns; multipliers, which come last, are none.
     free: usize,
-    /// Room for all reactions.
+    /// Which coordinates depend on free ones.
+    dependent: Vec<usize>,
+    /// Room for all reactions, and for all coordinates.
     room: Box<[f64]>,
 }
 
@@ -156,7 +159,11 @@ impl Functions {
 
     /// Which function is the rate of another.
     fn rate_of(&self, function: usize) -> Option<usize> {
-        (function < self.free).then_some(self.free + function)
+        let dependent = 2 * self.free + self.reactions.len() + self.outputs;
+        match function.checked_sub(dependent) {
+            None => (function < self.free).then_some(self.free + function),
+            Some(i) => (i < self.dependent.len()).then_some(function + self.dependent.len()),
+        }
     }
 }
 
@@ -244,7 +251,8 @@ impl<'o> Observers<'o> {
                     .collect(),
                 stored: false,
                 free: 0,
-                room: vec![0.0; layout.reactions.len()].into(),
+                dependent: Vec::with_capacity(n),
+                room: vec![0.0; layout.reactions.len().max(problem.model.coordinates.len())].into(),
             },
             extremes,
             layout,
@@ -302,7 +310,7 @@ impl<'o> Observers<'o> {
         let Some(extremes) = &mut self.extremes else {
             return;
         };
-        // What the mode holds moves along a straight line at most.
+        // What the mode holds moves along a straight line at most, or is represented.
         let t = here.now.seconds();
         extremes.note_state(t, [&here.q, &here.v]);
         if !extremes.reactions.is_empty() {
@@ -323,6 +331,7 @@ impl<'o> Observers<'o> {
             reactions,
             stored,
             free,
+            dependent,
             ..
         } = &mut self.functions;
         let own = &mode.free[..mode.free.iter().filter(|&&i| i < n).count()];
@@ -336,6 +345,10 @@ impl<'o> Observers<'o> {
         reactions.extend(all.filter(|i| !own.contains(i)));
         columns.extend(reactions.iter().map(|i| extremes.reactions.start + i));
         columns.extend(extremes.outputs.clone());
+        dependent.clear();
+        dependent.extend((0..n).filter(|&i| mode.depends[i]));
+        columns.extend(&*dependent);
+        columns.extend(dependent.iter().map(|i| n + i));
         *stored = !extremes.energies.is_empty();
         columns.extend(stored.then_some(extremes.energies.start));
     }
@@ -443,14 +456,20 @@ impl<'o> Observers<'o> {
         let here = &*step.here;
         let mut state = |t: f64, q: &mut [f64], v: &mut [f64]| {
             let tau = super::instant::Instant::new(t).since(clock.start);
-            let [free, rates, _] = guards::motion(equations, motion, tau.clamp(from, to), false);
+            let [free, rates, a] = guards::motion(equations, motion, tau.clamp(from, to), false);
             q.copy_from_slice(&here.q);
             v.copy_from_slice(&here.v);
             for (i, &full) in mode.free.iter().enumerate() {
                 (q[full], v[full]) = (free[i], rates[i]);
             }
             if !clock.drift.is_empty() {
-                copy_drifting(q, &mode.drifts, equations.context.held());
+                let at = Free {
+                    q: &free,
+                    v: &rates,
+                    a: &a,
+                };
+                equations.kernel.coordinates(equations.context, at, q);
+                equations.kernel.rates(equations.context, at, v);
             }
         };
         self.recording.step(&mut MadeStep {
@@ -559,14 +578,5 @@ impl<'o> Observers<'o> {
             }
         }
         ControlFlow::Continue(whole)
-    }
-}
-
-/// Drifting coordinates move although they are frozen.
-pub(super) fn copy_drifting(q: &mut [f64], drifts: &[bool], held: &[f64]) {
-    for ((q, &drifts), &held) in q.iter_mut().zip(drifts).zip(held) {
-        if drifts {
-            *q = held;
-        }
     }
 }

@@ -86,6 +86,7 @@ impl Observers<'_> {
             stored,
             room,
             free,
+            dependent,
             ..
         } = &mut self.functions;
         let accelerated = powers || columns > 0 && (!reactions.is_empty() || *outputs > 0);
@@ -102,6 +103,7 @@ impl Observers<'_> {
             row[..n].copy_from_slice(&q.as_slice()[..n]);
             row[n..2 * n].copy_from_slice(&v.as_slice()[..n]);
             if !reactions.is_empty() {
+                let room = &mut room[..self.layout.reactions.len()];
                 self.outputs.reactions(kernel, context, at, room);
                 for (value, &i) in row[2 * n..].iter_mut().zip(&*reactions) {
                     *value = room[i];
@@ -109,7 +111,16 @@ impl Observers<'_> {
             }
             if *outputs > 0 {
                 let row = &mut row[2 * n + reactions.len()..][..*outputs];
-                self.outputs.evaluate(kernel, context, step.mode, at, row);
+                self.outputs.evaluate(kernel, context, at, row);
+            }
+            if !dependent.is_empty() {
+                let all = &mut room[..step.here.q.len()];
+                let row = &mut row[2 * n + reactions.len() + *outputs..];
+                let (places, rates) = row.split_at_mut(dependent.len());
+                kernel.coordinates(context, at, all);
+                dependent.iter().zip(places).for_each(|(&i, to)| *to = all[i]);
+                kernel.rates(context, at, all);
+                dependent.iter().zip(rates).for_each(|(&i, to)| *to = all[i]);
             }
         }
         let first = node == 0;

@@ -2,7 +2,7 @@
 
 use super::interpolants::Polynomial;
 use super::ledger::RunningLedger;
-use super::{Observers, Part, Sampled, Step, copy_drifting};
+use super::{Observers, Part, Sampled, Step};
 use crate::hybrid::contact::hold;
 use crate::hybrid::equations::Equations;
 use crate::hybrid::failure::{Reason, Stoppable};
@@ -55,8 +55,9 @@ impl RowSource<'_> {
         }
         let outputs = self.layout.range(ColumnKind::Output);
         if !outputs.is_empty() {
-            let (of, mode) = &mut self.outputs;
-            of.evaluate(kernel, context, mode, at, &mut row[outputs]);
+            self.outputs
+                .0
+                .evaluate(kernel, context, at, &mut row[outputs]);
         }
         let energies = self.layout.range(ColumnKind::Energy);
         if !energies.is_empty() {
@@ -306,8 +307,13 @@ impl Observers<'_> {
                 None => [q, v, a],
             };
             here.set_free(&mode.free, [&q, &v, &a]);
+            let at = Free {
+                q: &q,
+                v: &v,
+                a: &a,
+            };
             if !equations.clock.drift.is_empty() {
-                copy_drifting(&mut here.q, &mode.drifts, equations.context.held());
+                here.set_all(equations.kernel, equations.context, at);
             }
             let place = (tau - part.from) / (part.to - part.from);
             let work = work.map_or([0.0; 2], |work| work.each_ref().map(|w| w.value(place)));
@@ -318,11 +324,6 @@ impl Observers<'_> {
                 discretes: &self.discretes,
                 outputs: (&mut self.outputs, mode),
                 ledger: row_of(self.ledger.as_ref(), work),
-            };
-            let at = Free {
-                q: &q,
-                v: &v,
-                a: &a,
             };
             let (kernel, context) = (equations.kernel, &*equations.context);
             let fill = |values: &mut [f64]| row.fill(kernel, context, at, values);

@@ -72,6 +72,7 @@ impl Reader<'_> {
             requirements: counts.required,
             contact_values: at.get("contact_values", |at| at.option(|at| self.counted(at)))?,
             lines: at.get("lines", |at| at.option(|at| self.counted(at)))?,
+            roundings: at.get("roundings", |at| at.option(|at| self.counted(at)))?,
             series: series("series")?,
             autonomous_series: series("autonomous_series")?,
             guard_series: series("guard_series")?,

@@ -229,6 +229,7 @@ impl Reader<'_> {
             meaning: at.get("meaning", text)?,
             held_at: at.get("held_at", |at| at.list_of(n, |at| at.option(held_at)))?,
             drifts: at.get("drifts", |at| at.list_of(n, truth))?,
+            depends: at.get("depends", |at| at.list_of(n, truth))?,
             contacts: {
                 let kernel = || {
                     let size = Dynamic(free.len());

@@ -1,0 +1,159 @@
+"""Gaps, slips and constraints that solve for a coordinate: lines w = q_p + ρ(q), of which q_p is what the others leave.
+
+Of a wheel that may slip on a rail, x − r φ is the place along which it slips. It is as good a coordinate as x; where the wheel sticks,
+it is held, and x *depends* on φ. With w in place of q_p for each of these lines, forces, momenta and impacts are those of contacts
+along coordinates (`reduced.py`). What is integrated and shown stays what the model declares: in a mode that holds w, q_p is among
+the coordinates that are held, though it moves.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import casadi as ca
+
+from . import derive, limits
+from .contacts import Line, as_line, slip_line
+from .declarations import Coordinate
+from .exact import Exact, lifted
+
+
+class NotSolved(Exception):
+    """Why lines do not solve for coordinates."""
+
+
+@dataclass
+class Solved:
+    """A line w = q_p + ρ(q): `symbol` is w, with its rate; `coordinate` is q_p; `rest` is ρ, which does not depend on q_p."""
+
+    symbol: Coordinate
+    coordinate: Coordinate
+    rest: ca.SX
+
+    @property
+    def name(self):
+        """The name of the coordinate that it is solved for."""
+        return self.coordinate.name()
+
+    @property
+    def value(self):
+        """w in the coordinates."""
+        return self.coordinate + self.rest
+
+    def rate(self, model):
+        """ẇ in the coordinates and rates."""
+        x = derive.configuration(model)
+        return ca.jtimes(self.value, x.q, x.v)
+
+
+def solve(model):
+    """Gaps, slips and constraints of a model as lines; in `model.lines` those that are no coordinates themselves, each behind those
+    that it depends on. Raises `NotSolved`."""
+    parts = list(_parts(model))
+    wanted, claimed = [], set()
+    for owner, key, expression, is_rate in parts:
+        line = slip_line(model, expression, is_rate) if key == "slip" else as_line(model, expression, is_rate)
+        if line is None:
+            wanted.append((owner, key, *_place(model, owner, expression, is_rate)))
+        else:
+            setattr(owner, key, line)
+            claimed.add(line.name)
+    if not wanted:
+        return
+    groups = []
+    for entry in wanted:
+        known = next((group for group in groups if _sign(model, group[0][2], entry[2])), None)
+        groups.append([entry]) if known is None else known.append(entry)
+    model.lines = _solved(model, groups, claimed)
+    by_group = {id(group): line for group in groups for line in model.lines if line.symbol.name() == _name(group)}
+    for group in groups:
+        line = by_group[id(group)]
+        for owner, key, place, offset in group:
+            sign = _sign(model, line.value, place)
+            constant = ca.simplify(ca.substitute(place - sign * line.value, derive.configuration(model).q, 0))
+            setattr(owner, key, Line(line.symbol, sign, constant if offset is None else offset, line.coordinate))
+
+
+def _parts(model):
+    """(owner, which of its lines, expression, whether that is a rate) of everything that may be a line."""
+    for contact in model.contacts:
+        if contact.gap is not None:
+            yield contact, "gap", contact.gap_expression, False
+        if contact.slip is not None:
+            yield contact, "slip", contact.slip_expression, contact.slips_by_rate
+    for constraint in model.constraints:
+        yield constraint, "line", constraint.expression, constraint.is_rate
+
+
+def _place(model, owner, expression, is_rate):
+    """The place whose rate a line is, and what parameters add to that rate; None where the line is a place itself."""
+    x = derive.configuration(model)
+    count = len(model.coordinates)
+    coordinates = {c.symbol.element_hash() for c in model.coordinates}
+    if is_rate:
+        slopes = ca.simplify(ca.densify(ca.jacobian(expression, x.v[:count])))
+        offset = ca.substitute(expression, x.v, 0)
+        if not limits.is_of_parameters(model, slopes) or not limits.is_of_parameters(model, offset):
+            raise NotSolved(f"a line of `{owner.name}` is a rate with factors that move")
+        return slopes @ x.q[:count], offset
+    parameters = {p.symbol.element_hash() for p in model.parameters}
+    if any(s.element_hash() not in coordinates | parameters for s in ca.symvar(expression)):
+        raise NotSolved(f"a line of `{owner.name}` depends on more than coordinates and parameters")
+    return expression, None
+
+
+def _sign(model, one, other):
+    """±1 where two places differ by that sign and a constant; 0 where they do not."""
+    q = derive.configuration(model).q
+    numbers = {}
+    slopes = [ca.densify(ca.jacobian(lifted(place, numbers), q)) for place in (one, other)]
+    for sign in (+1, -1):
+        if Exact().is_zero(slopes[1] - sign * slopes[0]):
+            return sign
+    return 0
+
+
+def _name(group):
+    """The name of the line that a group of equal lines is."""
+    owner, key, *_ = group[0]
+    return owner.name if key == "line" else f"{owner.name}.{key}"
+
+
+def _solved(model, groups, claimed):
+    """A line for each group, solved for different coordinates so that none depends on itself; `claimed` are lines themselves."""
+    slopes = {}
+    q = [c.symbol for c in model.coordinates]
+    for k, group in enumerate(groups):
+        row = ca.simplify(ca.densify(ca.jacobian(group[0][2], ca.vertcat(*q))))
+        slopes[k] = {i: row[i] for i in range(len(q)) if not row[i].is_zero()}
+    # The later of two coordinates depends on the earlier.
+    fit = lambda i, slope: q[i].name() not in claimed and slope.is_constant() and abs(float(slope)) == 1
+    candidates = [[i for i in sorted(own, reverse=True) if fit(i, own[i])] for own in slopes.values()]
+    for chosen in itertools.product(*candidates):
+        order = _order(chosen, slopes)
+        if order is not None:
+            return [_line(model, groups[k], q[chosen[k]], int(float(slopes[k][chosen[k]]))) for k in order]
+    raise NotSolved(f"`{_name(groups[0])}` and other lines do not solve for coordinates" if all(candidates)
+                    else f"`{_name(next(g for g, own in zip(groups, candidates) if not own))}` does not solve for a coordinate")
+
+
+def _order(chosen, slopes):
+    """The lines, each behind those whose coordinates it depends on; None where there is no such order."""
+    if len(set(chosen)) < len(chosen):
+        return None
+    order, left = [], set(range(len(chosen)))
+    while left:
+        ready = [k for k in sorted(left) if not any(chosen[j] in slopes[k] for j in left if j != k)]
+        if not ready:
+            return None
+        order += ready
+        left -= set(ready)
+    return order
+
+
+def _line(model, group, coordinate, sign):
+    """A line, solved for a coordinate in which its slope is `sign`."""
+    place = group[0][2]
+    symbol = Coordinate(ca.SX.sym(_name(group)))
+    symbol.rate = ca.SX.sym(_name(group) + ".rate")
+    model.dimensions[symbol.name()] = model.dimensions[coordinate.name()]
+    return Solved(symbol, coordinate, ca.simplify(sign * ca.substitute(place, coordinate, 0)))
