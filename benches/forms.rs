@@ -37,7 +37,7 @@ const BELT: Pair = Pair {
     end: 40.0,
 };
 
-const PAIRS: [Pair; 7] = [
+const PAIRS: [Pair; 8] = [
     Pair {
         contacts: "bouncing_ball",
         hand: "hand_ball",
@@ -78,6 +78,15 @@ const PAIRS: [Pair; 7] = [
         initial: &[("theta", 0.075)],
         input: Some(("ground_acceleration", [-0.35 * 9.81, 3.0 * PI, 0.3])),
         end: 10.0,
+    },
+    // A line that solves for a coordinate; it begins rolling.
+    Pair {
+        contacts: "rolling_wheel",
+        hand: "hand_wheel",
+        parameters: &[],
+        initial: &[("phi.rate", 1.0)],
+        input: Some(("moment", [9.0, 2.0, 0.0])),
+        end: 20.0,
     },
     // By multipliers.
     Pair {
@@ -161,6 +170,12 @@ fn problem(pair: &Pair, name: &str, tolerance: f64) -> Problem {
     }
     for &(what, value) in pair.initial {
         problem.set_initial(what, value).expect("the model has it");
+    }
+    if name == "rolling_wheel" {
+        // What rolls with it.
+        for (what, value) in [("x.rate", 0.3), ("psi.rate", 2.5)] {
+            problem.set_initial(what, value).expect("the model has it");
+        }
     }
     if let Some((input, [amplitude, frequency, phase])) = pair.input {
         let set = problem.set_input(input, Sine::new(amplitude, frequency, phase).into());

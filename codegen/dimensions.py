@@ -52,11 +52,41 @@ def check(model):
         for symbol, value in transition.reset:
             _check_unit(value, table.get(symbol.name()), table,
                         f"transition `{transition.name}`: reset of `{symbol.name()}`", transition.location)
+    if model.modes and model.modes[0].form is not None:
+        # In the reduced form it is a force of the mode.
+        _check_friction(model, energy, table)
     for mode in model.modes:
         for requirement in mode.requirements:
             _check_unit(requirement.expression, None, table, "requirement", requirement.location)
     for of in (limits, outputs):
         of.check_units(model, lambda expression, want, what, location: _check_unit(expression, want, table, what, location))
+
+
+def _check_friction(model, energy, table):
+    """Friction, a coefficient times a normal force, is a force along the slip."""
+    def dimension(expression, what, location):
+        try:
+            return units.dimension_of(ca.SX(expression), table)
+        except units.UnitError as error:
+            report(ModelError(f"{what}: {error}", location))
+    for contact in model.contacts:
+        if contact.slip is None or contact.kinetic.is_zero():
+            continue
+        what = f"friction of `{contact.name}`"
+        slip = dimension(contact.slip_expression, what, contact.location)
+        if contact.gap is None:
+            normal = dimension(contact.normal, what, contact.location)
+        else:
+            gap = dimension(contact.gap_expression, what, contact.location)
+            normal = None if gap is None else units.combine(energy, gap, -1)
+        coefficient = dimension(contact.kinetic, what, contact.location)
+        if None in (slip, normal, coefficient):
+            continue
+        place = units.combine(slip, units.parse("s")) if contact.slips_by_rate else slip
+        found, want = units.combine(coefficient, normal), units.combine(energy, place, -1)
+        if found != want:
+            report(ModelError(f"{what}: a coefficient times the normal force has the dimension {units.text(found)}, but along the slip"
+                              f" it is {units.text(want)}", contact.location))
 
 
 def _check_unit(expression, want, table, what, location):

@@ -318,9 +318,6 @@ class Expansion:
             beyond = set(more) - set(loose)
         if contact.slip and names.index(contact.slip.name) not in loose:
             loose.append(names.index(contact.slip.name))
-        elif contact.slip and {contact.gap.name, contact.slip.name} - {c.name for c in self.model.coordinates}:
-            # Several motions may be admissible, or none, which is told where all are judged.
-            raise NotReducible(f"friction of `{contact.name}` acts on its normal force")
         return pressed, sorted(loose), sorted(beyond)
 
     def _moved(self, states, rows):

@@ -20,6 +20,9 @@ MISTAKES = (
     ("a gap as a text", 'model.contact("floor", gap="y")\n', "contact `floor`: its gap: the text 'y' is not an expression"),
     ("a gap of another unit", 'model.contact("floor", gap=y + m)\n',
      "contact `floor`: its gap: terms of different dimension are added"),
+    ("friction by a normal force of another unit, by multipliers",
+     'model.multipliers(); model.friction("base", slip=x, normal=m, kinetic=0.2)\n',
+     "friction of `base`: a coefficient times the normal force has the dimension kg, but along the slip it is kg m/s^2"),
     ("friction without a slip", 'model.contact("floor", gap=y, kinetic=0.2)\n', "it has friction but no `slip`"),
     ("a slip without friction", 'model.contact("floor", gap=y, slip=x)\n', "`slip` is given, but no coefficient `kinetic`"),
     ("two frictions along one coordinate",
@@ -50,7 +53,7 @@ MISTAKES = (
     ("sides by multipliers", 'side = model.discrete("side", (1, -1), ""); model.contact("a", gap=y, sides=side); model.multipliers()\n',
      "contact `a`: a gap that opens to two sides needs a model in which every gap, slip and constraint is a coordinate; here multipliers are asked for"),
     ("sides beside a constraint", 'side = model.discrete("side", (1, -1), ""); model.contact("a", gap=y, sides=side); model.constraint("rod", x * y)\n',
-     "here `rod` holds no coordinate"),
+     "here `rod` does not solve for a coordinate"),
     ("what every mode requires of nothing held", 'model.contact("a", gap=y); model.requires(None, model.reaction(x), "slips")\n',
      "what every mode requires: `x` is free in each, so that there is no reaction"),
     ("a mode that freezes beside contacts", 'model.contact("a", gap=y)\nmodel.mode("lies", freeze=[x])\n', "mode `lies` freezes `x`"),
@@ -88,9 +91,9 @@ class Contacts(ScratchTest):
         self.assertEqual([c.name for c in model.coordinates], ["x", "y", "floor.normal", "wall.normal", "wall.friction"])
 
     def test_gaps_of_several_coordinates_take_multipliers(self):
-        described = self.described(TWO + 'model.contact("floor", gap=x + y)\n')
+        described = self.described(TWO + 'model.contact("floor", gap=x + 2 * y, slip=x, kinetic=0.1)\n')
         contact, = described["variants"][0]["modes"][0]["contacts"]["contacts"]
-        self.assertEqual((contact["name"], contact["normal"], contact["tangent"]), ("floor", 2, None))
+        self.assertEqual((contact["name"], contact["normal"], contact["tangent"]), ("floor", 2, 3))
         self.assertEqual(described["coordinates"][2]["reaction_unit"], "N")
 
     def test_laws_of_the_model_are_checked(self):

@@ -25,8 +25,12 @@ class Functions(ScratchTest):
                        'model.contact("floor", gap=x + y)\nrests, moves = model.mode("rests"), model.mode("moves")\n'
                        'model.transition("go", rests, moves, when=falls(x * y), provided=y)\n')
         mode = self.described(text)["variants"][0]["modes"][0]
+        # One that holds along a line has what modes with multipliers have not.
+        held = self.described(HEAD + 'y = model.coordinate("y", "m", "height")\nmodel.point_mass(m, position=(x, y))\n'
+                              'model.constraint("line", x + y)\n')["variants"][0]["modes"][0]
         for row in functions.OF_EACH_MODE:
-            self.assertIsNotNone(mode["kernel"][row.name], row.name)
+            kernel = held["kernel"] if row.name == "roundings" else mode["kernel"]
+            self.assertIsNotNone(kernel[row.name], row.name)
         guard = mode["guards"][-1]
         for row in functions.GUARD:
             self.assertIsNotNone(guard[row.name], row.name)

@@ -181,8 +181,8 @@ impl<'p> Simulation<'p> {
         let (q, rest) = self.next.split_at(n);
         let (v, discrete) = rest.split_at(n);
         let target = &self.modes[transition.target];
-        let mut drift = vec![0.0; n];
-        with_kernel!(&target.kernels, k => k.drift(&self.context, &mut drift));
+        let drift = &mut self.drift_of_target;
+        with_kernel!(&target.kernels, k => k.drift(&self.context, drift));
         (0..transition.kernel.conditions()).all(|index| {
             let question = Question {
                 mode: target,
@@ -192,7 +192,7 @@ impl<'p> Simulation<'p> {
                     q,
                     v,
                     held: q,
-                    drift: &drift,
+                    drift: &self.drift_of_target,
                     discrete,
                 },
                 sizes: [&self.sizes, &self.rate_sizes],

@@ -98,6 +98,8 @@ pub(super) struct Simulation<'p> {
     pub at_start: Box<[f64]>,
     /// Rates of the frozen coordinates in the present mode.
     pub drift: Box<[f64]>,
+    /// Room for those of another mode.
+    pub drift_of_target: Box<[f64]>,
     /// Remembered signs of what is watched in the present mode.
     pub signs: Signs,
     pub doubts: Doubts,
@@ -195,6 +197,7 @@ impl<'p> Simulation<'p> {
             },
             at_start: zeros(n),
             drift: zeros(n),
+            drift_of_target: zeros(n),
             signs: Signs::default(),
             doubts: Doubts::new(modes),
             margins: Margins::new(problem),
@@ -316,6 +319,9 @@ impl<'p> Simulation<'p> {
         }
         if self.problem.at_rest {
             return self.start_at_rest(parameters);
+        }
+        if self.problem.project {
+            return self.start_projected(parameters);
         }
         self.choose_initial_mode()?;
         self.follow_others();

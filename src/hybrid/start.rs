@@ -6,6 +6,7 @@ use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{GuardShape, Mode};
 use crate::numerics::Size;
+use std::cmp::Reverse;
 
 /// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -43,7 +44,7 @@ impl<'p> Simulation<'p> {
             return Err(reason);
         }
         let (model, variant) = (&*self.problem.model, self.problem.variant());
-        Ok(check_bounds(model, variant, parameters, &self.initial.q)?)
+        Ok(check_bounds(model, variant, parameters, &self.here.q)?)
     }
 
     /// Takes the transition of a guard that is violated, if it is one of the mode and of discrete states alone: its
@@ -130,6 +131,7 @@ impl Simulation<'_> {
         let modes = self.modes;
         if let Some(chosen) = self.initial.mode {
             self.here.mode = chosen;
+            self.follow_unstated();
             self.apply_drift();
             return match self.misfit(&modes[chosen]) {
                 None if self.plan.allowed[chosen] => Ok(()),
@@ -146,12 +148,16 @@ impl Simulation<'_> {
         let mut best: Option<usize> = None;
         for m in 0..modes.len() {
             self.here.mode = m;
+            self.follow_unstated();
             let fewer = best.is_none_or(|b| modes[m].free.len() < modes[b].free.len());
             if self.plan.allowed[m] && fewer && self.misfit(&modes[m]).is_none() {
                 best = Some(m);
             }
         }
-        let fallback = self.plan.allowed.iter().position(|&a| a).unwrap_or(0);
+        // What the mode that lets the most free does not admit, none does.
+        let allowed = (0..modes.len()).filter(|&m| self.plan.allowed[m]);
+        let fallback = allowed.min_by_key(|&m| Reverse(modes[m].free.len()));
+        let fallback = fallback.unwrap_or(0);
         match best {
             Some(m) => {
                 self.here.mode = m;
@@ -188,7 +194,9 @@ impl Simulation<'_> {
             k.roundings(&self.context, at)
         });
         let differ = |one: f64, other: f64, entry: usize| {
-            let rounding = roundings.get(entry).map_or(0.0, |bound| f64::EPSILON * bound);
+            let rounding = roundings
+                .get(entry)
+                .map_or(0.0, |bound| f64::EPSILON * bound);
             one != other && (one - other).abs() > rounding
         };
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
@@ -236,6 +244,64 @@ impl Simulation<'_> {
                 self.here.v[i] = rate;
             }
         }
+    }
+
+    /// Lets what the scene does not state follow from what it does, where the present mode says so.
+    fn follow_unstated(&mut self) {
+        if !self.problem.follows.contains(&true) {
+            return;
+        }
+        let stated = [self.here.q.clone(), self.here.v.clone()];
+        self.follow_others();
+        let (places, rates) = self.problem.follows.split_at(self.here.q.len());
+        for i in 0..places.len() {
+            if !places[i] {
+                self.here.q[i] = stated[0][i];
+            }
+            if !rates[i] {
+                self.here.v[i] = stated[1][i];
+            }
+        }
+    }
+
+    /// Starts in the first mode, of those with the most free coordinates first, that admits the state with all that it holds where
+    /// it holds it.
+    pub fn start_projected(&mut self, parameters: &[f64]) -> Result<(), Reason> {
+        let modes = self.modes;
+        let mut candidates: Vec<usize> = (0..modes.len())
+            .filter(|&m| self.plan.allowed[m] && self.initial.mode.is_none_or(|named| named == m))
+            .collect();
+        candidates.sort_by_key(|&m| Reverse(modes[m].free.len()));
+        let mut refused = None;
+        for m in candidates {
+            self.here.mode = m;
+            self.here.q.copy_from_slice(&self.initial.q);
+            self.here.v.copy_from_slice(&self.initial.v);
+            (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
+            self.set_context();
+            with_kernel!(&modes[m].kernels, k => {
+                let [q, v, a] = self.here.free(k.size(), &modes[m].free);
+                self.here.set_all(k, &self.context, Free { q: &q, v: &v, a: &a });
+                self.set_context();
+                self.follow_slip_rates(k);
+            });
+            self.here.shown = m;
+            let state = [&*self.here.q, &self.here.v, self.context.discrete()];
+            self.begun = Some(state.concat().into());
+            let why = match self.misfit_of(m) {
+                Some(why) => Err(Reason::Initial {
+                    mode: modes[m].name,
+                    why,
+                }),
+                None => self.check_start(parameters),
+            };
+            match why {
+                Ok(()) => return Ok(()),
+                Err(why) => refused = refused.or(Some(why)),
+            }
+        }
+        self.begun = None;
+        Err(refused.unwrap_or(Reason::NoModeLeft { frozen: Vec::new() }))
     }
 
     /// Lets what depends on others in the present mode follow from them to the last digit.

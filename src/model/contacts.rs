@@ -29,6 +29,13 @@ pub struct DeclaredContact {
     pub states: Box<[&'static str]>,
 }
 
+impl DeclaredContact {
+    /// Whether it is not switched off.
+    pub fn is_there(&self) -> bool {
+        !self.states.contains(&"switched off")
+    }
+}
+
 /// The contacts and constraints of a mode.
 #[derive(Debug)]
 pub struct Contacts {

@@ -423,6 +423,25 @@ impl Requirement {
 }
 
 impl Variant {
+    /// Whether contacts or constraints are declared that are not switched off.
+    pub fn has_contacts(&self) -> bool {
+        self.contacts.iter().any(|contact| contact.is_there())
+    }
+
+    /// Whether what contacts or constraints hold depends on other coordinates: by multipliers, or in a mode.
+    pub fn has_dependents(&self) -> bool {
+        let depends = |mode: &Mode| mode.depends.contains(&true);
+        self.has_multipliers() || self.modes.iter().any(depends)
+    }
+
+    /// Whether all laws of impacts are the same: of one gap at most, without friction.
+    pub fn has_plain_impacts(&self) -> bool {
+        let mut gaps = (self.contacts.iter())
+            .filter(|contact| contact.is_there() && contact.kind == "contact");
+        let first = gaps.next();
+        first.is_none_or(|contact| contact.slip.is_none()) && gaps.next().is_none()
+    }
+
     /// Whether contacts or constraints are held by multipliers.
     pub fn has_multipliers(&self) -> bool {
         self.modes.iter().any(|mode| mode.contacts.is_some())
@@ -442,6 +461,11 @@ impl Mode {
 }
 
 impl Model {
+    /// Whether contacts or constraints are declared, under some choices at least.
+    pub fn has_contacts(&self) -> bool {
+        self.variants.iter().any(Variant::has_contacts)
+    }
+
     /// Whether contacts or constraints are held by multipliers, under some choices at least.
     pub fn has_multipliers(&self) -> bool {
         self.variants.iter().any(Variant::has_multipliers)

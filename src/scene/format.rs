@@ -122,10 +122,10 @@ pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> 
             Shape::Choice("method", METHODS.map(|(name, _)| name).to_vec()),
         ),
     ]);
-    if model.is_none_or(Model::has_multipliers) {
+    if model.is_none_or(Model::has_contacts) {
         keys.push(Key::new(
             "impacts",
-            "how impacts of contacts are decided, where these are held by multipliers",
+            "how impacts of contacts are decided, where laws differ",
             impacts(),
         ));
     }
@@ -365,7 +365,7 @@ fn initial(model: Option<&Model>) -> Object {
     if !modes.is_empty() {
         keys.push(Key::new("mode", meaning, Shape::Choice("mode", modes)));
     }
-    if model.has_multipliers() {
+    if model.variants.iter().any(Variant::has_dependents) {
         let meaning = "whether a state that contacts and constraints do not admit is moved to the nearest that they do";
         keys.push(Key::new("project", meaning, Shape::Flag).default(false));
     }

@@ -56,7 +56,7 @@ pub(super) fn scene_of(
     let parameters = errors.note(parameters(model, &checked));
     let signals = inputs::signals(model, &checked, reader, &mut errors);
     inputs::refuse_barred(model, variant, &checked, &mut errors);
-    refuse_without_multipliers(model, variant, &checked, &mut errors);
+    refuse_without_contacts(model, variant, &checked, &mut errors);
     let freeze = state::freeze(model, variant, &checked, &mut errors);
     let parts = (&freeze[..], parameters.as_deref());
     let initial = state::initial(model, variant, &checked, parts, &mut errors);
@@ -79,6 +79,7 @@ pub(super) fn scene_of(
             .is_some_and(Checked::flag),
         at_rest: state::at_rest(&checked),
         stated: state::stated(model, &checked),
+        follows: state::follows(model, &model.variants[chosen], &checked, &freeze),
         freeze,
         end,
         limits: Limits::default(),
@@ -227,25 +228,32 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
     })
 }
 
-/// Refuses what is said of contacts by multipliers where the chosen options have none.
-fn refuse_without_multipliers(
-    model: &Model,
-    variant: &Variant,
-    scene: &Checked,
-    errors: &mut Errors,
-) {
+/// Refuses what is said of contacts where the chosen options have none for which it has an effect.
+fn refuse_without_contacts(model: &Model, variant: &Variant, scene: &Checked, errors: &mut Errors) {
     if variant.has_multipliers() {
         return;
     }
     let initial = scene.get("initial");
     let project = initial.and_then(|initial| initial.get("project"));
-    for (key, given) in [("impacts", scene.get("impacts")), ("project", project)] {
-        let Some(given) = given else { continue };
+    let has_contacts = variant.has_contacts();
+    let may_choose = has_contacts && variant.has_plain_impacts();
+    for (key, given, has_effect) in [
+        ("impacts", scene.get("impacts"), may_choose),
+        ("project", project, variant.has_dependents()),
+    ] {
+        let (Some(given), false) = (given, has_effect) else {
+            continue;
+        };
         let under = under(model, variant);
         let kind = SceneErrorKind::NoMultipliers { key, under };
         let others = model.variants.iter().filter(|v| v.has_multipliers());
         let others: Vec<_> = others.map(|v| options(model, v)).collect();
-        let help = format!("leave it out, or choose {}", others.join("; or "));
+        let help = match others.is_empty() {
+            false => format!("leave it out, or choose {}", others.join("; or ")),
+            true => {
+                "leave it out, or ask for multipliers in the model: `model.multipliers()`".into()
+            }
+        };
         errors.push(SceneError::new(kind, &given.place).help(help));
     }
 }

@@ -8,8 +8,8 @@ use super::interpret::under;
 use super::wording::{listing, shown};
 use crate::hybrid::Initial;
 use crate::kernel::{Context, Free, with_kernel};
-use crate::numerics::Size;
 use crate::model::{Discrete, HeldAt, Mode, Model, Variant};
+use crate::numerics::Size;
 
 /// The coordinates to freeze, increasing. Each must be held still by some mode, or no equations
 /// without it exist.
@@ -84,6 +84,31 @@ pub(crate) fn stated(model: &Model, scene: &Checked) -> Vec<bool> {
     let entry = |name: &str| scene.get("initial").and_then(|initial| initial.get(name));
     let stated = model.discretes.iter().map(|d| entry(d.name).is_some());
     stated.collect()
+}
+
+/// Of each coordinate, then of each rate: whether the scene says nothing of it, and it follows from others in every mode in which the
+/// run may start.
+pub(crate) fn follows(
+    model: &Model,
+    variant: &Variant,
+    scene: &Checked,
+    freeze: &[usize],
+) -> Vec<bool> {
+    let entry = |name: &str| scene.get("initial").and_then(|initial| initial.get(name));
+    let named = entry("mode").map(|name| name.text().to_owned());
+    let may_start = |mode: &&Mode| match &named {
+        Some(name) => mode.name == name,
+        None => freeze.iter().all(|&i| mode.freezes(i)),
+    };
+    let depends = |i: usize, placed: bool| {
+        let mut modes = variant.modes.iter().filter(may_start);
+        modes.all(|mode| mode.depends[i] && (!placed || mode.held_at[i].is_some()))
+    };
+    let places = (model.coordinates.iter().enumerate())
+        .map(|(i, c)| entry(c.name).is_none() && depends(i, true));
+    let rates = (model.coordinates.iter().enumerate())
+        .map(|(i, c)| entry(&format::rate_key(c)).is_none() && depends(i, false));
+    places.chain(rates).collect()
 }
 
 /// The initial state. What the scene does not say is zero, or where every mode in which it may start holds it.

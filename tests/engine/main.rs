@@ -26,6 +26,7 @@ mod knots;
 mod libraries;
 mod lift_off;
 mod limits;
+mod lines;
 mod linkages;
 mod mechanisms;
 mod methods;

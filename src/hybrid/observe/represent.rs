@@ -118,9 +118,15 @@ impl Observers<'_> {
                 let row = &mut row[2 * n + reactions.len() + *outputs..];
                 let (places, rates) = row.split_at_mut(dependent.len());
                 kernel.coordinates(context, at, all);
-                dependent.iter().zip(places).for_each(|(&i, to)| *to = all[i]);
+                dependent
+                    .iter()
+                    .zip(places)
+                    .for_each(|(&i, to)| *to = all[i]);
                 kernel.rates(context, at, all);
-                dependent.iter().zip(rates).for_each(|(&i, to)| *to = all[i]);
+                dependent
+                    .iter()
+                    .zip(rates)
+                    .for_each(|(&i, to)| *to = all[i]);
             }
         }
         let first = node == 0;

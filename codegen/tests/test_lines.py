@@ -1,0 +1,63 @@
+"""Lines that solve for a coordinate: which do, what then depends on what, and what is left to multipliers."""
+
+import unittest
+
+from codegen.tests.scratch import HEAD, ScratchTest
+
+THREE = HEAD + """\
+speed = model.parameter("speed", "m/s", 1.0, "speed of a belt")
+y = model.coordinate("y", "m", "height")
+z = model.coordinate("z", "m", "another place")
+model.point_mass(m, position=(x, y))
+model.kinetic(m * z.rate**2 / 2)
+N = model.parameter("N", "N", 1.0, "normal force")
+L = model.parameter("L", "m", 1.0, "length", above=0)
+"""
+
+REDUCED = (
+    ("a slip of two coordinates", 'model.friction("rail", slip=x - 2 * y, normal=N, kinetic=0.2)\n',
+     {"rail sticks": ["x"], "rail slides": []}),
+    ("a slip rate against a belt", 'model.friction("rail", slip=x.rate - y.rate - speed, normal=N, kinetic=0.2)\n',
+     {"rail sticks": ["y"], "rail slides": []}),
+    ("a bent constraint", 'model.constraint("hill", y - z**2 / L)\n', {"moves": ["y"]}),
+    ("beside a gap", 'model.constraint("hill", y - z**2 / L); model.contact("wall", gap=x)\n', {"wall open": ["y"], "wall closed": ["y"]}),
+    ("two lines, one behind the other", 'model.constraint("a", x - y); model.friction("b", slip=y - z, normal=N, kinetic=0.2)\n',
+     {"b sticks": ["y", "z"], "b slides": ["y"]}),
+)
+"""Of each mode the coordinates that depend on others."""
+
+LEFT = (
+    ("a factor that may be zero", 'model.constraint("gear", m * x - k * L / (9 * N) * y * m)\n'),
+    ("lines that depend on each other", 'model.friction("a", slip=x - y, normal=N, kinetic=0.2); model.friction("b", slip=y - z, normal=N, kinetic=0.2)\n'
+     'model.friction("c", slip=z - x, normal=N, kinetic=0.2)\n'),
+    ("lines of which each depends on what the other takes", 'model.constraint("a", x - y); model.constraint("b", x + y - 2 * z)\n'),
+    ("a constraint along a gap", 'model.constraint("a", x - y); model.contact("b", gap=y - x + L)\n'),
+    ("a circle", 'model.constraint("rod", x**2 + y**2 - L**2)\n'),
+    ("a gap that is no coordinate", 'model.contact("a", gap=x - y)\n'),
+    ("two gaps", 'model.contact("a", gap=x); model.contact("b", gap=y); model.constraint("c", x - z)\n'),
+    ("a gap with friction", 'model.contact("a", gap=y, slip=x - z, kinetic=0.2)\n'),
+    ("a rate with a factor that moves", 'model.friction("blade", slip=x / L * y.rate - z.rate, normal=N, kinetic=0.2)\n'),
+    ("a reaction that is asked for", 'model.output("force", "N", model.reaction(z), "force")\nmodel.constraint("a", x - z)\n'),
+)
+
+
+class LinesTest(ScratchTest):
+    def modes(self, text):
+        [variant] = self.described(THREE + text)["variants"]
+        names = ["x", "y", "z"]
+        return {mode["name"]: [n for n, depends in zip(names, mode["depends"]) if depends] for mode in variant["modes"]
+                if mode["contacts"] is None}
+
+    def test_what_depends_on_others(self):
+        for what, text, modes in REDUCED:
+            with self.subTest(what):
+                self.assertEqual(self.modes(text), modes)
+
+    def test_what_is_left_to_multipliers(self):
+        for what, text in LEFT:
+            with self.subTest(what):
+                self.assertEqual(self.modes(text), {})
+
+
+if __name__ == "__main__":
+    unittest.main()
