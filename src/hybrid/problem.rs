@@ -307,9 +307,10 @@ impl Problem {
             .strip_suffix(".rate")
             .and_then(|name| model.coordinate(name));
         if let Some(i) = rate {
-            initial.v[i] = value;
+            let n = model.coordinates.len();
+            (initial.v[i], self.follows[n + i]) = (value, false);
         } else if let Some(i) = model.coordinate(name) {
-            initial.q[i] = value;
+            (initial.q[i], self.follows[i]) = (value, false);
         } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
             (initial.discrete[i], self.stated[i]) = (value, true);
         } else {

@@ -197,7 +197,8 @@ impl Simulation<'_> {
             let rounding = roundings
                 .get(entry)
                 .map_or(0.0, |bound| f64::EPSILON * bound);
-            one != other && (one - other).abs() > rounding
+            let is_near = (one - other).abs() <= rounding;
+            one != other && !is_near
         };
         model.coordinates.iter().enumerate().find_map(|(i, c)| {
             let (coordinate, unit) = (c.name, c.unit);

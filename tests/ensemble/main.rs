@@ -276,6 +276,25 @@ fn what_constraints_hold_is_brought_back_in_ensembles_too() {
 }
 
 #[test]
+fn wheels_that_slip_and_roll_are_in_ensembles_what_they_are_alone() {
+    // Without the belt a wheel that slips goes in lanes, which it leaves where it rolls.
+    for belt in ["on", "off"] {
+        let mut wheel = problem("rolling_wheel", &[]);
+        wheel.choose(&[("contacts.belt", belt)]).unwrap();
+        wheel.end.time = 5.0;
+        set_size(&mut wheel, 1e-8, 1.0, 10.0);
+        let wheels = variations(&wheel, 9, |p, x| {
+            p.set_initial("x", 0.1 * x).unwrap();
+            p.set_initial("phi.rate", 4.0 * x).unwrap();
+            p.set_initial("psi.rate", 2.5 * (4.0 * x)).unwrap();
+        });
+        let ends = together(&wheels, processor_level(), 1);
+        assert_eq!(difference(&alone(&wheels), &ends), 0.0);
+        assert!(ends.iter().any(|end| !end.events.is_empty()), "{belt}");
+    }
+}
+
+#[test]
 fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours() {
     let blocks = shaken_blocks(1e-6, 37);
     let all = together(&blocks, 0, 1);

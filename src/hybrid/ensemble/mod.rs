@@ -208,6 +208,8 @@ impl Ensemble {
             && (0..own.model.inputs.len()).all(|i| zero(own, i) == zero(problem, i))
             && own.project == problem.project
             && own.at_rest == problem.at_rest
+            && own.stated == problem.stated
+            && own.follows == problem.follows
             && own.freeze == problem.freeze
             && own.end == problem.end
             && own.limits == problem.limits

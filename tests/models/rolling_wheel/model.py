@@ -25,6 +25,6 @@ model.kinetic(m * x.rate**2 / 2 + J * phi.rate**2 / 2 + j * psi.rate**2 / 2)
 model.potential(k * x**2 / 2)
 model.force(phi, moment)
 model.friction("rail", slip=x - r * phi, normal=m * g, static=mu_s, kinetic=mu_k)
-model.constraint("belt", psi - ratio * phi)
+model.constraint("belt", psi - ratio * phi, switch=True)
 if form == "multipliers":
     model.multipliers()
