@@ -46,8 +46,8 @@ class Solved:
 
 
 def solve(model):
-    """Gaps, slips and constraints of a model as lines, gaps that open as coordinates alone; in `model.lines` those that are no coordinates themselves, each behind those
-    that it depends on. Raises `NotSolved`."""
+    """Gaps, slips and constraints of a model as lines, gaps that open as coordinates alone; in `model.lines` those that are no coordinates
+    themselves, each behind those that it depends on. Raises `NotSolved`."""
     parts = list(_parts(model))
     wanted, claimed = [], set()
     for owner, key, expression, is_rate in parts:
@@ -72,13 +72,16 @@ def solve(model):
         known = next((group for group in groups if _sign(model, group[0][2], entry[2])), None)
         groups.append([entry]) if known is None else known.append(entry)
     model.lines = _solved(model, groups, claimed)
-    by_group = {id(group): line for group in groups for line in model.lines if line.symbol.name() == _name(group)}
+    by_name = {line.symbol.name(): line for line in model.lines}
     for group in groups:
-        line = by_group[id(group)]
-        for owner, key, place, offset in group:
+        line = by_name[_name(group)]
+        for k, (owner, key, place, offset) in enumerate(group):
             sign = _sign(model, line.value, place)
-            constant = ca.simplify(ca.substitute(place - sign * line.value, derive.configuration(model).q, 0))
-            setattr(owner, key, Line(line.symbol, sign, constant if offset is None else offset, line.coordinate))
+            if offset is None:
+                # A slip is known by its rate; the first is the line itself.
+                differs = k > 0 and key != "slip"
+                offset = ca.substitute(place - sign * line.value, derive.configuration(model).q, 0) if differs else ca.SX(0)
+            setattr(owner, key, Line(line.symbol, sign, offset, line.coordinate))
 
 
 def _parts(model):
@@ -121,9 +124,9 @@ def _sign(model, one, other):
 
 
 def _name(group):
-    """The name of the line that a group of equal lines is."""
+    """The name of the line that a group of equal lines is: that of no coordinate."""
     owner, key, *_ = group[0]
-    return owner.name if key == "line" else f"{owner.name}.{key}"
+    return f"{owner.name}.{key}"
 
 
 def _solved(model, groups, claimed):
@@ -140,8 +143,8 @@ def _solved(model, groups, claimed):
         order = _order(chosen, slopes)
         if order is not None:
             return [_line(model, groups[k], q[chosen[k]], int(float(slopes[k][chosen[k]]))) for k in order]
-    raise NotSolved(f"`{_name(groups[0])}` and other lines do not solve for coordinates" if all(candidates)
-                    else f"`{_name(next(g for g, own in zip(groups, candidates) if not own))}` does not solve for a coordinate")
+    owner, *_ = next((group for group, own in zip(groups, candidates) if not own), groups[0])[0]
+    raise NotSolved(f"`{owner.name}` {'and others do' if all(candidates) else 'does'} not solve for a coordinate")
 
 
 def _order(chosen, slopes):

@@ -20,6 +20,8 @@ REDUCED = (
     ("a slip rate against a belt", 'model.friction("rail", slip=x.rate - y.rate - speed, normal=N, kinetic=0.2)\n',
      {"rail sticks": ["y"], "rail slides": []}),
     ("a bent constraint", 'model.constraint("hill", y - z**2 / L)\n', {"moves": ["y"]}),
+    ("a constraint that is called as a coordinate", 'model.constraint("z", x - y); model.friction("x", slip=y - z, normal=N, kinetic=0.2)\n',
+     {"x sticks": ["y", "z"], "x slides": ["y"]}),
     ("beside a gap", 'model.constraint("hill", y - z**2 / L); model.contact("wall", gap=x)\n', {"wall open": ["y"], "wall closed": ["y"]}),
     ("two lines, one behind the other", 'model.constraint("a", x - y); model.friction("b", slip=y - z, normal=N, kinetic=0.2)\n',
      {"b sticks": ["y", "z"], "b slides": ["y"]}),
