@@ -180,16 +180,7 @@ impl<'p> Simulation<'p> {
             let t = self.here.now.seconds();
             (self.margins).check_start(kernel, &self.context, (mode, at), t)?;
         }
-        self.here.a.fill(0.0);
-        self.here.set_free(&mode.free, [&q, &v, &a]);
-        if self.plan.moves[self.here.mode] {
-            let at = Free {
-                q: &q,
-                v: &v,
-                a: &a,
-            };
-            self.here.set_all(kernel, &self.context, at);
-        }
+        self.set_here(kernel, [&q, &v, &a]);
         Ok(violation)
     }
 

@@ -92,15 +92,7 @@ impl<'p> Simulation<'p> {
             })?;
             [q, v, zero]
         };
-        self.here.set_free(&mode.free, [&q, &v, &zero]);
-        if self.plan.moves[self.here.mode] {
-            let at = Free {
-                q: &q,
-                v: &v,
-                a: &zero,
-            };
-            self.here.set_all(kernel, &self.context, at);
-        }
+        self.set_here(kernel, [&q, &v, &zero]);
         let entered = self.enter(kernel).map_err(Unbalanced::Stops)?;
         let moves = entered.map(|violation| mode.guards[violation.guard].name);
         self.margins.clear();

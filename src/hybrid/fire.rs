@@ -241,16 +241,7 @@ impl<'p> Simulation<'p> {
         let a = system
             .accelerations(&self.scale(kernel.size()))
             .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
-        self.here.a.fill(0.0);
-        self.here.set_free(&mode.free, [&q, &v, &a]);
-        if self.plan.moves[self.here.mode] {
-            let at = Free {
-                q: &q,
-                v: &v,
-                a: &a,
-            };
-            kernel.accelerations(&self.context, at, &mut self.here.a);
-        }
+        self.set_here(kernel, [&q, &v, &a]);
         Ok(())
     }
 

@@ -23,8 +23,8 @@ pub struct Problem {
     /// Where it starts.
     pub initial: Initial,
     /// Whether an initial state that contacts and constraints do not admit is moved to one that they do: by multipliers to the
-    /// nearest in the metric of the masses, else by what modes hold, of which the first that admits the state lets the most coordinates
-    /// free. A run says by how much ([`crate::run::Subject::projected`]). Without it such a state is refused.
+    /// nearest in the metric of the masses; else what depends on others in every mode in which the run may start follows from them. A
+    /// run says by how much ([`crate::run::Subject::projected`]). Without it such a state is refused.
     pub project: bool,
     /// Whether it starts at rest: in the static equilibrium near the initial configuration, without velocities but those of moving partners
     /// and under the inputs at t = 0, with the contact forces that hold it. A run says by how much coordinates were moved, as
@@ -33,9 +33,9 @@ pub struct Problem {
     /// Of each discrete state, whether its initial value is stated though it is the default. The direction in which a contact slides is
     /// that of its slip rate otherwise.
     pub stated: Vec<bool>,
-    /// Of each coordinate, then of each rate: whether it follows from others at the start, so that what `initial` says of it means
-    /// nothing.
-    pub follows: Vec<bool>,
+    /// Of each coordinate, then of each rate: whether its initial value is not stated, so that it follows from others where every mode in
+    /// which the run may start says how, whatever `initial` has.
+    pub unstated: Vec<bool>,
     /// Coordinates frozen in addition: modes in which one of them is free are left out.
     pub freeze: Vec<usize>,
     /// Where it ends.
@@ -227,7 +227,7 @@ impl Problem {
             project: false,
             at_rest: false,
             stated: vec![false; model.discretes.len()],
-            follows: vec![false; 2 * n],
+            unstated: vec![false; 2 * n],
             freeze: Vec::new(),
             end: End {
                 time: 1.0,
@@ -308,9 +308,9 @@ impl Problem {
             .and_then(|name| model.coordinate(name));
         if let Some(i) = rate {
             let n = model.coordinates.len();
-            (initial.v[i], self.follows[n + i]) = (value, false);
+            (initial.v[i], self.unstated[n + i]) = (value, false);
         } else if let Some(i) = model.coordinate(name) {
-            (initial.q[i], self.follows[i]) = (value, false);
+            (initial.q[i], self.unstated[i]) = (value, false);
         } else if let Some(i) = model.discretes.iter().position(|d| d.name == name) {
             (initial.discrete[i], self.stated[i]) = (value, true);
         } else {

@@ -320,9 +320,6 @@ impl<'p> Simulation<'p> {
         if self.problem.at_rest {
             return self.start_at_rest(parameters);
         }
-        if self.problem.project {
-            return self.start_projected(parameters);
-        }
         self.choose_initial_mode()?;
         self.follow_others();
         self.here.shown = self.here.mode;
@@ -476,6 +473,16 @@ impl<'p> Simulation<'p> {
         let t = self.here.now.seconds();
         self.context.set_signals(&self.signals, t, Side::Right);
         self.context.held_mut().copy_from_slice(&self.here.q);
+    }
+
+    /// Sets the free coordinates of the present mode, for whose time the context is set, and what moves with them.
+    #[inline(always)]
+    pub fn set_here<F: Size>(&mut self, kernel: &ModeKernel<F>, [q, v, a]: [&F::Vector; 3]) {
+        self.here.a.fill(0.0);
+        self.here.set_free(&self.mode().free, [q, v, a]);
+        if self.plan.moves[self.here.mode] {
+            self.here.set_all(kernel, &self.context, Free { q, v, a });
+        }
     }
 
     /// Where energies are kept they are finite.

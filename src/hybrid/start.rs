@@ -129,9 +129,9 @@ impl Simulation<'_> {
     /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
     pub fn choose_initial_mode(&mut self) -> Result<(), Reason> {
         let modes = self.modes;
+        self.follow_unstated();
         if let Some(chosen) = self.initial.mode {
             self.here.mode = chosen;
-            self.follow_unstated();
             self.apply_drift();
             return match self.misfit(&modes[chosen]) {
                 None if self.plan.allowed[chosen] => Ok(()),
@@ -148,25 +148,21 @@ impl Simulation<'_> {
         let mut best: Option<usize> = None;
         for m in 0..modes.len() {
             self.here.mode = m;
-            self.follow_unstated();
             let fewer = best.is_none_or(|b| modes[m].free.len() < modes[b].free.len());
             if self.plan.allowed[m] && fewer && self.misfit(&modes[m]).is_none() {
                 best = Some(m);
             }
         }
-        // What the mode that lets the most free does not admit, none does.
-        let allowed = (0..modes.len()).filter(|&m| self.plan.allowed[m]);
-        let fallback = allowed.min_by_key(|&m| Reverse(modes[m].free.len()));
-        let fallback = fallback.unwrap_or(0);
         match best {
             Some(m) => {
                 self.here.mode = m;
                 Ok(())
             }
             None => {
-                let misfit = self.misfit(&modes[fallback]);
+                let freest = self.freest();
+                let misfit = self.misfit(&modes[freest]);
                 Err(Reason::Initial {
-                    mode: modes[fallback].name,
+                    mode: modes[freest].name,
                     why: misfit.unwrap_or(Misfitting::NoMode),
                 })
             }
@@ -247,62 +243,44 @@ impl Simulation<'_> {
         }
     }
 
-    /// Lets what the scene does not state follow from what it does, where the present mode says so.
-    fn follow_unstated(&mut self) {
-        if !self.problem.follows.contains(&true) {
-            return;
-        }
-        let stated = [self.here.q.clone(), self.here.v.clone()];
-        self.follow_others();
-        let (places, rates) = self.problem.follows.split_at(self.here.q.len());
-        for i in 0..places.len() {
-            if !places[i] {
-                self.here.q[i] = stated[0][i];
-            }
-            if !rates[i] {
-                self.here.v[i] = stated[1][i];
-            }
-        }
+    /// The mode with the most free coordinates of those in which the run may start. What it does not admit, none does.
+    fn freest(&self) -> usize {
+        let may_start = (0..self.modes.len()).filter(|&m| match self.initial.mode {
+            Some(named) => m == named,
+            None => self.plan.allowed[m],
+        });
+        let freest = may_start.min_by_key(|&m| Reverse(self.modes[m].free.len()));
+        freest.unwrap_or(0)
     }
 
-    /// Starts in the first mode, of those with the most free coordinates first, that admits the state with all that it holds where
-    /// it holds it.
-    pub fn start_projected(&mut self, parameters: &[f64]) -> Result<(), Reason> {
-        let modes = self.modes;
-        let mut candidates: Vec<usize> = (0..modes.len())
-            .filter(|&m| self.plan.allowed[m] && self.initial.mode.is_none_or(|named| named == m))
-            .collect();
-        candidates.sort_by_key(|&m| Reverse(modes[m].free.len()));
-        let mut refused = None;
-        for m in candidates {
-            self.here.mode = m;
-            self.here.q.copy_from_slice(&self.initial.q);
-            self.here.v.copy_from_slice(&self.initial.v);
-            (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
-            self.set_context();
-            with_kernel!(&modes[m].kernels, k => {
-                let [q, v, a] = self.here.free(k.size(), &modes[m].free);
-                self.here.set_all(k, &self.context, Free { q: &q, v: &v, a: &a });
-                self.set_context();
-                self.follow_slip_rates(k);
-            });
-            self.here.shown = m;
-            let state = [&*self.here.q, &self.here.v, self.context.discrete()];
-            self.begun = Some(state.concat().into());
-            let why = match self.misfit_of(m) {
-                Some(why) => Err(Reason::Initial {
-                    mode: modes[m].name,
-                    why,
-                }),
-                None => self.check_start(parameters),
-            };
-            match why {
-                Ok(()) => return Ok(()),
-                Err(why) => refused = refused.or(Some(why)),
+    /// Lets follow from others what does so in every mode in which the run may start: what is not stated, or all of it where the
+    /// state is to be projected.
+    fn follow_unstated(&mut self) {
+        let (problem, n) = (self.problem, self.here.q.len());
+        let modes = match self.initial.mode {
+            Some(named) => &self.modes[named..=named],
+            None => self.modes,
+        };
+        let allowed = |m: usize| self.initial.mode.is_some() || self.plan.allowed[m];
+        let follows = |entry: usize| {
+            let (i, is_rate) = (entry % n, entry >= n);
+            let depends = |mode: &Mode| mode.depends[i] && (is_rate || mode.held_at[i].is_some());
+            (problem.unstated[entry] || problem.project)
+                && (modes.iter().enumerate()).all(|(m, mode)| !allowed(m) || depends(mode))
+        };
+        let stays: Vec<bool> = (0..2 * n).map(|entry| !follows(entry)).collect();
+        if !stays.contains(&false) {
+            return;
+        }
+        let stated = [&*self.here.q, &self.here.v].concat();
+        self.here.mode = self.freest();
+        self.follow_others();
+        for entry in (0..2 * n).filter(|&entry| stays[entry]) {
+            match entry.checked_sub(n) {
+                None => self.here.q[entry] = stated[entry],
+                Some(i) => self.here.v[i] = stated[entry],
             }
         }
-        self.begun = None;
-        Err(refused.unwrap_or(Reason::NoModeLeft { frozen: Vec::new() }))
     }
 
     /// Lets what depends on others in the present mode follow from them to the last digit.

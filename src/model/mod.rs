@@ -449,7 +449,7 @@ impl Variant {
 }
 
 impl Mode {
-    /// Whether a coordinate stays where it is: it is neither free nor depends on what is.
+    /// Whether a mode holds a coordinate by itself: it is neither free nor depends on what is.
     pub fn freezes(&self, i: usize) -> bool {
         !self.free.contains(&i) && !self.depends[i]
     }

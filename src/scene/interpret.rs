@@ -79,7 +79,7 @@ pub(super) fn scene_of(
             .is_some_and(Checked::flag),
         at_rest: state::at_rest(&checked),
         stated: state::stated(model, &checked),
-        follows: state::follows(model, &model.variants[chosen], &checked, &freeze),
+        unstated: state::unstated(model, &checked),
         freeze,
         end,
         limits: Limits::default(),

@@ -86,28 +86,14 @@ pub(crate) fn stated(model: &Model, scene: &Checked) -> Vec<bool> {
     stated.collect()
 }
 
-/// Of each coordinate, then of each rate: whether the scene says nothing of it, and it follows from others in every mode in which the
-/// run may start.
-pub(crate) fn follows(
-    model: &Model,
-    variant: &Variant,
-    scene: &Checked,
-    freeze: &[usize],
-) -> Vec<bool> {
-    let entry = |name: &str| scene.get("initial").and_then(|initial| initial.get(name));
-    let named = entry("mode").map(|name| name.text().to_owned());
-    let may_start = |mode: &&Mode| match &named {
-        Some(name) => mode.name == name,
-        None => freeze.iter().all(|&i| mode.freezes(i)),
+/// Of each coordinate, then of each rate, whether the scene says nothing of what it is at first.
+pub(crate) fn unstated(model: &Model, scene: &Checked) -> Vec<bool> {
+    let says_nothing = |name: &str| {
+        let initial = scene.get("initial");
+        initial.and_then(|initial| initial.get(name)).is_none()
     };
-    let depends = |i: usize, placed: bool| {
-        let mut modes = variant.modes.iter().filter(may_start);
-        modes.all(|mode| mode.depends[i] && (!placed || mode.held_at[i].is_some()))
-    };
-    let places = (model.coordinates.iter().enumerate())
-        .map(|(i, c)| entry(c.name).is_none() && depends(i, true));
-    let rates = (model.coordinates.iter().enumerate())
-        .map(|(i, c)| entry(&format::rate_key(c)).is_none() && depends(i, false));
+    let places = model.coordinates.iter().map(|c| says_nothing(c.name));
+    let rates = (model.coordinates.iter()).map(|c| says_nothing(&format::rate_key(c)));
     places.chain(rates).collect()
 }
 

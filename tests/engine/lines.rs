@@ -56,7 +56,8 @@ fn names(run: &Run) -> Vec<&str> {
 
 #[test]
 fn both_forms_move_alike_and_no_row_is_beyond_the_extremes() {
-    for method in [Method::Auto, Method::Radau] {
+    // The errors of Radau add up over 20 s; the series of the other method have roundings alone.
+    for (method, error) in [(Method::Auto, 1e-11), (Method::Radau, 1e-9)] {
         let [one, other] = ["reduced", "multipliers"].map(|form| {
             let mut problem = read(WHEEL, form).unwrap();
             problem.method = method;
@@ -68,14 +69,14 @@ fn both_forms_move_alike_and_no_row_is_beyond_the_extremes() {
         for name in ["x", "phi", "psi", "x.rate", "phi.rate", "psi.rate"] {
             for (a, b) in rows(&one, name).zip(rows(&other, name)) {
                 assert!(
-                    (a - b).abs() < 1e-9 * (1.0 + a.abs()),
+                    (a - b).abs() < error * (1.0 + a.abs()),
                     "{name}: {a} and {b}"
                 );
             }
             let [own, by_multipliers] = [&one, &other].map(|run| extremes(run, name));
             for (a, b) in own.iter().zip(by_multipliers) {
                 assert!(
-                    (a - b).abs() < 1e-9 * (1.0 + a.abs()),
+                    (a - b).abs() < error * (1.0 + a.abs()),
                     "{name}: {a} and {b}"
                 );
             }
@@ -184,8 +185,13 @@ fn what_depends_on_others_follows_at_the_start_and_is_refused_elsewhere() {
     assert!(refused.contains("holds `psi` at 5 rad"), "{refused}");
     let refused = start(r#"{ "phi.rate": 2, "psi.rate": 4 }"#).unwrap_err();
     assert!(refused.contains("`psi.rate` at 5 rad/s"), "{refused}");
-    let (q, _) = start(r#"{ "phi": 2, "psi": 4.9, "project": true }"#).unwrap();
-    assert_eq!(q, [0.0, 2.0, 5.0]);
+    // It rolls from the start: it does not come to that by an event.
+    let text = r#"{ "model": "rolling_wheel", "initial": { "phi": 2, "psi": 4.9, "project": true }, "end": 0.1 }"#;
+    let run = run(&read(text, "").unwrap());
+    assert!(run.events.is_empty(), "{:?}", run.events);
+    assert!((run.subject.projected[0].1 - 0.1).abs() < 1e-15);
+    assert_eq!(&*run.subject.projected[0].0, "psi");
+    assert_eq!(run.trajectory.row(0)[..3], [0.0, 2.0, 5.0]);
 }
 
 #[test]

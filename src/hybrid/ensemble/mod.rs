@@ -209,7 +209,7 @@ impl Ensemble {
             && own.project == problem.project
             && own.at_rest == problem.at_rest
             && own.stated == problem.stated
-            && own.follows == problem.follows
+            && own.unstated == problem.unstated
             && own.freeze == problem.freeze
             && own.end == problem.end
             && own.limits == problem.limits
