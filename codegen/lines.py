@@ -1,4 +1,4 @@
-"""Slips and constraints that solve for a coordinate: lines w = q_p + ρ(q), of which q_p is what the others leave.
+"""Gaps, slips and constraints that solve for a coordinate: lines w = q_p + ρ(q), of which q_p is what the others leave.
 
 Of a wheel that may slip on a rail, x − r φ is the place along which it slips. It is as good a coordinate as x; where the wheel sticks,
 it is held, and x *depends* on φ. With w in place of q_p for each of these lines, forces, momenta and impacts are those of contacts
@@ -46,8 +46,8 @@ class Solved:
 
 
 def solve(model):
-    """Gaps, slips and constraints of a model as lines, gaps that open as coordinates alone; in `model.lines` those that are no coordinates
-    themselves, each behind those that it depends on. Raises `NotSolved`."""
+    """Gaps, slips and constraints of a model as lines; in `model.lines` those that are no coordinates themselves, each behind those
+    that it depends on. Raises `NotSolved`."""
     parts = list(_parts(model))
     wanted, claimed = [], set()
     for owner, key, expression, is_rate in parts:
@@ -59,10 +59,6 @@ def solve(model):
             claimed.add(line.name)
     if not wanted:
         return
-    for owner, key, *_ in wanted:
-        # Where rounding ends infinitely many hops is known of a coordinate, and of multipliers.
-        if key == "gap" and not owner.permanent:
-            raise NotSolved(f"the gap of `{owner.name}` is no coordinate")
     gaps = [contact for contact in model.contacts if contact.gap is not None and not contact.permanent]
     if len(gaps) > 1 or any(contact.slip is not None for contact in gaps):
         # A scene chooses the law of impacts by multipliers; those of one gap without friction are the same by all.

@@ -210,12 +210,15 @@ class Expansion:
         return ca.substitute(expression, ca.vertcat(*symbols), ca.vertcat(*values))
 
     def _reset(self, reset, target):
-        """What is reset, rates of lines among it, in the coordinates of the model: those that lines are solved for follow. What the target
-        of an impact holds is left out."""
+        """What is reset, lines and their rates among it, in the coordinates of the model: those that lines are solved for follow. What the
+        target of an impact holds is left out."""
         given = {symbol.name(): (symbol, self._in_coordinates(ca.SX(value))) for symbol, value in reset}
         x = derive.configuration(self.model)
         for line in self.model.lines:
-            rate = line.symbol.rate
+            place, rate = line.symbol, line.symbol.rate
+            if place.name() in given:
+                _, value = given.pop(place.name())
+                given[line.name] = (line.coordinate, value - line.rest)
             slopes = ca.jacobian(line.rest, x.q)
             along = [symbol for k, symbol in enumerate(ca.vertsplit(x.v)) if not slopes[k].is_zero()]
             if rate.name() in given or any(symbol.name() in given for symbol in along):

@@ -23,6 +23,9 @@ REDUCED = (
     ("a constraint that is called as a coordinate", 'model.constraint("z", x - y); model.friction("x", slip=y - z, normal=N, kinetic=0.2)\n',
      {"x sticks": ["y", "z"], "x slides": ["y"]}),
     ("beside a gap", 'model.constraint("hill", y - z**2 / L); model.contact("wall", gap=x)\n', {"wall open": ["y"], "wall closed": ["y"]}),
+    ("a gap that is no coordinate", 'model.contact("a", gap=x - y)\n', {"a open": [], "a closed": ["y"]}),
+    ("a gap over what a constraint holds", 'model.constraint("hill", y - z**2 / L); model.contact("a", gap=z - y + x)\n',
+     {"a open": ["y"], "a closed": ["x", "y"]}),
     ("two lines, one behind the other", 'model.constraint("a", x - y); model.friction("b", slip=y - z, normal=N, kinetic=0.2)\n',
      {"b sticks": ["y", "z"], "b slides": ["y"]}),
 )
@@ -35,7 +38,6 @@ LEFT = (
     ("lines of which each depends on what the other takes", 'model.constraint("a", x - y); model.constraint("b", x + y - 2 * z)\n'),
     ("a constraint along a gap", 'model.constraint("a", x - y); model.contact("b", gap=y - x + L)\n'),
     ("a circle", 'model.constraint("rod", x**2 + y**2 - L**2)\n'),
-    ("a gap that is no coordinate", 'model.contact("a", gap=x - y)\n'),
     ("two gaps", 'model.contact("a", gap=x); model.contact("b", gap=y); model.constraint("c", x - z)\n'),
     ("a gap with friction", 'model.contact("a", gap=y, slip=x - z, kinetic=0.2)\n'),
     ("a rate with a factor that moves", 'model.friction("blade", slip=x / L * y.rate - z.rate, normal=N, kinetic=0.2)\n'),

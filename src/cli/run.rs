@@ -276,16 +276,30 @@ fn other_run(scene: &Scene, folder: &Path, reason: &Reason) -> Failure {
     scene.source.error_at(path, message, help).into()
 }
 
+/// What to do about a state beyond a stop.
+fn beyond(may_project: bool) -> &'static str {
+    match may_project {
+        true => {
+            "start on the admissible side, or let it be moved there: `\"initial\": { …, \"project\": true }`"
+        }
+        false => "start on the admissible side",
+    }
+}
+
 /// Why a scene cannot even be started, pointing at the part of it that is to blame.
 pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
+    let may_project = scene.problem.variant().has_inadmissible() && !scene.problem.project;
     let (path, help) = match reason {
         Reason::NoModeLeft { .. } => ("freeze".into(), "freeze fewer coordinates"),
         Reason::NoSeries { .. } => ("method".into(), "choose `auto` or `radau`"),
-        Reason::Invalid(Invalid::BeyondStop { coordinate, .. }) => (
-            format!("initial.{coordinate}"),
-            "start on the admissible side",
+        Reason::Invalid(Invalid::BeyondStop { coordinate, .. }) => {
+            (format!("initial.{coordinate}"), beyond(may_project))
+        }
+        Reason::Beyond { of, .. } => (format!("initial.{of}"), beyond(may_project)),
+        Reason::Initial { .. } if may_project => (
+            "initial".into(),
+            "change the initial state, or let it be moved: `\"initial\": { …, \"project\": true }`",
         ),
-        Reason::Beyond { of, .. } => (format!("initial.{of}"), "start on the admissible side"),
         Reason::NoRest { .. } => (
             "initial".into(),
             "give coordinates nearer to where it rests, `\"initial\": { …, \"at_rest\": true }`, or an initial state",

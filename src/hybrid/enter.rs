@@ -159,11 +159,10 @@ impl<'p> Simulation<'p> {
                             self.may_take(kernel, transition, (at, least))
                         }
                     });
-                let from_zero = matches!(departure, Departure::Down { order: 1.. });
                 if acts {
                     violation = Some(Violation {
                         guard: watched.guard,
-                        rests: from_zero && is_at_rest(guard, &v),
+                        rests: is_at_rest(guard, departure, &v),
                     });
                 }
             }
@@ -340,14 +339,18 @@ fn idle_acceleration(guard: &Guard, departure: Departure) -> Option<usize> {
     is_idle.then_some(index)
 }
 
-/// Whether a guard that leaves zero at once does so from rest: a coordinate without speed. Any other
-/// departure that is decided on entry has a rate.
-fn is_at_rest(guard: &Guard, v: &impl Vector) -> bool {
+/// Whether a guard leaves zero at once, and from rest: it is a coordinate without speed, or what else depends on no acceleration
+/// and has a rate that is zero but for its rounding. Any other departure that is decided on entry has a rate.
+fn is_at_rest(guard: &Guard, departure: Departure, v: &impl Vector) -> bool {
+    let Departure::Down { order: order @ 1.. } = departure else {
+        return false;
+    };
     match guard.shape {
         GuardShape::Linear {
             index, rate: false, ..
         } => v[index] == 0.0,
-        _ => false,
+        GuardShape::Linear { rate: true, .. } => false,
+        GuardShape::General { accelerations, .. } => !accelerations && order > 1,
     }
 }
 

@@ -32,6 +32,7 @@ mod observe;
 mod outputs;
 mod plan;
 mod problem;
+mod projection;
 mod rest;
 mod result;
 mod resume;

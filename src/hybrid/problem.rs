@@ -23,8 +23,8 @@ pub struct Problem {
     /// Where it starts.
     pub initial: Initial,
     /// Whether an initial state that contacts and constraints do not admit is moved to one that they do: by multipliers to the
-    /// nearest in the metric of the masses; else what depends on others in every mode in which the run may start follows from them. A
-    /// run says by how much ([`crate::run::Subject::projected`]). Without it such a state is refused.
+    /// nearest in the metric of the masses; else what every mode in which the run may start holds follows from the others, and what a
+    /// negative gap solves for. A run says by how much ([`crate::run::Subject::projected`]). Without it such a state is refused.
     pub project: bool,
     /// Whether it starts at rest: in the static equilibrium near the initial configuration, without velocities but those of moving partners
     /// and under the inputs at t = 0, with the contact forces that hold it. A run says by how much coordinates were moved, as
@@ -322,7 +322,7 @@ impl Problem {
                 .unknown("coordinate, rate or discrete state", name, known)
                 .into());
         }
-        check_initial(model, &initial)?;
+        check_initial(model, &initial, self.project)?;
         self.initial = initial;
         Ok(())
     }

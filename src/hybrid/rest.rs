@@ -10,6 +10,7 @@ use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
 use super::plan::is_impact;
 use super::simulation::{Simulation, Violation};
+use super::start::ROUNDING;
 use super::unrest::{Restless, Unfit};
 use crate::integrate::ORDERS;
 use crate::kernel::{Free, ModeKernel, with_kernel};
@@ -37,7 +38,7 @@ impl Held {
     }
 }
 
-/// Height of a hop, in roundings of its coordinate, whose duration is told to a quarter of all digits: ε^(−1/4).
+/// Height of a hop, in roundings of its gap, whose duration is told to a quarter of all digits: ε^(−1/4).
 const TOLD: f64 = (1u64 << 13) as f64;
 
 impl<'p> Simulation<'p> {
@@ -54,7 +55,7 @@ impl<'p> Simulation<'p> {
         Some((target, limit))
     }
 
-    /// The same where hops at a stop that is not at zero have become lower than the rounding of its coordinate, which keeps them
+    /// The same where hops at a stop that is not at zero have become lower than the rounding of its gap, which keeps them
     /// from becoming lower still: the limit that was told best before. (A hop begins at the stop and ends one rounding
     /// beyond it, which makes up for what a low impact takes.)
     fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
@@ -74,39 +75,43 @@ impl<'p> Simulation<'p> {
         Some((target, limit))
     }
 
-    /// The height of the last hop at a stop, in roundings of its coordinate there; none where there is no such
-    /// hop, or where it is so high that rounding does not tell its duration from that of another, to half of all digits. A
-    /// hop of the duration T that ends with the rate u is about |u| T/4 high.
+    /// The height of the last hop at a stop, in roundings of its gap there; none where there is no such hop, or where it is so
+    /// high that rounding does not tell its duration from that of another, to half of all digits. A hop of the duration T that
+    /// ends with the rate u is about |u| T/4 high.
     fn lowest_hop(&self) -> Option<f64> {
         let duration = self.accumulation.last_duration()?;
-        let mode = self.mode();
-        let heights = mode
-            .guards
-            .iter()
-            .filter(|guard| is_impact(guard))
-            .filter_map(|guard| {
-                let GuardShape::Linear {
-                    index, rate: false, ..
-                } = guard.shape
-                else {
-                    return None;
-                };
-                let i = mode.free[index];
-                let rounding = f64::EPSILON * self.here.q[i].abs();
-                let height = 0.25 * self.here.v[i].abs() * duration / rounding;
-                let is_there = rounding > 0.0 && height * f64::EPSILON.sqrt() <= 1.0;
-                (is_there && self.is_zero(guard)).then_some(height)
-            });
+        let impacts = self.mode().guards.iter().filter(|guard| is_impact(guard));
+        let heights = impacts.filter_map(|guard| {
+            let (rate, rounding) = self.closed_gap(guard)?;
+            let height = 0.25 * rate.abs() * duration / rounding;
+            let is_there = rounding > 0.0 && height * f64::EPSILON.sqrt() <= 1.0;
+            is_there.then_some(height)
+        });
         heights.min_by(f64::total_cmp)
     }
 
-    /// Whether a guard is zero at the present state.
-    fn is_zero(&self, guard: &Guard) -> bool {
+    /// The rate of the gap that a guard watches, and the rounding of the gap; none where the guard is not zero at the present
+    /// state, or where it is no gap but a rate or a force.
+    fn closed_gap(&self, guard: &Guard) -> Option<(f64, f64)> {
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = self.here.free(k.size(), &mode.free);
             let at = Free { q: &q, v: &v, a: &a };
-            k.guard(&self.context, &guard.kernel, at) == 0.0
+            let value = k.guard(&self.context, &guard.kernel, at);
+            match guard.shape {
+                GuardShape::Linear { index, rate: false, .. } => {
+                    let rounding = f64::EPSILON * q[index].abs();
+                    (value == 0.0).then_some((v[index], rounding))
+                }
+                GuardShape::General { accelerations: false, .. } => {
+                    let magnitude = k.guard_magnitude(&self.context, &guard.kernel, at);
+                    let no_jerk = k.size().zeros();
+                    let rate = || k.guard_rate(&self.context, &guard.kernel, at, &no_jerk);
+                    let is_zero = value.abs() <= ROUNDING * magnitude;
+                    is_zero.then(|| (rate(), f64::EPSILON * magnitude))
+                }
+                _ => None,
+            }
         })
     }
 

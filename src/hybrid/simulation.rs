@@ -249,7 +249,7 @@ impl<'p> Simulation<'p> {
     pub fn become_member(&mut self, member: &Member<'p>) -> Result<(), Reason> {
         let model = &self.problem.model;
         check_parameters(model, member.parameters)?;
-        check_initial(model, member.initial)?;
+        check_initial(model, member.initial, self.problem.project)?;
         self.become_shaken(member.signals)?;
         self.initial = member.initial;
         self.become_accurate(member.accuracy)?;
@@ -315,10 +315,19 @@ impl<'p> Simulation<'p> {
     /// Finds the mode of the initial state.
     fn find_start(&mut self, parameters: &[f64]) -> Result<(), Reason> {
         if self.modes[0].contacts.is_some() {
-            return self.start_contacts(parameters);
+            self.start_contacts(parameters)?;
+            return match self.problem.project {
+                true => self.check_projected(),
+                false => Ok(()),
+            };
         }
         if self.problem.at_rest {
             return self.start_at_rest(parameters);
+        }
+        self.follow_unstated();
+        if self.problem.project {
+            self.open_gaps();
+            self.check_projected()?;
         }
         self.choose_initial_mode()?;
         self.follow_others();

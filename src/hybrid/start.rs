@@ -6,7 +6,6 @@ use super::simulation::Simulation;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{GuardShape, Mode};
 use crate::numerics::Size;
-use std::cmp::Reverse;
 
 /// Relative rounding error of a guard: a generated one is a sum of up to some sixteen products, as an energy is.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -129,7 +128,6 @@ impl Simulation<'_> {
     /// The mode named by the scene, or the one with the fewest free coordinates that holds the state.
     pub fn choose_initial_mode(&mut self) -> Result<(), Reason> {
         let modes = self.modes;
-        self.follow_unstated();
         if let Some(chosen) = self.initial.mode {
             self.here.mode = chosen;
             self.apply_drift();
@@ -241,60 +239,5 @@ impl Simulation<'_> {
                 self.here.v[i] = rate;
             }
         }
-    }
-
-    /// The mode with the most free coordinates of those in which the run may start. What it does not admit, none does.
-    fn freest(&self) -> usize {
-        let may_start = (0..self.modes.len()).filter(|&m| match self.initial.mode {
-            Some(named) => m == named,
-            None => self.plan.allowed[m],
-        });
-        let freest = may_start.min_by_key(|&m| Reverse(self.modes[m].free.len()));
-        freest.unwrap_or(0)
-    }
-
-    /// Lets follow from others what does so in every mode in which the run may start: what is not stated, or all of it where the
-    /// state is to be projected.
-    fn follow_unstated(&mut self) {
-        let (problem, n) = (self.problem, self.here.q.len());
-        let modes = match self.initial.mode {
-            Some(named) => &self.modes[named..=named],
-            None => self.modes,
-        };
-        let allowed = |m: usize| self.initial.mode.is_some() || self.plan.allowed[m];
-        let follows = |entry: usize| {
-            let (i, is_rate) = (entry % n, entry >= n);
-            let depends = |mode: &Mode| mode.depends[i] && (is_rate || mode.held_at[i].is_some());
-            (problem.unstated[entry] || problem.project)
-                && (modes.iter().enumerate()).all(|(m, mode)| !allowed(m) || depends(mode))
-        };
-        let stays: Vec<bool> = (0..2 * n).map(|entry| !follows(entry)).collect();
-        if !stays.contains(&false) {
-            return;
-        }
-        let stated = [&*self.here.q, &self.here.v].concat();
-        self.here.mode = self.freest();
-        self.follow_others();
-        for entry in (0..2 * n).filter(|&entry| stays[entry]) {
-            match entry.checked_sub(n) {
-                None => self.here.q[entry] = stated[entry],
-                Some(i) => self.here.v[i] = stated[entry],
-            }
-        }
-    }
-
-    /// Lets what depends on others in the present mode follow from them to the last digit.
-    pub fn follow_others(&mut self) {
-        let mode = self.mode();
-        if !mode.depends.contains(&true) {
-            return;
-        }
-        self.context.held_mut().copy_from_slice(&self.here.q);
-        with_kernel!(&mode.kernels, k => {
-            let [q, v, a] = self.here.free(k.size(), &mode.free);
-            let at = Free { q: &q, v: &v, a: &a };
-            k.coordinates(&self.context, at, &mut self.here.q);
-            k.rates(&self.context, at, &mut self.here.v);
-        });
     }
 }

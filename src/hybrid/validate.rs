@@ -166,14 +166,19 @@ pub(super) fn check_parameters(model: &Model, values: &[f64]) -> Result<(), Inva
     Ok(check_limits_of_parameters(model, values)?)
 }
 
-/// A state, as far as the model's tables can judge it.
-pub(super) fn check_initial(model: &Model, initial: &Initial) -> Result<(), Invalid> {
+/// A state, as far as the model's tables can judge it. One that is to be projected may be beyond the bounds of coordinates.
+pub(super) fn check_initial(
+    model: &Model,
+    initial: &Initial,
+    project: bool,
+) -> Result<(), Invalid> {
     let Initial { q, v, discrete, .. } = initial;
     count("initial coordinates", q, model.coordinates.len())?;
     count("initial velocities", v, model.coordinates.len())?;
     count("initial discrete states", discrete, model.discretes.len())?;
     for ((c, &q), &v) in model.coordinates.iter().zip(q).zip(v) {
-        within(c.bounds(), c.unit, q, || format!("initial `{}`", c.name))?;
+        let bounds = if project { Bounds::NONE } else { c.bounds() };
+        within(bounds, c.unit, q, || format!("initial `{}`", c.name))?;
         within(Bounds::NONE, "", v, || format!("initial `{}.rate`", c.name))?;
     }
     for (d, &value) in model.discretes.iter().zip(discrete) {
@@ -208,7 +213,7 @@ impl Problem {
     /// [`Invalid`]: the first thing that is not.
     pub fn check(&self) -> Result<(), Invalid> {
         check_parameters(&self.model, &self.parameters)?;
-        check_initial(&self.model, &self.initial)?;
+        check_initial(&self.model, &self.initial, self.project)?;
         if let Some(input) = self.barred_input() {
             return Err(Invalid::Barred { input });
         }

@@ -428,10 +428,9 @@ impl Variant {
         self.contacts.iter().any(|contact| contact.is_there())
     }
 
-    /// Whether what contacts or constraints hold depends on other coordinates: by multipliers, or in a mode.
-    pub fn has_dependents(&self) -> bool {
-        let depends = |mode: &Mode| mode.depends.contains(&true);
-        self.has_multipliers() || self.modes.iter().any(depends)
+    /// Whether there is a state that contacts or constraints do not admit: a gap, or what a constraint holds.
+    pub fn has_inadmissible(&self) -> bool {
+        (self.contacts.iter()).any(|contact| contact.is_there() && contact.gap.is_some())
     }
 
     /// Whether all laws of impacts are the same: of one gap at most, without friction.

@@ -365,12 +365,17 @@ fn initial(model: Option<&Model>) -> Object {
     if !modes.is_empty() {
         keys.push(Key::new("mode", meaning, Shape::Choice("mode", modes)));
     }
-    if model.variants.iter().any(Variant::has_dependents) {
+    let may_project = model.variants.iter().any(Variant::has_inadmissible);
+    if may_project {
         let meaning = "whether a state that contacts and constraints do not admit is moved to the nearest that they do";
         keys.push(Key::new("project", meaning, Shape::Flag).default(false));
     }
     for c in model.own_coordinates() {
-        let position = Quantity::within(c.bounds(), c.unit);
+        // What is projected may be beyond its bounds: what is not is judged with the whole scene.
+        let position = match may_project {
+            true => Quantity::any(c.unit),
+            false => Quantity::within(c.bounds(), c.unit),
+        };
         keys.push(Key::new(c.name, c.meaning, position));
         let rate = format!("velocity of {}", c.name);
         keys.push(Key::new(rate_key(c), rate, Quantity::any(rate_unit(c))));

@@ -74,9 +74,7 @@ pub(super) fn scene_of(
         parameters,
         signals,
         initial,
-        project: (checked.get("initial"))
-            .and_then(|initial| initial.get("project"))
-            .is_some_and(Checked::flag),
+        project: state::project(&checked),
         at_rest: state::at_rest(&checked),
         stated: state::stated(model, &checked),
         unstated: state::unstated(model, &checked),
@@ -239,7 +237,7 @@ fn refuse_without_contacts(model: &Model, variant: &Variant, scene: &Checked, er
     let may_choose = has_contacts && variant.has_plain_impacts();
     for (key, given, has_effect) in [
         ("impacts", scene.get("impacts"), may_choose),
-        ("project", project, variant.has_dependents()),
+        ("project", project, variant.has_inadmissible()),
     ] {
         let (Some(given), false) = (given, has_effect) else {
             continue;

@@ -72,6 +72,30 @@ fn holding<'m>(model: &Model, mode: &'m Mode, parameters: Option<&[f64]>) -> Hol
     (mode, at.collect())
 }
 
+/// Whether a state that contacts and constraints do not admit is moved to one that they do.
+pub(crate) fn project(scene: &Checked) -> bool {
+    let project = (scene.get("initial")).and_then(|initial| initial.get("project"));
+    project.is_some_and(Checked::flag)
+}
+
+/// Refuses coordinates beyond their bounds.
+fn check_bounds(model: &Model, variant: &Variant, states: &[Given], errors: &mut Errors) {
+    for (c, given) in model.coordinates.iter().zip(states) {
+        let beyond = given.position.filter(|at| !c.bounds().admit(at.number()));
+        if let Some(position) = beyond {
+            let kind = SceneErrorKind::OutOfRange {
+                value: position.number(),
+                range: c.bounds().describe(c.unit),
+            };
+            let error = SceneError::new(kind, &position.place);
+            errors.push(match variant.has_inadmissible() {
+                true => error.help("or let it be moved there: `\"project\": true`"),
+                false => error,
+            });
+        }
+    }
+}
+
 /// Whether a run starts in static equilibrium.
 pub(crate) fn at_rest(scene: &Checked) -> bool {
     scene.get("initial").is_some_and(|initial| {
@@ -148,8 +172,13 @@ pub(crate) fn initial(
             rate: entry(&format::rate_key(c)),
         })
         .collect();
-    let fits =
-        |mode: &Holding| (0..states.len()).all(|i| states[i].objection(model, i, mode).is_none());
+    let projects = project(scene);
+    if !projects {
+        check_bounds(model, variant, &states, errors);
+    }
+    let fits = |mode: &Holding| {
+        projects || (0..states.len()).all(|i| states[i].objection(model, i, mode).is_none())
+    };
     if !modes.iter().any(fits) {
         let place = object.map_or(&scene.place, |o| &o.place);
         errors.push(misfit(model, &states, &modes, place));

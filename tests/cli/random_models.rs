@@ -1,4 +1,4 @@
-//! Random models whose gaps are coordinates and whose slips solve for coordinates, each in both forms: a mode for each set of contact states, and one mode with
+//! Random models whose gaps and slips are coordinates or solve for coordinates, each in both forms: a mode for each set of contact states, and one mode with
 //! multipliers. Impacts, friction and rests that were derived for the one must be what complementarity decides in the other.
 //!
 //! `DALEMBERT_RANDOM_SCENES=300` runs as many, `DALEMBERT_RANDOM_SCENE=17` one of them.
@@ -95,8 +95,12 @@ fn model(random: &mut Random) -> (String, usize) {
                 _ => String::new(),
             };
             let (at, e) = (random.within(0.1, 0.6), random.either(0.0, (0.1, 0.9)));
+            let place = match slip.is_empty() {
+                true => line(random, i, n),
+                false => format!("x{i}"),
+            };
             say(format!(
-                "model.contact(\"stop{i}\", gap={side} * x{i} + {at:.4} * one, restitution={e:.4}{slip})"
+                "model.contact(\"stop{i}\", gap={side} * {place} + {at:.4} * one, restitution={e:.4}{slip})"
             ));
         }
         if kind.contains("end") {

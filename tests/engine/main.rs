@@ -19,6 +19,7 @@ mod equilibrium;
 mod extreme_damping;
 mod grazing;
 mod grips;
+mod hills;
 mod impacts;
 mod impulses;
 mod invariants;
