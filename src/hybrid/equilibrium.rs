@@ -30,13 +30,20 @@ impl<'p> Simulation<'p> {
             .collect();
         candidates.sort_by_key(|&m| modes[m].free.len());
         let mut refused = Vec::new();
-        for m in candidates {
+        // What a belt slides under is at rest, rather than what it carries along.
+        let tries = [false, true]
+            .into_iter()
+            .flat_map(|moves| candidates.iter().map(move |&m| (m, moves)));
+        for (m, moves) in tries {
             self.here.mode = m;
             self.here.q.copy_from_slice(&self.initial.q);
             self.here.v.copy_from_slice(&self.initial.v);
             (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
             self.apply_drift();
             self.follow_others();
+            if self.here.v.iter().any(|&rate| rate != 0.0) != moves {
+                continue;
+            }
             let why = match self.misfit_of(m) {
                 Some(why) => Err(why.into()),
                 None => with_kernel!(&modes[m].kernels, k => self.rest_in_mode(k)),

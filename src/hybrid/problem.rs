@@ -26,8 +26,8 @@ pub struct Problem {
     /// nearest in the metric of the masses; else what every mode in which the run may start holds follows from the others, and what a
     /// negative gap solves for. A run says by how much ([`crate::run::Subject::projected`]). Without it such a state is refused.
     pub project: bool,
-    /// Whether it starts at rest: in the static equilibrium near the initial configuration, without velocities but those of moving partners
-    /// and under the inputs at t = 0, with the contact forces that hold it. A run says by how much coordinates were moved, as
+    /// Whether it starts at rest: in the static equilibrium near the initial configuration, without velocities and under the inputs at
+    /// t = 0, with the contact forces that hold it; what a mode lets drift, where there is no other, with its rate. A run says by how much coordinates were moved, as
     /// after a projection.
     pub at_rest: bool,
     /// Of each discrete state, whether its initial value is stated though it is the default. The direction in which a contact slides is

@@ -99,6 +99,22 @@ fn pendulums_hang_and_do_not_stand() {
 }
 
 #[test]
+fn a_mass_rests_on_a_belt_that_slides_under_it() {
+    with_each_method(|| {
+        for model in ["belt_oscillator", "held_belt"] {
+            for belt in [0.1, -0.1] {
+                let mass = at_rest(model, &[("belt", belt)], &[]);
+                let [place, ..] = stays(&mass)[..] else {
+                    unreachable!("a mass has a place")
+                };
+                // The spring holds against what the belt drags with.
+                is(place, 0.25 * G * belt.signum());
+            }
+        }
+    });
+}
+
+#[test]
 fn a_block_stands_on_its_corners_while_friction_and_width_hold_it() {
     with_each_method(|| {
         let block = |push: f64| {

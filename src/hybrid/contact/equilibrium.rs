@@ -44,7 +44,11 @@ impl<'p> Simulation<'p> {
                 match (touches, contact.tangent) {
                     (false, _) => ContactState::Open,
                     (true, None) => ContactState::Closed,
-                    (true, Some(_)) => ContactState::Sticks,
+                    (true, Some(_)) => match at.rate(Line::Tangent(k)) {
+                        (slip, rounding) if slip.abs() <= rounding => ContactState::Sticks,
+                        // A belt slides under what is at rest.
+                        (slip, _) => ContactState::Slides(slip.signum()),
+                    },
                 }
             })
             .collect();
