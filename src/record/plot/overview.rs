@@ -264,7 +264,7 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, appearance: &Appearance) -> Vec<
         let column = &sketch.columns()[i];
         // Of a rate the symbol says it all, and a lone one has it beside its axis.
         let label = match (panel.group, panel.columns.len()) {
-            (ColumnKind::Velocity, 1) => String::new(),
+            (ColumnKind::Velocity, 1) if is_short(&column.name, &panel.unit) => String::new(),
             (ColumnKind::Velocity, _) => symbol(&column.name),
             _ => format!("{}: {}", symbol(&column.name), column.meaning),
         };
@@ -277,16 +277,22 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, appearance: &Appearance) -> Vec<
     panel.columns.iter().map(curve).collect()
 }
 
-/// The symbol of the only quantity of a panel, or the kind of its quantities.
+/// Whether the symbol of a quantity has room beside a panel, with its unit and a prefix to that.
+fn is_short(name: &str, unit: &str) -> bool {
+    text_width(&format!("{} (m{unit})", symbol(name)), TEXT.size) <= PANEL + GAP
+}
+
+/// The symbol of the only quantity of a panel, where it has room, or the kind of its quantities.
 fn axis_title(sketch: &Sketch, panel: &Panel) -> String {
+    let name = |i: usize| &*sketch.columns()[i].name;
     match (&panel.columns[..], panel.group) {
         (
-            [(i, _)],
+            &[(i, _)],
             ColumnKind::Coordinate
             | ColumnKind::Velocity
             | ColumnKind::Output
             | ColumnKind::Reaction,
-        ) => symbol(&sketch.columns()[*i].name),
+        ) if is_short(name(i), &panel.unit) => symbol(name(i)),
         (_, ColumnKind::Coordinate) => "coordinate".into(),
         (_, ColumnKind::Velocity) => "velocity".into(),
         (_, ColumnKind::Reaction) => "reaction".into(),

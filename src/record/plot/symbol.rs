@@ -45,7 +45,7 @@ pub(crate) fn symbol(name: &str) -> String {
             false => format!("rate of {quantity}"),
         }
     } else if let Some((of, what)) = name.split_once('.') {
-        format!("{what} of {}", quantity(of))
+        format!("{} of {}", what.replace('_', " "), quantity(of))
     } else {
         quantity(name)
     }
