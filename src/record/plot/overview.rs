@@ -277,9 +277,13 @@ fn panel_curves(sketch: &Sketch, panel: &Panel, appearance: &Appearance) -> Vec<
     panel.columns.iter().map(curve).collect()
 }
 
-/// Whether the symbol of a quantity has room beside a panel, with its unit and a prefix to that.
+/// Whether the symbol of a quantity has room beside a panel, with its unit, if it has one, and a prefix to that.
 fn is_short(name: &str, unit: &str) -> bool {
-    text_width(&format!("{} (m{unit})", symbol(name)), TEXT.size) <= PANEL + GAP
+    let unit = match unit {
+        "1" => String::new(),
+        unit => format!(" (m{unit})"),
+    };
+    text_width(&format!("{}{unit}", symbol(name)), TEXT.size) <= PANEL + GAP
 }
 
 /// The symbol of the only quantity of a panel, where it has room, or the kind of its quantities.
