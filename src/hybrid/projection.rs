@@ -75,7 +75,7 @@ impl Simulation<'_> {
 
     /// Brings gaps that are negative to zero, in the freest mode: to where the reset of their impact leaves what they solve for. Rates
     /// stay, as by multipliers.
-    pub fn open_gaps(&mut self) {
+    pub fn project_gaps(&mut self) {
         self.here.mode = self.freest();
         let (mode, n) = (self.mode(), self.here.q.len());
         let impacts = || mode.guards.iter().filter(|guard| is_impact(guard));

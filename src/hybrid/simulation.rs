@@ -326,7 +326,7 @@ impl<'p> Simulation<'p> {
         }
         self.follow_unstated();
         if self.problem.project {
-            self.open_gaps();
+            self.project_gaps();
             self.check_projected()?;
         }
         self.choose_initial_mode()?;

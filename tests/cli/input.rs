@@ -288,3 +288,48 @@ fn an_initial_state_beyond_a_stop() {
     ];
     check("scene.json", scene, &[("scene.json", scene)], &words);
 }
+
+/// A constraint that is a coordinate and a gap that is one, which need no multipliers.
+const PIN: &str = r#"
+from codegen.model import *
+model = Model("Pin", source="test model")
+m = model.parameter("m", "kg", 1.0, "mass", above=0)
+k = model.parameter("k", "N/m", 1.0, "stiffness", above=0)
+l = model.parameter("l", "m", 1.0, "place", above=0)
+x = model.coordinate("x", "m", "place")
+y = model.coordinate("y", "m", "height")
+model.point_mass(m, position=(x, y))
+model.potential(k * (x - y)**2 / 2)
+model.constraint("pin", x - l)
+model.contact("floor", gap=y)
+"#;
+
+#[test]
+fn a_state_that_modes_do_not_hold_is_refused_or_projected() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("pin")).unwrap();
+    fs::write(folder.path().join("pin/model.py"), PIN).unwrap();
+    let scene = |project: &str| {
+        let text = format!(
+            r#"{{ "model": "./pin", "initial": {{ "x": 0.9, "x.rate": 0.5, "y": -0.2{project} }}, "end": 1 }}"#
+        );
+        fs::write(folder.path().join("pin.json"), text).unwrap();
+        let mut command = dalembert(folder.path());
+        command.args(["run", "pin.json", "--out", "out"]).assert()
+    };
+    let refused = scene("").code(2);
+    let refused = stderr(refused.get_output());
+    for said in [
+        "-0.2 is not admissible",
+        "`\"project\": true`",
+        "holds `x` at 1 m",
+    ] {
+        assert!(refused.contains(said), "{refused}");
+    }
+    scene(r#", "project": true"#).success();
+    let summary = json(&folder.path().join("out/summary.json"));
+    let moved: Vec<_> = ["x", "y", "x.rate"]
+        .map(|name| summary["projected"][name].as_f64().unwrap())
+        .into();
+    assert_eq!(moved, [1.0 - 0.9, 0.2, -0.5], "{summary}");
+}
