@@ -1,7 +1,7 @@
 """Contacts and constraints that only some choices have: coordinates and discrete states are those of all choices.
 
 A multiplier that a combination of choices does not use is idle: its acceleration is zero, or a mode of the reduced form holds it.
-Outputs are those of the contacts that are there.
+Outputs and bounds of coordinates are those of the contacts that are there.
 """
 
 import casadi as ca
@@ -20,6 +20,16 @@ KINDS = {
 def own(model, kind):
     """The entries of a list that the model file has declared."""
     return [entry for entry in getattr(model, kind) if not (kind in KINDS and KINDS[kind](entry))]
+
+
+def align_bounds(models):
+    """Where a gap bounds a coordinate under some choices alone, the bound is theirs, as if it depended on parameters."""
+    for of in zip(*[own(model, "coordinates") for model in models]):
+        for side in ("minimum", "maximum"):
+            derived = [c for c in of if side in c.extra.get("bounded_by_gaps", ())]
+            if derived and len({None if isinstance(b, ca.SX) else b for b in (c.extra[side] for c in of)}) > 1:
+                for c in derived:
+                    c.extra[side] = ca.SX(c.extra[side])
 
 
 def align(models):

@@ -11,7 +11,7 @@ import casadi as ca
 
 from . import (analysis, check, combinations, derive, description, dimensions, emit_model, emit_series, functions, graph, limits,
                momentum, signals, tape)
-from .align import align, own
+from .align import align, align_bounds, own
 from .context import build
 from .emit_c import Source
 from .errors import ModelError, error_location
@@ -69,9 +69,11 @@ def load(folder, name=None, build=build):
     except OSError as error:
         raise ModelError(f"the model folder has no readable model.py: {error.strerror}", file) from None
     try:
-        return build(name, file, source)
+        models = build(name, file, source)
     except Exception as error:
         raise as_model_error(error, file) from error
+    align_bounds(models)
+    return models
 
 
 def as_model_error(error, file):

@@ -1,8 +1,9 @@
 """The modes that follow from contacts: one for each set of contact states where gaps and slips solve for coordinates, which it freezes.
 
-This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts (Newton's law) and rests follow. Constraints
-freeze theirs in all modes. Where there is no such form, one mode serves all sets (`multipliers.py`). It is written in the coordinates
-of `lines.py`, where each gap and each slip is one.
+This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts and rests follow. Constraints
+freeze theirs in all modes. It is written in the coordinates of `lines.py`, where each gap and each slip is one. Inertia couples no
+gap with another or with friction that follows from it: so one motion goes on, and one impact happens, whatever law decides it, and whatever
+closes at the same instant. Where there is no such form, one mode serves all sets (`multipliers.py`).
 """
 
 import itertools
@@ -88,6 +89,7 @@ def _bound(model, contact):
     if declaration.extra[side] is None:
         value = contact.gap.value()
         declaration.extra[side] = float(value) if value.is_constant() else value
+        declaration.extra.setdefault("bounded_by_gaps", []).append(side)
 
 
 class Expansion:
@@ -95,7 +97,7 @@ class Expansion:
 
     def __init__(self, model):
         self.model, self.contacts = model, model.contacts
-        self.constrained = _constrained(model)
+        self.always_held = _constrained(model) | {line.name for c in model.contacts if c.permanent for line in (c.gap, c.slip) if line}
         self.modes = {}
         by = {line.name: line.symbol for line in model.lines}
         self.coordinates = [by.get(c.name, c.symbol) for c in model.coordinates]
@@ -105,6 +107,7 @@ class Expansion:
     def build(self):
         """Adds everything to the model."""
         self._check_friction()
+        self._check_impacts()
         sets = [states for states in itertools.product(*[c.states() for c in self.contacts]) if self._can_be(states)]
         if len(sets) > MOST_MODES:
             raise NotReducible(f"{len(sets)} sets of contact states")
@@ -290,76 +293,55 @@ class Expansion:
 
     # ---- impacts ----------------------------------------------------------------------------------
 
-    def _strike(self, states, i):
-        """The impacts of a gap that closes: Newton's law for its rate, Coulomb's for the impulses (Moreau 1988)."""
-        contact = self.contacts[i]
-        pressed, loose, beyond = self._reached(states, contact)
-        if len(pressed) > 1 or pressed and (contact.slip or pressed[0].slip):
-            raise NotReducible(f"the impact of `{contact.name}` acts on several contacts with friction")
-        if contact.sides is not None and (pressed or loose):
-            raise NotReducible(f"the impact of `{contact.name}`, which opens to two sides, changes other rates")
-        slides = [+1, -1] if contact.slip else []
-        ways = [(opens, slip) for opens in ([True, False] if pressed else [False]) for slip in slides + [0]]
-        for opens, slip in ways:
-            self._outcome(states, i, (pressed, sorted(loose + beyond) if opens else loose), opens, slip)
+    def _check_impacts(self):
+        """Whether an impact changes no rate that another is decided by, and whether its friction leaves its push as it is. Else laws of
+        impacts differ, and several contacts at once may have several motions or none, which `multipliers.py` judges."""
+        gaps = [contact for contact in self.contacts if contact.gap is not None and not contact.permanent]
+        for contact in gaps:
+            if contact.slip and contact.slip.name in self._moved(contact.gap.name):
+                raise NotReducible(f"friction of `{contact.name}` acts on its normal force")
+            changed = self._changed(contact)
+            for other in gaps:
+                lines = {line.name for line in (other.gap, other.slip) if line}
+                if other.gap.name != contact.gap.name and lines & changed:
+                    raise NotReducible(f"the impacts of `{contact.name}` and `{other.name}` act on each other")
+            if contact.sides is not None and len(changed) > 1:
+                raise NotReducible(f"the impact of `{contact.name}`, which opens to two sides, changes other rates")
 
-    def _reached(self, states, contact):
-        """The closed contacts that an impulse at a gap acts on, the coordinates whose rates it changes besides, and those whose rates
-        it changes where such a contact opens."""
-        names, beyond = self.names, set()
-        start = names.index(contact.gap.name)
-        pressed, loose = self._moved(states, [start])
-        if pressed:
-            # Each may open, and pass the impulse on.
-            opened = [names.index(other.gap.name) for other in pressed]
-            behind, more = self._moved(states, [start, *opened])
-            if behind:
-                raise NotReducible(f"the impact of `{contact.name}` acts on contacts behind others")
-            beyond = set(more) - set(loose)
-        if contact.slip and names.index(contact.slip.name) not in loose:
-            loose.append(names.index(contact.slip.name))
-        return pressed, sorted(loose), sorted(beyond)
-
-    def _moved(self, states, rows):
-        """The closed contacts that impulses along some coordinates act on, and the coordinates besides whose rates they change."""
-        found, pressed, loose, pending = set(rows), [], [], list(rows)
+    def _moved(self, name):
+        """Names of the coordinates whose rates an impulse along one of them changes; what is always held has none."""
+        found, pending = {name}, [self.names.index(name)]
         while pending:
             row = pending.pop()
-            for k, name in enumerate(self.names):
-                if k in found or self.mass[row, k].is_zero() or name in self.constrained:
-                    continue
-                found.add(k)
-                holder = self._holder(states, name)
-                if holder is not None:
-                    pressed.append(holder)
-                else:
-                    loose.append(k)
+            for k, other in enumerate(self.names):
+                if not self.mass[row, k].is_zero() and other not in found | self.always_held:
+                    found.add(other)
                     pending.append(k)
-        return pressed, loose
+        return found
 
-    def _outcome(self, states, i, reached, opens, slip):
-        """One way in which an impact may end: whether the pressed contact opens, and which way this one slips (0: not)."""
-        contact, (pressed, loose) = self.contacts[i], reached
-        pushed = pressed[0] if pressed else None
-        names, coordinates = self.names, self.coordinates
+    def _changed(self, contact):
+        """Names of the coordinates whose rates an impact changes."""
+        return self._moved(contact.gap.name) | (self._moved(contact.slip.name) if contact.slip else set())
+
+    def _strike(self, states, i):
+        """The impacts of a gap that closes: Newton's law for its rate, Coulomb's for the impulses (Moreau 1988); whether it
+        slips after it, and which way, or sticks."""
+        for slip in [+1, -1, 0] if self.contacts[i].slip else [0]:
+            self._outcome(states, i, slip)
+
+    def _outcome(self, states, i, slip):
+        """One way in which an impact may end: which way the contact slips (0: not)."""
+        contact, names, coordinates = self.contacts[i], self.names, self.coordinates
         gap = names.index(contact.gap.name)
         along = names.index(contact.slip.name) if contact.slip else None
-        free = list(loose) + ([names.index(pushed.gap.name)] if opens else [])
         prescribed = {gap: -contact.restitution * coordinates[gap].rate}
         if contact.slip and slip == 0:
-            free.remove(along)
             prescribed[along] = contact.slip.value()
+        free = sorted({names.index(name) for name in self._changed(contact)} - prescribed.keys())
         change = {k: rate - coordinates[k].rate for k, rate in prescribed.items()}
         friction = (along, -contact.kinetic * slip * contact.slip.sign * contact.gap.sign) if slip else None
-        solved, _ = self._rates(gap, free, change, friction)
-        conditions = []
-        if slip:
-            conditions.append(slip * contact.slip_rate())
-            # A push that friction turns against itself has no such outcome (a self-locking wedge).
-            unit = {k: ca.SX(1 if k == gap else 0) for k in change}
-            _, push = self._rates(gap, free, unit, friction)
-            if not push.is_constant() and not self.mass[gap, along].is_zero():
-                conditions.append(push)
+        solved = self._rates(gap, free, change, friction)
+        conditions = [slip * contact.slip_rate()] if slip else []
         target = list(states)
         keeps = contact.restitution.is_zero()
         if keeps:
@@ -372,9 +354,6 @@ class Expansion:
             reset.append((contact.direction, slip))
         if contact.sides is not None:
             reset.append((contact.sides, -contact.sides))
-        if opens:
-            target[self.contacts.index(pushed)] = OPEN
-            conditions.append(pushed.gap.sign * pushed.gap.coordinate.rate)
         for k, other in enumerate(self.contacts):
             place = names.index(other.slip.name) if other.slip else None
             if k == i or place not in after or states[k] == OPEN or target[k] == STICKS and keeps and place == gap:
@@ -388,7 +367,7 @@ class Expansion:
                   reset, conditions, impact=True)
 
     def _rates(self, gap, free, change, friction):
-        """How the rates of coordinates `free` change when others do by `change`, and the push that it takes on the gap.
+        """How the rates of coordinates `free` change when others do by `change`.
 
         Momentum: M Δv is zero along what is free, but for the friction impulse, a multiple of the push M Δv along the gap.
         """
@@ -400,27 +379,22 @@ class Expansion:
         for k in free:
             force = friction[1] * impulse(gap) if friction and friction[0] == k else 0
             rows.append(impulse(k) - force)
-        solved = {}
-        if size:
-            column = ca.vertcat(*rows)
-            matrix = ca.densify(ca.jacobian(column, unknown))
-            load = ca.substitute(column, unknown, ca.SX.zeros(size))
-            solution = -(ca.inv_minor(matrix) @ load) if size > 1 else -load / matrix
-            solved = {k: solution[n] for n, k in enumerate(free)}
-        push = impulse(gap)
-        if size:
-            push = ca.substitute(push, unknown, ca.vertcat(*[solved[k] for k in free]))
-        return solved, push
+        if not size:
+            return {}
+        column = ca.vertcat(*rows)
+        matrix = ca.densify(ca.jacobian(column, unknown))
+        load = ca.substitute(column, unknown, ca.SX.zeros(size))
+        solution = -(ca.inv_minor(matrix) @ load) if size > 1 else -load / matrix
+        return {k: solution[n] for n, k in enumerate(free)}
 
 
 def _mass(model):
     """∂²T/∂v² of all coordinates, frozen or not, those of lines among them."""
     rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates])
     mass = ca.densify(ca.simplify(ca.hessian(derive.kinetic_energy(model), rates)[0]))
-    if not model.lines:
-        return mass
-    along = derive.along_lines(model, model.lines)
-    mass = ca.densify(ca.simplify(along.T @ mass @ along))
+    if model.lines:
+        along = derive.along_lines(model, model.lines)
+        mass = ca.densify(ca.simplify(along.T @ mass @ along))
     numbers, size = {}, mass.shape[0]
     for i, j in itertools.product(range(size), range(size)):
         if Exact().is_zero(lifted(mass[i, j], numbers)):

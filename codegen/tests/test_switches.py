@@ -51,6 +51,16 @@ class Switches(ScratchTest):
         self.assertEqual([[mode.name for mode in model.modes] for model in (on, off, permanent)],
                          [["moves"], ["moves"], ["floor closed"]])
 
+    def test_a_gap_bounds_its_coordinate_where_it_is_there(self):
+        text = PLANE + 'model.contact("floor", gap=y, switch=True)\n'
+        described = self.described(text)
+        y = next(c for c in described["coordinates"] if c["name"] == "y")
+        self.assertIsNone(y["minimum"])
+        bounds = [[bound["text"] for bound in variant["bounds"]] for variant in described["variants"]]
+        self.assertEqual(bounds, [["0"], [], ["0"]])
+        y, = [c for c in self.described(text.replace(", switch=True", ""))["coordinates"] if c["name"] == "y"]
+        self.assertEqual(y["minimum"], 0.0)
+
     def test_choices_share_the_multipliers_of_all(self):
         text = PLANE + ('joint = model.choice("joint", ["pin", "play"], "")\n'
                         'if joint == "pin":\n    model.constraint("pin", (x + y, x - y))\n'

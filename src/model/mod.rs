@@ -433,14 +433,6 @@ impl Variant {
         (self.contacts.iter()).any(|contact| contact.is_there() && contact.gap.is_some())
     }
 
-    /// Whether all laws of impacts are the same: of one gap at most, without friction.
-    pub fn has_plain_impacts(&self) -> bool {
-        let mut gaps = (self.contacts.iter())
-            .filter(|contact| contact.is_there() && contact.kind == "contact");
-        let first = gaps.next();
-        first.is_none_or(|contact| contact.slip.is_none()) && gaps.next().is_none()
-    }
-
     /// Whether contacts or constraints are held by multipliers.
     pub fn has_multipliers(&self) -> bool {
         self.modes.iter().any(|mode| mode.contacts.is_some())

@@ -160,9 +160,11 @@ pub enum SceneErrorKind {
         /// The options, ` under …`.
         under: String,
     },
-    /// What says how contacts are held by multipliers, where none is.
-    #[error("`{key}` has no effect{under}, where no contact or constraint is held by multipliers")]
-    NoMultipliers {
+    /// What is about gaps and constraints, where there are none.
+    #[error(
+        "`{key}` has no effect{under}, where there is neither a contact with a gap nor a constraint"
+    )]
+    NoContacts {
         /// The key of the scene.
         key: &'static str,
         /// The options, ` under …`.

@@ -228,29 +228,23 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
 
 /// Refuses what is said of contacts where the chosen options have none for which it has an effect.
 fn refuse_without_contacts(model: &Model, variant: &Variant, scene: &Checked, errors: &mut Errors) {
-    if variant.has_multipliers() {
+    let is_concerned = |v: &Variant| v.has_multipliers() || v.has_inadmissible();
+    if is_concerned(variant) {
         return;
     }
     let initial = scene.get("initial");
     let project = initial.and_then(|initial| initial.get("project"));
-    let has_contacts = variant.has_contacts();
-    let may_choose = has_contacts && variant.has_plain_impacts();
-    for (key, given, has_effect) in [
-        ("impacts", scene.get("impacts"), may_choose),
-        ("project", project, variant.has_inadmissible()),
-    ] {
-        let (Some(given), false) = (given, has_effect) else {
+    for (key, given) in [("impacts", scene.get("impacts")), ("project", project)] {
+        let Some(given) = given else {
             continue;
         };
         let under = under(model, variant);
-        let kind = SceneErrorKind::NoMultipliers { key, under };
-        let others = model.variants.iter().filter(|v| v.has_multipliers());
+        let kind = SceneErrorKind::NoContacts { key, under };
+        let others = model.variants.iter().filter(|v| is_concerned(v));
         let others: Vec<_> = others.map(|v| options(model, v)).collect();
         let help = match others.is_empty() {
             false => format!("leave it out, or choose {}", others.join("; or ")),
-            true => {
-                "leave it out, or ask for multipliers in the model: `model.multipliers()`".into()
-            }
+            true => "leave it out".into(),
         };
         errors.push(SceneError::new(kind, &given.place).help(help));
     }

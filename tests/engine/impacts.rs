@@ -407,21 +407,18 @@ fn eliminate(mut a: [[f64; 5]; 4]) -> Option<[f64; 4]> {
 #[test]
 fn an_impact_reaches_what_lies_behind_a_contact_that_it_opens() {
     // p₀ and p₁ stay, v₂ becomes 0: v₁ = −c/(1 − c²), v₀ = −c v₁, for v₂ = −1 before.
-    for form in ["reduced", "multipliers"] {
-        let mut problem = problem("inertia_row", &[]);
-        problem.choose(&[("form", form)]).unwrap();
-        problem.set_initial("x2", 0.1).unwrap();
-        problem.set_initial("x2.rate", -1.0).unwrap();
-        problem.end.time = 0.2;
-        let run = run(&problem);
-        let [event] = &run.events[..] else {
-            panic!("{form}: {:?}", run.events);
-        };
-        let middle = 0.3 / 0.91;
-        for (found, exact) in event.after.v.iter().zip([0.3 * middle, middle, 0.0]) {
-            assert!((found - exact).abs() < 1e-15, "{form}: {:?}", event.after.v);
-        }
-        let energy = run.energy.as_ref().unwrap();
-        assert!(energy.imbalance().abs() < 1e-15, "{energy:?}");
+    let mut problem = problem("inertia_row", &[]);
+    problem.set_initial("x2", 0.1).unwrap();
+    problem.set_initial("x2.rate", -1.0).unwrap();
+    problem.end.time = 0.2;
+    let run = run(&problem);
+    let [event] = &run.events[..] else {
+        panic!("{:?}", run.events);
+    };
+    let middle = 0.3 / 0.91;
+    for (found, exact) in event.after.v.iter().zip([0.3 * middle, middle, 0.0]) {
+        assert!((found - exact).abs() < 1e-15, "{:?}", event.after.v);
     }
+    let energy = run.energy.as_ref().unwrap();
+    assert!(energy.imbalance().abs() < 1e-15, "{energy:?}");
 }

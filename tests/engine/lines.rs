@@ -212,3 +212,43 @@ fn a_scene_may_name_a_law_of_impacts_where_all_are_the_same() {
     let [one, other] = ["", r#", "impacts": { "law": "poisson" }"#].map(scene);
     assert_eq!(one.events, other.events);
 }
+
+/// A gap with friction along a line whose inertia another coordinate shares. At impacts the forms, and whatever law decides them, agree; nothing
+/// acts on the part that slides along the hub, so that its momentum stays.
+#[test]
+fn impacts_with_friction_agree_in_both_forms_by_all_laws() {
+    let laws = ["newton", "poisson"].map(|law| ["together", "sequence"].map(|order| (law, order)));
+    let thrown = |form: &str, (law, order): (&str, &str)| {
+        let text = format!(
+            r#"{{ "model": "thrown_wheel", "form": "{form}",
+                "impacts": {{ "law": "{law}", "order": "{order}" }},
+                "initial": {{ "x": 0.2, "y": 0.8, "phi.rate": 25, "z.rate": 0.5 }},
+                "inputs": {{ "moment": {{ "sine": {{ "amplitude": 3, "angular_frequency": 2 }} }} }},
+                "end": 6, "accuracy": {{ "relative": 1e-12 }}, "record": {{ "every": 0.05 }} }}"#
+        );
+        run(&read(&text, "").unwrap())
+    };
+    for way in laws.into_iter().flatten() {
+        let [one, other] = ["reduced", "multipliers"].map(|form| thrown(form, way));
+        assert!(names(&one).contains(&"ground sticks"), "{:?}", names(&one));
+        let ends = [&one, &other].map(|run| &run.end);
+        for i in 0..4 {
+            for [a, b] in [ends.map(|s| s.state.q[i]), ends.map(|s| s.state.v[i])] {
+                assert!((a - b).abs() < 1e-9, "{way:?}, {i}: {a} and {b}");
+            }
+        }
+        for event in one.events.iter().chain(&other.events) {
+            let [before, after] = [&event.before.v, &event.after.v].map(|v| v[0] + v[3]);
+            assert!((before - after).abs() < 1e-14, "{way:?}: {event:?}");
+        }
+        let momentum: Vec<f64> = rows(&one, "x.rate")
+            .zip(rows(&one, "z.rate"))
+            .map(|(x, z)| x + z)
+            .collect();
+        assert!(momentum.iter().all(|p| (p - 0.5).abs() < 1e-12), "{way:?}");
+        assert!(
+            one.energy.as_ref().unwrap().imbalance().abs() < 1e-11,
+            "{way:?}"
+        );
+    }
+}

@@ -394,7 +394,7 @@ fn what_concerns_multipliers_where_there_are_none() {
     let under = "under equations = derived, rules = reactions, landing = momenta, edges = modes";
     let message = |key| {
         format!(
-            "`{key}` has no effect {under}, where no contact or constraint is held by multipliers"
+            "`{key}` has no effect {under}, where there is neither a contact with a gap nor a constraint"
         )
     };
     let error = tank(
