@@ -27,9 +27,12 @@ fn line(random: &mut Random, i: usize, n: usize) -> String {
     format!("(x{i} - {other})")
 }
 
-/// A model file, and how many coordinates it has.
-fn model(random: &mut Random) -> (String, usize) {
+/// A model file, how many coordinates it has, and whether they are all alike: then much happens at one instant.
+fn model(random: &mut Random) -> (String, usize, bool) {
     let n = 1 + (random.next() % 3) as usize;
+    let alike = random.next().is_multiple_of(3);
+    let [of_each, of_pairs] = [random.next(), random.next()];
+    let mut next = |seed| Random(if alike { seed } else { random.next() });
     let mut text = String::from(
         "from codegen.model import *\n\nmodel = Model(\"Random\", source=\"test model: random lines\")\n\
          one = model.parameter(\"one\", \"m\", 1.0, \"length\", above=0)\n\
@@ -41,7 +44,7 @@ fn model(random: &mut Random) -> (String, usize) {
          F = model.input(\"F\", \"N\", \"force\")\n",
     );
     let mut say = |line: String| writeln!(text, "{line}").unwrap();
-    let masses: Vec<f64> = (0..n).map(|_| random.within(0.5, 2.0)).collect();
+    let masses: Vec<f64> = (0..n).map(|_| next(of_each).within(0.5, 2.0)).collect();
     for i in 0..n {
         say(format!(
             "x{i} = model.coordinate(\"x{i}\", \"m\", \"place {i}\")"
@@ -53,10 +56,12 @@ fn model(random: &mut Random) -> (String, usize) {
     }
     for i in 0..n {
         for j in 0..i {
+            let random = &mut next(of_pairs);
             if random.next().is_multiple_of(4) {
                 let most = 0.4 * (masses[i] * masses[j]).sqrt();
                 let (part, at) = (random.within(-most, most), random.next() as usize % n);
-                let factor = random.one_of(&["1", "cos"]);
+                let factor = *random.one_of(&["1", "cos"]);
+                let factor = if alike { "1" } else { factor };
                 let factor = factor.replace("cos", &format!("cos(x{at} / one)"));
                 say(format!(
                     "model.kinetic({part:.4} * m * x{i}.rate * x{j}.rate * {factor})"
@@ -71,6 +76,7 @@ fn model(random: &mut Random) -> (String, usize) {
         }
     }
     for i in 0..n {
+        let random = &mut next(of_each);
         let [stiffness, weight, damping, force] =
             [(1.0, 20.0), (-10.0, 10.0), (0.0, 0.5), (-1.0, 1.0)]
                 .map(|range| random.either(0.0, range));
@@ -108,7 +114,7 @@ fn model(random: &mut Random) -> (String, usize) {
                 -side
             ));
         }
-        if kind.contains("friction") || i == 0 && kind.is_empty() {
+        if kind.contains("friction") || (i == 0 || alike) && kind.is_empty() {
             let (holds, slides) = (5.0 * mu, 5.0 * kinetic);
             let (place, belt) = (line(random, i, n), random.within(-1.0, 1.0));
             let belt = match place.len() {
@@ -121,7 +127,7 @@ fn model(random: &mut Random) -> (String, usize) {
             ));
         }
     }
-    (text, n)
+    (text, n, alike)
 }
 
 /// Runs the model of a folder; the summary, and the coordinates and rates at the end.
@@ -159,15 +165,23 @@ fn random_models_move_alike_in_both_forms() {
     let (mut events, mut reduced) = (0, 0);
     for number in numbers {
         let mut random = Random(number);
-        let (text, n) = model(&mut random);
+        let (text, n, alike) = model(&mut random);
         let folder = tempfile::tempdir().unwrap();
         for (form, more) in [("reduced", ""), ("multipliers", "model.multipliers()\n")] {
             fs::create_dir(folder.path().join(form)).unwrap();
             let file = folder.path().join(form).join("model.py");
             fs::write(file, format!("{text}{more}")).unwrap();
         }
-        let rates = (0..n).map(|i| (format!("x{i}.rate"), json!(random.within(-2.0, 2.0))));
-        let scene = json!({
+        let common = random.within(-2.0, 2.0);
+        let mut rate = || {
+            if alike {
+                common
+            } else {
+                random.within(-2.0, 2.0)
+            }
+        };
+        let rates = (0..n).map(|i| (format!("x{i}.rate"), json!(rate())));
+        let mut scene = json!({
             "initial": rates.collect::<serde_json::Map<_, _>>(),
             "inputs": { "F": { "sine": {
                 "amplitude": random.within(0.0, 15.0),
@@ -177,6 +191,11 @@ fn random_models_move_alike_in_both_forms() {
             "accuracy": { "relative": 1e-11 },
             "record": { "every": 0.1 },
         });
+        if text.contains("model.contact(") {
+            let law = random.one_of(&["newton", "poisson"]);
+            let order = random.one_of(&["together", "sequence"]);
+            scene["impacts"] = json!({ "law": law, "order": order });
+        }
         let [(one, a), (other, b)] =
             ["reduced", "multipliers"].map(|form| run(folder.path(), form, &scene));
         let of = format!("model {number}:\n{text}{scene}");
