@@ -13,9 +13,9 @@ from .errors import ModelError, each
 
 def check(model):
     """Refuses a model whose parts contradict each other."""
-    if not model.modes:
-        raise ModelError("the model has no mode: add model.mode(name, meaning, freeze=[…]), without `freeze` if all of its"
-                         " coordinates are free", model.location_of_model)
+    if not model.coordinates:
+        raise ModelError("the model has no coordinate, so that nothing moves: add model.coordinate(name, unit, meaning)",
+                         model.location_of_model)
     each(lambda check: check(model), (_check_symbols, _check_energies_know_no_accelerations, _check_masses))
     each(lambda transition: _check_guard(model, transition), model.transitions)
     each(lambda transition: _check_reset(model, transition), model.transitions)

@@ -5,7 +5,7 @@ import sys
 import types
 
 from . import reduced, rests
-from .errors import ModelError
+from .errors import Contradiction, ModelError
 
 
 class BuildContext:
@@ -41,9 +41,14 @@ def build(name, file, source, run=exec):
             sys.path[:] = path
         if context.model is None:
             raise ModelError("no Model(…) is made here", file)
-        reduced.expand(context.model)
-        rests.add(context.model)
-        models.append(context.model)
+        try:
+            reduced.expand(context.model)
+            rests.add(context.model)
+            models.append(context.model)
+        except Contradiction:
+            # What a scene holds for good may contradict itself where what is declared does not: then the model does not offer it.
+            if not any(contact.permanent for contact in context.model.contacts):
+                raise
         made = dict(context.options)
         for choice, others in context.open:
             prefix = {}

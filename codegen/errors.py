@@ -18,6 +18,10 @@ class ModelError(Exception):
         return f"{self.location}: {self.message}" if self.location else self.message
 
 
+class Contradiction(ModelError):
+    """What the model holds contradicts itself."""
+
+
 class Location(str):
     """`file:line`, with the columns of what is meant there where Python knows them, counted from 1; the end is past it."""
 

@@ -34,7 +34,8 @@ def lifted(expression, numbers):
             value = function.instruction_constant(k)
             plain[into[0]] = ca.SX(value)
             exact = value * _EXACT == int(value * _EXACT) and abs(value) < _EXACT
-            result = ca.SX(value) if exact else numbers.setdefault(value, ca.SX.sym(repr(value)))
+            size = abs(value)
+            result = ca.SX(value) if exact else (1 if value > 0 else -1) * numbers.setdefault(size, ca.SX.sym(repr(size)))
         else:
             plain.pop(into[0], None)
             if op == ca.OP_INPUT:

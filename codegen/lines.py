@@ -23,11 +23,13 @@ class NotSolved(Exception):
 
 @dataclass
 class Solved:
-    """A line w = q_p + ρ(q): `symbol` is w, with its rate; `coordinate` is q_p; `rest` is ρ, which does not depend on q_p."""
+    """A line w = q_p + ρ(q): `symbol` is w, with its rate; `coordinate` is q_p; `rest` is ρ, which does not depend on q_p; what the
+    model declares first of it is `sign` × w."""
 
     symbol: Coordinate
     coordinate: Coordinate
     rest: ca.SX
+    sign: int
 
     @property
     def name(self):
@@ -68,7 +70,7 @@ def solve(model):
     for group in groups:
         line = by_name[_name(group)]
         for k, (owner, key, place, offset) in enumerate(group):
-            sign = _sign(model, line.value, place)
+            sign = line.sign * _sign(model, group[0][2], place)
             if offset is None:
                 # A slip is known by its rate; the first is the line itself.
                 differs = k > 0 and key != "slip"
@@ -159,4 +161,4 @@ def _line(model, group, coordinate, sign):
     symbol = Coordinate(ca.SX.sym(_name(group)))
     symbol.rate = ca.SX.sym(_name(group) + ".rate")
     model.dimensions[symbol.name()] = model.dimensions[coordinate.name()]
-    return Solved(symbol, coordinate, ca.simplify(sign * ca.substitute(place, coordinate, 0)))
+    return Solved(symbol, coordinate, ca.simplify(sign * ca.substitute(place, coordinate, 0)), sign)

@@ -25,7 +25,7 @@ import numpy as np
 
 from . import derive, graph, limits, units
 from .declarations import Declaration, Transition
-from .errors import ModelError
+from .errors import Contradiction, ModelError
 from .outputs import Output
 
 MOST_CONTACTS = 16
@@ -171,7 +171,7 @@ def _check_independent(model, constraints):
         rank = _rank(model, constraints[: k + 1])
         if rank < k + 1:
             before = ", ".join(f"`{c.name}`" for c in constraints[:k])
-            raise ModelError(f"constraint `{constraint.name}`: it depends on those before it ({before}): of {k + 1} equations {rank}"
+            raise Contradiction(f"constraint `{constraint.name}`: it depends on those before it ({before}): of {k + 1} equations {rank}"
                              " are independent, so that it is redundant or contradicts them; leave it out", constraint.location)
 
 

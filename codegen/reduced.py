@@ -25,7 +25,8 @@ class NotReducible(ModelError):
 
 
 def expand(model):
-    """Adds the modes, transitions and rests of a model with contacts or constraints; those of any other stay as they are."""
+    """Adds the modes, transitions and rests of a model with contacts or constraints; of any other the mode in which all moves, unless
+    it has modes by hand."""
     if model.contacts or model.constraints:
         why_not = _reduce(model)
         if why_not:
@@ -35,8 +36,9 @@ def expand(model):
     elif model.charts:
         name, _, _, location = model.charts[0]
         raise ModelError(f"chart `{name}`: the model has no contacts; a change of coordinates by hand is a transition", location)
-    elif model.switched_off and not model.modes:
-        model._mode("moves", "all contacts are switched off", [], []).location = model.location_of_model
+    elif not model.modes:
+        meaning = "all contacts are switched off" if model.switched_off else "all coordinates are free"
+        model._mode("moves", meaning, [], []).location = model.location_of_model
     _require(model)
 
 

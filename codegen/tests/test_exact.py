@@ -44,6 +44,7 @@ class Zeros(unittest.TestCase):
         energy = lifted(0.1 * X**3 * ca.sin(0.3 * X), numbers)
         rate = lifted(0.1 * X**2 * (3 * ca.sin(0.3 * X) + 0.3 * X * ca.cos(0.3 * X)), numbers)
         self.assertTrue(Exact().is_zero(ca.gradient(energy, X) - rate))
+        self.assertTrue(Exact().is_zero(lifted(X - 0.3 * Y, numbers) - lifted(-0.3 * Y + X, numbers)))
 
     def test_random_expressions_agree_with_their_values(self):
         """A random expression less itself multiplied out is zero; changed in one coefficient it is not."""

@@ -24,6 +24,8 @@ REDUCED = (
      {"x sticks": ["y", "z"], "x slides": ["y"]}),
     ("beside a gap", 'model.constraint("hill", y - z**2 / L); model.contact("wall", gap=x)\n', {"wall open": ["y"], "wall closed": ["y"]}),
     ("a gap that is no coordinate", 'model.contact("a", gap=x - y)\n', {"a open": [], "a closed": ["y"]}),
+    ("a gap with numbers", 'model.contact("a", gap=(x - 0.233 * y) + 0.482 * L); model.friction("b", slip=0.233 * y - x, normal=N, kinetic=0.3)\n',
+     {"a open, b sticks": ["x"], "a open, b slides": [], "a closed, b sticks": ["x"]}),
     ("a gap over what a constraint holds", 'model.constraint("hill", y - z**2 / L); model.contact("a", gap=z - y + x)\n',
      {"a open": ["y"], "a closed": ["x", "y"]}),
     ("two gaps that inertia does not couple", 'model.contact("a", gap=x); model.contact("b", gap=y); model.constraint("c", x - z)\n',

@@ -115,7 +115,8 @@ class Mistakes(ScratchTest):
         self.assertIn("no mass moves with coordinate `x`", self.refusal(text, 7))
 
     def test_no_mode_at_all(self):
-        self.assertIn("the model has no mode: add model.mode(", self.refusal(HEAD + BODY, 2))
+        [variant] = self.described(HEAD + BODY)["variants"]
+        self.assertEqual([mode["name"] for mode in variant["modes"]], ["moves"])
 
     def test_no_momentum_to_conserve_is_no_mistake(self):
         self.generate(START + 'model.transition("hits", moves, moves, when=falls(x), impact=True, reset=model.impact_velocities('

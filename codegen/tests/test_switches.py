@@ -51,6 +51,13 @@ class Switches(ScratchTest):
         self.assertEqual([[mode.name for mode in model.modes] for model in (on, off, permanent)],
                          [["moves"], ["moves"], ["floor closed"]])
 
+    def test_what_held_for_good_contradicts_itself_is_not_offered(self):
+        text = PLANE + "".join(f'model.contact("{name}", gap={gap}, switch=True)\n' for name, gap in (("a", "x + y"), ("b", "x - y"), ("c", "y - 2 * x")))
+        offered = [[c[3] for c in model.choices] for model in self.loaded(text)]
+        self.assertEqual(len(offered), 26)
+        self.assertNotIn(["permanent"] * 3, offered)
+        self.assertIn("constraint `c`: it depends", self.refusal(PLANE + 'model.constraint("a", x + y); model.constraint("b", x - y); model.constraint("c", x)\n', 8))
+
     def test_a_gap_bounds_its_coordinate_where_it_is_there(self):
         text = PLANE + 'model.contact("floor", gap=y, switch=True)\n'
         described = self.described(text)

@@ -428,9 +428,10 @@ impl Variant {
         self.contacts.iter().any(|contact| contact.is_there())
     }
 
-    /// Whether there is a state that contacts or constraints do not admit: a gap, or what a constraint holds.
+    /// Whether there is a state that contacts or constraints do not admit: a gap, or what is held for good.
     pub fn has_inadmissible(&self) -> bool {
-        (self.contacts.iter()).any(|contact| contact.is_there() && contact.gap.is_some())
+        let holds = |contact: &DeclaredContact| contact.gap.is_some() || contact.states.len() == 1;
+        (self.contacts.iter()).any(|contact| contact.is_there() && holds(contact))
     }
 
     /// Whether contacts or constraints are held by multipliers.

@@ -214,9 +214,20 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
             .flatten()
             .last()
             .map_or(&scene.place, |name| &name.place);
-        let offered: Vec<String> = model
-            .combinations
-            .iter()
+        let others = |options: &[&str]| {
+            let differs = |(name, option): (&Option<&Checked>, &&str)| {
+                name.is_some_and(|name| name.text() != *option)
+            };
+            named
+                .iter()
+                .zip(options)
+                .filter(|&pair| differs(pair))
+                .count()
+        };
+        // Of many combinations those that are nearest to what is asked for.
+        let nearest = model.combinations.iter().map(|o| others(o)).min();
+        let offered: Vec<String> = (model.combinations.iter())
+            .filter(|options| Some(others(options)) == nearest)
             .map(|options| pairs(options))
             .collect();
         let kind = SceneErrorKind::NoVariant {

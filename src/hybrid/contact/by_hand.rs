@@ -155,7 +155,7 @@ impl<'p> Simulation<'p> {
                 let (n, free, size) =
                     (self.here.q.len(), &self.mode().free, contacts.kernel.size());
                 let state = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
-                self.standing_of(contacts, state)
+                self.standing_of(contacts, state, &|_| [0.0; 2])
                     .map_err(|why| Box::new(Reason::Reset { name, why }))?
             }
         };

@@ -1,6 +1,7 @@
 //! Masses, and the lines along which contacts and constraints push.
 
 use super::ContactState;
+use super::hold::ROUNDOFF;
 use crate::kernel::Context;
 use crate::model::Contacts;
 use crate::numerics::{Buffer, Definite, Dynamic, Lu, Size};
@@ -243,6 +244,15 @@ impl Geometry {
     pub fn strength(&self, line: Line) -> f64 {
         let scaled = &self.scaled[self.index(line)];
         dot(scaled, scaled).sqrt()
+    }
+
+    /// What rounding leaves of a line that is brought back from coordinates, or rates, as these: a sum of as many products as there are
+    /// coordinates, each no larger than both in the metric of the masses.
+    pub fn rounding(&self, line: Line, x: &Buffer<f64>) -> f64 {
+        let x: Vec<f64> = self.own.iter().map(|&i| x[i]).collect();
+        let rows = self.mass.chunks(x.len()).map(|row| dot(row, &x));
+        let square = dot(&x, &rows.collect::<Vec<f64>>());
+        x.len() as f64 * ROUNDOFF * self.strength(line) * square.sqrt()
     }
 
     /// Changes of some forces that together have no effect, as many as are independent. A force is a sum of parts along lines.

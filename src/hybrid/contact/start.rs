@@ -42,14 +42,21 @@ impl<'p> Simulation<'p> {
         let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let open = vec![ContactState::Open; contacts.contacts.len()];
         write_states(contacts, &open, self.context.discrete_mut());
+        let mut stated = None;
         if self.problem.project || self.problem.at_rest {
+            let geometry = Geometry::new(&self.context, contacts, [&q, &v]);
+            stated = Some((geometry, [q.clone(), v.clone()]));
             self.project(contacts, [&mut q, &mut v]);
         }
         if self.problem.at_rest {
             self.find_rest(contacts, &mut q).map_err(no_rest)?;
             write_states(contacts, &open, self.context.discrete_mut());
         }
-        let standing = self.standing_of(contacts, [q, v]);
+        let standing = self.standing_of(contacts, [q, v], &|line| {
+            stated.as_ref().map_or([0.0; 2], |(geometry, state)| {
+                state.each_ref().map(|x| geometry.rounding(line, x))
+            })
+        });
         let mut standing = standing.map_err(|why| {
             let mode = self.mode().name;
             Box::new(Reason::Initial { mode, why })
@@ -71,18 +78,22 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// The contacts as they stand in a state, by their gaps and rates alone; or why it is not admitted.
+    /// The contacts as they stand in a state, by their gaps and rates alone; or why it is not admitted. What was projected is
+    /// known to the roundings of what was stated, by line those of place and rate: where nothing is free to move, no more is left of it.
     pub(super) fn standing_of(
         &mut self,
         contacts: &Contacts,
         [mut q, mut v]: [Buffer<f64>; 2],
+        roundings: &dyn Fn(Line) -> [f64; 2],
     ) -> Result<Standing, Misfitting> {
         let at = ContactValues::new(&self.context, contacts, [&q, &v]);
+        let at_least = |(value, rounding): (f64, f64), least| (value, rounding.max(least));
+        let position = |line| at_least(at.position(line), roundings(line)[0]);
+        let rate = |line| at_least(at.rate(line), roundings(line)[1]);
         let mut places = Vec::new();
         for (c, constraint) in contacts.constraints.iter().enumerate() {
             let line = Line::Constraint(c);
-            for ((value, rounding), is_rate) in [(at.position(line), false), (at.rate(line), true)]
-            {
+            for ((value, rounding), is_rate) in [(position(line), false), (rate(line), true)] {
                 // What is not a number is not zero.
                 let is_zero = value.abs() <= rounding;
                 if !is_zero {
@@ -100,8 +111,8 @@ impl<'p> Simulation<'p> {
         for (k, contact) in contacts.contacts.iter().enumerate() {
             if contact.normal.is_some() {
                 let (opening, rounding) = match contact.is_ratchet {
-                    false => at.position(Line::Normal(k)),
-                    true => at.rate(Line::Normal(k)),
+                    false => position(Line::Normal(k)),
+                    true => rate(Line::Normal(k)),
                 };
                 // What is not a number is not positive.
                 let is_admitted = opening >= -rounding;
@@ -121,13 +132,13 @@ impl<'p> Simulation<'p> {
                     continue;
                 }
                 places.push(Line::Normal(k));
-                let (rate, rounding) = at.rate(Line::Normal(k));
+                let (rate, rounding) = rate(Line::Normal(k));
                 if rate.abs() > rounding {
                     leaves[k] = true;
                     continue;
                 }
             }
-            let (slip, rounding) = at.rate(Line::Tangent(k));
+            let (slip, rounding) = rate(Line::Tangent(k));
             touching[k] = Some(match contact.tangent {
                 None => Tangent::None,
                 Some(_) if slip.abs() <= rounding => Tangent::Still,
