@@ -333,3 +333,47 @@ fn a_state_that_modes_do_not_hold_is_refused_or_projected() {
         .into();
     assert_eq!(moved, [1.0 - 0.9, 0.2, -0.5], "{summary}");
 }
+
+/// Lines that solve for no coordinate, which hold two coordinates of three, and a switch that holds the third for good.
+const LOCKED: &str = r#"
+from codegen.model import *
+
+model = Model("Two held", source="test model")
+m = model.parameter("m", "kg", 1.0, "mass", above=0)
+x, y, z = [model.coordinate(name, "m", "a place") for name in "xyz"]
+model.kinetic(m * (x.rate**2 + y.rate**2 + z.rate**2) / 2 + m * x.rate * z.rate / 3)
+model.constraint("a", 2 * x - 0.3 * y)
+model.constraint("b", 0.7 * x + 3 * y)
+model.contact("floor", gap=z, restitution=0.5, switch=True)
+"#;
+
+#[test]
+fn what_constraints_leave_nothing_of_is_projected() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("locked")).unwrap();
+    fs::write(folder.path().join("locked/model.py"), LOCKED).unwrap();
+    for floor in ["on", "off", "permanent"] {
+        let text = format!(
+            r#"{{ "model": "./locked", "contacts": {{ "floor": "{floor}" }}, "end": 1,
+                "initial": {{ "x": 0.9, "x.rate": 0.5, "y.rate": -0.37, "z": -0.1, "project": true }} }}"#
+        );
+        fs::write(folder.path().join("locked.json"), text).unwrap();
+        let mut command = dalembert(folder.path());
+        let command = command.args(["run", "locked.json", "--out", "out"]);
+        command.assert().success();
+        let end = &json(&folder.path().join("out/summary.json"))["end"];
+        for name in ["x", "y"] {
+            let [q, v] = [&end["q"][name], &end["v"][format!("{name}.rate")]];
+            let off = q.as_f64().unwrap().abs() + v.as_f64().unwrap().abs();
+            assert!(off < 1e-15, "{floor}: {end}");
+        }
+        // Inertia couples z to x: the projection moves it by 0.9 m / 3, and leaves it 0.5 / 3 m/s.
+        let z = end["q"]["z"].as_f64().unwrap();
+        let exact = if floor == "permanent" {
+            0.0
+        } else {
+            0.2 + 0.5 / 3.0
+        };
+        assert!((z - exact).abs() < 1e-14, "{floor}: {end}");
+    }
+}
