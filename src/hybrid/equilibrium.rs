@@ -35,12 +35,17 @@ impl<'p> Simulation<'p> {
             .into_iter()
             .flat_map(|moves| candidates.iter().map(move |&m| (m, moves)));
         for (m, moves) in tries {
-            self.here.mode = m;
             self.here.q.copy_from_slice(&self.initial.q);
             self.here.v.copy_from_slice(&self.initial.v);
             (self.context.discrete_mut()).copy_from_slice(&self.initial.discrete);
-            self.apply_drift();
+            // Constraints hold in all modes; a contact holds where it touches, as it does where the search begins beyond.
+            self.here.mode = self.freest();
             self.follow_others();
+            if self.problem.variant().has_inadmissible() {
+                self.project_gaps();
+            }
+            self.here.mode = m;
+            self.apply_drift();
             if self.here.v.iter().any(|&rate| rate != 0.0) != moves {
                 continue;
             }
@@ -74,8 +79,11 @@ impl<'p> Simulation<'p> {
         let mode = self.mode();
         let size = kernel.size();
         self.set_context();
-        // A belt slides under what is at rest.
+        // A belt slides under what is at rest; nothing else does.
         self.follow_slip_rates(kernel);
+        if self.has_standing_slip(kernel) {
+            return Err(Unbalanced::Stands);
+        }
         let [mut q, v, zero] = self.here.free(size, &mode.free);
         let sizes = self.scale(size);
         let [q, v, zero] = {

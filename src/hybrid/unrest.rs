@@ -39,6 +39,9 @@ pub enum Unbalanced {
         /// The contact.
         contact: &'static str,
     },
+    /// It is a mode for what slides, and nothing does.
+    #[error("what slides in it is at rest")]
+    Stands,
     /// A transition is taken at once.
     #[error("`{transition}` happens at once")]
     Happens {

@@ -114,6 +114,24 @@ fn a_mass_rests_on_a_belt_that_slides_under_it() {
     });
 }
 
+/// Friction holds no place of its own, and nothing says where the part on the hub is: it stays where the scene has it.
+#[test]
+fn a_wheel_rolls_to_where_spring_and_moment_hold_it() {
+    with_each_method(|| {
+        for form in ["reduced", "multipliers"] {
+            let mut wheel = at_rest("thrown_wheel", &[], &[("z", 0.7)]);
+            wheel.choose(&[("form", form)]).unwrap();
+            wheel.set_input("moment", Function::constant(0.5)).unwrap();
+            let q = stays(&wheel);
+            // k x = moment / r.
+            is(q[0], 0.5 / 0.3 / 5.0);
+            is(q[2], q[0] / 0.3);
+            assert_eq!(q[1], 0.0);
+            is(q[3], 0.7);
+        }
+    });
+}
+
 #[test]
 fn a_block_stands_on_its_corners_while_friction_and_width_hold_it() {
     with_each_method(|| {

@@ -6,7 +6,7 @@
 
 use super::ContactState;
 use super::geometry::{Geometry, Line, multiplier, write_states};
-use super::hold::{ContactValues, ROUNDOFF};
+use super::hold::{ContactValues, ROUNDOFF, hold_lines};
 use crate::hybrid::equilibrium::{least_squares, to_zero};
 use crate::hybrid::failure::{Reason, Stoppable};
 use crate::hybrid::simulation::Simulation;
@@ -97,8 +97,15 @@ impl<'p> Simulation<'p> {
         let mut held: Vec<Option<Line>> = vec![None; n];
         let geometry = Geometry::new(&self.context, contacts, [q, &zero]);
         let own = geometry.own.clone();
-        for line in geometry.all().filter(|&line| holds(line)) {
-            held[multiplier(contacts, line)] = Some(line);
+        let mut is_idle = vec![false; n];
+        for line in geometry.all() {
+            let of = multiplier(contacts, line);
+            held[of] = holds(line).then_some(line);
+            // What is open has no force, from the start to the end.
+            is_idle[of] = match line {
+                Line::Normal(k) | Line::Tangent(k) => states[k] == ContactState::Open,
+                Line::Constraint(_) => false,
+            };
         }
         // Coordinates, and where one is a multiplier its force.
         let split = |x: &[f64]| {
@@ -116,12 +123,18 @@ impl<'p> Simulation<'p> {
             let (mut r, bounds) = (size.zeros(), contacts.kernel.magnitude(context, at));
             contacts.kernel.residual(context, at, &mut r);
             let places = ContactValues::new(context, contacts, [&q, &zero]);
+            // A place is found to the rounding of typical changes; what is left is taken away at the end.
+            let typical = |line| -> f64 {
+                let parts = geometry.along(line).iter().zip(&own);
+                parts.map(|(slope, &i)| slope.abs() * sizes[i]).sum()
+            };
             let of = |i: usize| match held[i] {
+                None if is_idle[i] => (0.0, 0.0),
                 None => (r[i], bounds[i]),
                 Some(Line::Tangent(_)) => (0.0, 0.0),
                 Some(line) => {
                     let (value, rounding) = places.position(line);
-                    (value, rounding / ROUNDOFF)
+                    (value, typical(line).max(rounding / ROUNDOFF))
                 }
             };
             (0..n).map(of).collect()
@@ -180,6 +193,10 @@ impl<'p> Simulation<'p> {
                 None => Unbalanced::Unheld,
             })?;
         own.iter().for_each(|&i| q[i] = found[i]);
+        let is_place = |line: &Line| holds(*line) && !matches!(line, Line::Tangent(_));
+        let places: Vec<Line> = geometry.all().filter(is_place).collect();
+        let state = [q, &mut size.zeros()];
+        hold_lines(&self.context, contacts, [&places, &[]], state);
         Ok(found)
     }
 
@@ -209,8 +226,14 @@ impl<'p> Simulation<'p> {
             let terms = (0..size.get()).map(|j| inverse[(i, j)].abs() * bounds[j]);
             (f64::EPSILON * terms.sum::<f64>()).max(f64::MIN_POSITIVE)
         };
-        let moved =
-            (0..size.get()).find(|&i| !contacts.is_multiplier(i) && a[i].abs() > rounding(i));
+        let geometry = Geometry::new(&self.context, contacts, [&q, &v]);
+        let own = &geometry.own;
+        let forces: Vec<f64> = own.iter().map(|&i| bounds[i]).collect();
+        // Where contacts and constraints hold a coordinate, they balance forces of which the inverse knows nothing.
+        let of_balance = geometry.rounding_of_accelerations(&forces);
+        let moves =
+            |(&i, least): (&usize, &f64)| (a[i].abs() > rounding(i).max(*least)).then_some(i);
+        let moved = own.iter().zip(&of_balance).find_map(moves);
         self.here.a.fill(0.0);
         match moved {
             None => Ok(()),

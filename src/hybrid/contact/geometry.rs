@@ -255,6 +255,19 @@ impl Geometry {
         x.len() as f64 * ROUNDOFF * self.strength(line) * square.sqrt()
     }
 
+    /// What rounding leaves of accelerations where forces of such sizes along the coordinates are held in balance: as of rates.
+    pub fn rounding_of_accelerations(&self, forces: &[f64]) -> Vec<f64> {
+        let n = self.own.len();
+        let factor = inertia(&self.mass, n);
+        let length = |along: &[f64]| {
+            let scaled = factor.scaled(along);
+            dot(&scaled, &scaled).sqrt()
+        };
+        let strongest = n as f64 * ROUNDOFF * length(forces);
+        let unit = |i: usize| (0..n).map(|k| f64::from(k == i)).collect::<Vec<f64>>();
+        (0..n).map(|i| strongest * length(&unit(i))).collect()
+    }
+
     /// Changes of some forces that together have no effect, as many as are independent. A force is a sum of parts along lines.
     pub fn without_effect(&self, forces: &[Vec<(Line, f64)>]) -> Vec<Vec<f64>> {
         // Each vector of the basis with its own parts of the forces.

@@ -138,11 +138,10 @@ impl<'p> Simulation<'p> {
                     continue;
                 }
             }
-            let (slip, rounding) = rate(Line::Tangent(k));
-            touching[k] = Some(match contact.tangent {
+            touching[k] = Some(match contact.tangent.map(|_| rate(Line::Tangent(k))) {
                 None => Tangent::None,
-                Some(_) if slip.abs() <= rounding => Tangent::Still,
-                Some(_) => Tangent::Slips(slip.signum()),
+                Some((slip, rounding)) if slip.abs() <= rounding => Tangent::Still,
+                Some((slip, _)) => Tangent::Slips(slip.signum()),
             });
         }
         let context = &self.context;
