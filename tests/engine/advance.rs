@@ -340,7 +340,7 @@ fn seven_masses() -> impl Iterator<Item = (String, Problem)> {
 #[test]
 fn a_run_that_was_saved_and_restored_anywhere_gives_the_same_bits() {
     let scenes = scenes().into_iter().chain(seven_masses());
-    for (name, mut problem) in scenes.chain(super::lines::reduced()) {
+    for (name, mut problem) in scenes.chain(super::lines::wheels()) {
         problem.record.columns.energies = true;
         let end = problem.end.time;
         let mut whole = Simulator::new(&problem).unwrap();

@@ -195,6 +195,18 @@ fn what_falls_is_refused_and_what_lies_rests() {
         let why = refused(&at_rest("bouncing_ball", &[], &[("h", 1.0)]));
         assert!(why.contains("the force along `h` vanishes"), "{why}");
         assert_eq!(stays(&at_rest("bouncing_ball", &[], &[])), [0.0]);
+        // Where friction cannot hold the spring it slides, and is not taken to where it would hold.
+        for model in ["belt_oscillator", "held_belt"] {
+            let why = refused(&at_rest(model, &[("belt", 0.0)], &[("x", 5.0)]));
+            assert!(why.contains("no static equilibrium"), "{why}");
+        }
+        // Nothing closes from afar that would hold, on a hill or on the plain.
+        for form in ["reduced", "multipliers"] {
+            let mut ball = at_rest("hilly_ball", &[], &[("y", 9.0)]);
+            ball.choose(&[("form", form)]).unwrap();
+            let why = refused(&ball);
+            assert!(why.contains("no static equilibrium"), "{why}");
+        }
         let why = refused(&at_rest("rigid_block", &[], &[("y", 2.0)]));
         assert!(why.contains("the force along `y` vanishes"), "{why}");
     });

@@ -29,12 +29,34 @@ fn read(text: &str, form: &str) -> Result<Problem, SceneErrors> {
 }
 
 /// The wheel in the reduced form, by both methods.
-pub fn reduced() -> impl Iterator<Item = (String, Problem)> {
-    [Method::Auto, Method::Radau].into_iter().map(|method| {
-        let mut problem = read(WHEEL, "reduced").unwrap();
-        problem.method = method;
-        (format!("wheel by {method:?}"), problem)
-    })
+fn reduced() -> impl Iterator<Item = (String, Problem)> {
+    by_both_methods("wheel", WHEEL.replace("FORM", "reduced"))
+}
+
+/// Wheels on a rail and thrown on the ground, in the reduced form, by both methods.
+pub fn wheels() -> impl Iterator<Item = (String, Problem)> {
+    let impacts = r#"{ "law": "newton", "order": "together" }"#;
+    reduced().chain(by_both_methods("thrown wheel", thrown("reduced", impacts)))
+}
+
+fn by_both_methods(name: &'static str, scene: String) -> impl Iterator<Item = (String, Problem)> {
+    [Method::Auto, Method::Radau]
+        .into_iter()
+        .map(move |method| {
+            let mut problem = read(&scene, "").unwrap();
+            problem.method = method;
+            (format!("{name} by {method:?}"), problem)
+        })
+}
+
+/// A wheel that is thrown on the ground, spinning, with a part that slides along its hub.
+fn thrown(form: &str, impacts: &str) -> String {
+    format!(
+        r#"{{ "model": "thrown_wheel", "form": "{form}", "impacts": {impacts},
+            "initial": {{ "x": 0.2, "y": 0.8, "phi.rate": 25, "z.rate": 0.5 }},
+            "inputs": {{ "moment": {{ "sine": {{ "amplitude": 3, "angular_frequency": 2 }} }} }},
+            "end": 6, "accuracy": {{ "relative": 1e-12 }}, "record": {{ "every": 0.05 }} }}"#
+    )
 }
 
 fn rows<'r>(run: &'r Run, name: &str) -> impl Iterator<Item = f64> + use<'r> {
@@ -218,18 +240,12 @@ fn a_scene_may_name_a_law_of_impacts_where_all_are_the_same() {
 #[test]
 fn impacts_with_friction_agree_in_both_forms_by_all_laws() {
     let laws = ["newton", "poisson"].map(|law| ["together", "sequence"].map(|order| (law, order)));
-    let thrown = |form: &str, (law, order): (&str, &str)| {
-        let text = format!(
-            r#"{{ "model": "thrown_wheel", "form": "{form}",
-                "impacts": {{ "law": "{law}", "order": "{order}" }},
-                "initial": {{ "x": 0.2, "y": 0.8, "phi.rate": 25, "z.rate": 0.5 }},
-                "inputs": {{ "moment": {{ "sine": {{ "amplitude": 3, "angular_frequency": 2 }} }} }},
-                "end": 6, "accuracy": {{ "relative": 1e-12 }}, "record": {{ "every": 0.05 }} }}"#
-        );
-        run(&read(&text, "").unwrap())
+    let moved = |form: &str, (law, order): (&str, &str)| {
+        let impacts = format!(r#"{{ "law": "{law}", "order": "{order}" }}"#);
+        run(&read(&thrown(form, &impacts), "").unwrap())
     };
     for way in laws.into_iter().flatten() {
-        let [one, other] = ["reduced", "multipliers"].map(|form| thrown(form, way));
+        let [one, other] = ["reduced", "multipliers"].map(|form| moved(form, way));
         assert!(names(&one).contains(&"ground sticks"), "{:?}", names(&one));
         let ends = [&one, &other].map(|run| &run.end);
         for i in 0..4 {

@@ -294,6 +294,25 @@ fn wheels_that_slip_and_roll_are_in_ensembles_what_they_are_alone() {
     }
 }
 
+/// Thrown ones fly in lanes; what strikes with friction, along a line that solves for a coordinate, is handed out.
+#[test]
+fn wheels_that_are_thrown_are_in_ensembles_what_they_are_alone() {
+    for restitution in [0.0, 0.5] {
+        let mut wheel = problem("thrown_wheel", &[("e", restitution)]);
+        wheel.end.time = 3.0;
+        set_size(&mut wheel, 1e-8, 1.0, 10.0);
+        let wheels = variations(&wheel, 9, |p, x| {
+            p.set_initial("y", 0.1 + 0.3 * x.abs()).unwrap();
+            p.set_initial("phi.rate", 25.0 * x).unwrap();
+            p.set_initial("z.rate", 0.5 * x).unwrap();
+        });
+        let ends = together(&wheels, processor_level(), 1);
+        assert!(difference(&alone(&wheels), &ends) < 1e-8, "{restitution}");
+        let sticks = |end: &End| end.events.iter().any(|e| e.0 == "ground sticks");
+        assert!(ends.iter().any(sticks), "{restitution}");
+    }
+}
+
 #[test]
 fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours() {
     let blocks = shaken_blocks(1e-6, 37);
