@@ -101,7 +101,7 @@ impl<'p> Simulation<'p> {
         for line in geometry.all() {
             let of = multiplier(contacts, line);
             held[of] = holds(line).then_some(line);
-            // What is open has no force, from the start to the end.
+            // What is open has no force: it is no unknown.
             is_idle[of] = match line {
                 Line::Normal(k) | Line::Tangent(k) => states[k] == ContactState::Open,
                 Line::Constraint(_) => false,
@@ -110,7 +110,8 @@ impl<'p> Simulation<'p> {
         // Coordinates, and where one is a multiplier its force.
         let split = |x: &[f64]| {
             let place = |i: usize| if own.contains(&i) { x[i] } else { 0.0 };
-            let force = |i: usize| if own.contains(&i) { 0.0 } else { x[i] };
+            let is_force = |i: usize| !own.contains(&i) && !is_idle[i];
+            let force = |i: usize| if is_force(i) { x[i] } else { 0.0 };
             (size.vector(place), size.vector(force))
         };
         let forces = |x: &Vec<f64>| {
@@ -153,6 +154,7 @@ impl<'p> Simulation<'p> {
             DMatrix::from_fn(n, n, |i, j| {
                 let of_own = own.iter().position(|&own| own == j);
                 match (held[i], of_own) {
+                    _ if is_idle[i] || is_idle[j] => 0.0,
                     (Some(line), Some(j)) => geometry.along(line)[j],
                     (Some(_), None) => 0.0,
                     (None, Some(_)) => by_places[(i, j)],
