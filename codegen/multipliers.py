@@ -172,7 +172,7 @@ def _check_independent(model, constraints):
         if rank < k + 1:
             before = ", ".join(f"`{c.name}`" for c in constraints[:k])
             raise Contradiction(f"constraint `{constraint.name}`: it depends on those before it ({before}): of {k + 1} equations {rank}"
-                             " are independent, so that it is redundant or contradicts them; leave it out", constraint.location)
+                                " are independent, so that it is redundant or contradicts them; leave it out", constraint.location)
 
 
 def _rank(model, constraints):

@@ -2,8 +2,8 @@
 
 This is the reduced form: reactions of frozen coordinates are the forces; guards, impacts and rests follow. Constraints
 freeze theirs in all modes. It is written in the coordinates of `lines.py`, where each gap and each slip is one. Inertia couples no
-gap with another or with friction that follows from it: so one motion goes on, and one impact happens, whatever law decides it, and whatever
-closes at the same instant. Where there is no such form, one mode serves all sets (`multipliers.py`).
+gap with another or with friction that follows from it: so one impact happens, whatever law decides it, and whatever closes at the same
+instant. Where there is no such form, one mode serves all sets (`multipliers.py`).
 """
 
 import itertools

@@ -81,10 +81,19 @@ impl<'p> Simulation<'p> {
         self.set_context();
         // A belt slides under what is at rest; nothing else does.
         self.follow_slip_rates(kernel);
-        if self.has_standing_slip(kernel) {
+        let [mut q, v, zero] = self.here.free(size, &mode.free);
+        let (at, context) = (
+            Free {
+                q: &q,
+                v: &v,
+                a: &zero,
+            },
+            &self.context,
+        );
+        let mut slip_rates = mode.guards.iter().filter(|g| g.direction.is_some());
+        if slip_rates.any(|g| kernel.guard(context, &g.kernel, at) == 0.0) {
             return Err(Unbalanced::Stands);
         }
-        let [mut q, v, zero] = self.here.free(size, &mode.free);
         let sizes = self.scale(size);
         let [q, v, zero] = {
             let forces = |q: &F::Vector| {

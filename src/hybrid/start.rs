@@ -97,19 +97,6 @@ impl<'p> Simulation<'p> {
 }
 
 impl<'p> Simulation<'p> {
-    /// Whether a contact slides in the present mode whose slip rate is zero.
-    pub fn has_standing_slip<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> bool {
-        let mode = self.mode();
-        let [q, v, a] = self.here.free(kernel.size(), &mode.free);
-        let at = Free {
-            q: &q,
-            v: &v,
-            a: &a,
-        };
-        let mut slips = mode.guards.iter().filter(|guard| guard.direction.is_some());
-        slips.any(|guard| kernel.guard(&self.context, &guard.kernel, at) == 0.0)
-    }
-
     /// Lets the direction in which a contact slides be that of its slip rate, where the scene does not state it.
     pub fn follow_slip_rates<F: Size>(&mut self, kernel: &'p ModeKernel<F>) {
         let mode = self.mode();

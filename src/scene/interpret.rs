@@ -214,7 +214,7 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
             .flatten()
             .last()
             .map_or(&scene.place, |name| &name.place);
-        let others = |options: &[&str]| {
+        let mismatches = |options: &[&str]| {
             let differs = |(name, option): (&Option<&Checked>, &&str)| {
                 name.is_some_and(|name| name.text() != *option)
             };
@@ -225,9 +225,9 @@ fn variant(model: &Model, scene: &Checked) -> Result<usize, SceneError> {
                 .count()
         };
         // Of many combinations those that are nearest to what is asked for.
-        let nearest = model.combinations.iter().map(|o| others(o)).min();
+        let nearest = model.combinations.iter().map(|o| mismatches(o)).min();
         let offered: Vec<String> = (model.combinations.iter())
-            .filter(|options| Some(others(options)) == nearest)
+            .filter(|options| Some(mismatches(options)) == nearest)
             .map(|options| pairs(options))
             .collect();
         let kind = SceneErrorKind::NoVariant {
