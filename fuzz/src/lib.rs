@@ -75,7 +75,7 @@ fn check(run: &Run) {
     );
 }
 
-/// Three conditions that no scene of the corpus meets, nor two of them. Between them is what keeps the compiler
+/// Three conditions that no shipped scene meets, nor two of them. Between them is what keeps the compiler
 /// from making one of them, as there is between conditions of a program.
 #[inline(never)]
 fn planted(problem: &Problem) {
