@@ -3,13 +3,14 @@
 Of a contact `left` the outputs are `left.gap`, `left.slip` (the slip rate), `left.normal` (λ_N ≥ 0, pushes the gap open) and
 `left.friction` (λ_T, along the slip); of a ratchet `pawl` they are `pawl.rate` and `pawl.force` (≥ 0, along the rate); of one equation
 of a constraint `pin` its force, `pin.force` (along what it holds at zero).
-They are the same for both forms of equations. With multipliers there are the impulses, too, `left.normal_impulse`,
-`left.friction_impulse`, `pin.impulse`: the forces integrated over time since the start, which jump at impacts.
+They are the same for both forms of equations. Impulses are `left.normal_impulse`, `left.friction_impulse`, `pin.impulse`: in the record of
+an impact what they are there, and with multipliers outputs, too, the forces integrated over time since the start.
 """
 
 import casadi as ca
 
 from . import derive, units
+from .declarations import Impulse
 from .outputs import Output
 
 
@@ -23,7 +24,28 @@ def add(model):
         model.outputs.append(Output(
             f"{constraint.name}.force", _force_unit(model, constraint.expression, constraint.is_rate),
             "force of the constraint, positive where it pushes the expression to grow", ca.SX(0), constraint.location, "λ", force))
-    model.outputs.extend(c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
+    model.impulses = list(_impulses(model))
+    for impulse in model.impulses:
+        if impulse.multiplier is not None:
+            since = lambda equations, of=impulse: of.multiplier.rate
+            model.outputs.append(Output(
+                impulse.name, impulse.unit, impulse.meaning + " since the start", ca.SX(0), impulse.location, "∫ λ dt", since))
+
+
+def _impulses(model):
+    """The impulses that an impact may have, those of multipliers in the order of these. The names are the same in both forms."""
+    if model.modes[0].form is not None:
+        yield from (c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
+        return
+    unit = lambda expression, is_rate: units.of_impulse(units.force(units.dimension_of(expression, model.dimensions), is_rate))
+    for contact in model.contacts:
+        if contact.gap is not None:
+            yield Impulse(contact.impulse_name, unit(contact.gap_expression, contact.is_ratchet), "impulse of the normal force", contact.location)
+        if contact.slip is not None:
+            yield Impulse(contact.friction_impulse_name, unit(contact.slip_expression, contact.slips_by_rate),
+                          "impulse of the friction force", contact.location)
+    for constraint in model.constraints:
+        yield Impulse(constraint.impulse_name, unit(constraint.expression, constraint.is_rate), "impulse of the force", constraint.location)
 
 
 def _of_contact(model, contact):
@@ -88,10 +110,7 @@ def _state(mode, contact):
 
 def _force_unit(model, expression, is_rate):
     """Unit of the force along an expression, or along what it is the rate of."""
-    dimension = units.dimension_of(expression, model.dimensions)
-    if is_rate:
-        dimension = units.combine(dimension, units.parse("s"))
-    return units.named(units.combine(units.parse("kg m^2/s^2"), dimension, -1), ("N", "N m"))
+    return units.of_force(units.force(units.dimension_of(expression, model.dimensions), is_rate))
 
 
 # ---- what is declared, as text --------------------------------------------------------------------

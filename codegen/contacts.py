@@ -88,6 +88,11 @@ class Contact:
         """Name of its impulse."""
         return f"{self.name}.impulse" if self.is_ratchet else f"{self.name}.normal_impulse"
 
+    @property
+    def friction_impulse_name(self):
+        """Name of the impulse of its friction."""
+        return f"{self.name}.friction_impulse"
+
     def states(self):
         """What it can do."""
         if self.is_ratchet:

@@ -45,6 +45,18 @@ class Body:
 
 
 @dataclass
+class Impulse:
+    """The impulse of a force of a contact or a constraint."""
+
+    name: str
+    unit: str
+    meaning: str
+    location: str
+    multiplier: ca.SX = None
+    """The multiplier whose rate it is since the start; None in the reduced form."""
+
+
+@dataclass
 class Requirement:
     """An expression that a mode requires to be positive, or, of what `may_vanish`, not to be negative."""
 
@@ -77,3 +89,5 @@ class Transition:
     """Whether it leads to the same state in other coordinates; see `Model.chart`."""
     direction: ca.SX = None
     """The discrete state with which its guard multiplies a slip rate, if it does: the direction of a contact that slides."""
+    impulses: dict = None
+    """Of an impact of contacts in the reduced form, the impulses that are not zero, by their names."""

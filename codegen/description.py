@@ -138,6 +138,11 @@ def _is_seen(variant, discrete):
     return set_by_hand or any(ca.depends_on(expression, discrete.symbol) for expression in own)
 
 
+def _place(model, symbol):
+    """The index of a coordinate; None where there is none."""
+    return None if symbol is None else next(i for i, c in enumerate(model.coordinates) if c.symbol is symbol)
+
+
 def _variant(variant, tables, seen=None):
     model, lean = variant.model, variant.lean
     if seen is None:
@@ -159,6 +164,8 @@ def _variant(variant, tables, seen=None):
         "discretes": seen,
         "outputs": [{"name": o.name, "unit": o.unit, "meaning": o.meaning, "text": o.text or units.short(o.expression, 200)}
                     for o in model.outputs],
+        "impulses": [{"name": i.name, "unit": i.unit, "meaning": i.meaning, "multiplier": _place(model, i.multiplier)}
+                     for i in model.impulses],
         "valid_motion": [entry for of_parameters, entry in validity if not of_parameters],
         "valid_parameters": [entry for of_parameters, entry in validity if of_parameters],
         "bounds": [{"coordinate": i, "upper": bool(upper), "text": units.short(bound)}

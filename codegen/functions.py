@@ -114,6 +114,8 @@ class OfTransition:
     """q⁺, v⁺, d⁺ in the symbols of the mode."""
     condition: ca.SX
     """In the symbols of the target; None if there is none."""
+    impulses: ca.SX
+    """Those of an impact of contacts in the reduced form, each of the model; None of any other transition."""
 
 
 MODE = (
@@ -156,6 +158,7 @@ GUARD = (
 TRANSITION = (
     Row("reset", lambda of: of.reset, "hybrid::fire"),
     Row("condition", lambda of: of.condition, "hybrid::choice", is_counted=True, exists=lambda of: of.condition is not None),
+    Row("impulses", lambda of: of.impulses, "hybrid::fire", is_counted=True, exists=lambda of: of.impulses is not None),
 )
 """Of each transition of a guard. Resets that stay in the mode are for lanes, too; conditions are in the symbols of the target."""
 

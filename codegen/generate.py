@@ -283,7 +283,7 @@ def _variant(model, absent, kind=""):
                 if transition.condition is not None:
                     condition = target.place(transition.condition, transition.location)
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
-                of = functions.OfTransition(mode, _reset(model, equations, target, transition), condition)
+                of = functions.OfTransition(mode, _reset(model, equations, target, transition), condition, _impulses(model, equations, transition))
                 _add(variant, prefix, functions.TRANSITION, of, equations, (i,), g, t)
                 variant.functions[i, "reset", g, t].stays = target is equations and _stays(model, equations, of.reset)
                 if condition is not None:
@@ -377,6 +377,13 @@ def _reset(model, source, target, transition):
     if depending:
         after = _with_dependent(model, target, after, depending)
     return source.place(after, transition.location)
+
+
+def _impulses(model, source, transition):
+    """All impulses of an impact in the symbols of the source mode; None where it has none."""
+    if transition.impulses is None:
+        return None
+    return source.place(ca.vertcat(*[ca.SX(transition.impulses.get(impulse.name, 0)) for impulse in model.impulses]), transition.location)
 
 
 def _with_dependent(model, target, after, depending):

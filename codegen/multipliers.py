@@ -24,9 +24,8 @@ import casadi as ca
 import numpy as np
 
 from . import derive, graph, limits, units
-from .declarations import Declaration, Transition
+from .declarations import Declaration, Impulse, Transition
 from .errors import Contradiction, ModelError
-from .outputs import Output
 
 MOST_CONTACTS = 16
 """Most contacts of a model: each two of them with friction have a discrete state, which says whether one holds the other."""
@@ -46,6 +45,11 @@ class Constraint:
     """Name of its multiplier, if it is that of a contact."""
     line: object = None
     """In the reduced form, the coordinate that it holds, or the rate."""
+
+    @property
+    def impulse_name(self):
+        """Name of its impulse."""
+        return f"{self.force}_impulse" if self.force else f"{self.name}.impulse"
 
     def force_of_line(self, mode):
         """Its force in a mode of the reduced form."""
@@ -113,12 +117,11 @@ def build(model):
             contact.impulse_name))
         form.tangents.append(None if contact.slip is None else _multiplier(
             model, f"{contact.name}.friction", contact.slip_expression, contact.slips_by_rate,
-            "impulse of the friction force", contact, f"{contact.name}.friction_impulse"))
+            "impulse of the friction force", contact, contact.friction_impulse_name))
     for constraint in constraints:
         constraint.multiplier = _multiplier(
             model, constraint.force or f"{constraint.name}.force", constraint.expression, constraint.is_rate,
-            "impulse of the force", constraint,
-            f"{constraint.force}_impulse" if constraint.force else f"{constraint.name}.impulse")
+            "impulse of the force", constraint, constraint.impulse_name)
     for contact in contacts:
         if contact.direction is not None:
             declared = next(d for d in model.discretes if d.symbol is contact.direction)
@@ -189,22 +192,17 @@ def _rank(model, constraints):
 
 
 def _multiplier(model, name, expression, is_rate, meaning, declared, impulse):
-    """A coordinate whose acceleration is the force along an expression, or along what it is the rate of. Its rate is an output of
-    the name `impulse`."""
+    """A coordinate whose acceleration is the force along an expression, or along what it is the rate of. Its rate is the impulse."""
     try:
-        dimension = units.dimension_of(expression, model.dimensions)
+        force = units.force(units.dimension_of(expression, model.dimensions), is_rate)
     except units.UnitError as error:
         raise ModelError(f"`{declared.name}`: {error}", declared.location) from None
-    if is_rate:
-        dimension = units.combine(dimension, units.parse("s"))
-    force = units.combine(units.parse("kg m^2/s^2"), dimension, -1)
     unit = units.text(units.combine(force, units.parse("s^2")))
     symbol = model._declare_motion("coordinate", name, unit)
     symbol.jerk = ca.SX.sym(name + ".jerk")
-    of_impulse = units.named(units.combine(force, units.parse("s")), ("N s", "N m s"))
-    output = Output(impulse, of_impulse, meaning + " since the start", ca.SX(0), declared.location, "∫ λ dt", lambda equations: symbol.rate)
     model.coordinates.append(Declaration(name, unit, meaning + ", integrated over time", symbol, dict(
-        minimum=None, maximum=None, scale=1.0, rate_scale=1.0, multiplier=units.named(force, ("N", "N m")), impulse=output)))
+        minimum=None, maximum=None, scale=1.0, rate_scale=1.0, multiplier=units.of_force(force),
+        impulse=Impulse(impulse, units.of_impulse(force), meaning, declared.location, symbol))))
     return symbol
 
 

@@ -196,14 +196,16 @@ class Expansion:
                 raise NotReducible(f"`{line.name}` is held on a line that depends on what drifts, and bends")
             mode.drift[line.name] = own - along
 
-    def _add(self, contact, verb, states, target, when, reset=(), provided=None, impact=False, direction=None):
+    def _add(self, contact, verb, states, target, when, reset=(), provided=None, impulses=None, direction=None):
+        """Adds a transition, unless there is no such target; one with `impulses` is an impact."""
         target = self.modes.get(tuple(target))
         if target is None:
             return
         conditions = None if not provided else self._in_coordinates(ca.vertcat(*provided))
         self.model.transitions.append(Transition(
             f"{contact.name} {verb}", self.modes[states], target, self._in_coordinates(ca.SX(when)), conditions,
-            self._reset(reset, target if impact else None), impact, contact.location, direction=direction))
+            self._reset(reset, None if impulses is None else target), impulses is not None, contact.location, direction=direction,
+            impulses=impulses and {name: self._in_coordinates(impulse) for name, impulse in impulses.items()}))
 
     def _in_coordinates(self, expression):
         """An expression with lines and their rates in the coordinates of the model and their rates."""
@@ -365,8 +367,24 @@ class Expansion:
             rate = other.slip.sign * after[place] + other.slip.offset
             # Where the impact leaves no slip rate, the direction stays as it was.
             reset.append((other.direction, other.direction * (1 - 2 * (other.direction * rate < 0))))
+        impulses = self._impulses(contact, {**change, **solved})
         self._add(contact, "strikes", states, target, contact.gap.sign * contact.gap.coordinate + contact.gap.offset,
-                  reset, conditions, impact=True)
+                  reset, conditions, impulses=impulses)
+
+    def _impulses(self, striking, changes):
+        """The impulses of an impact that changes rates, by their names: M Δv along the lines of what strikes and of what is always held.
+        No other force is as large."""
+        names, found = self.names, {}
+        push = lambda line: line.sign * sum((self.mass[names.index(line.name), k] * delta for k, delta in changes.items()), ca.SX(0))
+        for contact in self.contacts:
+            if contact is striking or contact.permanent:
+                if contact.gap is not None:
+                    found[contact.impulse_name] = push(contact.gap)
+                if contact.slip is not None:
+                    found[contact.friction_impulse_name] = push(contact.slip)
+        for constraint in self.model.constraints:
+            found[constraint.impulse_name] = push(constraint.line)
+        return {name: impulse for name, impulse in found.items() if not impulse.is_zero()}
 
     def _rates(self, gap, free, change, friction):
         """How the rates of coordinates `free` change when others do by `change`.

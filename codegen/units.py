@@ -70,6 +70,22 @@ def named(dimension, names):
     return next((name for name in names if parse(name) == dimension), text(dimension))
 
 
+def force(dimension, is_rate):
+    """The dimension of the force along a number of some dimension, or along what it is the rate of."""
+    along = combine(dimension, parse("s")) if is_rate else dimension
+    return combine(parse("kg m^2/s^2"), along, -1)
+
+
+def of_force(dimension):
+    """The unit of a force of some dimension, as a text."""
+    return named(dimension, ("N", "N m"))
+
+
+def of_impulse(dimension):
+    """The unit of the impulse of a force of some dimension, as a text."""
+    return named(combine(dimension, parse("s")), ("N s", "N m s"))
+
+
 class _Free:
     """The dimension of an exact zero: it fits anywhere."""
 

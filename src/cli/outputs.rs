@@ -7,7 +7,7 @@ use super::checkpoints::Checkpoints;
 use super::interrupt;
 use crate::hybrid::{Checkpoint, Observer, Problem, check_row};
 use crate::record::{
-    Earlier, Event, Jump, Kept, Layout, OutputFolder, ReadError, Sketch, Snapshot, Stream, Tally,
+    Earlier, Event, Jump, Kept, Layout, OutputFolder, ReadError, Sides, Sketch, Stream, Tally,
 };
 
 /// The files of a run, what its pictures are drawn from, and its transitions, each where it is wanted.
@@ -137,14 +137,15 @@ impl Observer for Outputs {
         }
     }
 
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
-        let sides = sides.map(|[before, after]| [before, after]);
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
+        let states = sides.map(|sides| [&sides.before, &sides.after]);
+        let impulses = sides.map_or(&[][..], |sides| &sides.impulses);
         self.checkpoints.events += 1;
         if let Some(stream) = &mut self.stream {
-            stream.event(jump, sides);
+            stream.event(jump, states.map(|states| (states, impulses)));
         }
         if let Some(sketch) = &mut self.sketch {
-            sketch.event(jump, sides);
+            sketch.event(jump, states);
         }
         if self.jumps.len() < self.compared {
             self.jumps.push(*jump);

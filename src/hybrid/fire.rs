@@ -5,8 +5,9 @@ use super::failure::{Reason, Stoppable, Taken};
 use super::simulation::Simulation;
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
+use crate::model::{Impulse, Transition};
 use crate::numerics::Size;
-use crate::run::{EnergyJump, Jump};
+use crate::run::{EnergyJump, Jump, Sides};
 
 /// Relative rounding error of an energy: a generated energy is a sum of up to some sixteen products.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -24,8 +25,27 @@ impl<'p> Simulation<'p> {
     fn fire_by<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<()> {
         let t = self.chosen(kernel, guard)?;
         let transition = &self.mode().guards[guard].transitions[t];
-        self.commit(transition.name, transition.impact, transition.target)?;
+        let said = (self.problem.record.event_states)
+            .then(|| self.impulses(kernel, transition))
+            .flatten();
+        let taken = (transition.name, transition.impact);
+        self.commit_with(taken, transition.target, said)?;
         self.remember(guard, t)
+    }
+
+    /// The impulses of a transition, if it says them.
+    fn impulses<F: Size>(
+        &self,
+        kernel: &ModeKernel<F>,
+        transition: &Transition,
+    ) -> Option<Vec<f64>> {
+        let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        kernel.impulses(&self.context, &transition.kernel, at)
     }
 
     /// Index of the transition of a guard that happens, and is noted; makes `next` the state after its reset.
@@ -113,11 +133,21 @@ impl<'p> Simulation<'p> {
         chosen
     }
 
-    /// Makes `next` the present state, in mode `target`, and records the event.
+    /// Makes `next` the present state, in mode `target`, and records the event, with the impulses that multipliers tell.
     pub fn commit(&mut self, name: &'static str, impact: bool, target: usize) -> Stoppable<()> {
+        self.commit_with((name, impact), target, None)
+    }
+
+    /// The same of a transition by its name and whether it is an impact, with the impulses that it says, if it does.
+    fn commit_with(
+        &mut self,
+        (name, impact): (&'static str, bool),
+        target: usize,
+        said: Option<Vec<f64>>,
+    ) -> Stoppable<()> {
         let from = self.here.shown;
         let states = self.problem.record.event_states;
-        let before = states.then(|| self.snapshot());
+        let before = states.then(|| (self.snapshot(), self.impulses_so_far()));
         let energies_before = (self.observers.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
         self.leave_for_next();
@@ -144,18 +174,34 @@ impl<'p> Simulation<'p> {
             to: self.here.shown,
             energy: energy.filter(|_| impact),
         };
-        if let Some(before) = before {
+        if let Some((before, so_far)) = before {
             let after = self.snapshot();
+            let added = || {
+                let now = self.impulses_so_far().into_iter();
+                now.zip(so_far).map(|(now, before)| now - before).collect()
+            };
+            let impulses = said.unwrap_or_else(added);
             if self.observers.watch_extremes() {
                 let stored = self.stored_energy();
                 self.observers
                     .jump(&self.here, [&after.reactions, &after.outputs], Some(stored));
             }
-            (self.observers.recording).event(&jump, Some(&[before, after]));
+            let sides = Sides {
+                before,
+                after,
+                impulses,
+            };
+            self.observers.recording.event(&jump, Some(&sides));
         } else {
             self.observers.recording.event(&jump, None);
         }
         self.arrive(name, from)
+    }
+
+    /// The impulses since the start, as far as multipliers tell them; 0 where they do not.
+    fn impulses_so_far(&self) -> Vec<f64> {
+        let rate = |impulse: &Impulse| impulse.multiplier.map_or(0.0, |i| self.here.v[i]);
+        self.problem.variant().impulses.iter().map(rate).collect()
     }
 
     /// Makes `next` the present state, in the same mode: nothing that anybody sees happens.

@@ -73,7 +73,7 @@ impl<'p> Simulator<'p> {
     /// ```
     /// use dalembert::hybrid::{MadeStep, Observer, Problem, Simulator};
     /// use dalembert::model::models;
-    /// use dalembert::record::{Jump, Snapshot};
+    /// use dalembert::record::{Jump, Sides};
     /// use std::ops::ControlFlow;
     ///
     /// /// Keeps the largest height that a ball has in the middle of a step, and its speeds before and after impacts.
@@ -87,9 +87,9 @@ impl<'p> Simulator<'p> {
     ///     fn row(&mut self, _: f64, _: usize, _: &[f64]) -> ControlFlow<()> {
     ///         ControlFlow::Continue(())
     ///     }
-    ///     fn event(&mut self, _: &Jump, sides: Option<&[Snapshot; 2]>) {
+    ///     fn event(&mut self, _: &Jump, sides: Option<&Sides>) {
     ///         let sides = sides.expect("`event_states` asks for them");
-    ///         self.impacts.push([sides[0].v[0], sides[1].v[0]]);
+    ///         self.impacts.push([sides.before.v[0], sides.after.v[0]]);
     ///     }
     ///     fn sees_steps(&self) -> bool {
     ///         true

@@ -570,6 +570,32 @@ impl<F: Size> ModeKernel<F> {
         }
     }
 
+    /// The impulses of a transition out of this mode, if it says them.
+    pub fn impulses(
+        &self,
+        x: &Context,
+        transition: &TransitionKernel,
+        at: Free<F>,
+    ) -> Option<Vec<f64>> {
+        assert_eq!(
+            transition.source_free,
+            self.size.get(),
+            "impulses are evaluated in the source mode"
+        );
+        let (function, count) = transition.impulses?;
+        let mut out = vec![0.0; count];
+        // SAFETY: room for `count` outputs; the number of free coordinates was checked.
+        unsafe {
+            x.call(
+                function,
+                &transition.dimensions,
+                at.pointers(self.size),
+                out.as_mut_ptr(),
+            )
+        }
+        Some(out)
+    }
+
     /// The conditions of a transition into this mode, where its reset leads: at the coordinates, rates and discrete states `after` it, of
     /// which those with the indices `free` are free, and the time of the context. A transition without conditions has none of them;
     /// `None` where the accelerations are not determined.

@@ -278,8 +278,8 @@ pub struct GuardKernel {
     pub(crate) in_lanes: Box<[Option<Raw>]>,
 }
 
-/// A generated transition: its reset, and the conditions with the target's number of
-/// free coordinates and the number of conditions.
+/// A generated transition: its reset, the conditions with the target's number of
+/// free coordinates and the number of conditions, and its impulses.
 #[derive(Debug)]
 pub struct TransitionKernel {
     /// Of its model.
@@ -287,6 +287,8 @@ pub struct TransitionKernel {
     pub(crate) source_free: usize,
     pub(crate) reset: Raw,
     pub(crate) condition: Option<(Raw, usize, usize)>,
+    /// The impulses of an impact of contacts and their number, if it says them.
+    pub(crate) impulses: Option<(Raw, usize)>,
     /// The reset in lanes, by level of the processor, if it leads to the same mode and changes nothing that it holds.
     pub(crate) in_lanes: Box<[Option<Raw>]>,
 }

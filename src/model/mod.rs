@@ -207,6 +207,8 @@ pub struct Variant {
     pub discretes: Box<[usize]>,
     /// Outputs. Those that the model declares are the same under all options, those of contacts are of the contacts that are there.
     pub outputs: Box<[Output]>,
+    /// The impulses that an impact of contacts may have.
+    pub impulses: Box<[Impulse]>,
     /// Under which conditions on the motion the model is meant.
     pub valid_motion: Box<[Validity]>,
     /// Under which conditions on the parameters it is meant.
@@ -253,6 +255,19 @@ pub struct Output {
     pub meaning: &'static str,
     /// What it is, as text.
     pub text: &'static str,
+}
+
+/// The impulse of a force of a contact or a constraint at an impact.
+#[derive(Debug)]
+pub struct Impulse {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Meaning.
+    pub meaning: &'static str,
+    /// Index of the multiplier whose rate it is since the start; none where transitions say what it is.
+    pub multiplier: Option<usize>,
 }
 
 /// A condition under which the model is meant.

@@ -2,7 +2,7 @@
 
 use super::{TIGHTEST, TOLERANCES, match_events, variation};
 use crate::hybrid::{Observer, Problem, simulate_with};
-use crate::record::{Doubt, Event, Jump, Progress, Question, Run, Snapshot};
+use crate::record::{Doubt, Event, Jump, Progress, Question, Run, Sides};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -54,7 +54,7 @@ impl Observer for First<'_> {
         false
     }
 
-    fn event(&mut self, jump: &Jump, _: Option<&[Snapshot; 2]>) {
+    fn event(&mut self, jump: &Jump, _: Option<&Sides>) {
         self.0.push(Event::new(jump, Default::default()));
     }
 }

@@ -5,7 +5,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `trajectory.csv` | `t`, coordinates, velocities (`theta.rate`), reactions (`reaction.theta`, `reaction.z_h`), discrete states, energies, inputs, `mode` |
-//! | `events.csv` | `t,j,transition,from,to`, every column of the state with `.before` and `.after`, `lost`, `ground_work` |
+//! | `events.csv` | `t,j,transition,from,to`, every column of the state with `.before` and `.after`, the impulses of contacts and constraints (`left.normal_impulse`), `lost`, `ground_work` |
 //! | `csv-metadata.json` | unit and meaning of every column of both tables |
 //! | `summary.json` | a [`Summary`] |
 //! | `overview.svg` | everything over time, with the modes and the transitions |

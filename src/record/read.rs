@@ -21,7 +21,7 @@ use crate::run::Recorder;
 use crate::run::Tally;
 use crate::run::Uncertain;
 use crate::run::{
-    EnergyJump, Event, HybridState, Jump, Ledger, Snapshot, Solver, Subject, Trajectory,
+    EnergyJump, Event, HybridState, Jump, Ledger, Sides, Snapshot, Solver, Subject, Trajectory,
 };
 use crate::run::{Layout, Quantity};
 
@@ -213,8 +213,8 @@ impl Earlier {
         })
     }
 
-    /// Hands on the transitions, with the states before and after them, and counts them in the run.
-    pub fn events(&mut self, mut take: impl FnMut(&Jump, &[Snapshot; 2])) -> Result<(), ReadError> {
+    /// Hands on the transitions, with the states before and after them and their impulses, and counts them in the run.
+    pub fn events(&mut self, mut take: impl FnMut(&Jump, &Sides)) -> Result<(), ReadError> {
         let (layout, impacts) = (&self.run.layout, &self.impacts);
         let tally = &mut self.run.tally;
         *tally = Tally::default();
@@ -222,7 +222,11 @@ impl Earlier {
             let (t, j) = (row.number()?, row.parse()?);
             let transition = transition(&self.transitions, row.text()?)?;
             let (from, to) = (mode(layout, row.text()?)?, mode(layout, row.text()?)?);
-            let sides = [snapshot(layout, row)?, snapshot(layout, row)?];
+            let sides = Sides {
+                before: snapshot(layout, row)?,
+                after: snapshot(layout, row)?,
+                impulses: numbers(&layout.impulses, row)?,
+            };
             let energy = EnergyJump {
                 lost: row.number()?,
                 ground_work: row.number()?,
@@ -357,9 +361,7 @@ fn transitions(variant: &Variant) -> Vec<&'static str> {
 }
 
 fn snapshot(layout: &Layout, row: &mut Row) -> Result<Snapshot, String> {
-    let mut take = |quantities: &[Quantity]| -> Result<Vec<f64>, String> {
-        quantities.iter().map(|_| row.number()).collect()
-    };
+    let mut take = |quantities| numbers(quantities, row);
     Ok(Snapshot {
         q: take(&layout.coordinates)?,
         v: take(&layout.velocities)?,
@@ -367,6 +369,11 @@ fn snapshot(layout: &Layout, row: &mut Row) -> Result<Snapshot, String> {
         discrete: take(&layout.discretes)?,
         outputs: take(&layout.outputs)?,
     })
+}
+
+/// The values of some quantities.
+fn numbers(quantities: &[Quantity], row: &mut Row) -> Result<Vec<f64>, String> {
+    quantities.iter().map(|_| row.number()).collect()
 }
 
 /// A row of a table, read field by field.

@@ -8,7 +8,7 @@
 use crate::hybrid::Observer;
 use crate::hybrid::Run;
 use crate::run::Layout;
-use crate::run::{Column, Event, Jump, Snapshot};
+use crate::run::{Column, Event, Jump, Sides, Snapshot};
 use std::ops::{ControlFlow, Range};
 
 /// Most numbers that are kept of the rows: 32 MB, some thousand intervals of a model with twenty columns.
@@ -201,8 +201,8 @@ impl Observer for Sketch {
     fn point(&mut self, t: f64, _mode: usize, values: &[f64]) {
         Sketch::point(self, t, values);
     }
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
-        Sketch::event(self, jump, sides.map(|[before, after]| [before, after]));
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
+        Sketch::event(self, jump, sides.map(|sides| [&sides.before, &sides.after]));
     }
 }
 

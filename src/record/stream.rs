@@ -71,11 +71,14 @@ impl Stream {
         self.write_if_due();
     }
 
-    /// Takes a transition.
-    pub fn event(&mut self, jump: &Jump, sides: Option<[&Snapshot; 2]>) {
+    /// Takes a transition, with the states before and after it and its impulses where they are kept.
+    pub fn event(&mut self, jump: &Jump, sides: Option<([&Snapshot; 2], &[f64])>) {
         self.jumps.push(*jump);
-        for side in sides.into_iter().flatten() {
-            self.states.extend(side.values());
+        if let Some((sides, impulses)) = sides {
+            for side in sides {
+                self.states.extend(side.values());
+            }
+            self.states.extend_from_slice(impulses);
         }
         self.write_if_due();
     }
@@ -186,7 +189,8 @@ impl Run {
             stream.row(t, mode, self.trajectory.row(i));
         }
         for event in &self.events {
-            stream.event(&event.jump(), Some([&event.before, &event.after]));
+            let sides = ([&event.before, &event.after], &*event.impulses);
+            stream.event(&event.jump(), Some(sides));
         }
         stream.finish(self, &Sketch::of(self), &Appearance::default())
     }

@@ -85,8 +85,8 @@ impl Named {
 }
 
 /// The table of transitions on its way: `t,j,transition,from,to`, the state before (`theta.before`, …) and
-/// after, reactions and discrete states included, and the jump of the energy: `lost`,
-/// `ground_work`, 0 where the transition is no impact.
+/// after, reactions and discrete states included, the impulses of contacts and constraints (`left.normal_impulse`), and the jump of
+/// the energy: `lost`, `ground_work`, 0 where the transition is no impact.
 pub(super) struct EventsTable<W: Write> {
     rows: Rows<W>,
     modes: Named,
@@ -103,15 +103,15 @@ impl<W: Write> EventsTable<W> {
         Ok(EventsTable { rows, modes })
     }
 
-    /// `states` are the values before and then those after the transition.
-    pub fn row(&mut self, jump: &Jump, states: &[f64]) -> io::Result<()> {
+    /// `values` are those before the transition, those after it, and its impulses.
+    pub fn row(&mut self, jump: &Jump, values: &[f64]) -> io::Result<()> {
         let rows = &mut self.rows;
         rows.number(jump.t)?;
         rows.text(&jump.j.to_string())?;
         rows.text(jump.transition)?;
         rows.text(self.modes.name(jump.from))?;
         rows.text(self.modes.name(jump.to))?;
-        for &value in states {
+        for &value in values {
             rows.number(value)?;
         }
         let EnergyJump { lost, ground_work } = jump.energy.unwrap_or_default();
@@ -139,8 +139,9 @@ pub fn write_trajectory(run: &Run, out: impl Write) -> io::Result<()> {
 pub fn write_events(run: &Run, out: impl Write) -> io::Result<()> {
     let mut table = EventsTable::new(out, &run.layout)?;
     for event in &run.events {
-        let states: Vec<f64> = event.before.values().chain(event.after.values()).collect();
-        table.row(&event.jump(), &states)?;
+        let states = event.before.values().chain(event.after.values());
+        let values: Vec<f64> = states.chain(event.impulses.iter().copied()).collect();
+        table.row(&event.jump(), &values)?;
     }
     table.finish().map(drop)
 }
@@ -195,6 +196,14 @@ fn event_columns(layout: &Layout) -> Vec<Described> {
             Described::quantity(&Column { name, meaning, ..c })
         }));
     }
+    columns.extend(layout.impulses.iter().map(|impulse| {
+        Described::quantity(&Column {
+            name: impulse.name.clone(),
+            unit: impulse.unit.clone(),
+            meaning: format!("{} at the transition", impulse.meaning),
+            group: ColumnKind::Output,
+        })
+    }));
     for (name, meaning) in [
         (
             "lost",

@@ -45,6 +45,8 @@ pub struct Layout {
     pub discretes: Vec<Quantity>,
     /// The outputs, those of the model first. Empty where they are not recorded.
     pub outputs: Vec<Quantity>,
+    /// The impulses that an impact of contacts may have: `left.normal_impulse`. They are of transitions, not of rows.
+    pub impulses: Vec<Quantity>,
     /// The running ledger, in this order: `energy.stored` (kinetic and potential),
     /// `energy.input_work`, `energy.dissipated`, `energy.lost_at_impacts`. Empty where it is not
     /// recorded.
@@ -92,6 +94,9 @@ impl Layout {
                 .collect(),
             discretes: (model.seen_discretes(variant))
                 .map(|d| Quantity::new(d.name, "1", d.meaning))
+                .collect(),
+            impulses: (variant.impulses.iter())
+                .map(|i| Quantity::new(i.name, i.unit, i.meaning))
                 .collect(),
             modes: ModeNames::of(variant),
             ..Layout::default()

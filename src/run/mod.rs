@@ -22,8 +22,8 @@ pub use progress::{Progress, Silent, Until};
 pub use reached::{Left, LimitState, Reached};
 pub use recorder::Recorder;
 pub use result::{
-    Column, ColumnKind, EnergyJump, ErrorEstimate, Event, HybridState, Jump, Ledger, Snapshot,
-    Solver, Subject, Trajectory,
+    Column, ColumnKind, EnergyJump, ErrorEstimate, Event, HybridState, Jump, Ledger, Sides,
+    Snapshot, Solver, Subject, Trajectory,
 };
 pub use tally::{Counted, Gain, Impacts, Tally};
 pub use uncertain::{Doubt, Question, Uncertain};

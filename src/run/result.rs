@@ -126,6 +126,19 @@ pub struct Event {
     pub after: Snapshot,
     /// Jump of the energy; `None` for a transition that is no impact.
     pub energy: Option<EnergyJump>,
+    /// The impulses of contacts and constraints in it, in the order of [`Layout::impulses`](super::Layout::impulses).
+    pub impulses: Vec<f64>,
+}
+
+/// What is kept of a transition beside its name and time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sides {
+    /// State just before.
+    pub before: Snapshot,
+    /// State just after.
+    pub after: Snapshot,
+    /// The impulses of contacts and constraints between them, in the order of [`Layout::impulses`](super::Layout::impulses).
+    pub impulses: Vec<f64>,
 }
 
 /// The state at an instant.
@@ -204,7 +217,12 @@ pub struct Ledger {
 
 impl Event {
     /// A transition with the states before and after it.
-    pub fn new(jump: &Jump, [before, after]: [Snapshot; 2]) -> Self {
+    pub fn new(jump: &Jump, sides: Sides) -> Self {
+        let Sides {
+            before,
+            after,
+            impulses,
+        } = sides;
         let Jump {
             t,
             j,
@@ -222,6 +240,7 @@ impl Event {
             before,
             after,
             energy,
+            impulses,
         }
     }
 

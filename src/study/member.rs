@@ -11,7 +11,7 @@ use super::procedure::{Along, Failed};
 use super::rows::{Row, Status};
 use crate::hybrid::{Observer, Problem, simulate_member};
 use crate::integrate::{Const, Tolerances};
-use crate::run::{Jump, Snapshot, Until};
+use crate::run::{Jump, Sides, Until};
 use crate::scene::SceneErrors;
 use crate::scene::template::Change;
 
@@ -38,7 +38,7 @@ impl Observer for Deaf {
     fn sees_rows(&self) -> bool {
         false
     }
-    fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
+    fn event(&mut self, _: &Jump, _: Option<&Sides>) {}
 }
 
 /// A run that is to be made.

@@ -6,6 +6,7 @@
 use super::random::Random;
 use super::{dalembert, json};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -166,6 +167,23 @@ fn runs(
     Ok((summary, state))
 }
 
+/// The sum of each impulse over all events of the run in a form.
+fn impulses(folder: &Path, form: &str) -> BTreeMap<String, f64> {
+    let file = folder.join(format!("out_{form}/events.csv"));
+    let mut table = csv::Reader::from_path(file).unwrap();
+    let names = table.headers().unwrap().clone();
+    let own = |(_, name): &(usize, &str)| name.ends_with("impulse");
+    let own: Vec<(usize, &str)> = names.iter().enumerate().filter(own).collect();
+    let mut sums: BTreeMap<_, _> = own.iter().map(|&(_, name)| (name.into(), 0.0)).collect();
+    for row in table.records() {
+        let row = row.unwrap();
+        for &(i, name) in &own {
+            *sums.get_mut(name).unwrap() += row[i].parse::<f64>().unwrap();
+        }
+    }
+    sums
+}
+
 /// Both forms start in the same static equilibrium, or in none.
 fn assert_rests_alike(folder: &Path, force: f64, of: &str) {
     let scene = json!({
@@ -237,6 +255,15 @@ fn random_models_move_alike_in_both_forms() {
             assert!(
                 (a - b).abs() <= 1e-7 * (1.0 + a.abs()),
                 "{a} and {b} in {of}"
+            );
+        }
+        let [a, b] = ["reduced", "multipliers"].map(|form| impulses(folder.path(), form));
+        assert!(a.keys().eq(b.keys()), "{a:?} and {b:?} in {of}");
+        for (name, a) in a {
+            let b = b[&name];
+            assert!(
+                (a - b).abs() <= 1e-7 * (1.0 + a.abs()),
+                "{name}: {a} and {b} in {of}"
             );
         }
         for run in [&one, &other] {

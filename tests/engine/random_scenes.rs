@@ -11,7 +11,7 @@ use dalembert::hybrid::{MadeStep, Method, Observer, Problem, simulate, simulate_
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::model::HeldAt;
 use dalembert::precision::{Ended, other, unsettled};
-use dalembert::record::{Jump, Run, Silent, Snapshot};
+use dalembert::record::{Jump, Run, Sides, Silent};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
@@ -175,7 +175,7 @@ impl Observer for Inside<'_> {
         ControlFlow::Continue(())
     }
 
-    fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
+    fn event(&mut self, _: &Jump, _: Option<&Sides>) {}
 
     fn sees_steps(&self) -> bool {
         true

@@ -6,14 +6,14 @@ use std::path::Path;
 
 use dalembert::hybrid::{Checkpoint, Observer, Problem, Simulator, simulate_from, simulate_with};
 use dalembert::model::models;
-use dalembert::record::{Jump, Run, Silent, Snapshot, Tally};
+use dalembert::record::{Jump, Run, Sides, Silent, Tally};
 use dalembert::scene::Scene;
 
 /// Rows, by their bits, transitions, and the checkpoints that it asks for after so many steps, with what came before each.
 #[derive(Default)]
 struct Told {
     rows: Vec<Vec<u64>>,
-    events: Vec<(Jump, Option<[Snapshot; 2]>)>,
+    events: Vec<(Jump, Option<Sides>)>,
     every: Option<u64>,
     asked: u64,
     checkpoints: Vec<(usize, usize, Checkpoint)>,
@@ -25,7 +25,7 @@ impl Observer for Told {
         self.rows.push(bits.chain([mode as u64]).collect());
         ControlFlow::Continue(())
     }
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
         self.events.push((*jump, sides.cloned()));
     }
     fn keeps_checkpoints(&self) -> bool {

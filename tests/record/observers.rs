@@ -6,7 +6,7 @@ use std::path::Path;
 use dalembert::hybrid::{MadeStep, Observer, Problem, Reason, simulate, simulate_with};
 use dalembert::model::models;
 use dalembert::record::{
-    ColumnKind, Earlier, Jump, OutputFolder, Run, Silent, Sketch, Snapshot, Stream,
+    ColumnKind, Earlier, Jump, OutputFolder, Run, Sides, Silent, Sketch, Stream,
 };
 use dalembert::scene::Scene;
 
@@ -27,7 +27,7 @@ struct Told {
     curve: Vec<(f64, Vec<f64>)>,
     sees_points: bool,
     window: Option<[f64; 2]>,
-    events: Vec<(Jump, Option<[Snapshot; 2]>)>,
+    events: Vec<(Jump, Option<Sides>)>,
     /// Times at which steps begin and end, and the states at these.
     steps: Vec<[At; 2]>,
     sees_steps: bool,
@@ -44,7 +44,7 @@ impl Observer for Told {
             false => ControlFlow::Continue(()),
         }
     }
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
         self.events.push((*jump, sides.cloned()));
     }
     fn sees_points(&self) -> bool {
@@ -80,8 +80,9 @@ fn same(run: &Run, told: &Told) {
     assert_eq!(run.events.len(), told.events.len());
     for (event, (jump, sides)) in run.events.iter().zip(&told.events) {
         assert_eq!(event.jump(), *jump);
-        let [before, after] = sides.as_ref().unwrap();
-        assert_eq!((&event.before, &event.after), (before, after));
+        let sides = sides.as_ref().unwrap();
+        assert_eq!((&event.before, &event.after), (&sides.before, &sides.after));
+        assert_eq!(event.impulses, sides.impulses);
     }
 }
 
@@ -127,7 +128,7 @@ fn steps_are_shown_with_their_dense_output_up_to_their_events() {
         // Before an event the state is that at the end of a step, but for what it takes to the far side.
         let mut seen = 0;
         for (jump, sides) in &told.events {
-            let [before, _] = sides.as_ref().unwrap();
+            let before = &sides.as_ref().unwrap().before;
             let at_its_time = |(t, ..): &&At| (t - jump.t).abs() < 1e-14;
             let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-10);
             let mut ends = told.steps.iter().map(|step| &step[1]).filter(at_its_time);
@@ -210,7 +211,7 @@ fn an_observer_that_sees_no_rows_is_told_of_none() {
         fn sees_rows(&self) -> bool {
             false
         }
-        fn event(&mut self, _: &Jump, _: Option<&[Snapshot; 2]>) {}
+        fn event(&mut self, _: &Jump, _: Option<&Sides>) {}
     }
     let mut blind = Blind(0);
     let run = simulate_with(&scene.problem, &mut blind, &mut Silent).unwrap();
@@ -321,10 +322,11 @@ impl Observer for Files {
         self.1.row(t, values);
         ControlFlow::Continue(())
     }
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
-        let sides = sides.map(|[before, after]| [before, after]);
-        self.0.event(jump, sides);
-        self.1.event(jump, sides);
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
+        let states = sides.map(|sides| [&sides.before, &sides.after]);
+        let impulses = sides.map_or(&[][..], |sides| &sides.impulses);
+        self.0.event(jump, states.map(|states| (states, impulses)));
+        self.1.event(jump, states);
     }
 }
 

@@ -28,6 +28,11 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
         )],
         discretes: vec![Quantity::new("side", "1", "which side of the ball is up")],
         outputs: vec![],
+        impulses: vec![Quantity::new(
+            "ground.normal_impulse",
+            "N s",
+            "impulse of the normal force",
+        )],
         energies: vec![Quantity::new(
             "energy.stored",
             "J",
@@ -64,6 +69,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
                 lost: (speed * speed - after * after) / 2.0,
                 ground_work: 0.0,
             }),
+            impulses: vec![speed + after],
         });
         side = -side;
         flights.push((t, 2.0 * after / G, after));
@@ -85,6 +91,7 @@ pub fn bouncing_ball(height: f64, bounces: u64, samples: usize) -> Run {
             lost: speed * speed / 2.0,
             ground_work: 0.0,
         }),
+        impulses: vec![speed],
     });
     let mut recorder = Recorder::new(&layout, samples);
     for i in 0..samples {
@@ -218,6 +225,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             "pivot: +1 left edge, −1 right edge",
         )],
         outputs: vec![],
+        impulses: vec![],
         energies: [
             ("stored", "kinetic and potential energy"),
             ("input_work", "work of the inputs so far"),
@@ -303,6 +311,7 @@ pub fn tank_like(samples: usize, changes: usize) -> Run {
             before: state(t, mode),
             after: state(t, next),
             energy,
+            impulses: Vec::new(),
         });
         mode = next;
     }

@@ -2,7 +2,7 @@
 
 use super::super::checkpoint::Checkpoint;
 use super::super::problem::Problem;
-use crate::run::{Jump, Layout, Recorder, Snapshot, Trajectory};
+use crate::run::{Jump, Layout, Recorder, Sides, Trajectory};
 use std::ops::ControlFlow;
 
 /// Hears of a run as it goes on: of rows of samples and of transitions, and, if it wants, of every step with its
@@ -17,9 +17,9 @@ pub trait Observer {
         true
     }
 
-    /// A transition, with the states (coordinates, rates, discrete states, reactions) before and after it where
+    /// A transition, with the states (coordinates, rates, discrete states, reactions) before and after it and its impulses where
     /// [`crate::hybrid::Record::event_states`] asks for them.
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>);
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>);
 
     /// Whether [`Observer::point`] is to be called; asked once, before the run.
     fn sees_points(&self) -> bool {
@@ -85,7 +85,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     fn sees_rows(&self) -> bool {
         (**self).sees_rows()
     }
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
         (**self).event(jump, sides);
     }
     fn sees_points(&self) -> bool {
@@ -120,7 +120,7 @@ pub struct Collected {
     recorder: Recorder,
     jumps: Vec<Jump>,
     /// States before and after each of them, where they are kept.
-    sides: Vec<[Snapshot; 2]>,
+    sides: Vec<Sides>,
 }
 
 impl Collected {
@@ -153,7 +153,7 @@ impl Collected {
     }
 
     /// Trajectory, transitions, and their states.
-    pub(super) fn into_parts(self) -> (Trajectory, Vec<Jump>, Vec<[Snapshot; 2]>) {
+    pub(super) fn into_parts(self) -> (Trajectory, Vec<Jump>, Vec<Sides>) {
         (self.recorder.finish(), self.jumps, self.sides)
     }
 }
@@ -165,7 +165,7 @@ impl Observer for Collected {
         ControlFlow::Continue(())
     }
 
-    fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+    fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
         self.jumps.push(*jump);
         self.sides.extend(sides.cloned());
     }

@@ -6,7 +6,7 @@ use super::super::problem::Problem;
 use super::observer::{Collected, MadeStep, Observer};
 use crate::model::name::intern;
 use crate::numerics::{Memory, Persist};
-use crate::run::{Event, Jump, Layout, Snapshot, Tally, Trajectory};
+use crate::run::{Event, Jump, Layout, Sides, Tally, Trajectory};
 use std::ops::ControlFlow;
 
 /// What rows and transitions are told to, one of them.
@@ -154,7 +154,7 @@ impl<'o> Recording<'o> {
     }
 
     /// A transition.
-    pub fn event(&mut self, jump: &Jump, sides: Option<&[Snapshot; 2]>) {
+    pub fn event(&mut self, jump: &Jump, sides: Option<&Sides>) {
         match &mut self.to {
             To::Collected(collected) => collected.event(jump, sides),
             To::Observer(observer) => {

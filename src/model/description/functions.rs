@@ -85,7 +85,7 @@ impl Reader<'_> {
     }
 
     /// A function that says how many results it has.
-    fn counted(&self, at: &At) -> Read<(Raw, usize)> {
+    pub(super) fn counted(&self, at: &At) -> Read<(Raw, usize)> {
         let function = at.get("function", |at| self.value(at))?;
         Ok((function, at.get("count", count)?))
     }

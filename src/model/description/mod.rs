@@ -11,9 +11,9 @@ use functions::Counts;
 use super::name::intern;
 use super::reader::{At, count, number, text, truth};
 use super::{
-    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Input, InputKind, Limit, Mode, Model,
-    Motion, Output, Parameter, ParameterSet, ParametricBound, Requirement, Rest, Transition,
-    Validity, Variant,
+    Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Impulse, Input, InputKind, Limit,
+    Mode, Model, Motion, Output, Parameter, ParameterSet, ParametricBound, Requirement, Rest,
+    Transition, Validity, Variant,
 };
 use crate::kernel::{
     ContractError, Dimensions, Functions, GuardKernel, Library, Parts, TransitionKernel,
@@ -86,6 +86,7 @@ struct Modes<'f> {
     /// Limits, and conditions on the motion under which the model is meant.
     margins: usize,
     outputs: usize,
+    impulses: usize,
 }
 
 impl Reader<'_> {
@@ -148,6 +149,7 @@ impl Reader<'_> {
         let index = |at: &At| at.index(free.len());
         let limits = at.get("limits", |at| at.list(limit))?;
         let outputs = at.get("outputs", |at| at.list(output))?;
+        let impulses = at.get("impulses", |at| at.list(|at| self.impulse(at)))?;
         let valid_motion = at.get("valid_motion", |at| at.list(validity))?;
         let valid_parameters = at.get("valid_parameters", |at| at.list(validity))?;
         let bounds = at.get("bounds", |at| at.list(|at| self.bound(at)))?;
@@ -155,6 +157,7 @@ impl Reader<'_> {
             free: &free,
             margins: limits.len() + valid_motion.len(),
             outputs: outputs.len(),
+            impulses: impulses.len(),
         };
         Ok(Variant {
             options: at.get("options", |at| at.list_of(choices, text))?,
@@ -176,6 +179,7 @@ impl Reader<'_> {
             contacts: at.get("contacts", |at| at.list(contacts::declared))?,
             limits,
             outputs,
+            impulses,
             valid_motion,
             declared: at.get("declared", |at| {
                 self.of_parameters(at, valid_parameters.len() + bounds.len())
@@ -190,6 +194,16 @@ impl Reader<'_> {
                     ))
                 })
             })?,
+        })
+    }
+
+    fn impulse(&self, at: &At) -> Read<Impulse> {
+        let coordinates = self.dimensions.coordinates;
+        Ok(Impulse {
+            name: at.get("name", text)?,
+            unit: at.get("unit", text)?,
+            meaning: at.get("meaning", text)?,
+            multiplier: at.get("multiplier", |at| at.option(|at| at.index(coordinates)))?,
         })
     }
 
@@ -287,6 +301,12 @@ impl Reader<'_> {
             })
         })?;
         let count = condition.map_or(0, |(_, _, count)| count);
+        let impulses = at.get("impulses", |at| {
+            at.option(|at| match self.counted(at)? {
+                found if found.1 == modes.impulses => Ok(found),
+                _ => Err(at.wrong(format!("{} impulses", modes.impulses))),
+            })
+        })?;
         let stays = at.get("stays", truth)?;
         let in_lanes = match stays {
             true => at.get("reset", |at| self.in_lanes(at))?,
@@ -305,6 +325,7 @@ impl Reader<'_> {
                 source_free,
                 reset: at.get("reset", |at| self.value(at))?,
                 condition,
+                impulses,
                 in_lanes,
             },
         })
