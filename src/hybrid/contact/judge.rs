@@ -69,12 +69,12 @@ impl Decision {
 
 impl<'p> Simulation<'p> {
     /// The set that follows where the contacts that are given touch without a rate, with what their tangents do; all others are
-    /// open. The state is that of `next`.
+    /// open. The state is that of `next`, whose rates are those before unless it `jumps`.
     pub(super) fn decide(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &ContactValues,
-        touching: &[Option<Tangent>],
+        (touching, jumps): (&[Option<Tangent>], bool),
     ) -> Result<Decision, Reason> {
         self.expand_signals();
         let choices = choices(contacts, touching);
@@ -145,6 +145,9 @@ impl<'p> Simulation<'p> {
             .collect();
         let mut stays = stays.into_iter();
         admitted.retain(|_| stays.next() == Some(true));
+        if admitted.len() > 1 && !jumps {
+            self.keep_what_holds(contacts, &mut admitted);
+        }
         // Of equal motions that which holds the most, and of these that whose contacts are the farthest apart: of feet on a line the
         // outer two, whatever their order.
         let spans = |a: &Admitted| {
@@ -189,6 +192,33 @@ impl<'p> Simulation<'p> {
             discrete: candidate.discrete,
             orders,
         })
+    }
+
+    /// Leaves out sets in which something slips that sticks and holds as the forces are, where others may go on: static friction ends
+    /// at its limit. That the slip of something else might end there in its place is no motion of its own.
+    fn keep_what_holds(&mut self, contacts: &'p Contacts, admitted: &mut Vec<Admitted>) {
+        let present = self.context.discrete();
+        let states = ContactState::all(contacts, present);
+        let at = point(&self.next, self.here.q.len(), present);
+        let (mode, tape) = (self.mode(), &contacts.decisions);
+        let expansion = &mut self.expansion;
+        expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
+        expansion.expand(mode, tape, 0);
+        let holds = |k: usize| {
+            let is_positive = |what: usize| {
+                let value = expansion.result(tape, k * Contacts::DECISIONS + what)[0];
+                value.error.is_finite() && value.sign() == Some(true)
+            };
+            states[k] == ContactState::Sticks && is_positive(FORWARDS) && is_positive(BACKWARDS)
+        };
+        let holding: Vec<usize> = (0..states.len()).filter(|&k| holds(k)).collect();
+        let slips = |a: &Admitted| {
+            let slides = |k: &usize| matches!(a.candidate.states[*k], ContactState::Slides(_));
+            holding.iter().any(slides)
+        };
+        if !admitted.iter().all(slips) {
+            admitted.retain(|a| !slips(a));
+        }
     }
 
     /// A set, if it may go on: with some share of the forces that are not determined.

@@ -19,6 +19,8 @@ pub(super) struct Standing {
     pub leaves: Vec<bool>,
     /// Lines that vanish, and with them their rates: nothing brings these to zero.
     pub vanishing: Vec<Line>,
+    /// Whether rates have just jumped, or are those of a start: then forces just before say nothing.
+    pub jumps: bool,
 }
 
 impl Standing {
@@ -67,6 +69,7 @@ impl Standing {
             .map(|((touches, after), of)| *touches && after.is_none() && !of.is_ratchet)
             .collect();
         self.touching = impact.touching;
+        self.jumps = true;
     }
 }
 
@@ -112,6 +115,7 @@ impl Simulation<'_> {
             touching,
             leaves: vec![false; before.len()],
             vanishing: vanishing.into_iter().collect(),
+            jumps: false,
         }
     }
 
@@ -189,6 +193,7 @@ impl Simulation<'_> {
             touching,
             leaves: vec![false; before.len()],
             vanishing: Vec::new(),
+            jumps: true,
         }
     }
 }

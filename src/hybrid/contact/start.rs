@@ -159,6 +159,7 @@ impl<'p> Simulation<'p> {
             touching,
             leaves,
             vanishing,
+            jumps: true,
         })
     }
 
