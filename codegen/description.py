@@ -188,6 +188,7 @@ def _mode(variant, i, equations, tables):
         "drifts": [c.name in mode.drift for c in model.coordinates],
         "depends": [any(line.name == c.name for line in mode.lines) for c in model.coordinates],
         "guards": [_guard(variant, i, g, derived, tables) for g in range(len(equations.guards))],
+        "frictions": _frictions(variant, i),
         "requirements": [
             {"text": units.short(r.expression, 200), "failure": r.failure, "unit": _unit(model, r.expression),
              "may_vanish": r.may_vanish} for r in mode.requirements],
@@ -200,6 +201,21 @@ def _mode(variant, i, equations, tables):
         "operations": [[what[0] if len(what) == 1 else " ".join(map(str, what)), f.operations]
                        for what, f in derived.items()],
     }
+
+
+def _frictions(variant, i):
+    """What the frictions that may change at one instant do next in a mode, each by two transitions: where it sticks it slips forwards or
+    backwards, where it slides it sticks or reverses. A transition is the places of its guard and of itself in this; None where it is not."""
+    found = {}
+    for g, (_, transitions) in enumerate(variant.modes[i].guards):
+        for t, transition in enumerate(transitions):
+            found.setdefault(transition.name, []).append([g, t])
+    frictions = []
+    for name in variant.model.tied:
+        slips, stops = found.get(f"{name} slips"), [found.get(f"{name} {verb}", [None])[0] for verb in ("sticks", "reverses")]
+        if slips or any(stops):
+            frictions.append({"name": name, "sticks": bool(slips), "changes": slips or stops})
+    return frictions if len(frictions) > 1 else []
 
 
 def _guard(variant, i, g, derived, tables):

@@ -285,7 +285,7 @@ def _variant(model, absent, kind=""):
                     _check_smooth(condition, f"condition of `{transition.name}`", transition.location, parameters)
                 of = functions.OfTransition(mode, _reset(model, equations, target, transition), condition, _impulses(model, equations, transition))
                 _add(variant, prefix, functions.TRANSITION, of, equations, (i,), g, t)
-                variant.functions[i, "reset", g, t].stays = target is equations and _stays(model, equations, of.reset)
+                variant.functions[i, "reset", g, t].stays = target is equations and not _is_tied(model, transition) and _stays(model, equations, of.reset)
                 if condition is not None:
                     variant.functions[i, "condition", g, t].equations = target
         _tapes(variant, i, index)
@@ -399,6 +399,11 @@ def _with_dependent(model, target, after, depending):
     for k, value in zip(chosen, ca.vertsplit(followed)):
         result[k] = value
     return result
+
+
+def _is_tied(model, transition):
+    """Whether it is that of a friction which others may decide, too: it is taken outside of lanes."""
+    return any(transition.name == f"{name} reverses" for name in model.tied)
 
 
 def _stays(model, equations, reset):

@@ -100,7 +100,7 @@ class Model:
         self.locations = {}
         self.modes, self.transitions, self.rests = [], [], []
         self.contacts, self.constraints, self.switched_off, self.by_multipliers = [], [], [], False
-        self.charts, self.requirements, self.lines, self.impulses = [], [], [], []
+        self.charts, self.requirements, self.lines, self.impulses, self.tied = [], [], [], [], []
         self.limits, self.validity, self.outputs = [], [], []
         self.placeholders = {}
         self.gravity_constant = ca.SX(0)

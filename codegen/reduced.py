@@ -113,6 +113,7 @@ class Expansion:
         sets = [states for states in itertools.product(*[c.states() for c in self.contacts]) if self._can_be(states)]
         if len(sets) > MOST_MODES:
             raise NotReducible(f"{len(sets)} sets of contact states")
+        self.model.tied = self._tied()
         for states in sets:
             self.modes[states] = self._mode(states)
         for states in sets:
@@ -140,6 +141,14 @@ class Expansion:
         for contact in self.contacts:
             if contact.gap is None and slips.count(contact.slip.name) > 1:
                 raise NotReducible(f"friction of `{contact.name}` and of another acts along one coordinate")
+
+    def _tied(self):
+        """Names of the contacts whose slips inertia couples with that of another, where one of them sticks with more than it slides with:
+        which of several that reach their limits at one instant slip, no one of them decides alone."""
+        slipping = [contact for contact in self.contacts if contact.slip is not None and not contact.permanent]
+        drops = lambda contact: not Exact().is_zero(ca.SX(contact.static) - contact.kinetic)
+        coupled = lambda one, other: one is not other and one.slip.name in self._moved(other.slip.name)
+        return [one.name for one in slipping if any(coupled(one, other) and (drops(one) or drops(other)) for other in slipping)]
 
     def _can_be(self, states):
         """A coordinate is where one gap is zero, not two; friction along it holds nothing there."""

@@ -70,6 +70,10 @@ fn taken<F: Size>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<&'stati
             "reset",
             refuses(|| kernel.reset(&x, transition, at, &mut out)),
         );
+        expect_refusal(
+            "impulses",
+            refuses(|| drop(kernel.impulses(&x, transition, at))),
+        );
         if transition.conditions() > 0 {
             let (mut x, after) = (context(own.0), room(own.0));
             let after = (&*after, &*own.1.free);
@@ -133,6 +137,7 @@ fn a_kernel_takes_what_is_of_its_own_model() {
                 let _ = k.guard_magnitude(&x, &guard.kernel, at);
                 for transition in &guard.transitions {
                     k.reset(&x, &transition.kernel, at, &mut room(own.0));
+                    let _ = k.impulses(&x, &transition.kernel, at);
                 }
             }
         });
@@ -222,6 +227,7 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
             let mut out = unwritten(room(model).len());
             kernel.reset(&x, &transition.kernel, at, &mut out);
             expect(transition.name, is_written(&out));
+            let _ = kernel.impulses(&x, &transition.kernel, at);
             let target = &variant.modes[transition.target];
             let free = &target.free;
             with_kernel!(&target.kernels, target => {

@@ -14,6 +14,10 @@ use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{Mode, Transition};
 use crate::numerics::Size;
 
+/// Roundings that a number has collected, as a part of what it changes by at its present rate since the start: those of a thousand steps
+/// add up as the square root of their number.
+const COLLECTED: f64 = 32.0 * f64::EPSILON;
+
 /// How a number goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Departure {
@@ -112,10 +116,44 @@ impl<'p> Simulation<'p> {
     #[cold]
     pub fn departure(&mut self, guard: usize, vanishing: usize, shown: usize) -> Departure {
         self.expand_signals();
-        let mode = self.mode();
         let now = self.here.now.seconds();
         // The series of an input ends at its next knot, also where it goes on smoothly.
         let knot = self.signals.next_knot(now);
+        let within = knot.min(self.problem.end.time) - now;
+        self.ask(guard, |question, expansion| {
+            let question = Question {
+                within,
+                vanishing,
+                shown,
+                ..question
+            };
+            question.answer(expansion)
+        })
+    }
+
+    /// Whether a guard of the present mode is at zero or below, as far as roundings tell: its own, and those that it has collected on its
+    /// way there.
+    #[cold]
+    pub fn is_reached(&mut self, guard: usize) -> bool {
+        self.expand_signals();
+        let now = self.here.now.seconds();
+        let [value, rate] = self.ask(guard, |question, expansion| {
+            let Question { mode, tape, .. } = question;
+            expansion.begin(mode, question.at, Some(question.sizes));
+            (0..2).for_each(|order| expansion.expand(mode, tape, order));
+            [0, 1].map(|order| expansion.result(tape, guard)[order])
+        });
+        let error = if value.error.is_finite() {
+            value.error
+        } else {
+            0.0
+        };
+        value.value <= error + COLLECTED * (rate.value * now).abs()
+    }
+
+    /// Asks something of a guard of the present mode from here: a question about its sign, to be completed.
+    fn ask<T>(&mut self, guard: usize, ask: impl FnOnce(Question, &mut Expansion) -> T) -> T {
+        let mode = self.mode();
         let question = Question {
             mode,
             tape: &mode.guard_values,
@@ -131,11 +169,11 @@ impl<'p> Simulation<'p> {
                 discrete: self.context.discrete(),
             },
             sizes: [&self.sizes, &self.rate_sizes],
-            within: knot.min(self.problem.end.time) - now,
-            vanishing,
-            shown,
+            within: 0.0,
+            vanishing: 0,
+            shown: 0,
         };
-        question.answer(&mut self.expansion)
+        ask(question, &mut self.expansion)
     }
 
     /// The least condition of a transition of a guard. Overwrites `next`.

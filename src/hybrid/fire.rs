@@ -23,7 +23,28 @@ impl<'p> Simulation<'p> {
     }
 
     fn fire_by<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<()> {
-        let t = self.chosen(kernel, guard)?;
+        let changes = self.changes_of_frictions(guard)?;
+        if changes.is_empty() {
+            return self.take(kernel, (guard, None));
+        }
+        for change in changes {
+            let (guard, transition) = self.transition_of(change);
+            let mode = self.mode();
+            with_kernel!(&mode.kernels, k => self.take(k, (guard, Some(transition))))?;
+            if self.is_over() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a transition of a guard: the one that is decided, or the first whose condition holds.
+    fn take<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        (guard, decided): (usize, Option<usize>),
+    ) -> Stoppable<()> {
+        let t = self.chosen(kernel, (guard, decided))?;
         let transition = &self.mode().guards[guard].transitions[t];
         let said = (self.problem.record.event_states)
             .then(|| self.impulses(kernel, transition))
@@ -48,9 +69,14 @@ impl<'p> Simulation<'p> {
         kernel.impulses(&self.context, &transition.kernel, at)
     }
 
-    /// Index of the transition of a guard that happens, and is noted; makes `next` the state after its reset.
+    /// Index of the transition of a guard that happens, the one that is decided already if one is, and is noted; makes `next` the
+    /// state after its reset.
     #[inline(always)]
-    pub fn chosen<F: Size>(&mut self, kernel: &'p ModeKernel<F>, guard: usize) -> Stoppable<usize> {
+    pub fn chosen<F: Size>(
+        &mut self,
+        kernel: &'p ModeKernel<F>,
+        (guard, decided): (usize, Option<usize>),
+    ) -> Stoppable<usize> {
         self.set_context();
         let [q, v, a] = self.here.free(kernel.size(), &self.mode().free);
         let at = Free {
@@ -58,7 +84,7 @@ impl<'p> Simulation<'p> {
             v: &v,
             a: &a,
         };
-        let chosen = self.choose(kernel, guard, at);
+        let chosen = decided.or_else(|| self.choose(kernel, guard, at));
         let fired = &self.mode().guards[guard];
         let Some(t) = chosen else {
             // Every condition fails at the very state where the guard is crossed.

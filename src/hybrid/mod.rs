@@ -20,6 +20,7 @@ mod equilibrium;
 mod failure;
 mod fire;
 mod follow;
+mod frictions;
 mod guards;
 mod inertia;
 mod instant;

@@ -312,6 +312,9 @@ pub struct Mode {
     pub held_at: Box<[Option<HeldAt>]>,
     /// Guards of this mode, in the order of the guards function.
     pub guards: Box<[Guard]>,
+    /// The frictions of which several may change at one instant, where which do is decided for all of them; empty where each decides
+    /// alone.
+    pub frictions: Box<[TiedFriction]>,
     /// What must stay positive in this mode: the first values of the requirements function.
     pub requirements: Box<[Requirement]>,
     /// Shapes of its other values: margins of the variant's limits, then of its validity in motion. A limit is reached,
@@ -333,6 +336,18 @@ pub struct Mode {
     pub kernels: ModeKernels,
     /// Operation counts of the generated functions, by name.
     pub operations: Box<[(&'static str, usize)]>,
+}
+
+/// A friction whose slip inertia couples with that of another.
+#[derive(Debug)]
+pub struct TiedFriction {
+    /// Name of its contact.
+    pub name: &'static str,
+    /// Whether it sticks in this mode.
+    pub sticks: bool,
+    /// What it does next: where it sticks it slips forwards or backwards, where it slides it sticks or reverses. Each is a transition of
+    /// the mode, by the index of its guard and its own in that.
+    pub changes: [Option<(usize, usize)>; 2],
 }
 
 /// A continuous scalar whose fall through zero makes the mode inadmissible.

@@ -59,6 +59,7 @@ mod sin_cos;
 mod sizes;
 mod stacks;
 mod stiff;
+mod ties;
 mod tolerances;
 mod torture;
 mod torture_tolerances;

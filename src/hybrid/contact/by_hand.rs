@@ -22,7 +22,7 @@ impl<'p> Simulation<'p> {
         if self.mode().guards[guard].is_chart() {
             return self.take_chart_by(contacts, guard);
         }
-        let t = self.chosen(&contacts.kernel, guard)?;
+        let t = self.chosen(&contacts.kernel, (guard, None))?;
         let transition = &self.mode().guards[guard].transitions[t];
         self.settle_after_reset(transition)?;
         self.commit(transition.name, transition.impact, transition.target)?;

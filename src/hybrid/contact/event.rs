@@ -333,7 +333,6 @@ impl<'p> Simulation<'p> {
             geometry,
             touching,
             leaves,
-            jumps,
             ..
         } = standing;
         hold_lines(&self.context, contacts, [&places, &rates], [q, v]);
@@ -342,7 +341,7 @@ impl<'p> Simulation<'p> {
         self.next[n..2 * n].copy_from_slice(v.as_slice());
         let places = ContactValues::new(&self.context, contacts, [q, v]);
         let decision = self
-            .decide((contacts, geometry), &places, (touching, *jumps))
+            .decide((contacts, geometry), &places, touching)
             .map_err(Box::new)?;
         self.next[2 * n..].copy_from_slice(&decision.discrete);
         self.at_zero = (touching.iter().zip(&decision.states).enumerate())

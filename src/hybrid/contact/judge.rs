@@ -28,19 +28,19 @@ const FEW_SETS: usize = 4;
 
 /// A set of contact states that may follow.
 #[derive(Debug)]
-struct Candidate {
-    states: Vec<ContactState>,
-    discrete: Vec<f64>,
+pub(super) struct Candidate {
+    pub states: Vec<ContactState>,
+    pub discrete: Vec<f64>,
 }
 
 /// A candidate that may go on.
-struct Admitted {
-    candidate: Candidate,
+pub(super) struct Admitted {
+    pub candidate: Candidate,
     orders: Orders,
 }
 
 /// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
-type Orders = Vec<(usize, usize)>;
+pub(super) type Orders = Vec<(usize, usize)>;
 
 /// What was found.
 pub(super) struct Decision {
@@ -69,12 +69,12 @@ impl Decision {
 
 impl<'p> Simulation<'p> {
     /// The set that follows where the contacts that are given touch without a rate, with what their tangents do; all others are
-    /// open. The state is that of `next`, whose rates are those before unless it `jumps`.
+    /// open. The state is that of `next`.
     pub(super) fn decide(
         &mut self,
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &ContactValues,
-        (touching, jumps): (&[Option<Tangent>], bool),
+        touching: &[Option<Tangent>],
     ) -> Result<Decision, Reason> {
         self.expand_signals();
         let choices = choices(contacts, touching);
@@ -132,12 +132,14 @@ impl<'p> Simulation<'p> {
         // Between kinetic and static friction both are admissible: what sticks goes on sticking, and what it held stays closed.
         let yields = |a: &Admitted, b: &Admitted| {
             let pairs = || (a.candidate.states.iter().zip(&b.candidate.states)).enumerate();
+            let sticks = |a: &ContactState, b: &ContactState| {
+                matches!((a, b), (ContactState::Slides(_), ContactState::Sticks))
+            };
             let could = |(k, (a, b)): (usize, (&ContactState, &ContactState))| {
-                let sticks = matches!((a, b), (ContactState::Slides(_), ContactState::Sticks));
-                sticks && places.static_friction(k) > places.kinetic(k)
+                sticks(a, b) && places.static_friction(k) > places.kinetic(k)
             };
             let opens = |a: &ContactState, b: &ContactState| a.is_closed() != b.is_closed();
-            let differ = |(k, (a, b))| a == b || opens(a, b) || could((k, (a, b)));
+            let differ = |(_, (a, b))| a == b || opens(a, b) || sticks(a, b);
             pairs().any(could) && pairs().all(differ)
         };
         let stays: Vec<bool> = (admitted.iter())
@@ -145,8 +147,9 @@ impl<'p> Simulation<'p> {
             .collect();
         let mut stays = stays.into_iter();
         admitted.retain(|_| stays.next() == Some(true));
-        if admitted.len() > 1 && !jumps {
-            self.keep_what_holds(contacts, &mut admitted);
+        if admitted.len() > 1 {
+            let of = (contacts, geometry);
+            self.keep_what_is_forced(of, places, touching, &mut admitted);
         }
         // Of equal motions that which holds the most, and of these that whose contacts are the farthest apart: of feet on a line the
         // outer two, whatever their order.
@@ -192,33 +195,6 @@ impl<'p> Simulation<'p> {
             discrete: candidate.discrete,
             orders,
         })
-    }
-
-    /// Leaves out sets in which something slips that sticks and holds as the forces are, where others may go on: static friction ends
-    /// at its limit. That the slip of something else might end there in its place is no motion of its own.
-    fn keep_what_holds(&mut self, contacts: &'p Contacts, admitted: &mut Vec<Admitted>) {
-        let present = self.context.discrete();
-        let states = ContactState::all(contacts, present);
-        let at = point(&self.next, self.here.q.len(), present);
-        let (mode, tape) = (self.mode(), &contacts.decisions);
-        let expansion = &mut self.expansion;
-        expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
-        expansion.expand(mode, tape, 0);
-        let holds = |k: usize| {
-            let is_positive = |what: usize| {
-                let value = expansion.result(tape, k * Contacts::DECISIONS + what)[0];
-                value.error.is_finite() && value.sign() == Some(true)
-            };
-            states[k] == ContactState::Sticks && is_positive(FORWARDS) && is_positive(BACKWARDS)
-        };
-        let holding: Vec<usize> = (0..states.len()).filter(|&k| holds(k)).collect();
-        let slips = |a: &Admitted| {
-            let slides = |k: &usize| matches!(a.candidate.states[*k], ContactState::Slides(_));
-            holding.iter().any(slides)
-        };
-        if !admitted.iter().all(slips) {
-            admitted.retain(|a| !slips(a));
-        }
     }
 
     /// A set, if it may go on: with some share of the forces that are not determined.
@@ -303,8 +279,21 @@ impl<'p> Simulation<'p> {
         candidate: &Candidate,
         touching: &[Option<Tangent>],
     ) -> Option<Orders> {
-        let mode: &Mode = self.mode();
         let asked = asked(contacts, candidate, touching);
+        let orders = self.stay_positive(contacts, candidate, asked)?;
+        self.keeps_dropped(contacts, candidate, touching)
+            .then_some(orders)
+    }
+
+    /// Which derivatives decided that results of the tape of decisions, each with its sign, are positive in a candidate or become so
+    /// at once, if they do.
+    pub(super) fn stay_positive(
+        &mut self,
+        contacts: &'p Contacts,
+        candidate: &Candidate,
+        asked: Vec<(usize, f64)>,
+    ) -> Option<Orders> {
+        let mode: &Mode = self.mode();
         let at = point(&self.next, self.here.q.len(), &candidate.discrete);
         let tape = &contacts.decisions;
         let expansion = &mut self.expansion;
@@ -349,8 +338,7 @@ impl<'p> Simulation<'p> {
                 return None;
             }
         }
-        self.keeps_dropped(contacts, candidate, touching)
-            .then_some(orders)
+        Some(orders)
     }
 
     /// Whether the slips that others are to hold do stay zero. Where lines depend on each other at this position alone, as a mechanism

@@ -121,7 +121,6 @@ impl<'p> Simulation<'p> {
             touching,
             leaves: vec![false; before.len()],
             vanishing: Vec::new(),
-            jumps: true,
         };
         let now = std::mem::replace(&mut self.here.now, limit.at);
         let after = self.settle_contacts(contacts, &mut standing)?;

@@ -8,6 +8,7 @@
 //! - `hold`: positions and rates brought back to where they are held, to rounding.
 //! - `singular`: how well the forces are determined that hold them.
 //! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
+//! - `forced`: of these, those in which nothing slips that would hold.
 //! - `unforced`: what contacts would do without forces, and which sets that rules out before they are judged.
 //! - `share`: how those that stick share forces that are not determined.
 //! - `many`: which of them are tried where these are too many; `pivoting`: what the accelerations say of that.
@@ -22,6 +23,7 @@
 mod by_hand;
 mod equilibrium;
 mod event;
+mod forced;
 mod geometry;
 mod guarded;
 mod hold;

@@ -1,5 +1,6 @@
 //! The contacts as they stand at an instant: what touches, and what of it has no rate.
 
+use super::event::GUARDS;
 use super::geometry::{DEPENDENT, Geometry, Line, multiplier};
 use super::hold::{ContactValues, held_lines, held_with, hold_lines, is_at_zero};
 use super::impact::Impacted;
@@ -19,8 +20,6 @@ pub(super) struct Standing {
     pub leaves: Vec<bool>,
     /// Lines that vanish, and with them their rates: nothing brings these to zero.
     pub vanishing: Vec<Line>,
-    /// Whether rates have just jumped, or are those of a start: then forces just before say nothing.
-    pub jumps: bool,
 }
 
 impl Standing {
@@ -69,7 +68,6 @@ impl Standing {
             .map(|((touches, after), of)| *touches && after.is_none() && !of.is_ratchet)
             .collect();
         self.touching = impact.touching;
-        self.jumps = true;
     }
 }
 
@@ -81,18 +79,23 @@ impl Simulation<'_> {
         contacts: &Contacts,
         (stops, before): (Option<Line>, &[ContactState]),
     ) -> Standing {
+        let mut stops: Vec<Line> = stops.into_iter().collect();
+        if let [Line::Tangent(k)] = *stops {
+            stops.extend(self.stop_with(k, before));
+        }
         let [mut q, mut v, _] = self.here.free(contacts.kernel.size(), &self.mode().free);
         let [places, mut still] = held_lines(contacts, before);
         let context = &self.context;
         let at = ContactValues::new(context, contacts, [&q, &v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
-        let vanishing = stops.filter(|&line| self.vanishes(line, (&geometry, &at, &v)));
-        still.extend(stops.filter(|_| vanishing.is_none()));
+        let (vanishing, others) = (stops.iter().copied())
+            .partition::<Vec<_>, _>(|&line| self.vanishes(line, (&geometry, &at, &v)));
+        still.extend(others);
         hold_lines(context, contacts, [&places, &still], [&mut q, &mut v]);
         let geometry = Geometry::new(context, contacts, [&q, &v]);
         let at = ContactValues::new(context, contacts, [&q, &v]);
         let stops = |line: Line| {
-            stops == Some(line) || self.is_still_with(&still, line, (&geometry, &at, &v))
+            stops.contains(&line) || self.is_still_with(&still, line, (&geometry, &at, &v))
         };
         // Feet beside those on which a body stands touch too: one of them may carry what comes next.
         let beside = held_with(contacts, before, &at, || &geometry);
@@ -114,9 +117,16 @@ impl Simulation<'_> {
             geometry,
             touching,
             leaves: vec![false; before.len()],
-            vanishing: vanishing.into_iter().collect(),
-            jumps: false,
+            vanishing,
         }
+    }
+
+    /// The slips of other contacts that stop at the instant in which that of one does.
+    fn stop_with(&mut self, k: usize, before: &[ContactState]) -> Vec<Line> {
+        let others = (0..before.len()).filter(|&j| j != k);
+        let slides = others.filter(|&j| matches!(before[j], ContactState::Slides(_)));
+        let stops = |&j: &usize| self.is_reached(GUARDS * j + 1);
+        slides.filter(stops).map(Line::Tangent).collect()
     }
 
     /// Whether the rate of a line has come to zero since the line itself vanishes there, as the slip of a crank does at its dead
@@ -193,7 +203,6 @@ impl Simulation<'_> {
             touching,
             leaves: vec![false; before.len()],
             vanishing: Vec::new(),
-            jumps: true,
         }
     }
 }

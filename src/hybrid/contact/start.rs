@@ -159,7 +159,6 @@ impl<'p> Simulation<'p> {
             touching,
             leaves,
             vanishing,
-            jumps: true,
         })
     }
 

@@ -13,7 +13,7 @@ use super::reader::{At, count, number, text, truth};
 use super::{
     Choice, Coordinate, Discrete, Guard, GuardShape, HeldAt, Impulse, Input, InputKind, Limit,
     Mode, Model, Motion, Output, Parameter, ParameterSet, ParametricBound, Requirement, Rest,
-    Transition, Validity, Variant,
+    TiedFriction, Transition, Validity, Variant,
 };
 use crate::kernel::{
     ContractError, Dimensions, Functions, GuardKernel, Library, Parts, TransitionKernel,
@@ -259,6 +259,7 @@ impl Reader<'_> {
             })?,
             guard_values: at.get("guard_values", |at| self.tape(at, guards.len()))?,
             kernels: at.get("kernel", |at| self.kernels(at, free.len(), &guards, counts))?,
+            frictions: at.get("frictions", |at| at.list(|at| friction(at, &guards)))?,
             operations: at.get("operations", |at| {
                 at.list(|at| Ok((at.entry(0, 2, text)?, at.entry(1, 2, count)?)))
             })?,
@@ -349,6 +350,20 @@ impl Reader<'_> {
             _ => Err(at.wrong("`linear` or `general`")),
         })
     }
+}
+
+fn friction(at: &At, guards: &[Guard]) -> Read<TiedFriction> {
+    let change = |at: &At| {
+        let guard = at.entry(0, 2, |at| at.index(guards.len()))?;
+        let transitions = guards[guard].transitions.len();
+        Ok((guard, at.entry(1, 2, |at| at.index(transitions))?))
+    };
+    let changes = at.get("changes", |at| at.list_of(2, |at| at.option(change)))?;
+    Ok(TiedFriction {
+        name: at.get("name", text)?,
+        sticks: at.get("sticks", truth)?,
+        changes: [changes[0], changes[1]],
+    })
 }
 
 fn coordinate(at: &At) -> Read<Coordinate> {
