@@ -70,10 +70,12 @@ fn taken<F: Size>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<&'stati
             "reset",
             refuses(|| kernel.reset(&x, transition, at, &mut out)),
         );
-        expect_refusal(
-            "impulses",
-            refuses(|| drop(kernel.impulses(&x, transition, at))),
-        );
+        if transition.says_impulses() {
+            expect_refusal(
+                "impulses",
+                refuses(|| drop(kernel.impulses(&x, transition, at))),
+            );
+        }
         if transition.conditions() > 0 {
             let (mut x, after) = (context(own.0), room(own.0));
             let after = (&*after, &*own.1.free);

@@ -34,8 +34,12 @@ class Functions(ScratchTest):
         guard = mode["guards"][-1]
         for row in functions.GUARD:
             self.assertIsNotNone(guard[row.name], row.name)
+        # Impacts of the reduced form alone say their impulses.
+        struck = self.described(HEAD + 'model.point_mass(m, position=(x, 0 * x))\nmodel.contact("floor", gap=x)\n')
+        strikes = struck["variants"][0]["modes"][0]["guards"][0]
         for row in functions.TRANSITION:
-            self.assertIsNotNone(guard["transitions"][0][row.name], row.name)
+            of = strikes if row.name == "impulses" else guard
+            self.assertIsNotNone(of["transitions"][0][row.name], row.name)
 
 
 if __name__ == "__main__":

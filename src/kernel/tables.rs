@@ -259,6 +259,11 @@ impl TransitionKernel {
         self.in_lanes.iter().any(Option::is_some)
     }
 
+    /// Whether it says its impulses.
+    pub fn says_impulses(&self) -> bool {
+        self.impulses.is_some()
+    }
+
     /// Number of conditions.
     pub fn conditions(&self) -> usize {
         self.condition.map_or(0, |(_, _, count)| count)
