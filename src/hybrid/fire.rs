@@ -204,7 +204,9 @@ impl<'p> Simulation<'p> {
             let after = self.snapshot();
             let added = || {
                 let now = self.impulses_so_far().into_iter();
-                now.zip(so_far).map(|(now, before)| now - before).collect()
+                // Where nothing strikes they differ by what brings rates back to what is held.
+                let change = |(now, before)| if impact { now - before } else { 0.0 };
+                now.zip(so_far).map(change).collect()
             };
             let impulses = said.unwrap_or_else(added);
             if self.observers.watch_extremes() {
