@@ -185,7 +185,15 @@ impl<'p> Simulation<'p> {
         self.here.v.copy_from_slice(&v);
         self.context.discrete_mut().copy_from_slice(&discrete);
         self.set_context();
+        self.set_drift();
         answer
+    }
+
+    /// Sets the rates of what drifts in the present mode.
+    fn set_drift(&mut self) {
+        if self.plan.moves[self.here.mode] {
+            with_kernel!(&self.mode().kernels, k => k.drift(&self.context, &mut self.drift));
+        }
     }
 
     /// Goes to where some changes lead, one behind the other; false where one of them cannot be. What decides has no slip rate there.
@@ -245,11 +253,8 @@ impl<'p> Simulation<'p> {
 
     /// The same of one friction, which sticks or begins to slip.
     fn friction_goes_on(&mut self, i: usize) -> Option<bool> {
-        let mode = self.mode();
-        if self.plan.moves[self.here.mode] {
-            with_kernel!(&mode.kernels, k => k.drift(&self.context, &mut self.drift));
-        }
-        let friction = &mode.frictions[i];
+        self.set_drift();
+        let friction = &self.mode().frictions[i];
         for (guard, _) in friction.changes.iter().flatten() {
             match (self.departure(*guard, 0, 0), friction.sticks) {
                 (Departure::Unknown, _) => return None,

@@ -130,6 +130,7 @@ fn random(number: u64) -> serde_json::Value {
         let [sticks, slides] = *random.one_of(&[[3.0, 1.0], [3.0, 2.0], [2.0, 1.0], [2.0, 2.0]]);
         parameters[format!("static_{name}")] = json!(sticks);
         parameters[format!("kinetic_{name}")] = json!(slides);
+        parameters[format!("belt_{name}")] = json!(random.one_of(&[0.0, 0.0, 0.0, 0.5]));
         parameters[format!("share_{name}")] = json!(random.one_of(&[-1.0, 0.5, 1.0, 1.0]));
     }
     let loads = [

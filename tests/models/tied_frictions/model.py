@@ -24,6 +24,7 @@ for name, place in zip(names, places):
     kinetic = model.parameter(f"kinetic_{name}", "1", 1.0, "kinetic friction coefficient", minimum=0, at_most=static)
     share = model.parameter(f"share_{name}", "1", 1.0, "share of the load")
     model.force(place, share * F)
-    model.friction(name, slip=place, normal=N, static=static, kinetic=kinetic)
+    belt = model.parameter(f"belt_{name}", "m/s", 0.0, "speed of the belt under it")
+    model.friction(name, slip=place.rate - belt, normal=N, static=static, kinetic=kinetic)
 if form == "multipliers":
     model.multipliers()
