@@ -313,6 +313,25 @@ fn wheels_that_are_thrown_are_in_ensembles_what_they_are_alone() {
     }
 }
 
+/// Three masses of which two slip and stop at the same instants: what frictions decide together is handed out.
+#[test]
+fn ties_of_frictions_are_in_ensembles_what_they_are_alone() {
+    let coupled = [("coupling_ab", -0.3), ("coupling_bc", 0.2), ("k", 4.0)];
+    let mut masses = problem("tied_frictions", &coupled);
+    let load = Sine::new(6.3, 2.0, 0.0);
+    masses.set_input("F", Function::from(load)).unwrap();
+    masses.end.time = 6.0;
+    set_size(&mut masses, 1e-10, 1.0, 1.0);
+    let masses = variations(&masses, 9, |p, x| {
+        p.set_parameter("share_c", 2.0 * x - 1.0).unwrap();
+        p.set_initial("x_c.rate", 0.5 * x).unwrap();
+    });
+    let ends = together(&masses, processor_level(), 1);
+    assert!(difference(&alone(&masses), &ends) < 1e-8);
+    let reverses = |end: &End| end.events.iter().any(|e| e.0.ends_with("reverses"));
+    assert!(ends.iter().any(reverses));
+}
+
 #[test]
 fn a_trajectory_has_the_same_bits_at_every_level_with_any_threads_and_neighbours() {
     let blocks = shaken_blocks(1e-6, 37);
