@@ -18,6 +18,9 @@ use crate::numerics::Size;
 /// add up as the square root of their number.
 const COLLECTED: f64 = 32.0 * f64::EPSILON;
 
+/// What is more than this part of the sum of its terms is no zero: half of a double's digits. Of what is less each operation is asked.
+const CLEAR: f64 = 1.0 / (1u64 << 26) as f64;
+
 /// How a number goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Departure {
@@ -149,6 +152,21 @@ impl<'p> Simulation<'p> {
             0.0
         };
         value.value <= error + COLLECTED * (rate.value * now).abs()
+    }
+
+    /// Whether a guard of the present mode that is a difference, as what is left of friction, is positive, whatever rounding makes of it.
+    /// Sets the accelerations.
+    pub fn is_clear(&mut self, guard: usize) -> bool {
+        let mode = self.mode();
+        let of = &mode.guards[guard].kernel;
+        with_kernel!(&mode.kernels, k => {
+            self.set_accelerations(k).is_ok() && {
+                let [q, v, a] = self.here.free(k.size(), &mode.free);
+                let at = Free { q: &q, v: &v, a: &a };
+                let value = k.guard(&self.context, of, at);
+                value > CLEAR * k.guard_magnitude(&self.context, of, at)
+            }
+        })
     }
 
     /// Asks something of a guard of the present mode from here: a question about its sign, to be completed.

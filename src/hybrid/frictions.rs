@@ -54,7 +54,8 @@ impl<'p> Simulation<'p> {
         let mut reached: Vec<bool> = (frictions.iter())
             .map(|friction| {
                 let mut guards = friction.changes.iter().flatten().map(|(of, _)| *of);
-                guards.any(|of| of == guard || self.is_reached(of))
+                let may_be = |own: &mut Self, of| !(friction.sticks && own.is_clear(of));
+                guards.any(|of| of == guard || may_be(self, of) && self.is_reached(of))
             })
             .collect();
         if !frictions[first].sticks {
@@ -178,11 +179,12 @@ impl<'p> Simulation<'p> {
         ask: impl FnOnce(&mut Self) -> T,
     ) -> Option<T> {
         let (mode, discrete) = (self.here.mode, self.context.discrete().to_vec());
-        let (q, v) = (self.here.q.clone(), self.here.v.clone());
+        let [q, v, a] = [&self.here.q, &self.here.v, &self.here.a].map(|x| x.clone());
         let answer = self.walk(changes, decides).then(|| ask(self));
         self.here.mode = mode;
         self.here.q.copy_from_slice(&q);
         self.here.v.copy_from_slice(&v);
+        self.here.a.copy_from_slice(&a);
         self.context.discrete_mut().copy_from_slice(&discrete);
         self.set_context();
         self.set_drift();
@@ -256,6 +258,9 @@ impl<'p> Simulation<'p> {
         self.set_drift();
         let friction = &self.mode().frictions[i];
         for (guard, _) in friction.changes.iter().flatten() {
+            if friction.sticks && self.is_clear(*guard) {
+                continue;
+            }
             match (self.departure(*guard, 0, 0), friction.sticks) {
                 (Departure::Unknown, _) => return None,
                 (Departure::Down { .. }, _) | (Departure::Stays, false) => return Some(false),
