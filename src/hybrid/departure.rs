@@ -18,8 +18,10 @@ use crate::numerics::Size;
 /// add up as the square root of their number.
 const COLLECTED: f64 = 32.0 * f64::EPSILON;
 
-/// What is more than this part of the sum of its terms is no zero: half of a double's digits. Of what is less each operation is asked.
-const CLEAR: f64 = 1.0 / (1u64 << 26) as f64;
+/// What is more than this part of the sum of its terms is no zero: the square root of the unit roundoff, so that no rounding decides, were
+/// it of a hundred million operations. Whatever is closer to zero is asked of each operation: two bounds that are not the same could
+/// each send a guard to the mode of the other.
+pub(super) const CLEAR: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// How a number goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
 use super::contact::{Guarded, guarded_by_contacts, held_by_others};
-use super::departure::Departure;
+use super::departure::{CLEAR, Departure};
 use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, watched_value};
 use super::inertia::pivots;
@@ -12,12 +12,6 @@ use crate::jets::ORDERS;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Contacts, Guard, GuardShape};
 use crate::numerics::Lu;
-
-/// An acceleration is evidence at once where it is more than this part of the sum of its terms, the square root of the unit
-/// roundoff: then no rounding decides, were it of a hundred million operations. Whatever is closer to zero is left to
-/// [`super::departure`], which knows each operation: two bounds that are not the same could each send a guard to
-/// the mode of the other.
-const CLEAR: f64 = 1.0 / (1u64 << 26) as f64;
 
 impl<'p> Simulation<'p> {
     /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.

@@ -2,7 +2,7 @@
 //!
 //! A guard of the reduced form knows its own friction alone. Where inertia couples slips and static friction is above kinetic, what
 //! slips relieves or loads the others at once: then all sets of what sticks and slides are judged, and *one* may go on, or *several* with
-//! motions that differ. Contacts by multipliers are decided in the same way (`contact/judge.rs`).
+//! motions that differ. Contacts by multipliers are decided in the same way (`contact/judge.rs`, `contact/forced.rs`).
 
 use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
@@ -69,6 +69,7 @@ impl<'p> Simulation<'p> {
             .map(|(friction, reached)| *reached || friction.sticks)
             .collect();
         let Some(mut candidates) = self.admissible(frictions, &decides) else {
+            // Where rounding errors are not known nothing tells a tie: the friction whose guard fell decides.
             return Ok(Vec::new());
         };
         // Between kinetic and static friction both are admissible: what may stick does.

@@ -15,6 +15,7 @@ mod calls;
 mod context;
 mod contract;
 mod elementary;
+mod guard_calls;
 mod lane_calls;
 mod lane_functions;
 mod lanes;
