@@ -99,7 +99,7 @@ def _friction(equations, contact):
     if state == "open":
         return ca.SX(0)
     if state == "sticks":
-        return equations.place(contact.slip.sign * mode.reaction(contact.slip.solved))
+        return equations.place(contact.slip.along(mode.reaction(contact.slip.solved)))
     return equations.place(-contact.kinetic * contact.direction * contact.normal_force(mode))
 
 

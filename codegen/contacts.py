@@ -22,7 +22,7 @@ FREE, ENGAGED = "free", "engaged"
 
 @dataclass
 class Line:
-    """A number that is, but for its sign, one coordinate or its rate and what parameters add: sign × coordinate + offset. The
+    """A number that is, but for its slope, one coordinate or its rate and what parameters add: slope × coordinate + offset. The
     coordinate may be a line of its own (`lines.py`), which is solved for one of the model."""
 
     coordinate: ca.SX
@@ -30,6 +30,8 @@ class Line:
     offset: ca.SX
     solved: ca.SX = None
     """The coordinate of the model that is held where the line is."""
+    scale: ca.SX = None
+    """The amount of the slope, of parameters; None where it is 1."""
 
     def __post_init__(self):
         self.solved = self.coordinate if self.solved is None else self.solved
@@ -39,9 +41,18 @@ class Line:
         """The name of the coordinate."""
         return self.coordinate.name()
 
+    @property
+    def slope(self):
+        """How the number changes with the coordinate."""
+        return self.sign if self.scale is None else self.sign * self.scale
+
     def value(self):
         """The coordinate (or its rate) where the number is zero."""
-        return -self.sign * self.offset
+        return self.along(-self.offset)
+
+    def along(self, force):
+        """What changes the number by so much; the force along the number that is such a force on the coordinate."""
+        return self.sign * force if self.scale is None else self.sign * force / self.scale
 
 
 @dataclass
@@ -127,11 +138,11 @@ class Contact:
 
     def slip_rate(self):
         """Positive along the slip."""
-        return self.slip.sign * self.slip.coordinate.rate + self.slip.offset
+        return self.slip.slope * self.slip.coordinate.rate + self.slip.offset
 
     def normal_force(self, mode, **discrete):
         """λ_N in a mode where it is closed, with discrete states as given."""
-        return self.normal if self.gap is None else self.gap.sign * mode.reaction(self.gap.solved, **discrete)
+        return self.normal if self.gap is None else self.gap.along(mode.reaction(self.gap.solved, **discrete))
 
 
 # ---- declarations ---------------------------------------------------------------------------------

@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 /* Changes whenever something below or in the description does. */
-#define DALEMBERT_CONTRACT_VERSION 11
+#define DALEMBERT_CONTRACT_VERSION 12
 #define DALEMBERT_CONTRACT_MARK {'d', 'a', 'l', 'e', 'm', 'b', 'r', 't'}
 
 /* What a function needs besides the free coordinates of its mode. Angles: sines and cosines computed last. */
@@ -21,7 +21,7 @@ struct dalembert_context {
   const real *u;     /* signals of the inputs */
   const real *u_dot; /* their rates; where bounds are computed, radii of the signals */
   const real *d;     /* discrete states */
-  const real *h;     /* coordinates: those that the mode holds are read */
+  const real *h;     /* coordinates, then prescribed motions: what the mode holds, where it does or began to */
   const real *c;     /* constants: what depends on parameters alone */
   const real *j;     /* jerks; where bounds are computed, radii of q, v and a */
   struct dalembert_angle *angles;

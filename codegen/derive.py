@@ -6,15 +6,15 @@ With the motions z of the ground appended as prescribed coordinates, the residua
 
 (virtual power over the bodies; Lagrange's equations for what is not a body). A frozen coordinate
 stays in the energies and only its motion is removed, so that its r_i is the reaction. One that a mode holds along a line
-(`lines.py`) depends on free ones, and is replaced by what it is of them; by the power that is left, Jᵀ r of J = ∂q/∂y takes the place
-of r, where y has the lines in place of what depends on others.
+(`lines.py`) depends on free ones and motions, and is replaced by what it is of them; by the power that is left, Jᵀ r of J = ∂q/∂y takes
+the place of r, where y has the lines in place of what depends on others.
 """
 
 from dataclasses import dataclass
 
 import casadi as ca
 
-from . import graph, units
+from . import graph, signals, units
 from .errors import ModelError
 
 ENERGY = units.parse("kg m^2/s^2")
@@ -113,8 +113,8 @@ def _index(model, name):
 
 
 def along_lines(model, lines):
-    """∂q/∂y, where of the coordinates y those that `lines` are solved for stand for these lines."""
-    q = ca.vertcat(*[c.symbol for c in model.coordinates])
+    """∂q/∂y, of coordinates and prescribed motions, where of the coordinates in y those that `lines` are solved for stand for these lines."""
+    q = configuration(model).q
     size = q.numel()
     result = ca.SX.eye(size)
     for line in lines:
@@ -140,7 +140,7 @@ class Substitution:
 class ModeEquations:
     """Everything that is generated for one mode, as expressions in its own symbols.
 
-    `held` are the symbols of the values at which coordinates are frozen; `absent` are the motions of the ground that
+    `held` are the symbols of the coordinates, then of the prescribed motions, as the mode began; `absent` are the motions of the ground that
     never act; `radii` are the symbols of what coordinates, velocities and accelerations may differ by from given ones,
     for bounds.
     """
@@ -160,7 +160,7 @@ class ModeEquations:
         residual = ca.SX(residual)
         for k, (coordinate, force, _) in enumerate(mode.forces):
             direction = self.freeze(self._direction(coordinate))
-            residual[:count] -= direction * self.place(force, model.location(mode.forces, k))
+            residual -= direction * self.place(force, model.location(mode.forces, k))
         residual = self._along_lines(residual, mode.lines)
         if mode.lines:
             # What holds a line acts along it alone: friction along another, which it does not hold, is none of it.
@@ -181,7 +181,7 @@ class ModeEquations:
         ]
         self.held = held
         self.rates_of_held = ca.vertcat(*[
-            mode.drift.get(c.name, ca.SX(0)) for c in model.coordinates
+            mode.drift.get(c.name, ca.SX(0)) for c in model.coordinates + model.motions
         ])
         self._check_linear_in_accelerations()
 
@@ -198,19 +198,16 @@ class ModeEquations:
         return self.placeholders(expression)
 
     def _direction(self, coordinate):
-        """How a coordinate, or a line, changes with the coordinates of the model."""
-        x = configuration(self.model)
+        """How a coordinate, or a line, changes with the coordinates of the model and the prescribed motions."""
         line = next((line for line in self.model.lines if line.symbol is coordinate), None)
         place = coordinate if line is None else line.value
-        return ca.densify(ca.jacobian(place, x.q[:len(self.model.coordinates)])).T
+        return ca.densify(ca.jacobian(place, configuration(self.model).q)).T
 
     def _along_lines(self, residual, of):
         """The residual of the coordinates of which lines stand for those they are solved for."""
         if not of:
             return residual
-        count = len(self.model.coordinates)
-        along = self.freeze(along_lines(self.model, of))
-        return ca.densify(ca.vertcat(along.T @ residual[:count], residual[count:]))
+        return ca.densify(self.freeze(along_lines(self.model, of)).T @ residual)
 
     def _freeze(self, held):
         old, new = [], []
@@ -240,17 +237,21 @@ class ModeEquations:
 
     def _dependent(self, line, held, known):
         """What the coordinate is that a line is solved for, in those that are free: where the line is held, or was as the mode began."""
-        coordinates = ca.vertcat(*[c.symbol for c in self.model.coordinates])
         value = self.mode.held[line.name]
-        at = ca.substitute(line.value, coordinates, held) if value is None else ca.SX(value)
+        at = ca.substitute(line.value, configuration(self.model).q, held) if value is None else ca.SX(value)
         return at - known(line.rest)
 
     def _rate(self, expression, held):
-        """The rate of what depends on free coordinates, their derivatives, and what drifts."""
-        free = [c.symbol for c in self.model.coordinates if c.name not in self.mode.held]
-        column = lambda pick: ca.vertcat(ca.SX(0, 1), *[pick(symbol) for symbol in free])
-        q, v, a, j = column(lambda s: s), column(lambda s: s.rate), column(lambda s: s.acceleration), column(lambda s: s.jerk)
-        drift = ca.vertcat(*[ca.SX(self.mode.drift.get(c.name, 0)) for c in self.model.coordinates])
+        """The rate of what depends on free coordinates, prescribed motions, their derivatives, and what drifts."""
+        moving = [c.symbol for c in self.model.coordinates if c.name not in self.mode.held]
+        motions = [m.symbol for m in self.model.motions]
+        column = lambda pick: ca.vertcat(ca.SX(0, 1), *[pick(symbol) for symbol in moving + motions])
+        q, v, a = column(lambda s: s), column(lambda s: s.rate), column(lambda s: s.acceleration)
+        accelerations, jerks = signals.of(self.model), signals.rates(self.model)
+        jerk = lambda motion: next(j for s, j in zip(ca.vertsplit(accelerations), ca.vertsplit(jerks))
+                                   if s.element_hash() == motion.acceleration.element_hash())
+        j = ca.vertcat(ca.SX(0, 1), *[s.jerk for s in moving], *[jerk(s) for s in motions])
+        drift = ca.vertcat(*[ca.SX(self.mode.drift.get(c.name, 0)) for c in self.model.coordinates + self.model.motions])
         result = ca.SX(0)
         for of, rates in ((q, v), (v, a), (a, j), (held, drift)):
             if of.numel():
@@ -358,7 +359,7 @@ class ModeEquations:
             power_in += force * coordinate.rate
         for coordinate, force, against in mode.forces:
             force = self.place(force)
-            rate = ca.dot(self._direction(coordinate), x.v[:len(model.coordinates)])
+            rate = ca.dot(self._direction(coordinate), x.v)
             dissipated -= force * (rate - against)
             power_in += force * against
         count = len(model.coordinates)

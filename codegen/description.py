@@ -35,7 +35,7 @@ def describe(name, models, chosen, constants, for_tests):
     description = {
         "name": name, "title": model.title, "source": model.source, "for_tests": for_tests,
         "dimensions": {
-            "coordinates": len(model.coordinates), "motions": len(model.motions), "signals": signals.of(model).numel(),
+            "coordinates": len(model.coordinates), "motions": _signals_of_motions(model), "signals": signals.of(model).numel(),
             "discretes": len(model.discretes), "parameters": len(model.parameters), "constants": constants[1],
             "angles": KEPT_ANGLES,
             "expanded": analysis.used_signals(variants, [row for row in functions.ROWS.values() if row.series or row is requirements]),
@@ -109,6 +109,12 @@ def _inputs(model):
         kind = "value" if i.motion is None else "acceleration"
         yield {"name": i.name, "unit": i.unit, "meaning": i.meaning, "kind": kind, "signal": signal}
         signal += len(i.signals)
+
+
+def _signals_of_motions(model):
+    """Of each prescribed motion, the signal that is its place."""
+    places = {symbol.element_hash(): k for k, symbol in enumerate(ca.vertsplit(signals.of(model)))}
+    return [places[m.symbol.element_hash()] for m in model.motions]
 
 
 def _held_at(mode, name):

@@ -134,7 +134,7 @@ MODE = (
     Row("momenta", lambda of: of.equations.momenta(), "the ledger, at impacts on ground that moves"),
     Row("requirements", lambda of: of.requirements, "hybrid::margins"),
     Row("requirement_bounds", lambda of: of.requirement_bounds, "hybrid::margins", takes_radii=True, in_lanes=True),
-    Row("drift", lambda of: of.equations.freeze(of.equations.rates_of_held), "integrate (where the mode holds what drifts)"),
+    Row("drift", lambda of: of.equations.freeze(of.equations.rates_of_held[:len(of.model.coordinates)]), "integrate (where the mode holds what drifts)"),
     Row("coordinates", lambda of: of.equations.all_coordinates(), "all coordinates, those that the mode holds among them"),
     Row("rates", lambda of: of.equations.all_rates(), "their rates"),
     Row("accelerations", lambda of: of.equations.all_accelerations(), "their accelerations"),

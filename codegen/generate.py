@@ -247,7 +247,7 @@ def _barred(model):
 def _variant(model, absent, kind=""):
     """Derives and checks the equations of every mode, and lists the functions to emit."""
     residual = derive.residual_from_bodies(model)
-    held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates])
+    held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates + model.motions])
     modes = [(mode.form.equations if mode.form else derive.ModeEquations)(model, mode, residual, held, absent)
              for mode in model.modes]
     check.check_equations(model, modes)
@@ -391,7 +391,7 @@ def _with_dependent(model, target, after, depending):
     count, names = len(model.coordinates), [c.name for c in model.coordinates]
     state = [c.symbol for c in model.coordinates] + [c.symbol.rate for c in model.coordinates]
     known = ca.vertcat(*state, target.held)
-    values = ca.vertcat(after[:2 * count], after[:count])
+    values = ca.densify(ca.vertcat(after[:2 * count], after[:count], *[m.symbol for m in model.motions]))
     every = ca.vertcat(target.all_coordinates(), target.all_rates())
     chosen = [k for k in range(2 * count) if names[k % count] in depending]
     followed = ca.substitute(every[chosen], known, values)

@@ -3,6 +3,7 @@
 Each is a margin: an expression that is not negative as long as nothing is reached or left.
 """
 
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -56,6 +57,27 @@ def is_of_parameters(model, expression):
     """Whether an expression depends on parameters alone."""
     parameters = {p.symbol.element_hash() for p in model.parameters}
     return all(symbol.element_hash() in parameters for symbol in ca.symvar(ca.SX(expression)))
+
+
+def sign_of(model, expression):
+    """+1 or −1 where an expression in parameters has that sign whatever a scene gives them; 0 where it may have either, or be zero."""
+    expression = ca.SX(expression)
+    if expression.is_constant():
+        value = float(expression)
+        return int(value > 0) - int(value < 0)
+    bounds = {p.symbol.element_hash(): p.extra for p in model.parameters}
+    if expression.is_symbolic():
+        of = bounds.get(expression.element_hash())
+        least, most = (of["minimum"], of["maximum"]) if of else (-math.inf, math.inf)
+        return int(least > 0 or least == 0 and of["exclusive"]) - int(most < 0)
+    signs = [sign_of(model, expression.dep(k)) for k in range(expression.n_dep())]
+    return _SIGNS.get(expression.op(), lambda *_: 0)(*signs)
+
+
+_SIGNS = {
+    ca.OP_MUL: lambda a, b: a * b, ca.OP_DIV: lambda a, b: a * b, ca.OP_NEG: lambda a: -a, ca.OP_INV: lambda a: a, ca.OP_TWICE: lambda a: a,
+    ca.OP_SQ: abs, ca.OP_SQRT: lambda a: a * (a > 0), ca.OP_EXP: lambda a: 1, ca.OP_ADD: lambda a, b: a * (a == b),
+    ca.OP_SUB: lambda a, b: a * (a == -b)}
 
 
 def of_motion(model):

@@ -1,9 +1,9 @@
-"""Gaps, slips and constraints that solve for a coordinate: lines w = q_p + ρ(q), of which q_p is what the others leave.
+"""Gaps, slips and constraints that solve for a coordinate: lines w = q_p + ρ(q, z), of which q_p is what the others leave.
 
 Of a wheel that may slip on a rail, x − r φ is the place along which it slips. It is as good a coordinate as x; where the wheel sticks,
-it is held, and x *depends* on φ. With w in place of q_p for each of these lines, forces, momenta and impacts are those of contacts
-along coordinates (`reduced.py`). What is integrated and shown stays what the model declares: in a mode that holds w, q_p is among
-the coordinates that are held, though it moves.
+it is held, and x *depends* on φ, as on the prescribed motion z of a belt or a table what lies on it. With w in place of q_p for each of
+these lines, forces, momenta and impacts are those of contacts along coordinates (`reduced.py`). What is integrated and shown stays what
+the model declares: in a mode that holds w, q_p is among the coordinates that are held, though it moves.
 """
 
 import itertools
@@ -23,13 +23,14 @@ class NotSolved(Exception):
 
 @dataclass
 class Solved:
-    """A line w = q_p + ρ(q): `symbol` is w, with its rate; `coordinate` is q_p; `rest` is ρ, which does not depend on q_p; what the
-    model declares first of it is `sign` × w."""
+    """A line w = q_p + ρ(q, z): `symbol` is w, with its rate; `coordinate` is q_p; `rest` is ρ, which does not depend on q_p; what the
+    model declares first of it is `sign` × `scale` × w; `scale` is None where it is 1, else what parameters make of it, more than 0."""
 
     symbol: Coordinate
     coordinate: Coordinate
     rest: ca.SX
     sign: int
+    scale: ca.SX
 
     @property
     def name(self):
@@ -74,8 +75,9 @@ def solve(model):
             if offset is None:
                 # A slip is known by its rate; the first is the line itself.
                 differs = k > 0 and key != "slip"
-                offset = ca.substitute(place - sign * line.value, derive.configuration(model).q, 0) if differs else ca.SX(0)
-            setattr(owner, key, Line(line.symbol, sign, offset, line.coordinate))
+                first = group[0][2] * _sign(model, group[0][2], place)
+                offset = ca.substitute(place - first, derive.configuration(model).q, 0) if differs else ca.SX(0)
+            setattr(owner, key, Line(line.symbol, sign, offset, line.coordinate, line.scale))
 
 
 def _parts(model):
@@ -92,17 +94,16 @@ def _parts(model):
 def _place(model, owner, expression, is_rate):
     """The place whose rate a line is, and what parameters add to that rate; None where the line is a place itself."""
     x = derive.configuration(model)
-    count = len(model.coordinates)
-    coordinates = {c.symbol.element_hash() for c in model.coordinates}
+    places = {c.symbol.element_hash() for c in model.coordinates + model.motions}
     if is_rate:
-        slopes = ca.simplify(ca.densify(ca.jacobian(expression, x.v[:count])))
+        slopes = ca.simplify(ca.densify(ca.jacobian(expression, x.v)))
         offset = ca.substitute(expression, x.v, 0)
         if not limits.is_of_parameters(model, slopes) or not limits.is_of_parameters(model, offset):
             raise NotSolved(f"a line of `{owner.name}` is a rate with factors that move")
-        return slopes @ x.q[:count], offset
+        return slopes @ x.q, offset
     parameters = {p.symbol.element_hash() for p in model.parameters}
-    if any(s.element_hash() not in coordinates | parameters for s in ca.symvar(expression)):
-        raise NotSolved(f"a line of `{owner.name}` depends on more than coordinates and parameters")
+    if any(s.element_hash() not in places | parameters for s in ca.symvar(expression)):
+        raise NotSolved(f"a line of `{owner.name}` depends on more than coordinates, prescribed motions and parameters")
     return expression, None
 
 
@@ -130,13 +131,14 @@ def _solved(model, groups, claimed):
     for k, group in enumerate(groups):
         row = ca.simplify(ca.densify(ca.jacobian(group[0][2], ca.vertcat(*q))))
         slopes[k] = {i: row[i] for i in range(len(q)) if not row[i].is_zero()}
-    # The later of two coordinates depends on the earlier.
-    fit = lambda i, slope: q[i].name() not in claimed and slope.is_constant() and abs(float(slope)) == 1
-    candidates = [[i for i in sorted(own, reverse=True) if fit(i, own[i])] for own in slopes.values()]
+    fit = lambda i, slope: q[i].name() not in claimed and limits.sign_of(model, slope) != 0
+    # One whose slope is ±1 depends on others; of two that are alike the later depends on the earlier.
+    preference = lambda i, slope: (not _is_one(slope), -i)
+    candidates = [sorted((i for i in own if fit(i, own[i])), key=lambda i: preference(i, own[i])) for own in slopes.values()]
     for chosen in itertools.product(*candidates):
         order = _order(chosen, slopes)
         if order is not None:
-            return [_line(model, groups[k], q[chosen[k]], int(float(slopes[k][chosen[k]]))) for k in order]
+            return [_line(model, groups[k], q[chosen[k]], slopes[k][chosen[k]]) for k in order]
     owner, *_ = next((group for group, own in zip(groups, candidates) if not own), groups[0])[0]
     raise NotSolved(f"`{owner.name}` {'and others do' if all(candidates) else 'does'} not solve for a coordinate")
 
@@ -155,10 +157,17 @@ def _order(chosen, slopes):
     return order
 
 
-def _line(model, group, coordinate, sign):
-    """A line, solved for a coordinate in which its slope is `sign`."""
-    place = group[0][2]
+def _is_one(slope):
+    """Whether a slope is ±1."""
+    return slope.is_constant() and abs(float(slope)) == 1
+
+
+def _line(model, group, coordinate, slope):
+    """A line, solved for a coordinate in which it has this slope."""
+    place, sign = group[0][2], limits.sign_of(model, slope)
     symbol = Coordinate(ca.SX.sym(_name(group)))
     symbol.rate = ca.SX.sym(_name(group) + ".rate")
     model.dimensions[symbol.name()] = model.dimensions[coordinate.name()]
-    return Solved(symbol, coordinate, ca.simplify(sign * ca.substitute(place, coordinate, 0)), sign)
+    scale = None if _is_one(slope) else ca.simplify(sign * slope)
+    rest = sign * ca.substitute(place, coordinate, 0)
+    return Solved(symbol, coordinate, ca.simplify(rest if scale is None else rest / scale), sign, scale)

@@ -139,7 +139,7 @@ class _Check:
         self._refuse(depends, why, motion, f"write heights as `{self._example()} + {motion.name}`", self._inertia(depends))
         if not motion.available:
             return
-        held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates])
+        held = ca.vertcat(*[ca.SX.sym(f"{c.name}.held") for c in model.coordinates + model.motions])
         modes = {m.name: derive.ModeEquations(self.lifted, m, self.residual, held) for m in model.modes}
 
         def refuse(mode, expression, what, location):

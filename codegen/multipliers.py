@@ -53,7 +53,7 @@ class Constraint:
 
     def force_of_line(self, mode):
         """Its force in a mode of the reduced form."""
-        return self.line.sign * mode.reaction(self.line.solved)
+        return self.line.along(mode.reaction(self.line.solved))
 
     def gradient(self, places, rates):
         """How what it holds changes with coordinates, or with their rates."""

@@ -184,7 +184,7 @@ class Expansion:
             constraint.force_of_line(mode)  # an output: reactions are known before equations are made
         for contact, state in zip(self.contacts, states):
             if state == SLIDES:
-                force = -contact.kinetic * contact.normal_force(mode) * contact.slip.sign * contact.direction
+                force = -contact.kinetic * contact.normal_force(mode) * contact.slip.slope * contact.direction
                 mode.forces.append((contact.slip.coordinate, force, ca.SX(contact.slip.value())))
                 model.locations[id(mode.forces), len(mode.forces) - 1] = contact.location
             if not contact.permanent:
@@ -275,7 +275,7 @@ class Expansion:
     def _holds(contact, mode):
         """By direction: what is left before static friction lets a slip begin that way."""
         limit = contact.static * contact.normal_force(mode)
-        force = contact.slip.sign * mode.reaction(contact.slip.solved)
+        force = contact.slip.along(mode.reaction(contact.slip.solved))
         return {+1: limit + force, -1: limit - force}
 
     def _joined(self, states, contact):
@@ -352,7 +352,7 @@ class Expansion:
             prescribed[along] = contact.slip.value()
         free = sorted({names.index(name) for name in self._changed(contact)} - prescribed.keys())
         change = {k: rate - coordinates[k].rate for k, rate in prescribed.items()}
-        friction = (along, -contact.kinetic * slip * contact.slip.sign * contact.gap.sign) if slip else None
+        friction = (along, contact.gap.along(-contact.kinetic * slip * contact.slip.slope)) if slip else None
         solved = self._rates(gap, free, change, friction)
         conditions = [slip * contact.slip_rate()] if slip else []
         target = list(states)
@@ -373,18 +373,18 @@ class Expansion:
                 continue
             # Friction without an impulse of its own does not hold against one.
             target[k] = SLIDES
-            rate = other.slip.sign * after[place] + other.slip.offset
+            rate = other.slip.slope * after[place] + other.slip.offset
             # Where the impact leaves no slip rate, the direction stays as it was.
             reset.append((other.direction, other.direction * (1 - 2 * (other.direction * rate < 0))))
         impulses = self._impulses(contact, {**change, **solved})
-        self._add(contact, "strikes", states, target, contact.gap.sign * contact.gap.coordinate + contact.gap.offset,
+        self._add(contact, "strikes", states, target, contact.gap.slope * contact.gap.coordinate + contact.gap.offset,
                   reset, conditions, impulses=impulses)
 
     def _impulses(self, striking, changes):
         """The impulses of an impact that changes rates, by their names: M Δv along the lines of what strikes and of what is always held.
         No other force is as large."""
         names, found = self.names, {}
-        push = lambda line: line.sign * sum((self.mass[names.index(line.name), k] * delta for k, delta in changes.items()), ca.SX(0))
+        push = lambda line: line.along(sum((self.mass[names.index(line.name), k] * delta for k, delta in changes.items()), ca.SX(0)))
         for contact in self.contacts:
             if contact is striking or contact.permanent:
                 if contact.gap is not None:
@@ -422,7 +422,7 @@ def _mass(model):
     rates = ca.vertcat(*[c.symbol.rate for c in model.coordinates])
     mass = ca.densify(ca.simplify(ca.hessian(derive.kinetic_energy(model), rates)[0]))
     if model.lines:
-        along = derive.along_lines(model, model.lines)
+        along = derive.along_lines(model, model.lines)[:mass.shape[0], :mass.shape[0]]
         mass = ca.densify(ca.simplify(along.T @ mass @ along))
     numbers, size = {}, mass.shape[0]
     for i, j in itertools.product(range(size), range(size)):

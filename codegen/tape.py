@@ -156,9 +156,9 @@ def places(model, equations, signals):
     """The instruction for each symbol of a mode."""
     found = {}
     for i, c in enumerate(model.coordinates):
-        for kind, symbol in (("Coordinate", c.symbol), ("Rate", c.symbol.rate),
-                             ("Acceleration", c.symbol.acceleration), ("Held", equations.held[i])):
+        for kind, symbol in (("Coordinate", c.symbol), ("Rate", c.symbol.rate), ("Acceleration", c.symbol.acceleration)):
             found[symbol.element_hash()] = (kind, i)
+    found.update((symbol.element_hash(), ("Held", i)) for i, symbol in enumerate(ca.vertsplit(equations.held)))
     for kind, symbols in (
         ("Signal", ca.vertsplit(signals)), ("Discrete", [d.symbol for d in model.discretes]),
         ("Parameter", [p.symbol for p in model.parameters]),

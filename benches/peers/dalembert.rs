@@ -1,5 +1,5 @@
 //! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`, or
-//! `overhead` for the cost of a step.
+//! `overhead` for the cost of a step. `PEERS_DIGITS=6` measures that tolerance alone, 1e-6, as for a profile.
 //!
 //! One row a problem, method and tolerance, in the format of `benches/peers/README.md`. Preparation
 //! is outside the timed part, as it is for the peers; events are recorded with their times only.
@@ -34,6 +34,8 @@ fn main() {
     if named == ["overhead"] {
         return overhead::report();
     }
+    let only = std::env::var("PEERS_DIGITS").ok();
+    let only: Option<i32> = only.map(|digits| digits.parse().expect("PEERS_DIGITS is a number"));
     for name in PROBLEMS {
         if !named.is_empty() && !named.iter().any(|n| n == name) {
             continue;
@@ -43,7 +45,8 @@ fn main() {
                 // An explicit method: 300 000 steps.
                 continue;
             }
-            for digits in (3..=13).step_by(if quick() { 3 } else { 1 }) {
+            let digits = (3..=13).step_by(if quick() { 3 } else { 1 });
+            for digits in digits.filter(|digits| only.is_none_or(|only| only == *digits)) {
                 measure(name, method, 10f64.powi(-digits));
             }
         }

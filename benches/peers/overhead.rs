@@ -131,7 +131,7 @@ fn functions<const F: usize>(
     let (mut r, mut j) = (SVector::zeros(), [SMatrix::zeros(); 3]);
     let residual = seconds(|| kernel.residual(black_box(&context), at, &mut r));
     let jacobian = seconds(|| kernel.jacobian(black_box(&context), at, &mut j));
-    let mut required = vec![0.0; mode.requirements.len()];
+    let mut required = vec![0.0; mode.requirements.len() + mode.margins.len()];
     let mut checks = seconds(|| kernel.requirements(black_box(&context), at, &mut required));
     if !kernel.mass_is_constant() {
         checks += seconds(|| {

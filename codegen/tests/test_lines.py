@@ -14,6 +14,8 @@ N = model.parameter("N", "N", 1.0, "normal force")
 L = model.parameter("L", "m", 1.0, "length", above=0)
 """
 
+BELT = 'belt = model.motion("belt", "place of a belt", input="a")\n'
+
 REDUCED = (
     ("a slip of two coordinates", 'model.friction("rail", slip=x - 2 * y, normal=N, kinetic=0.2)\n',
      {"rail sticks": ["x"], "rail slides": []}),
@@ -35,14 +37,24 @@ REDUCED = (
      {"a open, b open": ["z"], "a open, b closed": ["z"], "a closed, b open": ["z"]}),
     ("two lines, one behind the other", 'model.constraint("a", x - y); model.friction("b", slip=y - z, normal=N, kinetic=0.2)\n',
      {"b sticks": ["y", "z"], "b slides": ["y"]}),
+    ("a gear", 'model.constraint("gear", L * y / 2 + m / m * L * z)\n', {"moves": ["z"]}),
+    ("a factor that is not 1 beside one that is", 'model.constraint("gear", y - m / m * 2 * z)\n', {"moves": ["y"]}),
+    ("a place on a belt that is driven", BELT + 'model.friction("rail", slip=x - belt, normal=N, kinetic=0.2)\n',
+     {"rail sticks": ["x"], "rail slides": []}),
+    ("its rate", BELT + 'model.friction("rail", slip=x.rate - belt.rate - speed, normal=N, kinetic=0.2)\n',
+     {"rail sticks": ["x"], "rail slides": []}),
+    ("a table that is driven", BELT + 'model.contact("a", gap=y - belt)\n', {"a open": [], "a closed": ["y"]}),
+    ("what is driven itself", BELT + 'model.constraint("crank", z - L * sin(belt / L))\n', {"moves": ["z"]}),
 )
 """Of each mode the coordinates that depend on others."""
 
 LEFT = (
-    ("a factor that may be zero", 'model.constraint("gear", m * x - k * L / (9 * N) * y * m)\n'),
+    ("a factor that may be zero", 'model.constraint("gear", speed * x - speed * y)\n'),
+    ("friction against two things that move", BELT + 'model.friction("a", slip=x - belt, normal=N, kinetic=0.2)\n'
+     'model.friction("b", slip=x, normal=N, kinetic=0.2)\n'),
     ("lines that depend on each other", 'model.friction("a", slip=x - y, normal=N, kinetic=0.2); model.friction("b", slip=y - z, normal=N, kinetic=0.2)\n'
      'model.friction("c", slip=z - x, normal=N, kinetic=0.2)\n'),
-    ("lines of which each depends on what the other takes", 'model.constraint("a", x - y); model.constraint("b", x + y - 2 * z)\n'),
+    ("lines of which each depends on what the other takes", 'model.constraint("a", x - y); model.constraint("b", x + y - L)\n'),
     ("a constraint along a gap", 'model.constraint("a", x - y); model.contact("b", gap=y - x + L)\n'),
     ("a circle", 'model.constraint("rod", x**2 + y**2 - L**2)\n'),
     ("gaps that inertia couples", 'model.contact("a", gap=x); model.contact("b", gap=y - x + L)\n'),

@@ -239,8 +239,10 @@ impl<'p> Simulation<'p> {
         let (q, rest) = self.next.split_at(n);
         let (v, discrete) = rest.split_at(n);
         let target = &self.modes[transition.target];
-        let drift = &mut self.drift_of_target;
+        let drift = &mut self.drift_of_target[..n];
         with_kernel!(&target.kernels, k => k.drift(&self.context, drift));
+        self.held_by_target.copy_from_slice(self.context.held());
+        self.held_by_target[..n].copy_from_slice(q);
         (0..transition.kernel.conditions()).all(|index| {
             let question = Question {
                 mode: target,
@@ -249,7 +251,7 @@ impl<'p> Simulation<'p> {
                 at: Point {
                     q,
                     v,
-                    held: q,
+                    held: &self.held_by_target,
                     drift: &self.drift_of_target,
                     discrete,
                 },

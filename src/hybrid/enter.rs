@@ -20,13 +20,19 @@ impl<'p> Simulation<'p> {
         size.vector(|i| self.sizes[free[i]])
     }
 
+    /// Sets the rates of what drifts in the present mode.
+    pub fn set_drift_in<F: Size>(&mut self, kernel: &ModeKernel<F>) {
+        let coordinates = self.here.q.len();
+        kernel.drift(&self.context, &mut self.drift[..coordinates]);
+    }
+
     /// Enters the present mode: sets accelerations and remembered signs, and gives the first guard
     /// that is not respected.
     pub fn enter<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<Option<Violation>> {
         self.set_context();
         let mode = self.mode();
         if self.plan.moves[self.here.mode] {
-            kernel.drift(&self.context, &mut self.drift);
+            self.set_drift_in(kernel);
         }
         let [q, v, _] = self.here.free(kernel.size(), &mode.free);
         self.check_inertia(kernel, [&q, &v])?;

@@ -57,7 +57,7 @@ impl Simulation<'_> {
         if !goes_on {
             self.began = self.here.now;
             if moves {
-                self.at_start.copy_from_slice(&self.here.q);
+                self.at_start.copy_from_slice(self.context.held());
             }
         }
         let (start, last) = (self.began, self.smooth_until);

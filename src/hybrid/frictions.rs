@@ -103,12 +103,12 @@ impl<'p> Simulation<'p> {
         let stops = |i: usize| !frictions[i].sticks && reached[i];
         let decides: Vec<bool> = (0..frictions.len()).map(stops).collect();
         let stick: Vec<Option<usize>> = decides.iter().map(|stops| stops.then_some(0)).collect();
-        for i in (0..frictions.len()).filter(|&i| frictions[i].sticks) {
-            let holds = |own: &mut Self| own.friction_goes_on(i);
-            // Where they cannot stick, nothing of that sort happens.
-            let holds = self.after((&stick, &decides), holds);
-            reached[i] |= holds.is_some_and(|holds| holds != Some(true));
-        }
+        // Where they cannot stick, nothing of that sort happens.
+        self.after((&stick, &decides), |own| {
+            for i in (0..frictions.len()).filter(|&i| frictions[i].sticks) {
+                reached[i] |= own.friction_goes_on(i) != Some(true);
+            }
+        });
     }
 
     /// The sets that may go on, where those that decide may change; `None` where it is not known of one.
@@ -195,7 +195,7 @@ impl<'p> Simulation<'p> {
     /// Sets the rates of what drifts in the present mode.
     fn set_drift(&mut self) {
         if self.plan.moves[self.here.mode] {
-            with_kernel!(&self.mode().kernels, k => k.drift(&self.context, &mut self.drift));
+            with_kernel!(&self.mode().kernels, k => self.set_drift_in(k));
         }
     }
 

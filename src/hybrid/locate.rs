@@ -282,7 +282,7 @@ fn beyond_the_crossing<F: Size>(
 }
 
 /// Whether the value of a guard, or of a condition that it is watched with, depends on accelerations.
-fn depends_on_accelerations((guard, watched): (&Guard, Watched)) -> bool {
+pub(super) fn depends_on_accelerations((guard, watched): (&Guard, Watched)) -> bool {
     watched.conditional
         || matches!(
             guard.shape,

@@ -224,7 +224,7 @@ impl<'p> Simulation<'p> {
         let is_after_step = self.stage.is_after_step();
         let slots = self.solvers.slots();
         if !moves {
-            self.context.held_mut().copy_from_slice(&self.here.q);
+            self.context.hold(&self.here.q);
         }
         let mut equations = Equations::new(
             kernel,

@@ -64,7 +64,7 @@ impl Simulation<'_> {
     /// Brings all that the present mode holds to where it holds it.
     fn follow_mode(&mut self) {
         let mode = self.mode();
-        self.context.held_mut().copy_from_slice(&self.here.q);
+        self.set_context();
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = self.here.free(k.size(), &mode.free);
             let at = Free { q: &q, v: &v, a: &a };

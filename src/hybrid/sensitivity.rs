@@ -2,10 +2,10 @@
 
 use super::equations::{Equations, free_of};
 use super::guards::{Conditions, motion, slope, watched_value};
-use super::locate::rate_at;
+use super::locate::{depends_on_accelerations, rate_at};
 use super::plan::Watched;
 use super::problem::Accuracy;
-use super::roots::{Search, minimum};
+use super::roots::{Polynomial, Search, minimum};
 use crate::integrate::{LastStep, Motion, ORDERS, State, System};
 use crate::integrate::{Size, Vector};
 use crate::kernel::Free;
@@ -29,7 +29,10 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     /// Its value in a state at local time `t`.
     pub fn value(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
         let mut a = q.size().zeros();
-        if self.equations.acceleration(t, q, v, &mut a).is_err() {
+        if !depends_on_accelerations((self.guard, self.watched)) && self.watched.condition.is_none()
+        {
+            self.equations.at(t);
+        } else if self.equations.acceleration(t, q, v, &mut a).is_err() {
             return f64::NAN;
         }
         let at = Free { q, v, a: &a };
@@ -101,11 +104,17 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             PARTS => end.t,
             k => from + k as f64 / PARTS as f64 * (end.t - from),
         };
-        let values: [f64; PARTS + 1] = std::array::from_fn(|k| match k {
-            // More accurate than the dense output.
-            PARTS => self.value(end.t, &end.q, &end.v),
-            k => self.value_within(dense, place(k)),
+        let own = self.polynomial(dense, start);
+        let mut inside = |t: f64| match &own {
+            Some(polynomial) => polynomial.value((t - dense.start()) / dense.length()),
+            None => self.value_within(dense, t),
+        };
+        let mut values: [f64; PARTS + 1] = std::array::from_fn(|k| match k {
+            PARTS => f64::NAN,
+            k => inside(place(k)),
         });
+        // More accurate than the dense output.
+        values[PARTS] = self.value(end.t, &end.q, &end.v);
         let falls = |&k: &usize| values[k + 1] < values[k];
         // Between the first two places it may turn; at the start its slope tells at once that it falls.
         let first = match from == start.t && rate(start, self) < 0.0 {
@@ -117,12 +126,43 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             return Some((end.t, values[PARTS]));
         }
         let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
-        let mut own = |t: f64| self.value_within(dense, t);
-        let (t, value) = minimum(&mut own, (place(low), place(high)));
+        let mut inside = |t: f64| match &own {
+            Some(polynomial) => polynomial.value((t - dense.start()) / dense.length()),
+            None => self.value_within(dense, t),
+        };
+        let (t, value) = minimum(&mut inside, (place(low), place(high)));
         Some(match value < values[PARTS] {
             true => (t, value),
             false => (end.t, values[PARTS]),
         })
+    }
+
+    /// The polynomial that it is in the last step, from its start: that of its coordinate or rate, and what does not move. `None`: it is
+    /// not of that shape.
+    fn polynomial(
+        &mut self,
+        dense: &dyn Motion<F>,
+        start: &State<F>,
+    ) -> Option<Polynomial<ORDERS>> {
+        let GuardShape::Linear {
+            index,
+            rate,
+            factor,
+            discrete,
+            ..
+        } = self.guard.shape
+        else {
+            return None;
+        };
+        if self.watched.condition.is_some() {
+            return None;
+        }
+        let factor = slope((factor, discrete), self.equations.context);
+        let mut coefficients = [0.0; ORDERS];
+        let own = &mut coefficients[1..dense.coefficients(rate)];
+        dense.polynomial((index, rate), factor, 1, own);
+        coefficients[0] = self.value(start.t, &start.q, &start.v);
+        Some(Polynomial { coefficients })
     }
 
     /// Whether it rises in the whole of the last step, or falls: where the first coefficient of its slope outweighs

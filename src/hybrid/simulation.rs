@@ -94,12 +94,14 @@ pub(super) struct Simulation<'p> {
     pub plan: Plan,
     pub context: Context,
     pub here: Here,
-    /// All coordinates at the start of the segment, where something moves that the mode holds.
+    /// What the context held at the start of the segment, where something moves that the mode holds.
     pub at_start: Box<[f64]>,
-    /// Rates of the frozen coordinates in the present mode.
+    /// Rates of the frozen coordinates in the present mode; 0 of the prescribed motions, which are held where they were.
     pub drift: Box<[f64]>,
     /// Room for those of another mode.
     pub drift_of_target: Box<[f64]>,
+    /// Room for what another mode holds, and where.
+    pub held_by_target: Box<[f64]>,
     /// Remembered signs of what is watched in the present mode.
     pub signs: Signs,
     pub doubts: Doubts,
@@ -195,9 +197,10 @@ impl<'p> Simulation<'p> {
                 v: problem.initial.v.clone().into(),
                 a: zeros(n),
             },
-            at_start: zeros(n),
-            drift: zeros(n),
-            drift_of_target: zeros(n),
+            at_start: zeros(n + model.motions.len()),
+            drift: zeros(n + model.motions.len()),
+            drift_of_target: zeros(n + model.motions.len()),
+            held_by_target: zeros(n + model.motions.len()),
             signs: Signs::default(),
             doubts: Doubts::new(modes),
             margins: Margins::new(problem),
@@ -220,7 +223,10 @@ impl<'p> Simulation<'p> {
             has_inertia: vec![false; modes.len()].into(),
             sizes: sizes(&accuracy.q_absolute),
             rate_sizes: sizes(&accuracy.v_absolute),
-            expansion: Expansion::new(n, context_signals, &problem.parameters),
+            expansion: Expansion::new(
+                [n, model.motions.len(), context_signals],
+                &problem.parameters,
+            ),
             methods: Vec::new(),
             counted: 0,
             at_zero: Vec::new(),
@@ -481,7 +487,7 @@ impl<'p> Simulation<'p> {
     pub fn set_context(&mut self) {
         let t = self.here.now.seconds();
         self.context.set_signals(&self.signals, t, Side::Right);
-        self.context.held_mut().copy_from_slice(&self.here.q);
+        self.context.hold(&self.here.q);
     }
 
     /// Sets the free coordinates of the present mode, for whose time the context is set, and what moves with them.

@@ -177,7 +177,7 @@ impl Simulation<'_> {
     fn misfit(&mut self, mode: &Mode) -> Option<Misfitting> {
         let model = &self.problem.model;
         let n = self.here.q.len();
-        self.context.held_mut().copy_from_slice(&self.here.q);
+        self.set_context();
         let (held, rest) = self.next.split_at_mut(n);
         let rates = &mut rest[..n];
         let roundings = with_kernel!(&mode.kernels, k => {
@@ -227,7 +227,7 @@ impl Simulation<'_> {
     /// A scene that names a mode need not state the rates of what moves although the mode holds it.
     pub fn apply_drift(&mut self) {
         let mode = self.mode();
-        self.context.held_mut().copy_from_slice(&self.here.q);
+        self.set_context();
         let mut rates = vec![0.0; self.here.v.len()];
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = self.here.free(k.size(), &mode.free);

@@ -37,14 +37,14 @@ impl Problem {
             if !plan.allowed[m] {
                 continue;
             }
-            context.held_mut().copy_from_slice(&self.initial.q);
+            context.hold(&self.initial.q);
             let mut held = vec![0.0; self.initial.q.len()];
             with_kernel!(&mode.kernels, k => {
                 let free = |all: &[f64]| k.size().vector(|i| all[mode.free[i]]);
                 let [q, v] = [&self.initial.q, &self.initial.v].map(|all| free(all));
                 k.coordinates(&context, Free { q: &q, v: &v, a: &v }, &mut held);
             });
-            context.held_mut().copy_from_slice(&held);
+            context.hold(&held);
             let watched = plan.watched[m].iter().filter(|w| w.condition.is_none());
             let general = watched.map(|w| &mode.guards[w.guard]);
             for guard in general.filter(|g| matches!(g.shape, GuardShape::General { .. })) {

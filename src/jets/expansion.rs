@@ -13,7 +13,7 @@ pub(crate) struct Point<'a> {
     pub q: &'a [f64],
     /// All velocities.
     pub v: &'a [f64],
-    /// All coordinates where the mode holds them, or where they were as it began.
+    /// All coordinates where the mode holds them, or where they were as it began; then the prescribed motions, where some mode needs them.
     pub held: &'a [f64],
     /// Rates of these; empty where nothing drifts.
     pub drift: &'a [f64],
@@ -42,13 +42,13 @@ pub(crate) struct Expansion {
 }
 
 impl Expansion {
-    /// Room for a model with so many coordinates and signals, at some parameters.
-    pub fn new(coordinates: usize, signals: usize, parameters: &[f64]) -> Self {
+    /// Room for a model with so many coordinates, prescribed motions and signals, at some parameters.
+    pub fn new([coordinates, motions, signals]: [usize; 3], parameters: &[f64]) -> Self {
         let rows = |count: usize| vec![Powers::default(); count];
         Expansion {
             given: Operands {
                 q: rows(coordinates),
-                held: rows(coordinates),
+                held: rows(coordinates + motions),
                 v: rows(coordinates),
                 a: rows(coordinates),
                 signals: rows(signals),
@@ -111,8 +111,10 @@ impl Expansion {
             given.q[i][0] = known(at.q[i], 0);
             given.v[i][0] = known(at.v[i], 1);
             given.q[i][1] = given.v[i][0];
+        }
+        for (i, &place) in at.held.iter().enumerate() {
             given.held[i] = Powers::default();
-            given.held[i][0] = Bounded::exact(at.held[i]);
+            given.held[i][0] = Bounded::exact(place);
             given.held[i][1] = Bounded::exact(at.drift.get(i).copied().unwrap_or(0.0));
         }
         for (rows, tape) in [

@@ -287,7 +287,7 @@ impl<F: Size> ModeKernel<F> {
     pub fn reactions(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
         assert_eq!(
             out.len(),
-            self.dimensions.coordinates + self.dimensions.motions
+            self.dimensions.coordinates + self.dimensions.motions.len()
         );
         // SAFETY: the length was checked.
         unsafe { self.call(self.functions.reactions, x, at, out.as_mut_ptr()) }
@@ -328,7 +328,7 @@ impl<F: Size> ModeKernel<F> {
     pub fn momenta(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
         assert_eq!(
             out.len(),
-            self.dimensions.coordinates + self.dimensions.motions
+            self.dimensions.coordinates + self.dimensions.motions.len()
         );
         // SAFETY: the length was checked.
         unsafe { self.call(self.functions.momenta, x, at, out.as_mut_ptr()) }

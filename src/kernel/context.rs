@@ -12,8 +12,8 @@ use std::sync::Arc;
 pub(crate) struct Dimensions {
     /// Coordinates.
     pub coordinates: usize,
-    /// Ground motions.
-    pub motions: usize,
+    /// Of each prescribed motion, the signal that is its place.
+    pub motions: Box<[usize]>,
     /// Signals.
     pub signals: usize,
     /// Discrete states.
@@ -66,7 +66,7 @@ pub(super) struct Arrays {
     pub signal_rates: Array<f64>,
     /// Discrete states.
     pub discrete: Array<f64>,
-    /// All coordinates; the generated functions read those that the mode holds.
+    /// All coordinates, then the places of the prescribed motions; the generated functions read what the mode holds, and where.
     pub held: Array<f64>,
     pub constants: Array<f64>,
     /// Sines and cosines that were computed last, for functions that ask for them again.
@@ -155,7 +155,7 @@ impl Context {
             signals: zeros(dimensions.signals),
             signal_rates: zeros(dimensions.signals),
             discrete: Array::of(discrete),
-            held: zeros(dimensions.coordinates),
+            held: zeros(dimensions.coordinates + dimensions.motions.len()),
             constants: Array::of(values),
             angles: Array::of(vec![Cell::new(KeptAngle::ZERO); dimensions.angles]),
         };
@@ -193,14 +193,24 @@ impl Context {
         &mut self.arrays.discrete
     }
 
-    /// All coordinates; the generated functions read those that the mode holds.
+    /// All coordinates, then the places of the prescribed motions; the generated functions read what the mode holds, and where.
     pub fn held(&self) -> &[f64] {
         &self.arrays.held
     }
 
-    /// All coordinates, to be changed.
+    /// The same, to be changed.
     pub fn held_mut(&mut self) -> &mut [f64] {
         &mut self.arrays.held
+    }
+
+    /// Lets a mode hold what it holds where the coordinates `q` are, and the motions by the present signals.
+    #[inline(always)]
+    pub fn hold(&mut self, q: &[f64]) {
+        let (own, motions) = self.arrays.held.split_at_mut(q.len());
+        own.copy_from_slice(q);
+        for (place, &signal) in motions.iter_mut().zip(&self.dimensions.motions) {
+            *place = self.arrays.signals[signal];
+        }
     }
 
     /// Signals of the inputs at the present time.

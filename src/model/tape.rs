@@ -158,17 +158,27 @@ impl Tape {
                 Instruction::Difference(x, y) => rows[x][k] - rows[y][k],
                 Instruction::Negative(x) => -rows[x][k],
                 Instruction::Product(x, y) => {
-                    (0..=k).fold(Bounded::default(), |z, j| z + rows[x][j] * rows[y][k - j])
+                    let (x, y) = (&rows[x], &rows[y]);
+                    let mut sum = Bounded::default();
+                    // What is constant is nothing beyond its first.
+                    for j in (0..=k).filter(|&j| !x[j].is_nothing() && !y[k - j].is_nothing()) {
+                        sum = sum + x[j] * y[k - j];
+                    }
+                    sum
                 }
                 Instruction::Quotient(x, y) => {
-                    let rest = (1..=k).fold(rows[x][k], |z, j| z - rows[y][j] * rows[place][k - j]);
+                    let mut rest = rows[x][k];
+                    for j in 1..=k {
+                        rest = rest - rows[y][j] * rows[place][k - j];
+                    }
                     rest / rows[y][0]
                 }
                 Instruction::Function(name, x, _) if k == 0 => name.of(rows[x][0]),
                 Instruction::Function(_, x, w) => {
-                    let sum = (1..=k).fold(Bounded::default(), |z, j| {
-                        z + Bounded::exact(j as f64) * rows[x][j] * rows[w][k - j]
-                    });
+                    let mut sum = Bounded::default();
+                    for j in 1..=k {
+                        sum = sum + Bounded::exact(j as f64) * rows[x][j] * rows[w][k - j];
+                    }
                     sum / Bounded::exact(k as f64)
                 }
                 Instruction::Fixed(pick, x, y) if k == 0 => pick.of(rows[x][0], rows[y][0]),

@@ -14,8 +14,25 @@ use std::path::Path;
 /// Models in the suite: each is derived and compiled twice.
 const SHARE: u64 = 6;
 
-/// A line that solves for a coordinate of so many: itself, or with what another adds.
+/// A line that solves for a coordinate of so many: itself, or with what another or a prescribed motion adds, and by some factor.
 fn line(random: &mut Random, i: usize, n: usize) -> String {
+    let factor = match random.next().is_multiple_of(6) {
+        true => *random.one_of(&["ratio * ", "2 * ", "-0.5 / ratio * "]),
+        false => "",
+    };
+    let motion = match random.next().is_multiple_of(4) {
+        true => *random.one_of(&[" - z", " + 0.5 * z", " - one * sin(z / one)"]),
+        false => "",
+    };
+    let place = with_others(random, i, n);
+    match (factor, motion) {
+        ("", "") => place,
+        _ => format!("{factor}({place}{motion})"),
+    }
+}
+
+/// A coordinate, or with what another adds.
+fn with_others(random: &mut Random, i: usize, n: usize) -> String {
     if n == 1 || random.next().is_multiple_of(2) {
         return format!("x{i}");
     }
@@ -42,6 +59,8 @@ fn model(random: &mut Random) -> (String, usize, bool) {
          c = model.parameter(\"c\", \"N s/m\", 1.0, \"damping\", above=0)\n\
          N = model.parameter(\"N\", \"N\", 1.0, \"force\", above=0)\n\
          speed = model.parameter(\"speed\", \"m/s\", 1.0, \"speed of belts\", above=0)\n\
+         ratio = model.parameter(\"ratio\", \"1\", 1.3, \"of a gear\", above=0)\n\
+         z = model.motion(\"z\", \"a table, or a belt\", input=\"a\")\n\
          F = model.input(\"F\", \"N\", \"force\")\n",
     );
     let mut say = |line: String| writeln!(text, "{line}").unwrap();
@@ -237,6 +256,10 @@ fn random_models_move_alike_in_both_forms() {
             "inputs": { "F": { "sine": {
                 "amplitude": random.within(0.0, 15.0),
                 "angular_frequency": random.within(1.0, 8.0),
+            } }, "a": { "sine": {
+                "amplitude": random.within(0.0, 8.0),
+                "angular_frequency": random.within(1.0, 8.0),
+                "phase": random.within(0.0, 6.0),
             } } },
             "end": 3.0,
             "accuracy": { "relative": 1e-11 },

@@ -58,7 +58,7 @@ fn dimensions(at: &At) -> Read<Dimensions> {
     let signals = at.get("signals", count)?;
     Ok(Dimensions {
         coordinates: at.get("coordinates", count)?,
-        motions: at.get("motions", count)?,
+        motions: at.get("motions", |at| at.list(|at| at.index(signals)))?,
         signals,
         discretes: at.get("discretes", count)?,
         parameters: at.get("parameters", count)?,
@@ -111,7 +111,7 @@ impl Reader<'_> {
             source: at.get("source", text)?,
             coordinates: at.get("coordinates", |at| at.list_of(of.coordinates, coordinate))?,
             motions: at.get("motions", |at| {
-                at.list_of(of.motions, |at| motion(at, inputs.len()))
+                at.list_of(of.motions.len(), |at| motion(at, inputs.len()))
             })?,
             parameters,
             parameter_sets: at.get("parameter_sets", |at| at.list(parameter_set))?,

@@ -32,7 +32,7 @@ impl Reader<'_> {
             Ok(match key {
                 "Constant" => Instruction::Constant(number(at)?),
                 "Coordinate" => Instruction::Coordinate(at.index(of.coordinates)?),
-                "Held" => Instruction::Held(at.index(of.coordinates)?),
+                "Held" => Instruction::Held(at.index(of.coordinates + of.motions.len())?),
                 "Rate" => Instruction::Rate(at.index(of.coordinates)?),
                 "Acceleration" => Instruction::Acceleration(at.index(of.coordinates)?),
                 "Signal" => Instruction::Signal(at.index(of.signals)?),
