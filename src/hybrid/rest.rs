@@ -15,7 +15,7 @@ use super::unrest::{Restless, Unfit};
 use crate::integrate::ORDERS;
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{Guard, GuardShape, Mode};
-use crate::numerics::Size;
+use crate::numerics::{Side, Size};
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ const TOLD: f64 = (1u64 << 13) as f64;
 
 impl<'p> Simulation<'p> {
     /// The mode and the limit of an accumulation that the last events make certain, where a rest fits it.
-    pub fn rest(&self) -> Option<(usize, Limit)> {
+    pub fn rest(&mut self) -> Option<(usize, Limit)> {
         if !self.plan.rests(self.here.mode) {
             return None;
         }
@@ -51,13 +51,14 @@ impl<'p> Simulation<'p> {
         if limit.at.seconds() >= self.problem.end.time {
             return None;
         }
-        let target = self.fitting(&limit, false)?;
+        let target = self.fitting_at(&limit, false)?;
         Some((target, limit))
     }
 
     /// The same where hops at a stop that is not at zero have become lower than the rounding of its gap, which keeps them
     /// from becoming lower still: the limit that was told best before. (A hop begins at the stop and ends one rounding
-    /// beyond it, which makes up for what a low impact takes.)
+    /// beyond it, which makes up for what a low impact takes.) By where the series of hops ends no other coordinate is
+    /// known to rounding: these go on from here as they move.
     fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
         let height = self.lowest_hop()?;
         // What is told of lower hops is worse than what higher ones have told.
@@ -71,7 +72,15 @@ impl<'p> Simulation<'p> {
         if limit.at.seconds() >= self.problem.end.time {
             return None;
         }
-        let target = self.fitting(&limit, true)?;
+        let target = self.fitting_at(&limit, true)?;
+        let mut limit = limit;
+        let (before, mode) = (self.here.now, self.mode());
+        let [q, v, a] = [&self.here.q, &self.here.v, &self.here.a].map(|x| x.clone());
+        if with_kernel!(&mode.kernels, k => self.go_on_to(k, before, limit.at)).is_ok() {
+            limit.state[..q.len()].copy_from_slice(&self.here.q);
+        }
+        self.here.now = before;
+        (self.here.q, self.here.v, self.here.a) = (q, v, a);
         Some((target, limit))
     }
 
@@ -79,7 +88,7 @@ impl<'p> Simulation<'p> {
     /// high that rounding does not tell its duration from that of another, to half of all digits. A hop of the duration T that
     /// ends with the rate u is about |u| T/4 high.
     fn lowest_hop(&self) -> Option<f64> {
-        let duration = self.accumulation.last_duration()?;
+        let duration = self.accumulation.last_hop()?;
         let impacts = self.mode().guards.iter().filter(|guard| is_impact(guard));
         let heights = impacts.filter_map(|guard| {
             let (rate, rounding) = self.closed_gap(guard)?;
@@ -122,9 +131,9 @@ impl<'p> Simulation<'p> {
                 return Ok(());
             }
         } else if let Some((target, limit)) = self.rest() {
-            return self.come_to_rest(target, &limit);
+            return self.come_to_rest_together(target, limit, false);
         } else if let Some((target, limit)) = self.rest_below_rounding() {
-            return self.come_to_rest(target, &limit);
+            return self.come_to_rest_together(target, limit, true);
         }
         let relative = self.problem.accuracy.relative;
         if self.accumulation.stands_still(self.here.now) || self.accumulation.is_over(relative) {
@@ -156,6 +165,26 @@ impl<'p> Simulation<'p> {
         self.fire(violation.guard)
     }
 
+    /// Enters a mode that fits the limit of an accumulation, and from there what else the same limit fits: contacts that
+    /// accumulate side by side.
+    fn come_to_rest_together(
+        &mut self,
+        target: usize,
+        mut limit: Limit,
+        uncertain: bool,
+    ) -> Stoppable<()> {
+        let mut next = Some(target);
+        while let Some(target) = next {
+            self.come_to_rest(target, &limit)?;
+            limit.modes = vec![target];
+            next = match self.is_over() {
+                true => None,
+                false => self.fitting_at(&limit, uncertain),
+            };
+        }
+        Ok(())
+    }
+
     /// Enters a mode that fits the limit of an accumulation.
     fn come_to_rest(&mut self, target: usize, limit: &Limit) -> Stoppable<()> {
         let n = self.here.q.len();
@@ -167,6 +196,7 @@ impl<'p> Simulation<'p> {
         self.here.now = limit.at;
         self.here.q.copy_from_slice(&limit.state[..n]);
         self.here.v.copy_from_slice(&limit.state[n..]);
+        self.set_context();
         self.next[..2 * n].copy_from_slice(&limit.state);
         self.next[2 * n..].copy_from_slice(self.context.discrete());
         for held in self.holds(&self.modes[target], &limit.state) {
@@ -229,6 +259,14 @@ impl<'p> Simulation<'p> {
             ledger.add_work(work);
             ledger.add_jump(jump);
         }
+    }
+
+    /// [`Self::fitting`] with the motions that are prescribed as they are at the limit.
+    fn fitting_at(&mut self, limit: &Limit, uncertain: bool) -> Option<usize> {
+        (self.context).set_signals(&self.signals, limit.at.seconds(), Side::Right);
+        let target = self.fitting(limit, uncertain);
+        self.set_context();
+        target
     }
 
     /// The rest that a limit of events in some modes comes to: of those declared for these modes that fit it the

@@ -59,7 +59,7 @@ impl<const F: usize> Point<F> {
             a: &free,
         };
         kernel.coordinates(&context, at, &mut held);
-        context.held_mut().copy_from_slice(&held);
+        context.held_mut()[..held.len()].copy_from_slice(&held);
         let [signals, rates] = context.signals_mut();
         signals.fill_with(|| random.next());
         rates.fill_with(|| random.next());
@@ -74,7 +74,7 @@ impl<const F: usize> Point<F> {
             }
         }
         let held = context.held().to_vec();
-        let mut drift = vec![0.0; held.len()];
+        let mut drift = vec![0.0; model.coordinates.len()];
         kernel.drift(&context, &mut drift);
         let rate = |i: usize| model.coordinates[mode.free[i]].rate_scale;
         Point {

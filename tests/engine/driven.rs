@@ -1,5 +1,6 @@
 //! Prescribed motions that are not of the ground: a belt and a crank, from where they start.
 
+use super::multipliers::sine;
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Table};
@@ -204,4 +205,41 @@ fn only_what_is_not_of_the_ground_starts_somewhere() {
     // Nor does it have to be given.
     let run = simulate(&driven, &mut Silent).unwrap();
     assert_eq!(run.failure.map(|f| f.reason.to_string()), None);
+}
+
+/// Two that hop side by side have an accumulation each; neither is taken for lower hops of the other, both rest at the same limit, and
+/// that is where one rests alone. Heights are far above the hops, so that the last of these are below rounding.
+#[test]
+fn masses_that_hop_side_by_side_on_a_driven_table_rest_together() {
+    let ends = |other: f64| {
+        let mut masses = problem("masses_on_a_table", &[]);
+        for (what, value) in [("table", 0.7), ("one", 0.9), ("other", other)] {
+            masses.set_initial(what, value).unwrap();
+        }
+        let shakes = sine("4 sin(9 t+1)");
+        masses.set_input("a", shakes).unwrap();
+        let mut masses = at_tolerance(masses, Method::Taylor, 0.6);
+        masses.record.columns.outputs = true;
+        masses.record.every = Some(0.01);
+        run(&masses)
+    };
+    let [both, alone] = [0.9, 20.0].map(ends);
+    let rests = times(&both, "rest");
+    let [first, second] = rests[..] else {
+        panic!("{:?}", transitions(&both));
+    };
+    assert_eq!(first, second);
+    let [expected] = times(&alone, "rest")[..] else {
+        panic!("{:?}", transitions(&alone));
+    };
+    assert!((first - expected).abs() < 1e-9, "{first} {expected}");
+    let strikes = ["first strikes", "second strikes"].map(|name| times(&both, name).len());
+    assert!(strikes[0].abs_diff(strikes[1]) <= 1, "{strikes:?}");
+    for name in ["first.gap", "second.gap"] {
+        let column = both.trajectory.column(name).expect("a column");
+        let (_, peak) = (both.peaks.iter().find(|(of, _)| *of == column)).expect("a peak");
+        assert!(peak.min > -1e-12, "{name}: {peak:?}");
+    }
+    let ledger = both.energy.as_ref().unwrap();
+    assert!(ledger.imbalance().abs() < 1e-11, "{ledger:?}");
 }

@@ -313,6 +313,30 @@ fn wheels_that_are_thrown_are_in_ensembles_what_they_are_alone() {
     }
 }
 
+/// What sticks to a belt moves with it, from where both were as it began to stick.
+#[test]
+fn masses_on_driven_belts_are_in_ensembles_what_they_are_alone() {
+    let mut mass = problem("driven_belt", &[("k", 30.0)]);
+    let driven = Sine::new(6.0, 5.0, 0.4);
+    mass.set_input("belt_acceleration", Function::from(driven))
+        .unwrap();
+    mass.end.time = 4.0;
+    set_size(&mut mass, 1e-10, 1.0, 1.0);
+    let masses = variations(&mass, 9, |p, x| {
+        p.set_initial("belt", 3.0 * x).unwrap();
+        p.set_initial("x.rate", 0.5 * x).unwrap();
+    });
+    let ends = together(&masses, processor_level(), 1);
+    assert!(difference(&alone(&masses), &ends) < 1e-8);
+    for name in ["base sticks", "base slips"] {
+        assert!(
+            ends.iter()
+                .all(|end| end.events.iter().any(|e| e.0 == name)),
+            "{name}"
+        );
+    }
+}
+
 /// Three masses of which two slip and stop at the same instants: what frictions decide together is handed out.
 #[test]
 fn ties_of_frictions_are_in_ensembles_what_they_are_alone() {

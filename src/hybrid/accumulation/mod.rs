@@ -226,9 +226,16 @@ impl Accumulation {
         (self.count > 0).then(|| (self.at(0), self.state(0), self.discrete(0)))
     }
 
-    /// Time between the last two events, s.
-    pub fn last_duration(&self) -> Option<f64> {
-        (self.count > 1).then(|| self.at(0).since(self.at(1)))
+    /// What an event was, and in which mode it happened. Discrete states do not count.
+    fn event(&self, back: usize) -> (u64, usize) {
+        (self.keys[self.slot(back)], self.mode(back + 1))
+    }
+
+    /// Time since the event before the last one that was like it, s, if one is remembered: others may have happened at the same instant.
+    pub fn last_hop(&self) -> Option<f64> {
+        let known = LONGEST_PATTERN.min(self.count.saturating_sub(2));
+        let before = (1..=known).find(|&p| self.event(p) == self.event(0))?;
+        Some(self.at(0).since(self.at(before)))
     }
 
     /// Slot of the event so many before the last.
@@ -277,13 +284,11 @@ impl Accumulation {
     /// nothing is told. Discrete states do not count: of what they say about what is open nothing follows.
     pub fn foreseen(&self) -> f64 {
         let known = LONGEST_PATTERN.min(self.count.saturating_sub(2) / 2);
-        // What has happened, and in which mode.
-        let event = |back: usize| (self.keys[self.slot(back)], self.mode(back + 1));
-        let Some(p) = (1..=known).find(|&p| event(p) == event(0)) else {
+        let Some(p) = (1..=known).find(|&p| self.event(p) == self.event(0)) else {
             return f64::INFINITY;
         };
         let after = |back: usize| self.at(back - 1).since(self.at(back));
-        match event(2 * p) == event(0) && after(p) < after(2 * p) {
+        match self.event(2 * p) == self.event(0) && after(p) < after(2 * p) {
             true => after(p),
             false => f64::INFINITY,
         }
