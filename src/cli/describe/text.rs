@@ -251,7 +251,7 @@ fn mode(f: &mut Formatter, mode: &Mode) -> fmt::Result {
 fn held(held: &Held) -> String {
     match (held.drifts, held.at) {
         _ if held.depends => match held.at {
-            Some(At::Number(_)) | None => format!("{} by those that are free", held.coordinate),
+            Some(At::Number(_)) | None => format!("{} with what it depends on", held.coordinate),
             Some(At::Expression(text)) => format!("{} at {text}", held.coordinate),
         },
         (true, _) => format!("{} moving at its rate", held.coordinate),
