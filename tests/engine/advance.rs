@@ -340,7 +340,8 @@ fn seven_masses() -> impl Iterator<Item = (String, Problem)> {
 #[test]
 fn a_run_that_was_saved_and_restored_anywhere_gives_the_same_bits() {
     let scenes = scenes().into_iter().chain(seven_masses());
-    for (name, mut problem) in scenes.chain(super::lines::wheels()) {
+    let scenes = scenes.chain(super::lines::wheels());
+    for (name, mut problem) in scenes.chain(super::driven::carried()) {
         problem.record.columns.energies = true;
         let end = problem.end.time;
         let mut whole = Simulator::new(&problem).unwrap();

@@ -18,6 +18,25 @@ fn at_tolerance(mut problem: Problem, method: Method, end: f64) -> Problem {
     problem
 }
 
+/// A mass on a belt, and two on a table, that are driven, by both methods.
+pub fn carried() -> Vec<(String, Problem)> {
+    let of = |method| {
+        let mut belt = problem("driven_belt", &[("k", 30.0)]);
+        belt.set_initial("belt", 3.0).unwrap();
+        let mut table = problem("masses_on_a_table", &[]);
+        table.set_initial("one", 0.2).unwrap();
+        table.set_initial("other", 0.3).unwrap();
+        for (problem, input) in [(&mut belt, "belt_acceleration"), (&mut table, "a")] {
+            problem.set_input(input, sine("6 sin(5 t+0.4)")).unwrap();
+            problem.method = method;
+            problem.end.time = 3.0;
+        }
+        [("belt", belt), ("table", table)]
+            .map(|(name, problem)| (format!("{name} by {method:?}"), problem))
+    };
+    METHODS.into_iter().flat_map(of).collect()
+}
+
 #[test]
 fn a_belt_of_constant_speed_is_one_whose_speed_is_a_parameter() {
     for method in METHODS {
