@@ -71,13 +71,12 @@ def solve(model):
     for group in groups:
         line = by_name[_name(group)]
         for k, (owner, key, place, offset) in enumerate(group):
-            sign = line.sign * _sign(model, group[0][2], place)
+            relative = _sign(model, group[0][2], place)
             if offset is None:
                 # A slip is known by its rate; the first is the line itself.
                 differs = k > 0 and key != "slip"
-                first = group[0][2] * _sign(model, group[0][2], place)
-                offset = ca.substitute(place - first, derive.configuration(model).q, 0) if differs else ca.SX(0)
-            setattr(owner, key, Line(line.symbol, sign, offset, line.coordinate, line.scale))
+                offset = ca.substitute(place - relative * group[0][2], derive.configuration(model).q, 0) if differs else ca.SX(0)
+            setattr(owner, key, Line(line.symbol, line.sign * relative, offset, line.coordinate, line.scale))
 
 
 def _parts(model):

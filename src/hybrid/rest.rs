@@ -57,8 +57,7 @@ impl<'p> Simulation<'p> {
 
     /// The same where hops at a stop that is not at zero have become lower than the rounding of its gap, which keeps them
     /// from becoming lower still: the limit that was told best before. (A hop begins at the stop and ends one rounding
-    /// beyond it, which makes up for what a low impact takes.) By where the series of hops ends no other coordinate is
-    /// known to rounding: these go on from here as they move.
+    /// beyond it, which makes up for what a low impact takes.)
     fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
         let height = self.lowest_hop()?;
         // What is told of lower hops is worse than what higher ones have told.
@@ -73,14 +72,6 @@ impl<'p> Simulation<'p> {
             return None;
         }
         let target = self.fitting_at(&limit, true)?;
-        let mut limit = limit;
-        let (before, mode) = (self.here.now, self.mode());
-        let [q, v, a] = [&self.here.q, &self.here.v, &self.here.a].map(|x| x.clone());
-        if with_kernel!(&mode.kernels, k => self.go_on_to(k, before, limit.at)).is_ok() {
-            limit.state[..q.len()].copy_from_slice(&self.here.q);
-        }
-        self.here.now = before;
-        (self.here.q, self.here.v, self.here.a) = (q, v, a);
         Some((target, limit))
     }
 
@@ -132,7 +123,8 @@ impl<'p> Simulation<'p> {
             }
         } else if let Some((target, limit)) = self.rest() {
             return self.come_to_rest_together(target, limit, false);
-        } else if let Some((target, limit)) = self.rest_below_rounding() {
+        } else if let Some((target, mut limit)) = self.rest_below_rounding() {
+            self.go_on_as_it_moves(&mut limit)?;
             return self.come_to_rest_together(target, limit, true);
         }
         let relative = self.problem.accuracy.relative;
@@ -163,6 +155,18 @@ impl<'p> Simulation<'p> {
             }
         }
         self.fire(violation.guard)
+    }
+
+    /// Lets the coordinates of a limit be where the motion from here leads: a series of hops tells them less well, as it leaves out what
+    /// they are accelerated by in a hop.
+    fn go_on_as_it_moves(&mut self, limit: &mut Limit) -> Stoppable<()> {
+        let (before, mode) = (self.here.now, self.mode());
+        let [q, v, a] = [&self.here.q, &self.here.v, &self.here.a].map(|x| x.clone());
+        with_kernel!(&mode.kernels, k => self.go_on_to(k, before, limit.at))?;
+        limit.state[..q.len()].copy_from_slice(&self.here.q);
+        self.here.now = before;
+        (self.here.q, self.here.v, self.here.a) = (q, v, a);
+        Ok(())
     }
 
     /// Enters a mode that fits the limit of an accumulation, and from there what else the same limit fits: contacts that

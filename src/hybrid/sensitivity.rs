@@ -29,8 +29,9 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     /// Its value in a state at local time `t`.
     pub fn value(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
         let mut a = q.size().zeros();
-        if !depends_on_accelerations((self.guard, self.watched)) && self.watched.condition.is_none()
-        {
+        let needs_accelerations = self.watched.condition.is_some()
+            || depends_on_accelerations((self.guard, self.watched));
+        if !needs_accelerations {
             self.equations.at(t);
         } else if self.equations.acceleration(t, q, v, &mut a).is_err() {
             return f64::NAN;
@@ -91,7 +92,8 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             None => rate_at(own.equations, own.guard, state),
             Some(_) => f64::NAN,
         };
-        match self.rises_throughout(dense) {
+        let mut own = self.changes(dense);
+        match own.as_ref().and_then(rises_throughout) {
             Some(true) => return None,
             Some(false) => return Some((end.t, self.value(end.t, &end.q, &end.v))),
             None => {}
@@ -104,17 +106,18 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             PARTS => end.t,
             k => from + k as f64 / PARTS as f64 * (end.t - from),
         };
-        let own = self.polynomial(dense, start);
-        let mut inside = |t: f64| match &own {
-            Some(polynomial) => polynomial.value((t - dense.start()) / dense.length()),
-            None => self.value_within(dense, t),
+        if let Some(own) = &mut own {
+            own.coefficients[0] = self.value(start.t, &start.q, &start.v);
+        }
+        let inside = |watched: &mut Self, t: f64| match &own {
+            Some(own) => own.value((t - dense.start()) / dense.length()),
+            None => watched.value_within(dense, t),
         };
-        let mut values: [f64; PARTS + 1] = std::array::from_fn(|k| match k {
-            PARTS => f64::NAN,
-            k => inside(place(k)),
+        let values: [f64; PARTS + 1] = std::array::from_fn(|k| match k {
+            // More accurate than the dense output.
+            PARTS => self.value(end.t, &end.q, &end.v),
+            k => inside(self, place(k)),
         });
-        // More accurate than the dense output.
-        values[PARTS] = self.value(end.t, &end.q, &end.v);
         let falls = |&k: &usize| values[k + 1] < values[k];
         // Between the first two places it may turn; at the start its slope tells at once that it falls.
         let first = match from == start.t && rate(start, self) < 0.0 {
@@ -126,24 +129,16 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             return Some((end.t, values[PARTS]));
         }
         let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
-        let mut inside = |t: f64| match &own {
-            Some(polynomial) => polynomial.value((t - dense.start()) / dense.length()),
-            None => self.value_within(dense, t),
-        };
-        let (t, value) = minimum(&mut inside, (place(low), place(high)));
+        let (t, value) = minimum(&mut |t| inside(self, t), (place(low), place(high)));
         Some(match value < values[PARTS] {
             true => (t, value),
             false => (end.t, values[PARTS]),
         })
     }
 
-    /// The polynomial that it is in the last step, from its start: that of its coordinate or rate, and what does not move. `None`: it is
-    /// not of that shape.
-    fn polynomial(
-        &mut self,
-        dense: &dyn Motion<F>,
-        start: &State<F>,
-    ) -> Option<Polynomial<ORDERS>> {
+    /// How it changes from the start of the last step, in powers of the part of its length: as its coordinate or rate does. `None`: it is no
+    /// multiple of one and what does not move.
+    fn changes(&self, dense: &dyn Motion<F>) -> Option<Polynomial<ORDERS>> {
         let GuardShape::Linear {
             index,
             rate,
@@ -161,34 +156,7 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
         let mut coefficients = [0.0; ORDERS];
         let own = &mut coefficients[1..dense.coefficients(rate)];
         dense.polynomial((index, rate), factor, 1, own);
-        coefficients[0] = self.value(start.t, &start.q, &start.v);
         Some(Polynomial { coefficients })
-    }
-
-    /// Whether it rises in the whole of the last step, or falls: where the first coefficient of its slope outweighs
-    /// all others. `None`: it may turn, or is no multiple of a coordinate or its rate.
-    fn rises_throughout(&self, dense: &dyn Motion<F>) -> Option<bool> {
-        let GuardShape::Linear {
-            index,
-            rate,
-            factor,
-            discrete,
-            ..
-        } = self.guard.shape
-        else {
-            return None;
-        };
-        if self.watched.condition.is_some() {
-            return None;
-        }
-        let factor = slope((factor, discrete), self.equations.context);
-        let mut room = [0.0; ORDERS];
-        let own = &mut room[1..dense.coefficients(rate)];
-        dense.polynomial((index, rate), factor, 1, own);
-        let (first, others) = own.split_first()?;
-        let others = others.iter().zip(2_u8..);
-        let others: f64 = others.map(|(c, k)| f64::from(k) * c.abs()).sum();
-        (first.abs() > others).then_some(*first > 0.0)
     }
 
     /// Its value on the dense output at local time `t`.
@@ -303,4 +271,14 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             .filter(|t| allowed.allowed[t.target]);
         admissible.any(|t| conditions.least(kernel, context, t, at) >= 0.0)
     }
+}
+
+/// Whether a polynomial rises in the whole of a step, or falls: where the first coefficient of its slope outweighs all others. `None`:
+/// it may turn.
+fn rises_throughout(polynomial: &Polynomial<ORDERS>) -> Option<bool> {
+    let [_, first, others @ ..] = &polynomial.coefficients;
+    let others: f64 = (others.iter().zip(2_u8..))
+        .map(|(c, k)| f64::from(k) * c.abs())
+        .sum();
+    (first.abs() > others).then_some(*first > 0.0)
 }

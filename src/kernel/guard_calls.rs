@@ -2,7 +2,7 @@
 
 use super::calls::pointer;
 use super::context::Context;
-use super::raw::RawContext;
+use super::raw::{Raw, RawContext};
 use super::tables::{Free, GuardKernel, LinearSystem, ModeKernel, TransitionKernel};
 use crate::numerics::Size;
 use std::sync::Arc;
@@ -15,21 +15,21 @@ impl<F: Size> ModeKernel<F> {
     /// functions that are passed a guard or a transition.
     #[inline]
     pub fn guard(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
+        self.of_guard(guard.value, x, guard, at)
+    }
+
+    /// What a function of a guard with one output gives.
+    #[inline(always)]
+    fn of_guard(&self, function: Raw, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
         assert_eq!(
             guard.free,
             self.size.get(),
             "a guard is evaluated in its own mode"
         );
         let mut out = 0.0;
+        let pointers = at.pointers(self.size);
         // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe {
-            x.call(
-                guard.value,
-                &guard.dimensions,
-                at.pointers(self.size),
-                &mut out,
-            )
-        }
+        unsafe { x.call(function, &guard.dimensions, pointers, &mut out) }
         out
     }
 
@@ -53,22 +53,7 @@ impl<F: Size> ModeKernel<F> {
 
     /// Sum of the absolute values of the terms that a guard is the sum of, in its unit.
     pub fn guard_magnitude(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
-        assert_eq!(
-            guard.free,
-            self.size.get(),
-            "a guard is evaluated in its own mode"
-        );
-        let mut out = 0.0;
-        // SAFETY: one output; the guard's number of free coordinates was checked.
-        unsafe {
-            x.call(
-                guard.magnitude,
-                &guard.dimensions,
-                at.pointers(self.size),
-                &mut out,
-            )
-        }
-        out
+        self.of_guard(guard.magnitude, x, guard, at)
     }
 
     /// The reset of a transition out of this mode: all q, all v, all discrete states after it.
