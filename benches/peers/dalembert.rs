@@ -1,5 +1,6 @@
 //! Our rows of the comparison with other solvers: `cargo bench --bench peers -- [PROBLEM ...]`, or
-//! `overhead` for the cost of a step. `PEERS_DIGITS=6` measures that tolerance alone, 1e-6, as for a profile.
+//! `overhead` for the cost of a step. For a profile `PEERS_DIGITS=6` measures that tolerance alone, 1e-6, and `PEERS_METHOD=Taylor`
+//! that method alone.
 //!
 //! One row a problem, method and tolerance, in the format of `benches/peers/README.md`. Preparation
 //! is outside the timed part, as it is for the peers; events are recorded with their times only.
@@ -36,11 +37,18 @@ fn main() {
     }
     let only = std::env::var("PEERS_DIGITS").ok();
     let only: Option<i32> = only.map(|digits| digits.parse().expect("PEERS_DIGITS is a number"));
+    let method_alone = std::env::var("PEERS_METHOD").ok();
     for name in PROBLEMS {
         if !named.is_empty() && !named.iter().any(|n| n == name) {
             continue;
         }
         for method in METHODS {
+            if method_alone
+                .as_ref()
+                .is_some_and(|alone| format!("{method:?}") != *alone)
+            {
+                continue;
+            }
             if method == Method::Taylor && name == "P4S" {
                 // An explicit method: 300 000 steps.
                 continue;

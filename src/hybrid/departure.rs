@@ -98,21 +98,27 @@ impl Question<'_> {
     /// For how long the first of some coefficients outweighs the others twice, s: till then the sign is its own.
     fn lasts(&self, coefficients: &[crate::jets::Bounded]) -> f64 {
         let (first, others) = coefficients.split_first().expect("it was found");
-        let least = 0.5 * (first.value - first.error);
-        let outweighs = |time: f64| {
-            let of = |sum: f64, c: &crate::jets::Bounded| {
-                let size = c.value.abs() + c.error;
-                // Where nothing is known of an order its neighbours tell.
-                time * (sum + if size.is_finite() { size } else { 0.0 })
-            };
-            others.iter().rev().fold(0.0, of) <= least
-        };
-        let mut time = self.within;
-        while time > 0.0 && !outweighs(time) {
-            time *= 0.5;
-        }
-        time
+        let others = others.iter().map(|c| c.value.abs() + c.error);
+        outweighs_for(first.value - first.error, others, self.within)
     }
+}
+
+/// For how long, and no longer than `within`, the first of some coefficients of a power series is at least twice the sum of the sizes of
+/// the others, s. Where nothing is known of an order its neighbours tell.
+pub(super) fn outweighs_for(
+    first: f64,
+    others: impl DoubleEndedIterator<Item = f64> + Clone,
+    within: f64,
+) -> f64 {
+    let outweighs = |time: f64| {
+        let of = |sum: f64, size: f64| time * (sum + if size.is_finite() { size } else { 0.0 });
+        others.clone().rev().fold(0.0, of) <= 0.5 * first
+    };
+    let mut time = within;
+    while time > 0.0 && !outweighs(time) {
+        time *= 0.5;
+    }
+    time
 }
 
 impl<'p> Simulation<'p> {
@@ -121,10 +127,7 @@ impl<'p> Simulation<'p> {
     #[cold]
     pub fn departure(&mut self, guard: usize, vanishing: usize, shown: usize) -> Departure {
         self.expand_signals();
-        let now = self.here.now.seconds();
-        // The series of an input ends at its next knot, also where it goes on smoothly.
-        let knot = self.signals.next_knot(now);
-        let within = knot.min(self.problem.end.time) - now;
+        let within = self.smooth_from(self.here.now.seconds());
         self.ask(guard, |question, expansion| {
             let question = Question {
                 within,
@@ -134,6 +137,13 @@ impl<'p> Simulation<'p> {
             };
             question.answer(expansion)
         })
+    }
+
+    /// For how long the series of all inputs hold from a time on, and the run lasts, s.
+    pub(super) fn smooth_from(&self, now: f64) -> f64 {
+        // The series of an input ends at its next knot, also where it goes on smoothly.
+        let knot = self.signals.next_knot(now);
+        knot.min(self.problem.end.time) - now
     }
 
     /// Whether a guard of the present mode is at zero or below, as far as roundings tell: its own, and those that it has collected on its

@@ -1,17 +1,18 @@
 //! Start of a segment: consistent accelerations, and the sign of every guard.
 
 use super::contact::{Guarded, guarded_by_contacts, held_by_others};
-use super::departure::{CLEAR, Departure};
+use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
 use super::guards::{Conditions, slope, watched_value};
 use super::inertia::pivots;
+use super::rise::{Leaves, Start};
 use super::roots::Watch;
 use super::simulation::{Simulation, Violation};
+use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::{Size, Vector};
 use crate::jets::ORDERS;
-use crate::kernel::{Context, Free, ModeKernel};
+use crate::kernel::{Free, ModeKernel};
 use crate::model::{Contacts, Guard, GuardShape};
-use crate::numerics::Lu;
 
 impl<'p> Simulation<'p> {
     /// Typical sizes of the free coordinates: absolute ÷ relative tolerance.
@@ -28,7 +29,10 @@ impl<'p> Simulation<'p> {
 
     /// Enters the present mode: sets accelerations and remembered signs, and gives the first guard
     /// that is not respected.
-    pub fn enter<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<Option<Violation>> {
+    pub fn enter<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Stoppable<Option<Violation>>
+    where
+        Solvers: SlotsOf<F>,
+    {
         self.set_context();
         let mode = self.mode();
         if self.plan.moves[self.here.mode] {
@@ -121,8 +125,20 @@ impl<'p> Simulation<'p> {
                 continue;
             }
             let plain = (sign == Watch::Dormant && !watched.conditional)
-                .then(|| start.departure(&self.context, guard, (&a, is_explicit)));
-            let departure = match plain.flatten() {
+                .then(|| start.leaves(&self.context, guard, &a));
+            let plain = match plain.flatten() {
+                // The dense output of the Taylor method shows it as it is.
+                Some(Leaves::BySeries { order, .. }) if is_explicit => {
+                    Some(Departure::Up { order, until: 0.0 })
+                }
+                Some(Leaves::BySeries { coordinate, order }) => {
+                    let until = self.rises_for(kernel, (&start, &a), (coordinate, order));
+                    until.map(|until| Departure::Up { order, until })
+                }
+                Some(Leaves::At(departure)) => Some(departure),
+                None => None,
+            };
+            let departure = match plain {
                 Some(departure) => departure,
                 // A rise by the first derivative shows on a step of the Taylor method.
                 None => {
@@ -259,68 +275,6 @@ impl<'p> Simulation<'p> {
             self.has_inertia[self.here.mode] = true;
         }
         Ok(())
-    }
-}
-
-/// The state at the start of a segment, for guards that are exactly zero there.
-struct Start<'a, F: Size> {
-    kernel: &'a ModeKernel<F>,
-    /// Its mass matrix.
-    mass: &'a Lu<f64, F>,
-    /// Free coordinates and velocities.
-    at: [&'a F::Vector; 2],
-    /// When that is, s.
-    t: f64,
-}
-
-impl<F: Size> Start<'_, F> {
-    /// How a guard that is exactly zero leaves zero, where that takes no expansion: a coordinate by its rate, and what is
-    /// linear by accelerations that are far more than their rounding.
-    ///
-    /// Where the dense output shows a rise as it is, it need not be known how long that lasts: 0. It does where it begins
-    /// with the rate, and on a step of the Taylor method (`is_explicit`), which begins with the acceleration, too.
-    fn departure(
-        &self,
-        context: &Context,
-        guard: &Guard,
-        (a, is_explicit): (&F::Vector, bool),
-    ) -> Option<Departure> {
-        let [q, v] = self.at;
-        let GuardShape::Linear {
-            index,
-            rate,
-            factor,
-            discrete,
-            ..
-        } = guard.shape
-        else {
-            return None;
-        };
-        let factor = slope((factor, discrete), context);
-        let leaves = |derivative: f64, order: usize| match factor * derivative > 0.0 {
-            true => Departure::Up { order, until: 0.0 },
-            false => Departure::Down { order },
-        };
-        if !rate && v[index] != 0.0 {
-            return Some(leaves(v[index], 1));
-        }
-        let inverse = self.mass.inverted();
-        let size = self.kernel.magnitude(context, Free { q, v, a });
-        let terms: f64 = (0..size.size().get())
-            .map(|j| inverse[(index, j)].abs() * size[j])
-            .sum();
-        let departure = leaves(a[index], if rate { 1 } else { 2 });
-        let shows = is_explicit || matches!(departure, Departure::Down { .. });
-        let is_clear = a[index].abs() > CLEAR * terms && self.are_signals_clear(context);
-        (is_clear && factor != 0.0 && shows).then_some(departure)
-    }
-
-    /// Whether no signal is so close to zero that the rounding of the time makes it: then its value is no evidence of its sign.
-    fn are_signals_clear(&self, context: &Context) -> bool {
-        let values = context.signals().iter();
-        values
-            .zip(context.signal_rates())
-            .all(|(value, rate)| value.abs() >= CLEAR * (rate * self.t).abs())
     }
 }
 

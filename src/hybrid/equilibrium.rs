@@ -9,6 +9,7 @@
 use super::failure::Reason;
 use super::limits::check_bounds;
 use super::simulation::Simulation;
+use super::solvers::{SlotsOf, Solvers};
 use super::unrest::{Tried, Unbalanced};
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::numerics::Size;
@@ -75,7 +76,10 @@ impl<'p> Simulation<'p> {
     }
 
     /// Brings the forces of the present mode to zero; why it cannot rest.
-    fn rest_in_mode<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Result<(), Unbalanced> {
+    fn rest_in_mode<F: Size>(&mut self, kernel: &'p ModeKernel<F>) -> Result<(), Unbalanced>
+    where
+        Solvers: SlotsOf<F>,
+    {
         let mode = self.mode();
         let size = kernel.size();
         self.set_context();

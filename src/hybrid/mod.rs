@@ -37,6 +37,7 @@ mod projection;
 mod rest;
 mod result;
 mod resume;
+mod rise;
 pub mod roots;
 mod search;
 mod segment;

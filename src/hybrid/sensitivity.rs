@@ -5,7 +5,7 @@ use super::guards::{Conditions, motion, slope, watched_value};
 use super::locate::{depends_on_accelerations, rate_at};
 use super::plan::Watched;
 use super::problem::Accuracy;
-use super::roots::{Polynomial, Search, minimum};
+use super::roots::{Search, minimum};
 use crate::integrate::{LastStep, Motion, ORDERS, State, System};
 use crate::integrate::{Size, Vector};
 use crate::kernel::Free;
@@ -26,8 +26,28 @@ pub(super) struct WatchedGuard<'e, 'a, 'c, F: Size> {
 }
 
 impl<F: Size> WatchedGuard<'_, '_, '_, F> {
+    /// The coordinate, or rate, that it is a multiple of, with its factor; `None`: it is none, and may depend on the time.
+    fn multiple(&self) -> Option<((usize, bool), f64)> {
+        match self.guard.shape {
+            GuardShape::Linear {
+                index,
+                rate,
+                factor,
+                discrete,
+                offset: false,
+            } if self.watched.condition.is_none() => {
+                let factor = slope((factor, discrete), self.equations.context);
+                Some(((index, rate), factor))
+            }
+            _ => None,
+        }
+    }
+
     /// Its value in a state at local time `t`.
     pub fn value(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
+        if let Some(((index, rate), factor)) = self.multiple() {
+            return factor * if rate { v[index] } else { q[index] };
+        }
         let mut a = q.size().zeros();
         let needs_accelerations = self.watched.condition.is_some()
             || depends_on_accelerations((self.guard, self.watched));
@@ -93,7 +113,7 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             Some(_) => f64::NAN,
         };
         let mut own = self.changes(dense);
-        match own.as_ref().and_then(rises_throughout) {
+        match own.as_ref().and_then(Changes::rises_throughout) {
             Some(true) => return None,
             Some(false) => return Some((end.t, self.value(end.t, &end.q, &end.v))),
             None => {}
@@ -138,7 +158,7 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
 
     /// How it changes from the start of the last step, in powers of the part of its length: as its coordinate or rate does. `None`: it is no
     /// multiple of one and what does not move.
-    fn changes(&self, dense: &dyn Motion<F>) -> Option<Polynomial<ORDERS>> {
+    fn changes(&self, dense: &dyn Motion<F>) -> Option<Changes> {
         let GuardShape::Linear {
             index,
             rate,
@@ -154,13 +174,20 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
         }
         let factor = slope((factor, discrete), self.equations.context);
         let mut coefficients = [0.0; ORDERS];
-        let own = &mut coefficients[1..dense.coefficients(rate)];
-        dense.polynomial((index, rate), factor, 1, own);
-        Some(Polynomial { coefficients })
+        let count = dense.coefficients(rate);
+        dense.polynomial((index, rate), factor, 1, &mut coefficients[1..count]);
+        Some(Changes {
+            coefficients,
+            count,
+        })
     }
 
     /// Its value on the dense output at local time `t`.
     pub fn value_within(&mut self, dense: &dyn Motion<F>, t: f64) -> f64 {
+        if self.multiple().is_some() {
+            let (q, v) = dense.state_at(t);
+            return self.value(t, &q, &v);
+        }
         let [q, v, _] = motion(self.equations, dense, t, false);
         self.value(t, &q, &v)
     }
@@ -273,12 +300,28 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     }
 }
 
-/// Whether a polynomial rises in the whole of a step, or falls: where the first coefficient of its slope outweighs all others. `None`:
-/// it may turn.
-fn rises_throughout(polynomial: &Polynomial<ORDERS>) -> Option<bool> {
-    let [_, first, others @ ..] = &polynomial.coefficients;
-    let others: f64 = (others.iter().zip(2_u8..))
-        .map(|(c, k)| f64::from(k) * c.abs())
-        .sum();
-    (first.abs() > others).then_some(*first > 0.0)
+/// How a guard changes from the start of a step: a polynomial in the part of its length.
+struct Changes {
+    coefficients: [f64; ORDERS],
+    /// Number of those that are not zero.
+    count: usize,
+}
+
+impl Changes {
+    fn value(&self, s: f64) -> f64 {
+        let highest_first = self.coefficients[..self.count].iter().rev();
+        highest_first.fold(0.0, |sum, c| sum * s + c)
+    }
+
+    /// Whether it rises in the whole of the step, or falls: where the first coefficient of its slope outweighs all others. `None`:
+    /// it may turn.
+    fn rises_throughout(&self) -> Option<bool> {
+        let [first, others @ ..] = &self.coefficients[1..self.count] else {
+            return None;
+        };
+        let others: f64 = (others.iter().zip(2_u8..))
+            .map(|(c, k)| f64::from(k) * c.abs())
+            .sum();
+        (first.abs() > others).then_some(*first > 0.0)
+    }
 }

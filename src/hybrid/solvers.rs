@@ -2,7 +2,7 @@
 
 use super::problem::Accuracy;
 use super::segment::tolerances;
-use crate::integrate::{Const, Counters, Dynamic, Radau, Size, Taylor};
+use crate::integrate::{Const, Counters, Dynamic, Radau, Series, Size, Taylor};
 use crate::kernel::ModeKernels;
 use crate::model::Mode;
 
@@ -12,6 +12,8 @@ pub(super) struct Slots<F: Size> {
     pub taylor: Box<[Option<Box<Taylor<F>>>]>,
     pub radau_of_five: Box<[Option<Box<Radau<5, F>>>]>,
     pub radau_of_seven: Box<[Option<Box<Radau<7, F>>>]>,
+    /// Room for the series of a motion that no step follows.
+    pub series: Option<Box<Series<F>>>,
 }
 
 impl<F: Size> Slots<F> {
@@ -25,6 +27,7 @@ impl<F: Size> Slots<F> {
             taylor: (0..modes).map(|_| None).collect(),
             radau_of_five: (0..modes).map(|_| None).collect(),
             radau_of_seven: (0..modes).map(|_| None).collect(),
+            series: None,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::failure::{Misfitting, Reason};
 use super::limits::check_bounds;
 use super::simulation::Simulation;
+use super::solvers::{SlotsOf, Solvers};
 use crate::kernel::{Free, ModeKernel, with_kernel};
 use crate::model::{GuardShape, Mode};
 use crate::numerics::Size;
@@ -51,7 +52,10 @@ impl<'p> Simulation<'p> {
     fn step_of_settling<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
-    ) -> Option<Result<usize, Reason>> {
+    ) -> Option<Result<usize, Reason>>
+    where
+        Solvers: SlotsOf<F>,
+    {
         let mode = self.mode();
         // What else is wrong with the mode is said when it is entered.
         let violation = self.enter(kernel).ok()??;
