@@ -8,7 +8,7 @@
 #[path = "overhead.rs"]
 mod overhead;
 
-use dalembert::hybrid::{End, Method, Problem, Simulator};
+use dalembert::hybrid::{AtLimit, End, Method, Problem, Simulator};
 use dalembert::input::{Function, Sine};
 use dalembert::model::models;
 use dalembert::record::Silent;
@@ -129,17 +129,28 @@ pub fn state(name: &str, simulator: &Simulator) -> Vec<f64> {
     }
 }
 
+/// The block, without the limit states of the model: none of the others looks for them.
+fn block(e: f64) -> Problem {
+    let mut block = model("hand_block", &[("alpha", 0.25), ("R", 1.5), ("e", e)]);
+    for limit in ["past_balance", "overturned"] {
+        block
+            .set_limit(limit, AtLimit::Ignore)
+            .expect("the model has it");
+    }
+    block
+}
+
 /// The problem in our models; the definition is that of `problems.hpp`.
 pub fn problem(name: &str, tolerance: f64) -> Problem {
     match name {
         "P1" => {
-            let mut p = model("hand_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.9)]);
+            let mut p = block(0.9);
             start(&mut p, "theta", 0.6 * 0.25);
             p.end.time = 6.0;
             accuracy(p, tolerance, &[0.2], &[0.5])
         }
         "P2" => {
-            let mut p = model("hand_block", &[("alpha", 0.25), ("R", 1.5), ("e", 0.85)]);
+            let mut p = block(0.85);
             start(&mut p, "theta", 0.3 * 0.25);
             shake(&mut p, Sine::new(-0.35 * 9.81, TAU * 1.5, 0.3));
             p.end.time = 10.0;

@@ -3,7 +3,7 @@
 
 use super::advance::{MadeBy, Stage};
 use super::failure::Reason;
-use super::problem::{Observed, Problem};
+use super::problem::{AtLimit, Observed, Problem};
 use super::resume::digests;
 use super::segment::tolerances;
 use super::simulation::{Simulation, Stop, Violation};
@@ -168,9 +168,10 @@ fn watched(problem: &Problem, extremes: bool) -> [(String, String); 5] {
         Some(every) => format!("every {every} s"),
         None => "every step".into(),
     };
-    let of_model = (limits.of_model.iter()).map(|(name, ends)| match ends {
-        true => format!("{name} ends the run"),
-        false => format!("{name} does not end the run"),
+    let of_model = (limits.of_model.iter()).map(|(name, course)| match course {
+        AtLimit::End => format!("{name} ends the run"),
+        AtLimit::Continue => format!("{name} does not end the run"),
+        AtLimit::Ignore => format!("{name} is ignored"),
     });
     let own = limits.own.iter().map(|limit| {
         let (quantity, index) = match limit.of {

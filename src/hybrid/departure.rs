@@ -110,12 +110,15 @@ pub(super) fn outweighs_for(
     others: impl DoubleEndedIterator<Item = f64> + Clone,
     within: f64,
 ) -> f64 {
+    let known = |size: f64| if size.is_finite() { size } else { 0.0 };
     let outweighs = |time: f64| {
-        let of = |sum: f64, size: f64| time * (sum + if size.is_finite() { size } else { 0.0 });
-        others.clone().rev().fold(0.0, of) <= 0.5 * first
+        let sum = (others.clone().rev()).fold(0.0, |sum, size| time * (sum + known(size)));
+        sum <= 0.5 * first
     };
+    let next = others.clone().next().map_or(0.0, known);
     let mut time = within;
-    while time > 0.0 && !outweighs(time) {
+    // The second alone tells most of them.
+    while time > 0.0 && !(time * next <= 0.5 * first && outweighs(time)) {
         time *= 0.5;
     }
     time

@@ -3,7 +3,7 @@
 //! Each is a margin, watched as [`super::margins`] says until it has been negative once.
 
 use super::outputs::Outputs;
-use super::problem::{Observed, OwnLimit, Problem};
+use super::problem::{AtLimit, Observed, OwnLimit, Problem};
 use super::start::ROUNDING;
 use super::validate::{Invalid, Unknown, within};
 use crate::model::{Bounds, GuardShape, Mode, Model, Variant, shown};
@@ -18,6 +18,8 @@ pub(super) struct Margins<'p> {
     pub own: Box<[OwnLimit]>,
     /// Whether the run ends there: limits of the model, its validity in motion, limits of the problem.
     pub ends: Box<[bool]>,
+    /// Whether nobody asks for it.
+    ignored: Box<[bool]>,
     /// When each was first reached, s.
     reached: Box<[Option<f64>]>,
     /// Whether the run has ended there.
@@ -46,17 +48,22 @@ impl Persist for Margins<'_> {
 impl<'p> Margins<'p> {
     pub fn new(problem: &'p Problem) -> Self {
         let (model, variant) = (&*problem.model, problem.variant());
+        let course = |ends: bool| {
+            if ends {
+                AtLimit::End
+            } else {
+                AtLimit::Continue
+            }
+        };
         let of_model = variant.limits.iter().map(|limit| {
-            let said = problem
-                .limits
-                .of_model
-                .iter()
-                .find(|(name, _)| *name == limit.name);
-            said.map_or(limit.ends, |(_, ends)| *ends)
+            let mut said = problem.limits.of_model.iter();
+            let said = said.find(|(name, _)| *name == limit.name);
+            said.map_or(course(limit.ends), |(_, course)| *course)
         });
-        let of_motion = variant.valid_motion.iter().map(|_| false);
-        let own = problem.limits.own.iter().map(|limit| limit.ends);
-        let ends: Box<[bool]> = of_model.chain(of_motion).chain(own).collect();
+        let of_motion = variant.valid_motion.iter().map(|_| AtLimit::Continue);
+        let own = problem.limits.own.iter().map(|limit| course(limit.ends));
+        let courses: Box<[AtLimit]> = of_model.chain(of_motion).chain(own).collect();
+        let ends: Box<[bool]> = courses.iter().map(|of| *of == AtLimit::End).collect();
         let required = variant.modes.iter().map(|mode| mode.requirements.len());
         let zeros = |count: usize| vec![0.0; count].into_boxed_slice();
         let room = required.max().unwrap_or(0) + ends.len();
@@ -64,6 +71,7 @@ impl<'p> Margins<'p> {
         Margins {
             variant,
             own: problem.limits.own.clone().into(),
+            ignored: courses.iter().map(|of| *of == AtLimit::Ignore).collect(),
             reached: vec![None; ends.len()].into(),
             ends,
             has_ended: false,
@@ -88,15 +96,15 @@ impl<'p> Margins<'p> {
         self.has_ended
     }
 
-    /// Whether nothing was reached so far.
+    /// Whether one is asked for and was not reached so far.
     pub fn is_pending(&self, margin: usize) -> bool {
-        self.reached[margin].is_none()
+        self.reached[margin].is_none() && !self.ignored[margin]
     }
 
     /// Notes that a margin is negative at `t` (s).
     #[cold]
     pub fn reach(&mut self, margin: usize, t: f64) {
-        if self.reached[margin].is_none() {
+        if self.is_pending(margin) {
             self.reached[margin] = Some(t);
             self.has_ended |= self.ends[margin];
         }
@@ -178,11 +186,11 @@ impl<'p> Margins<'p> {
 }
 
 impl Problem {
-    /// Says whether a run ends at a limit state of the model, or goes on past it.
+    /// Says what a run does at a limit state of the model.
     ///
     /// # Errors
     /// [`Unknown`] if the model has no such limit under its present choices.
-    pub fn set_limit(&mut self, name: &str, ends: bool) -> Result<(), Unknown> {
+    pub fn set_limit(&mut self, name: &str, course: AtLimit) -> Result<(), Unknown> {
         let limits = self.variant().limits.iter();
         let known = limits.clone().find(|limit| limit.name == name);
         let Some(name) = known.map(|limit| limit.name) else {
@@ -194,7 +202,7 @@ impl Problem {
             });
         };
         self.limits.of_model.retain(|(known, _)| *known != name);
-        self.limits.of_model.push((name, ends));
+        self.limits.of_model.push((name, course));
         Ok(())
     }
 

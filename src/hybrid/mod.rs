@@ -63,8 +63,8 @@ pub use moment::{Moment, NotComputed};
 pub use observe::{Collected, MadeStep, Observer};
 pub use outputs::OwnOutput;
 pub use problem::{
-    Accuracy, Collisions, End, ImpactLaw, ImpactOrder, Initial, Limits, Method, Observed, OwnLimit,
-    Problem, Record,
+    Accuracy, AtLimit, Collisions, End, ImpactLaw, ImpactOrder, Initial, Limits, Method, Observed,
+    OwnLimit, Problem, Record,
 };
 pub use result::{Failure, Run};
 pub use resume::{check_row, check_same, simulate_from};

@@ -137,10 +137,21 @@ pub struct End {
 /// Limit states of a problem.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Limits {
-    /// Of limits of the model by name: whether a run ends there. The others are as the model says.
-    pub of_model: Vec<(&'static str, bool)>,
+    /// Of limits of the model by name: what a run does there. The others are as the model says.
+    pub of_model: Vec<(&'static str, AtLimit)>,
     /// Limits beside those of the model.
     pub own: Vec<OwnLimit>,
+}
+
+/// What a run does at a limit state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AtLimit {
+    /// It ends.
+    End,
+    /// It goes on, and tells when the limit was first reached.
+    Continue,
+    /// It does not look whether it is reached, which takes no time then.
+    Ignore,
 }
 
 /// A limit state that is not the model's.

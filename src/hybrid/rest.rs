@@ -79,8 +79,13 @@ impl<'p> Simulation<'p> {
     /// high that rounding does not tell its duration from that of another, to half of all digits. A hop of the duration T that
     /// ends with the rate u is about |u| T/4 high.
     fn lowest_hop(&self) -> Option<f64> {
+        // A coordinate that is zero has no rounding.
+        let has_rounding =
+            |guard: &&Guard| !matches!(guard.shape, GuardShape::Linear { offset: false, .. });
+        let guards = self.mode().guards.iter().filter(has_rounding);
+        let mut impacts = guards.filter(|guard| is_impact(guard)).peekable();
+        impacts.peek()?;
         let duration = self.accumulation.last_hop()?;
-        let impacts = self.mode().guards.iter().filter(|guard| is_impact(guard));
         let heights = impacts.filter_map(|guard| {
             let (rate, rounding) = self.closed_gap(guard)?;
             let height = 0.25 * rate.abs() * duration / rounding;

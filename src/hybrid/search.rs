@@ -166,17 +166,6 @@ fn search_linear<F: Size>(
     search_polynomial(coefficients, part, (watch, found));
 }
 
-/// Powers of time.
-const POWERS: [usize; ORDERS] = {
-    let mut powers = [0; ORDERS];
-    let mut k = 0;
-    while k < ORDERS {
-        powers[k] = k;
-        k += 1;
-    }
-    powers
-};
-
 /// How much of a window was searched by the guard's own series.
 enum BySeries {
     All,
@@ -209,13 +198,16 @@ fn search_series<F: Size>(
     if !equations.expand_guards(tau, expanded, series) {
         return BySeries::Nothing;
     }
-    let (kernel, context) = (equations.kernel, &*equations.context);
-    let mut constant = kernel.guard_coefficient(context, watched.guard, 0);
-    let is_known = watch == Watch::Armed && window.0 == tau && constant > 0.0;
+    let kernel = equations.kernel;
+    let mut powers = [0.0; ORDERS];
+    let powers = &mut powers[..expanded];
+    kernel.guard_coefficients(equations.context, watched.guard, powers);
+    let constant = &mut powers[0];
+    let is_known = watch == Watch::Armed && window.0 == tau && *constant > 0.0;
     // It was zero where the segment began, and rises from there.
     let begins_at_zero = watch == Watch::Dormant && window.0 == tau && tau == 0.0;
     if begins_at_zero {
-        constant = 0.0;
+        *constant = 0.0;
     } else if !is_known {
         // The guard's own value decides on which side of zero it starts: it may be rounded otherwise.
         equations.at(tau);
@@ -226,21 +218,18 @@ fn search_series<F: Size>(
             v: &v,
             a: &a,
         };
-        constant = kernel.guard(equations.context, &guard.kernel, at);
+        *constant = kernel.guard(equations.context, &guard.kernel, at);
     }
-    let context = &*equations.context;
-    let power = |k: usize| match k {
-        0 => constant,
-        _ => kernel.guard_coefficient(context, watched.guard, k),
-    };
     // Of a low degree where nothing moves.
-    let degree = (1..expanded).rev().find(|&k| power(k) != 0.0);
+    let degree = (1..expanded).rev().find(|&k| powers[k] != 0.0);
     let count = degree.map_or(1, |degree| degree + 1);
+    let powers = &powers[..count];
+    let (constant, slope) = (powers[0], powers.get(1).copied().unwrap_or(0.0));
     // Where nothing moves but what drifts.
     let is_plain = watch == Watch::Armed && isolation == Isolation::Root && window.0 == tau;
     if count <= 2
         && is_plain
-        && let Some(straight) = straight_crossing(constant, power(1), window.1 - tau)
+        && let Some(straight) = straight_crossing(constant, slope, window.1 - tau)
     {
         *found = straight;
         if let Some(crossing) = &mut found.crossing {
@@ -260,9 +249,9 @@ fn search_series<F: Size>(
         let coefficients = Coefficients {
             count,
             constant,
-            rises: count > 1 && power(1) * length > 0.0,
+            rises: slope * length > 0.0,
             write: &mut |first, out: &mut [f64]| {
-                stretch(&POWERS[..count], |k| power(*k), (1.0, length, first), out);
+                stretch(powers, |c| *c, (1.0, length, first), out);
                 if count + 2 > orders {
                     let size = |of: &[f64]| sum_of(of, f64::abs);
                     let all = (orders * orders) as f64 * size(&out[..count - first]);

@@ -421,13 +421,13 @@ impl<'p> Simulation<'p> {
     /// Adds the work that the methods have done since it was last counted.
     pub fn count_work(&mut self) {
         let solver = &mut self.solver;
-        for counters in self.solvers.take_counters() {
+        self.solvers.take_counters(|counters| {
             solver.steps += counters.steps;
             solver.rejected += counters.rejected + counters.newton_failures;
             solver.residual_evaluations += counters.residual_evaluations;
             solver.jacobian_evaluations += counters.jacobian_evaluations;
             solver.factorizations += counters.factorizations;
-        }
+        });
     }
 
     /// From an admissible mode through the next event; false at the end of the run.

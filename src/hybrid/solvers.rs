@@ -63,15 +63,14 @@ impl<F: Size> Slots<F> {
         });
     }
 
-    /// Work done since it was last taken, of each method.
-    fn take_counters(&mut self) -> impl Iterator<Item = Counters> {
-        let taylor = self.taylor.iter_mut().flatten();
-        let of_five = self.radau_of_five.iter_mut().flatten();
-        let of_seven = self.radau_of_seven.iter_mut().flatten();
-        let taylor = taylor.map(|method| method.take_counters());
-        let of_five = of_five.map(|method| method.take_counters());
-        let of_seven = of_seven.map(|method| method.take_counters());
-        taylor.chain(of_five).chain(of_seven)
+    /// Gives the work done since it was last taken, of each method.
+    fn take_counters(&mut self, take: &mut impl FnMut(Counters)) {
+        let methods = self.taylor.iter_mut().flatten();
+        methods.for_each(|method| take(method.take_counters()));
+        let methods = self.radau_of_five.iter_mut().flatten();
+        methods.for_each(|method| take(method.take_counters()));
+        let methods = self.radau_of_seven.iter_mut().flatten();
+        methods.for_each(|method| take(method.take_counters()));
     }
 }
 
@@ -109,9 +108,9 @@ macro_rules! solvers {
                 None$(.or_else(|| self.$name.order_between_knots(mode)))*
             }
 
-            /// Work done since it was last taken, of each method.
-            pub fn take_counters(&mut self) -> impl Iterator<Item = Counters> {
-                std::iter::empty()$(.chain(self.$name.take_counters()))*
+            /// Gives the work done since it was last taken, of each method.
+            pub fn take_counters(&mut self, mut take: impl FnMut(Counters)) {
+                $(self.$name.take_counters(&mut take);)*
             }
         }
 

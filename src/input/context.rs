@@ -7,7 +7,9 @@ use crate::numerics::Side;
 impl Context {
     /// The functions of the signals are others now.
     pub fn forget_signals(&mut self) {
-        self.signal_rooms().at.0 = f64::NAN;
+        let room = self.signal_rooms();
+        room.at.0 = f64::NAN;
+        room.series.fill(0.0);
     }
 
     /// Sets signals and their rates to those at time `t` (s), as they are on that side.

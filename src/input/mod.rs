@@ -218,7 +218,8 @@ impl Signals {
     /// Fills `rows` with the Taylor coefficients of the signals about `t` (s), as they go on after
     /// it: one row an order, with the layout of [`Signals::evaluate`]. They hold until
     /// [`Signals::next_knot`]. `u` and `u_dot` are what [`Signals::jets`] gives on the right of `t`.
-    /// The antiderivatives of an acceleration are filled in where one of them is `wanted`.
+    /// The antiderivatives of an acceleration are filled in where one of them is `wanted`. Those of an input that is zero
+    /// are not written: they must be zero.
     ///
     /// # Panics
     /// If there are more than [`Signals::MOST_ORDERS`] rows.
@@ -228,12 +229,6 @@ impl Signals {
         for c in &self.channels {
             if c.function == Function::zero() {
                 // So are its antiderivatives.
-                for row in rows.chunks_exact_mut(width) {
-                    match c.kind {
-                        InputKind::Acceleration => row[c.signal..][..3].fill(0.0),
-                        InputKind::Value => row[c.signal] = 0.0,
-                    }
-                }
                 continue;
             }
             let known = [u[c.signal], u_dot[c.signal]];

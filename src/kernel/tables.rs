@@ -235,11 +235,14 @@ impl<F: Size> ModeKernel<F> {
         all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
     }
 
-    /// The coefficient of a guard, by its index in the mode, for a power of time; set by
+    /// Writes the first coefficients of a guard, by its index in the mode, in powers of time; set by
     /// [`Self::guard_series`].
     #[inline]
-    pub fn guard_coefficient(&self, x: &Context, guard: usize, power: usize) -> f64 {
-        x.guard_series[power * self.guards + guard]
+    pub fn guard_coefficients(&self, x: &Context, guard: usize, out: &mut [f64]) {
+        let rows = x.guard_series.chunks_exact(self.guards);
+        for (out, row) in out.iter_mut().zip(rows) {
+            *out = row[guard];
+        }
     }
 
     /// Whether trajectories of this mode can go side by side.

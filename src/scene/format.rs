@@ -43,6 +43,7 @@ pub(crate) const AT_REST: &str = "at rest";
 /// What a run does at a limit state.
 pub(crate) const END: &str = "end";
 pub(crate) const CONTINUE: &str = "continue";
+pub(crate) const IGNORE: &str = "ignore";
 
 /// The shape of a scene of a model, with outputs of its own by name and unit, any for `None`; of any model, with less detail, for `None`.
 pub(crate) fn scene(model: Option<&Model>, own: Option<&[(String, String)]>) -> Object {

@@ -2,11 +2,11 @@
 
 use super::check::{Checked, unknown_name};
 use super::error::{Errors, SceneError, SceneErrorKind};
-use super::format::{self, CONTINUE, END};
+use super::format::{self, CONTINUE, END, IGNORE};
 use super::interpret::under;
 use super::shape::{Key, Object, Quantity, Shape};
 use super::wording::shown;
-use crate::hybrid::{Limits, Observed, OwnLimit, Problem};
+use crate::hybrid::{AtLimit, Limits, Observed, OwnLimit, Problem};
 use crate::model::{Model, Variant};
 use crate::record::{self, Layout, Recorded};
 
@@ -50,6 +50,7 @@ fn observables(model: &Model, variant: &Variant, own: &[(String, String)]) -> Ve
 /// The shape of `limits` of a scene with these outputs, by name and unit; `None`: with any.
 pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String)]>) -> Object {
     let course = || Shape::Choice("course", vec![END, CONTINUE]);
+    let known = || Shape::Choice("course", vec![END, CONTINUE, IGNORE]);
     let bounds = |unit: &str| {
         Object::new(
             "bound",
@@ -65,7 +66,7 @@ pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String
     ];
     let Some(model) = model else {
         let own = Object::new("quantity", own).others(bounds(""));
-        return Object::new("limit", Vec::new()).others(Shape::Either(vec![course(), own.into()]));
+        return Object::new("limit", Vec::new()).others(Shape::Either(vec![known(), own.into()]));
     };
     let variant = &model.variants[0];
     own.extend(
@@ -78,14 +79,14 @@ pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String
     );
     let of_model = format::limits(&model.variants).into_iter().map(|limit| {
         let default = if limit.ends { END } else { CONTINUE };
-        Key::new(limit.name, limit.message, course()).default(default)
+        Key::new(limit.name, limit.message, known()).default(default)
     });
     // A name that is not the model's, with the course of one, is a mistake that is named later.
     let own = match own_outputs {
         Some(_) => Object::new("quantity", own),
         None => Object::new("quantity", own).others(bounds("")),
     };
-    Object::new("limit", of_model.collect()).others(Shape::Either(vec![own.into(), course()]))
+    Object::new("limit", of_model.collect()).others(Shape::Either(vec![own.into(), known()]))
 }
 
 /// The limits of a checked scene.
@@ -107,7 +108,7 @@ pub(super) fn limits(problem: &Problem, scene: &Checked, errors: &mut Errors) ->
             continue;
         }
         match variant.limits.iter().find(|limit| limit.name == name) {
-            Some(limit) => limits.of_model.push((limit.name, said.text() == END)),
+            Some(limit) => limits.of_model.push((limit.name, course_of(said.text()))),
             None => {
                 let known: Vec<_> = variant.limits.iter().map(|limit| limit.name).collect();
                 let what = format!("limit{}:", under(model, variant));
@@ -116,6 +117,15 @@ pub(super) fn limits(problem: &Problem, scene: &Checked, errors: &mut Errors) ->
         }
     }
     limits
+}
+
+/// What a run does at a limit of the model, by its name.
+fn course_of(name: &str) -> AtLimit {
+    match name {
+        END => AtLimit::End,
+        IGNORE => AtLimit::Ignore,
+        _ => AtLimit::Continue,
+    }
 }
 
 /// A limit of the scene: one for each bound, with the same name.

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use dalembert::hybrid::{
-    Ensemble, Member, Method, Observed, OwnLimit, Problem, Simulator, simulate,
+    AtLimit, Ensemble, Member, Method, Observed, OwnLimit, Problem, Simulator, simulate,
 };
 use dalembert::input::Function;
 use dalembert::precision::estimate;
@@ -76,7 +76,7 @@ fn a_run_goes_on_past_a_limit_if_it_is_told_to() {
         let mut block = falling(0.3);
         block.method = method;
         let ended = run(&block);
-        block.set_limit("overturned", false).unwrap();
+        block.set_limit("overturned", AtLimit::Continue).unwrap();
         block.end.time = ended.end.t + 0.1;
         let run = run(&block);
         assert_eq!(run.end.t, block.end.time);
@@ -84,14 +84,39 @@ fn a_run_goes_on_past_a_limit_if_it_is_told_to() {
         assert!((times[0] - times[1]).abs() < 1e-8, "{times:?}");
         assert!(!run.reached.limit_states[1].ends);
     }
-    assert!(falling(0.3).set_limit("drowned", false).is_err());
+    assert!(
+        falling(0.3)
+            .set_limit("drowned", AtLimit::Continue)
+            .is_err()
+    );
+}
+
+#[test]
+fn a_limit_that_is_ignored_is_not_told_and_changes_nothing() {
+    for method in METHODS {
+        let mut block = falling(0.3);
+        block.method = method;
+        for limit in ["past_balance", "overturned"] {
+            block.set_limit(limit, AtLimit::Continue).unwrap();
+        }
+        block.end.time = 2.0;
+        let watched = run(&block);
+        assert_eq!(watched.reached.limit_states.len(), 2);
+        block.set_limit("past_balance", AtLimit::Ignore).unwrap();
+        let one = run(&block);
+        assert_eq!(reached(&one.reached.limit_states).len(), 1);
+        block.set_limit("overturned", AtLimit::Ignore).unwrap();
+        let none = run(&block);
+        assert!(none.reached.limit_states.is_empty());
+        assert_eq!(none.end.q, watched.end.q, "{method:?}");
+    }
 }
 
 #[test]
 fn a_limit_that_does_not_end_a_run_may_be_told_to() {
     let mut block = falling(0.2);
     block.set_initial("theta.rate", 0.5).unwrap();
-    block.set_limit("past_balance", true).unwrap();
+    block.set_limit("past_balance", AtLimit::End).unwrap();
     for method in METHODS {
         block.method = method;
         let run = run(&block);
@@ -224,7 +249,7 @@ fn a_member_of_an_ensemble_ends_where_its_single_run_does() {
     scene.end.time = 4.0;
     scene.method = Method::Taylor;
     // Of those that fall over some would leave the ground.
-    scene.set_limit("past_balance", true).unwrap();
+    scene.set_limit("past_balance", AtLimit::End).unwrap();
     let alphas: Vec<f64> = (0..37).map(|i| 0.15 + 0.005 * f64::from(i)).collect();
     let members: Vec<Problem> = (alphas.iter())
         .map(|&alpha| {

@@ -47,6 +47,11 @@ pub(super) fn first_crossing<const N: usize>(
     };
     let mut bernstein = [0.0; N];
     polynomial.bernstein(&mut bernstein);
+    if from > 0.0 {
+        // Before the window it may be zero, as where a guard has just risen from it: halves would close in on that.
+        let (_, within) = cut(&bernstein, from);
+        return guard.first_crossing(&within, (from, 1.0), 1, found);
+    }
     guard.first_crossing(&bernstein, (0.0, 1.0), 0, found)
 }
 
@@ -170,11 +175,11 @@ impl<const N: usize> Armed<'_, N> {
 /// by a step from there, else where the polygon of the coefficients falls through zero.
 #[inline(always)]
 fn first_guess<const N: usize>(bernstein: &[f64; N], falls: usize) -> f64 {
-    let guess = match falls {
-        _ if N < 4 => f64::NAN,
-        1 | 2 => step_from_end([0, 1, 2, 3].map(|k| bernstein[k]), N - 1),
-        _ if falls + 2 >= N => {
-            1.0 - step_from_end([1, 2, 3, 4].map(|back| bernstein[N - back]), N - 1)
+    // One by one: `map` of an array is a call.
+    let guess = match (bernstein.first_chunk(), bernstein.last_chunk()) {
+        (Some(first), _) if falls <= 2 => step_from_end(*first, N - 1),
+        (_, Some(&[b3, b2, b1, b0])) if falls + 2 >= N => {
+            1.0 - step_from_end([b0, b1, b2, b3], N - 1)
         }
         _ => f64::NAN,
     };
@@ -340,7 +345,7 @@ pub(super) fn certain_crossing<const N: usize>(
     let first = Polynomial::<N>::ROUNDING * polynomial.coefficients[0].abs();
     let margin = (first + s * (rounding - first)) / slope.abs();
     let (before, after) = (below(s).min(s - margin), above(s).max(s + margin));
-    let [at_before, at_after] = [before, after].map(|s| polynomial.value(s));
+    let (at_before, at_after) = (polynomial.value(before), polynomial.value(after));
     // Newton's method leaves the square of the distance times half of curvature ÷ slope, which are those of the
     // polynomial, or of s times it: that adds 2/s.
     let bend = curvature.abs() * s + 2.0 * slope.abs();
@@ -376,7 +381,7 @@ fn root<const N: usize>(guard: &Armed<N>, left: Point, right: Point, s: f64) -> 
     for _ in 0..MOST_ITERATIONS {
         let (s, value) = point;
         narrow((&mut l, &mut r), point);
-        let [slope, curvature] = [0, 1].map(|order| derivatives[order].sum(s));
+        let (slope, curvature) = (derivatives[0].sum(s), derivatives[1].sum(s));
         parabola = (value, slope, curvature);
         let step = step(value, slope, curvature);
         let next = s + step;

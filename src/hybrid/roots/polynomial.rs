@@ -93,7 +93,14 @@ impl<const N: usize> Polynomial<N> {
         for k in 1..N {
             curvature[k - 1] = k as f64 * slope[k];
         }
-        [slope, curvature].map(|coefficients| Self { coefficients })
+        // Each by itself: `map` of an array is a call, and a copy.
+        let slope = Self {
+            coefficients: slope,
+        };
+        let curvature = Self {
+            coefficients: curvature,
+        };
+        [slope, curvature]
     }
 
     /// Gives places and values of all extrema in (0, 1), in ascending order of the places.
