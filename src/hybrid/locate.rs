@@ -32,6 +32,10 @@ pub(super) enum Landing {
 /// leaves out is of the order of its cube, 2⁻⁵⁴ (cube root of the unit roundoff, rounded down).
 pub(super) const TAYLOR: f64 = 3.8e-6;
 
+/// The same of rates, of which it is of first order: what it leaves out is of the order of its square, 2⁻⁵² (square root of the
+/// machine epsilon).
+const TAYLOR_OF_RATES: f64 = 1.0 / (1u64 << 26) as f64;
+
 /// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
 ///
 /// A guard that is no more negative there than rounding makes it, and rises, has turned: it does not fall.
@@ -145,7 +149,11 @@ fn land_on<'a, F: Size>(
             });
         }
         let step = (start, window);
-        if correction.abs() <= TAYLOR * (window - start) {
+        let part = correction.abs() / (window - start);
+        // At a root that is nearly double each correction is half of the one before: the polynomial of a rate would have its
+        // root elsewhere. Below the rounding of its value a guard comes no nearer to its root.
+        let comes_nearer = correction.abs() < correction_before && end.t + correction > start;
+        if part <= TAYLOR_OF_RATES || part <= TAYLOR && !comes_nearer {
             let place = (end, correction);
             return Ok(beyond_the_crossing(
                 equations,
@@ -156,7 +164,7 @@ fn land_on<'a, F: Size>(
                 landed,
             ));
         }
-        if correction.abs() >= correction_before || end.t + correction <= start {
+        if !comes_nearer {
             return Ok(Landing::Short);
         }
         correction_before = correction.abs();

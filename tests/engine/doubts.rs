@@ -41,6 +41,21 @@ fn a_guard_that_begins_at_zero_and_touches_it_again_is_in_doubt() {
     }
 }
 
+#[test]
+fn where_a_rate_all_but_touches_zero_the_state_is_that_of_its_time() {
+    // Rates are landed on by a polynomial of first order: over a long way it has its root elsewhere.
+    for relative in [1e-8, 1e-10, 1e-12] {
+        for method in METHODS {
+            let run = run(&without_friction(method, relative));
+            let exact = |t: f64| 0.7 * 0.2 / (1.0 - 0.2 * 0.2) * ((0.2 * t).cos() - t.cos());
+            let reversals = run.events.iter().filter(|e| e.transition == "reversal");
+            let off = reversals.map(|e| (e.before.v[0] - exact(e.t)).abs());
+            let most = off.fold(0.0, f64::max);
+            assert!(most <= relative, "{method:?}, {relative:e}: {most:e}");
+        }
+    }
+}
+
 /// Den Hartog's free decay: from x0 = (7 + excess) f the mass turns at 5 f, 3 f, f: friction holds it there, or not quite.
 fn decay(method: Method, relative: f64, excess: f64) -> Run {
     let friction = [("static_friction", 0.1), ("kinetic_friction", 0.1)];

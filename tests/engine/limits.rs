@@ -108,7 +108,7 @@ fn a_limit_that_is_ignored_is_not_told_and_changes_nothing() {
         block.set_limit("overturned", AtLimit::Ignore).unwrap();
         let none = run(&block);
         assert!(none.reached.limit_states.is_empty());
-        assert_eq!(none.end.q, watched.end.q, "{method:?}");
+        assert_eq!(none.end, watched.end, "{method:?}");
     }
 }
 

@@ -23,7 +23,7 @@ const MOST_ITERATIONS: usize = 8;
 const LAST_STEP: f64 = 4.8e-6;
 
 /// How far a place may be from a root, in its own unit: a landing goes on from there by the motion's Taylor polynomial of
-/// second order, which is exact to rounding over four thousand times as much of a step.
+/// second order, which is exact to rounding over fifteen times as much of a step.
 const NEAR: f64 = 1.0e-9;
 
 /// Writes the first event of an armed guard in `from` < s ≤ `to`, or that there is none; false where this
