@@ -115,9 +115,13 @@ pub(super) fn outweighs_for(
         let sum = (others.clone().rev()).fold(0.0, |sum, size| time * (sum + known(size)));
         sum <= 0.5 * first
     };
-    let next = others.clone().next().map_or(0.0, known);
-    let mut time = within;
+    // No more than 2³² s, 136 years: what is known to last longer is looked at from there on.
+    let mut time = within.min((1u64 << 32) as f64);
     // The second alone tells most of them.
+    let next = others.clone().next().map_or(0.0, known);
+    while time > 0.0 && time * next > 65_536.0 * first {
+        time /= 65_536.0;
+    }
     while time > 0.0 && !(time * next <= 0.5 * first && outweighs(time)) {
         time *= 0.5;
     }
@@ -142,11 +146,11 @@ impl<'p> Simulation<'p> {
         })
     }
 
-    /// For how long the series of all inputs hold from a time on, and the run lasts, s.
+    /// For how long the series of all inputs hold from a time on, s; it does not depend on when the run ends, which may go on
+    /// from there.
     pub(super) fn smooth_from(&self, now: f64) -> f64 {
         // The series of an input ends at its next knot, also where it goes on smoothly.
-        let knot = self.signals.next_knot(now);
-        knot.min(self.problem.end.time) - now
+        self.signals.next_knot(now) - now
     }
 
     /// Whether a guard of the present mode is at zero or below, as far as roundings tell: its own, and those that it has collected on its

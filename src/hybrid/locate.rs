@@ -149,11 +149,11 @@ fn land_on<'a, F: Size>(
             });
         }
         let step = (start, window);
-        let part = correction.abs() / (window - start);
+        let is_within = |part: f64| correction.abs() <= part * (window - start);
         // At a root that is nearly double each correction is half of the one before: the polynomial of a rate would have its
         // root elsewhere. Below the rounding of its value a guard comes no nearer to its root.
         let comes_nearer = correction.abs() < correction_before && end.t + correction > start;
-        if part <= TAYLOR_OF_RATES || part <= TAYLOR && !comes_nearer {
+        if is_within(TAYLOR_OF_RATES) || !comes_nearer && is_within(TAYLOR) {
             let place = (end, correction);
             return Ok(beyond_the_crossing(
                 equations,
