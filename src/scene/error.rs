@@ -152,6 +152,12 @@ pub enum SceneErrorKind {
         /// Its code point, `U+001B`.
         found: String,
     },
+    /// A limit state that is asked for, and that the scene ignores.
+    #[error("the scene ignores the limit state `{limit}`")]
+    Ignored {
+        /// The limit state.
+        limit: String,
+    },
     /// An input that the chosen options do not know.
     #[error("input `{input}` has no effect{under}, and may not be given")]
     BarredInput {

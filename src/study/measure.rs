@@ -1,7 +1,7 @@
 //! What is measured of each run, and when one has failed.
 
 use super::ending::Ending;
-use crate::hybrid::{Problem, Record};
+use crate::hybrid::{AtLimit, Problem, Record};
 use crate::record::{Layout, Recorded};
 use crate::run::{ColumnKind, Peak};
 
@@ -191,12 +191,15 @@ pub(crate) fn quantities(problem: &Problem) -> Vec<(String, String, ColumnKind)>
     columns.map(|c| (c.name, c.unit, c.group)).collect()
 }
 
-/// Names of the limit states of a problem: those of its model and its own.
+/// Whether a problem ignores a limit state of its model.
+pub(crate) fn ignores(problem: &Problem, limit: &str) -> bool {
+    (problem.limits.of_model.iter()).any(|&said| said.0 == limit && said.1 == AtLimit::Ignore)
+}
+
+/// Names of the limit states of a problem that it does not ignore: those of its model and its own.
 pub(crate) fn limits(problem: &Problem) -> Vec<String> {
-    let of_model = problem
-        .variant()
-        .limits
-        .iter()
+    let of_model = (problem.variant().limits.iter())
+        .filter(|limit| !ignores(problem, limit.name))
         .map(|limit| limit.name.to_owned());
     let own = problem.limits.own.iter().map(|limit| limit.name.clone());
     let mut names: Vec<String> = of_model.chain(own).collect();

@@ -3,17 +3,18 @@
 use crate::hybrid::Problem;
 use crate::run::ColumnKind;
 use crate::scene::check::{Checked, unknown_name};
-use crate::scene::error::{SceneError, SceneErrors};
+use crate::scene::error::{SceneError, SceneErrorKind, SceneErrors};
 use crate::scene::format::transition_names;
 use crate::scene::source::Span;
 use crate::scene::template::Template;
-use crate::study::measure::{Failure, Measure, What, limits, quantities};
+use crate::study::measure::{Failure, Measure, What, ignores, limits, quantities};
 
 /// What can be measured of a scene.
 struct Known {
     quantities: Vec<(String, String, ColumnKind)>,
     transitions: Vec<&'static str>,
     limits: Vec<String>,
+    ignored: Vec<&'static str>,
 }
 
 impl Known {
@@ -22,6 +23,10 @@ impl Known {
             quantities: quantities(problem),
             transitions: transition_names(&template.model.variants),
             limits: limits(problem),
+            ignored: (problem.variant().limits.iter())
+                .map(|limit| limit.name)
+                .filter(|limit| ignores(problem, limit))
+                .collect(),
         }
     }
 
@@ -76,6 +81,11 @@ impl Known {
     }
 
     fn no_limit(&self, name: &str, place: &Span) -> SceneError {
+        if self.ignored.contains(&name) {
+            let limit = name.to_owned();
+            return SceneError::new(SceneErrorKind::Ignored { limit }, place)
+                .help("`end` or `continue` among the `limits` of the scene has it looked for");
+        }
         let known: Vec<&str> = self.limits.iter().map(String::as_str).collect();
         unknown_name("limit state", name, &known, place)
     }

@@ -236,6 +236,37 @@ fn a_wrong_study_is_refused_at_its_place() {
 }
 
 #[test]
+fn a_limit_that_the_scene_ignores_is_not_measured() {
+    let folder = folder();
+    let scene = fs::read_to_string(folder.path().join("scene.json")).unwrap();
+    let mut scene: Value = serde_json::from_str(&scene).unwrap();
+    scene["limits"] = json!({ "overturned": "ignore" });
+    write(folder.path(), "scene.json", &scene);
+    let mut study = sweep();
+    for (key, value) in [
+        ("measure", json!(["peak.theta", "reached.overturned"])),
+        ("failure", json!({ "limit": "overturned" })),
+    ] {
+        study["measure"] = json!(["peak.theta"]);
+        study[key] = value;
+        write(folder.path(), "study.json", &study);
+        let output = ends_with(2, folder.path(), &["study", "study.json", "--out", "out"]);
+        let told = stderr(&output);
+        let said = "the scene ignores the limit state `overturned`";
+        assert!(told.contains(said), "{told}");
+        assert!(told.contains("study.json:"), "{told}");
+        assert!(!folder.path().join("out").exists());
+    }
+    // Where nothing is named, what is ignored is left out.
+    let study = json!({ "scene": "scene.json", "vary": { "parameters.e": [0.8, 0.9] } });
+    write(folder.path(), "study.json", &study);
+    let rows = super::run(folder.path());
+    let columns: Vec<&String> = rows[0].keys().collect();
+    assert!(rows[0].contains_key("reached.past_balance"), "{columns:?}");
+    assert!(!rows[0].contains_key("reached.overturned"), "{columns:?}");
+}
+
+#[test]
 fn tables_of_cases_are_refused_at_their_line() {
     let folder = folder();
     let study = json!({ "scene": "scene.json", "cases": "cases.csv" });
