@@ -163,7 +163,13 @@ impl Report {
         let Some(first) = uncertain.first.first() else {
             return Ok(());
         };
-        let (value, error) = (rounded(first.value, 2), rounded(first.error, 2));
+        let [value, error] = [first.value, first.error].map(|x| {
+            let (x, unit) = self.shown(x, &first.unit, 2);
+            match &*unit {
+                "" | "1" => x,
+                unit => format!("{x} {unit}"),
+            }
+        });
         let what = match first.what {
             Question::Graze => format!("crosses zero by {value}, with an error of {error}"),
             Question::NearMiss => format!("turns back at {value}, with an error of {error}"),
@@ -175,11 +181,10 @@ impl Report {
         };
         writeln!(
             f,
-            "uncertain   {} times what happens, first at t = {}: {} {what} {}; tighten accuracy.relative",
+            "uncertain   {} times what happens, first at t = {}: {} {what}; tighten accuracy.relative",
             uncertain.total,
             self.time(first.t),
             first.guard,
-            first.unit,
         )
     }
 

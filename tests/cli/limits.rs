@@ -71,7 +71,7 @@ fn wrong_limits_point_at_their_place() {
             [
                 "unknown course `stop`",
                 "scene.json:2:29",
-                "`end` or `continue`",
+                "`end`, `continue` or `ignore`",
             ],
         ),
         (
