@@ -181,8 +181,11 @@ impl Report {
         };
         writeln!(
             f,
-            "uncertain   {} times what happens, first at t = {}: {} {what}; tighten accuracy.relative",
-            uncertain.total,
+            "uncertain   what happens at {}, first at t = {}: {} {what}; tighten accuracy.relative",
+            match uncertain.total {
+                1 => "one place".to_owned(),
+                total => format!("{total} places"),
+            },
             self.time(first.t),
             first.guard,
         )

@@ -192,7 +192,7 @@ fn what_hangs_on_the_tolerance_is_said() {
         assert_eq!(line.is_some(), total > 0);
         let Some(line) = line else { continue };
         assert!(
-            line.contains("left strikes turns back at 1e-10 m, with an error of 4e-8 m; tighten"),
+            line.contains("what happens at one place, first at t = 1.9635 s: left strikes turns back at 1e-10 m, with an error of 4e-8 m; tighten"),
             "{line}"
         );
         let first = &uncertain["first"][0];
