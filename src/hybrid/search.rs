@@ -174,6 +174,34 @@ enum BySeries {
     Nothing,
 }
 
+/// How many orders of the guards of a mode are asked for on a step whose motion is known to so many.
+#[inline(always)]
+pub(super) fn orders_of_guards<F: Size>(
+    equations: &Equations<F>,
+    dense: &(impl Motion<F> + ?Sized),
+    orders: usize,
+) -> usize {
+    match equations.kernel.guards_end(equations.context) {
+        true => orders.min(dense.coefficients(false)),
+        false => orders,
+    }
+}
+
+/// Whether the last terms of a guard's series are small enough, of so many coefficients that are not zero and so many `orders`; given are
+/// those from the power `first` on, in powers of the part of a step.
+#[inline(always)]
+pub(super) fn falls_off(
+    (powers, first): (&[f64], usize),
+    (count, orders): (usize, usize),
+    tolerance: f64,
+) -> bool {
+    let size = |of: &[f64]| sum_of(of, f64::abs);
+    count + 2 <= orders || {
+        let all = (orders * orders) as f64 * size(&powers[..count - first]);
+        size(&powers[orders - 2 - first..count - first]) <= tolerance * all
+    }
+}
+
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
 ///
 /// It is not searched if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
@@ -191,10 +219,7 @@ fn search_series<F: Size>(
         return BySeries::Nothing;
     };
     let tau = dense.start();
-    let expanded = match equations.kernel.guards_end(equations.context) {
-        true => orders.min(dense.coefficients(false)),
-        false => orders,
-    };
+    let expanded = orders_of_guards(equations, dense, orders);
     if !equations.expand_guards(tau, expanded, series) {
         return BySeries::Nothing;
     }
@@ -245,23 +270,19 @@ fn search_series<F: Size>(
         length *= 0.5;
     }
     loop {
-        let mut falls_off = true;
+        let mut holds = true;
         let coefficients = Coefficients {
             count,
             constant,
             rises: slope * length > 0.0,
             write: &mut |first, out: &mut [f64]| {
                 stretch(powers, |c| *c, (1.0, length, first), out);
-                if count + 2 > orders {
-                    let size = |of: &[f64]| sum_of(of, f64::abs);
-                    let all = (orders * orders) as f64 * size(&out[..count - first]);
-                    falls_off = size(&out[orders - 2 - first..count - first]) <= tolerance * all;
-                }
+                holds = falls_off((out, first), (count, orders), tolerance);
             },
         };
         let part = ((tau, length), (window.0, to), isolation);
         search_polynomial(coefficients, part, (watch, &mut *found));
-        if falls_off {
+        if holds {
             return match found.crossing.is_some() || to == window.1 {
                 true => BySeries::All,
                 false => BySeries::PositiveUntil(to),

@@ -6,6 +6,7 @@ use super::locate::{depends_on_accelerations, rate_at};
 use super::plan::Watched;
 use super::problem::Accuracy;
 use super::roots::{Search, minimum};
+use super::search::{falls_off, orders_of_guards};
 use crate::integrate::{LastStep, Motion, ORDERS, State, System};
 use crate::integrate::{Size, Vector};
 use crate::kernel::Free;
@@ -156,9 +157,12 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
         })
     }
 
-    /// How it changes from the start of the last step, in powers of the part of its length: as its coordinate or rate does. `None`: it is no
-    /// multiple of one and what does not move.
-    fn changes(&self, dense: &dyn Motion<F>) -> Option<Changes> {
+    /// How it changes from the start of the last step, in powers of the part of its length: as its coordinate or rate does, or on a step of the
+    /// Taylor method by its own series, where that holds for the whole step. `None`: by its values alone.
+    fn changes(&mut self, dense: &dyn Motion<F>) -> Option<Changes> {
+        if let GuardShape::General { .. } = self.guard.shape {
+            return self.own_series(dense);
+        }
         let GuardShape::Linear {
             index,
             rate,
@@ -177,6 +181,32 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
         let count = dense.coefficients(rate);
         dense.polynomial((index, rate), factor, 1, &mut coefficients[1..count]);
         Some(Changes {
+            coefficients,
+            count,
+        })
+    }
+
+    /// The same by its own series.
+    fn own_series(&mut self, dense: &dyn Motion<F>) -> Option<Changes> {
+        if self.watched.condition.is_some() || self.watched.conditional {
+            return None;
+        }
+        let (series, orders) = dense.series()?;
+        let expanded = orders_of_guards(self.equations, dense, orders);
+        if !(self.equations).expand_guards(dense.start(), expanded, series) {
+            return None;
+        }
+        let mut coefficients = [0.0; ORDERS];
+        let own = &mut coefficients[..expanded];
+        let (kernel, context) = (self.equations.kernel, &*self.equations.context);
+        kernel.guard_coefficients(context, self.watched.guard, own);
+        let mut power = 1.0;
+        for own in &mut *own {
+            *own *= power;
+            power *= dense.length();
+        }
+        let count = own.iter().rposition(|&c| c != 0.0).map_or(1, |k| k + 1);
+        falls_off((own, 0), (count, orders), self.equations.tolerance).then_some(Changes {
             coefficients,
             count,
         })
