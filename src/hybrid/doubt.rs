@@ -11,14 +11,14 @@
 
 use super::crossing::Signs;
 use super::equations::Equations;
-use super::guards::{Conditions, slope};
+use super::guards::{Conditions, Linear};
 use super::plan::Watched;
 use super::problem::{Accuracy, Problem};
 use super::roots::{Search, Watch};
 use super::sensitivity::WatchedGuard;
 use crate::integrate::{LastStep, Motion, OneStep};
 use crate::model::name::intern;
-use crate::model::{Guard, GuardShape, Mode};
+use crate::model::{Guard, Mode};
 use crate::numerics::Size;
 use crate::numerics::{Blank, Memory, Persist, persist};
 use crate::run::{Doubt, Question, Uncertain};
@@ -268,21 +268,13 @@ impl Doubts {
         let error = self.errors[step.index].get(fallen);
         // What it moves by, or has risen to, is by far more, as it mostly is.
         let enough = 2.0 * tolerances(1) * error.copied().unwrap_or(f64::INFINITY);
-        if let (
-            GuardShape::Linear {
-                index,
-                rate,
-                factor,
-                discrete,
-                ..
-            },
-            None,
-        ) = (step.mode.guards[watched.guard].shape, watched.condition)
-            && !outlasts
+        let shape = step.mode.guards[watched.guard].shape;
+        if !outlasts
+            && watched.condition.is_none()
+            && let Some(linear) = Linear::of(shape, equations.context)
         {
-            let factor = slope((factor, discrete), equations.context);
             let dense = method.dense().expect("a step was made");
-            let [_, moves] = dense.value_and_slope((index, rate), factor);
+            let [_, moves] = dense.value_and_slope((linear.index, linear.rate), linear.factor);
             if moves.abs() > enough {
                 return None;
             }

@@ -3,7 +3,7 @@
 use super::contact::{Guarded, guarded_by_contacts, held_by_others};
 use super::departure::Departure;
 use super::failure::{Reason, Stoppable};
-use super::guards::{Conditions, slope, watched_value};
+use super::guards::{Conditions, Linear, watched_value};
 use super::inertia::pivots;
 use super::rise::{Leaves, Start};
 use super::roots::Watch;
@@ -218,14 +218,7 @@ impl<'p> Simulation<'p> {
         let zero = kernel.size().zeros();
         for watched in &self.plan.watched[self.here.mode] {
             let guard = &mode.guards[watched.guard];
-            let GuardShape::Linear {
-                index,
-                rate,
-                factor,
-                discrete,
-                ..
-            } = guard.shape
-            else {
+            let Some(linear) = Linear::of(guard.shape, &self.context) else {
                 return Ok(false);
             };
             let at = Free {
@@ -234,8 +227,7 @@ impl<'p> Simulation<'p> {
                 a: &zero,
             };
             let value = kernel.guard(&self.context, &guard.kernel, at);
-            let factor = slope((factor, discrete), &self.context);
-            let rises = !rate && factor * v[index] > 0.0;
+            let rises = !linear.rate && linear.factor * v[linear.index] > 0.0;
             if guard.transitions.iter().any(|t| t.conditional)
                 || !(value > 0.0 || value == 0.0 && rises)
             {

@@ -5,7 +5,7 @@ use super::plan::{Plan, Watched};
 use crate::integrate::{Motion, Size};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::model::{Guard, Mode, Transition};
+use crate::model::{Guard, GuardShape, Mode, Transition};
 
 /// What the conditions of transitions are evaluated with.
 pub(super) struct Conditions<'a> {
@@ -138,6 +138,42 @@ pub(super) fn motion_at_stage<F: Size>(
     let a = equations.acceleration_here(&q, &v);
     let a = a.unwrap_or_else(|_| equations.kernel.size().repeat(f64::NAN));
     [q, v, a]
+}
+
+/// A guard that is linear, in the present discrete state.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Linear {
+    /// Index of the free coordinate.
+    pub index: usize,
+    /// Whether its rate is meant.
+    pub rate: bool,
+    /// What it is multiplied with.
+    pub factor: f64,
+    /// Whether something is added that does not move.
+    pub offset: bool,
+}
+
+impl Linear {
+    /// A guard by its shape; `None`: it is not linear.
+    #[inline(always)]
+    pub fn of(shape: GuardShape, context: &Context) -> Option<Self> {
+        let GuardShape::Linear {
+            index,
+            rate,
+            factor,
+            discrete,
+            offset,
+        } = shape
+        else {
+            return None;
+        };
+        Some(Linear {
+            index,
+            rate,
+            factor: slope((factor, discrete), context),
+            offset,
+        })
+    }
 }
 
 /// What a linear guard multiplies its coordinate or rate with: its factor and its discrete state, if any.

@@ -7,7 +7,7 @@
 
 use super::equations::{Equations, free_of};
 use super::failure::Stoppable;
-use super::guards::{self, Conditions};
+use super::guards::{self, Conditions, Linear};
 use super::plan::Watched;
 use super::roots::{Crossing, Kind};
 use crate::integrate::Size;
@@ -337,16 +337,9 @@ pub(super) fn rate_at<F: Size>(
     state: &State<F>,
 ) -> f64 {
     let at = free_of(state);
-    if let GuardShape::Linear {
-        index,
-        rate,
-        factor,
-        discrete,
-        ..
-    } = guard.shape
-    {
-        let factor = guards::slope((factor, discrete), equations.context);
-        return factor * if rate { state.a[index] } else { state.v[index] };
+    if let Some(linear) = Linear::of(guard.shape, equations.context) {
+        let rates = if linear.rate { &state.a } else { &state.v };
+        return linear.factor * rates[linear.index];
     }
     equations.at(state.t);
     let jerk = equations.jerk(at);

@@ -4,7 +4,7 @@
 use super::crossing::{Cut, Signs, cut};
 use super::equations::{Equations, free_of};
 use super::failure::{Reason, Stoppable};
-use super::guards::{Conditions, motion, slope};
+use super::guards::{Conditions, Linear, motion};
 use super::instant::Instant;
 use super::limits::Margins;
 use super::plan::Watched;
@@ -338,15 +338,13 @@ impl Margins<'_> {
         }
         let watch = Watch::of(begins);
         let mut found = Search::nothing(watch);
-        match shape? {
-            GuardShape::Linear {
+        match Linear::of(shape?, equations.context) {
+            Some(Linear {
                 index,
                 rate,
                 factor,
-                discrete,
                 ..
-            } => {
-                let factor = slope((factor, discrete), equations.context);
+            }) => {
                 let coefficients = Coefficients {
                     count: dense.coefficients(rate),
                     constant: begins,
@@ -365,7 +363,7 @@ impl Margins<'_> {
                     (watch, &mut found),
                 );
             }
-            GuardShape::General { .. } => {
+            None => {
                 let value = |tau: f64| {
                     let [q, v, a] = match tau == end.t {
                         true => [end.q.clone(), end.v.clone(), end.a.clone()],

@@ -2,13 +2,13 @@
 //! its rate, and what is linear by accelerations that are far more than their rounding.
 
 use super::departure::{CLEAR, Departure, outweighs_for};
-use super::guards::slope;
+use super::guards::Linear;
 use super::simulation::Simulation;
 use super::solvers::{SlotsOf, Solvers};
 use crate::integrate::{Series, Size, Vector};
 use crate::jets::ORDERS;
 use crate::kernel::{Context, Free, ModeKernel};
-use crate::model::{Guard, GuardShape};
+use crate::model::Guard;
 use crate::numerics::Lu;
 
 /// The state at the start of a segment.
@@ -35,17 +35,12 @@ impl<F: Size> Start<'_, F> {
     /// How a guard that is exactly zero leaves zero; `None`: that takes an expansion with bounds.
     pub fn leaves(&self, context: &Context, guard: &Guard, a: &F::Vector) -> Option<Leaves> {
         let [q, v] = self.at;
-        let GuardShape::Linear {
+        let Linear {
             index,
             rate,
             factor,
-            discrete,
             ..
-        } = guard.shape
-        else {
-            return None;
-        };
-        let factor = slope((factor, discrete), context);
+        } = Linear::of(guard.shape, context)?;
         if !rate && v[index] != 0.0 {
             return Some(Leaves::At(match factor * v[index] > 0.0 {
                 true => Departure::Up {

@@ -1,7 +1,7 @@
 //! The search of a guard on a step's dense output.
 
 use super::equations::Equations;
-use super::guards::{Conditions, motion, motion_at_stage, slope, watched_value};
+use super::guards::{Conditions, Linear, motion, motion_at_stage, watched_value};
 use super::plan::Watched;
 use super::roots::{self, Isolation, Polynomial, Search, Watch, straight_crossing, sum_of};
 use crate::integrate::{Motion, ORDERS, System, stretch};
@@ -124,17 +124,13 @@ fn search_linear<F: Size>(
     (window, isolation): ((f64, f64), Isolation),
     (watch, found): (Watch, &mut Search),
 ) {
-    let GuardShape::Linear {
+    let linear = Linear::of(guard.shape, equations.context);
+    let Linear {
         index,
         rate,
         factor,
-        discrete,
         offset,
-    } = guard.shape
-    else {
-        unreachable!("the caller has asked for its shape")
-    };
-    let factor = slope((factor, discrete), equations.context);
+    } = linear.expect("the caller has asked for its shape");
     let [constant, slope] = dense.value_and_slope((index, rate), factor);
     let constant = match offset {
         false => constant,

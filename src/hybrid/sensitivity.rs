@@ -1,7 +1,7 @@
 //! What errors of the motion do to a guard, and how near to zero it comes in a step.
 
 use super::equations::{Equations, free_of};
-use super::guards::{Conditions, motion, slope, watched_value};
+use super::guards::{Conditions, Linear, motion, watched_value};
 use super::locate::{depends_on_accelerations, rate_at};
 use super::plan::Watched;
 use super::problem::Accuracy;
@@ -10,7 +10,7 @@ use super::search::{falls_off, orders_of_guards};
 use crate::integrate::{LastStep, Motion, ORDERS, State, System};
 use crate::integrate::{Size, Vector};
 use crate::kernel::Free;
-use crate::model::{Guard, GuardShape, Mode};
+use crate::model::{Guard, Mode};
 
 /// Parts of a step among which its least value is looked for: a step is a period at most, in which a guard
 /// turns twice.
@@ -27,27 +27,22 @@ pub(super) struct WatchedGuard<'e, 'a, 'c, F: Size> {
 }
 
 impl<F: Size> WatchedGuard<'_, '_, '_, F> {
-    /// The coordinate, or rate, that it is a multiple of, with its factor; `None`: it is none, and may depend on the time.
-    fn multiple(&self) -> Option<((usize, bool), f64)> {
-        match self.guard.shape {
-            GuardShape::Linear {
-                index,
-                rate,
-                factor,
-                discrete,
-                offset: false,
-            } if self.watched.condition.is_none() => {
-                let factor = slope((factor, discrete), self.equations.context);
-                Some(((index, rate), factor))
-            }
-            _ => None,
-        }
+    /// What is watched, where it is linear.
+    fn linear(&self) -> Option<Linear> {
+        let linear = Linear::of(self.guard.shape, self.equations.context);
+        linear.filter(|_| self.watched.condition.is_none())
+    }
+
+    /// The same where nothing is added, which may depend on the time.
+    fn multiple(&self) -> Option<Linear> {
+        self.linear().filter(|linear| !linear.offset)
     }
 
     /// Its value in a state at local time `t`.
     pub fn value(&mut self, t: f64, q: &F::Vector, v: &F::Vector) -> f64 {
-        if let Some(((index, rate), factor)) = self.multiple() {
-            return factor * if rate { v[index] } else { q[index] };
+        if let Some(linear) = self.multiple() {
+            let state = if linear.rate { v } else { q };
+            return linear.factor * state[linear.index];
         }
         let mut a = q.size().zeros();
         let needs_accelerations = self.watched.condition.is_some()
@@ -150,7 +145,11 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
             return Some((end.t, values[PARTS]));
         }
         let (low, high) = (least.saturating_sub(1), (least + 1).min(PARTS));
-        let (t, value) = minimum(&mut |t| inside(self, t), (place(low), place(high)));
+        let (t, mut value) = minimum(&mut |t| inside(self, t), (place(low), place(high)));
+        if self.linear().is_none() {
+            // Its own series, which is as accurate as an acceleration of the dense output, tells the place alone.
+            value = self.value_within(dense, t);
+        }
         Some(match value < values[PARTS] {
             true => (t, value),
             false => (end.t, values[PARTS]),
@@ -160,23 +159,15 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     /// How it changes from the start of the last step, in powers of the part of its length: as its coordinate or rate does, or on a step of the
     /// Taylor method by its own series, where that holds for the whole step. `None`: by its values alone.
     fn changes(&mut self, dense: &dyn Motion<F>) -> Option<Changes> {
-        if let GuardShape::General { .. } = self.guard.shape {
-            return self.own_series(dense);
-        }
-        let GuardShape::Linear {
+        let Some(Linear {
             index,
             rate,
             factor,
-            discrete,
             ..
-        } = self.guard.shape
+        }) = self.linear()
         else {
-            return None;
+            return self.own_series(dense);
         };
-        if self.watched.condition.is_some() {
-            return None;
-        }
-        let factor = slope((factor, discrete), self.equations.context);
         let mut coefficients = [0.0; ORDERS];
         let count = dense.coefficients(rate);
         dense.polynomial((index, rate), factor, 1, &mut coefficients[1..count]);
@@ -188,6 +179,7 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
 
     /// The same by its own series.
     fn own_series(&mut self, dense: &dyn Motion<F>) -> Option<Changes> {
+        // Conditions have none of their own.
         if self.watched.condition.is_some() || self.watched.conditional {
             return None;
         }

@@ -50,7 +50,7 @@ fn observables(model: &Model, variant: &Variant, own: &[(String, String)]) -> Ve
 /// The shape of `limits` of a scene with these outputs, by name and unit; `None`: with any.
 pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String)]>) -> Object {
     let course = || Shape::Choice("course", vec![END, CONTINUE]);
-    let known = || Shape::Choice("course", vec![END, CONTINUE, IGNORE]);
+    let any_course = || Shape::Choice("course", vec![END, CONTINUE, IGNORE]);
     let bounds = |unit: &str| {
         Object::new(
             "bound",
@@ -66,7 +66,8 @@ pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String
     ];
     let Some(model) = model else {
         let own = Object::new("quantity", own).others(bounds(""));
-        return Object::new("limit", Vec::new()).others(Shape::Either(vec![known(), own.into()]));
+        return Object::new("limit", Vec::new())
+            .others(Shape::Either(vec![any_course(), own.into()]));
     };
     let variant = &model.variants[0];
     own.extend(
@@ -79,14 +80,14 @@ pub(super) fn shape(model: Option<&Model>, own_outputs: Option<&[(String, String
     );
     let of_model = format::limits(&model.variants).into_iter().map(|limit| {
         let default = if limit.ends { END } else { CONTINUE };
-        Key::new(limit.name, limit.message, known()).default(default)
+        Key::new(limit.name, limit.message, any_course()).default(default)
     });
     // A name that is not the model's, with the course of one, is a mistake that is named later.
     let own = match own_outputs {
         Some(_) => Object::new("quantity", own),
         None => Object::new("quantity", own).others(bounds("")),
     };
-    Object::new("limit", of_model.collect()).others(Shape::Either(vec![own.into(), known()]))
+    Object::new("limit", of_model.collect()).others(Shape::Either(vec![own.into(), any_course()]))
 }
 
 /// The limits of a checked scene.

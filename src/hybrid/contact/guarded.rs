@@ -4,9 +4,10 @@ use super::ContactState;
 use super::event::GUARDS;
 use super::geometry::{Geometry, Line};
 use super::hold::{buffers, held_lines};
+use crate::hybrid::guards::Linear;
 use crate::hybrid::problem::Accuracy;
 use crate::kernel::Context;
-use crate::model::{GuardShape, Mode};
+use crate::model::Mode;
 
 /// What is known of such a guard from the contacts, whatever rounding makes of its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,15 +30,13 @@ pub(in crate::hybrid) fn guarded_by_contacts(
     let contacts = mode.contacts.as_ref().expect("a mode of all sets");
     let by_hand = GUARDS * contacts.contacts.len()..mode.guards.len();
     // A coordinate that the tolerances do not tell from zero, and the sign of its factor.
-    let coordinate = |guard: usize| match mode.guards[guard].shape {
-        GuardShape::Linear {
+    let coordinate = |guard: usize| match Linear::of(mode.guards[guard].shape, context)? {
+        Linear {
             index,
             rate: false,
             offset: false,
             factor,
-            discrete,
         } => {
-            let factor = factor * discrete.map_or(1.0, |d| context.discrete()[d]);
             let is_zero = state[0][index].abs() <= accuracy.q_absolute[mode.free[index]];
             is_zero.then_some((guard, index, factor))
         }
