@@ -232,6 +232,7 @@ def _guard(variant, i, g, derived, tables):
         "name": " / ".join(dict.fromkeys(t.name for t in transitions)) if not is_contact
         else equations.form.contacts[g // 3].name,
         "text": units.short(expression, 200), "unit": "1" if is_contact else _unit(model, expression), "shape": equations.guard_shapes[g],
+        "of_forces": is_contact or units.dimension_of(ca.SX(expression), model.dimensions)[units.BASE.index("s")] == -2,
         "direction": next((d for d, declared in enumerate(model.discretes) for t in transitions if declared.symbol is t.direction), None),
         **{row.name: _found(row, derived[row.name, g], tables) for row in functions.GUARD},
         "transitions": [_transition(variant, i, g, t, derived, tables) for t in range(len(transitions))],

@@ -151,7 +151,8 @@ GUARD = (
     Row("guard", lambda of: of.value, "hybrid::guards", in_lanes=True),
     Row("guard_rate", lambda of: of.mode.equations.along_the_flow(of.value, signals.of(of.mode.model), signals.rates(of.mode.model)),
         "hybrid::guards (its derivative along the motion)"),
-    Row("guard_magnitude", lambda of: graph.magnitude(of.value), "hybrid::guards (its rounding)"),
+    Row("guard_magnitude", lambda of: graph.magnitude(of.value), "hybrid::start, hybrid::typical (the size of its terms)"),
+    Row("guard_rounding", lambda of: graph.running_error(of.value), "hybrid::crossing, hybrid::doubt (its rounding)"),
 )
 """Of each guard of a mode."""
 

@@ -63,6 +63,10 @@ fn taken<F: Size>(kernel: &ModeKernel<F>, own: Of, guard: &Guard) -> Vec<&'stati
         "guard_magnitude",
         refuses(|| kernel.guard_magnitude(&x, own_guard, at)),
     );
+    expect_refusal(
+        "guard_rounding",
+        refuses(|| kernel.guard_rounding(&x, own_guard, at)),
+    );
     for transition in &guard.transitions {
         let transition = &transition.kernel;
         let mut out = room(own.0);
@@ -137,6 +141,7 @@ fn a_kernel_takes_what_is_of_its_own_model() {
             for guard in &own.1.guards {
                 let _ = k.guard(&x, &guard.kernel, at);
                 let _ = k.guard_magnitude(&x, &guard.kernel, at);
+                let _ = k.guard_rounding(&x, &guard.kernel, at);
                 for transition in &guard.transitions {
                     k.reset(&x, &transition.kernel, at, &mut room(own.0));
                     let _ = k.impulses(&x, &transition.kernel, at);
@@ -224,6 +229,7 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
     for guard in &mode.guards {
         let _ = kernel.guard(&x, &guard.kernel, at);
         let _ = kernel.guard_magnitude(&x, &guard.kernel, at);
+        let _ = kernel.guard_rounding(&x, &guard.kernel, at);
         let _ = kernel.guard_rate(&x, &guard.kernel, at, &a);
         for transition in &guard.transitions {
             let mut out = unwritten(room(model).len());

@@ -3,13 +3,14 @@
 use super::equations::Equations;
 use super::failure::Stoppable;
 use super::guards::{self, Conditions};
-use super::locate::{Landing, TAYLOR, is_rounding, land, land_later, rate_at, value_at};
+use super::locate::{Landing, is_rounding, land, land_later};
 use super::plan::Watched;
 use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
 };
 use super::search::search;
-use crate::integrate::{LastStep, Motion, OneStep, Retake, State};
+use super::touch::{below, fallen, turns_within_rounding};
+use crate::integrate::{LastStep, Motion, OneStep, State};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::Size;
@@ -21,17 +22,19 @@ pub(super) struct Signs {
     /// Signs at the start of the step.
     pub watches: Vec<Watch>,
     /// What was found of each in the step. Modes watch different numbers: there is room for the most so far.
-    found: Vec<Search>,
+    pub(super) found: Vec<Search>,
     /// Local time from which each is searched, where that is after the start of the step.
     from: Vec<f64>,
     /// Local time until which each that was zero at the start of the segment is known to be positive; else 0.
-    away: Vec<f64>,
+    pub(super) away: Vec<f64>,
     /// Whether that of one of them is not 0.
     waits: bool,
     /// Those that turned within rounding in the step and are not positive at its end.
     below: Vec<usize>,
     /// Whether the event of the step is that of a guard that was never seen to be positive.
-    unseen: bool,
+    pub(super) unseen: bool,
+    /// Those that turned within rounding in the step, and where, local time; they have not fallen.
+    touched: Vec<(usize, f64)>,
 }
 
 /// What was found in a step is found again in the next.
@@ -98,6 +101,11 @@ impl Signs {
         self.unseen
     }
 
+    /// Those that turned within rounding in the last step, and where, local time.
+    pub fn touched(&self) -> &[(usize, f64)] {
+        &self.touched
+    }
+
     /// Searches each from the start of a step, or from the time until which it is positive.
     #[inline(always)]
     fn search_from(&mut self, start: f64) {
@@ -160,6 +168,7 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
     let start = method.start().t;
     signs.search_from(start);
     signs.unseen = false;
+    signs.touched.clear();
     if signs.waits {
         wake(method, equations, (mode, watched), signs);
     }
@@ -249,6 +258,15 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
             from[first] = crossing.outside;
             continue;
         }
+        let is_of_forces = watched[first].condition.is_none()
+            && mode.is_of_forces(index, equations.context.discrete());
+        let turns = (&found[first], crossing);
+        if is_of_forces && turns_within_rounding(method, equations, conditions, guard, turns) {
+            watches[first] = Watch::Violated;
+            from[first] = crossing.outside.max(from[first].next_up());
+            signs.touched.push((first, crossing.outside));
+            continue;
+        }
         // A contact that has left its gap, or its stop, within this step: where how far is below the rounding of its own value, it
         // is known from its series alone.
         let from_zero = watches[first] == Watch::Dormant && start == 0.0;
@@ -274,7 +292,14 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                 crossing = of_series;
             }
         }
-        let landing = match land(method, equations, conditions, guard, crossing, landed)? {
+        let landing = match land(
+            method,
+            equations,
+            conditions,
+            guard,
+            (crossing, is_of_forces),
+            landed,
+        )? {
             Landing::Short => {
                 let of = (crossing, to);
                 land_later(method, equations, conditions, guard, of, landed)?
@@ -332,136 +357,6 @@ fn wake<F: Size>(
             }
         }
     }
-}
-
-/// Those of the guards that came to zero within rounding which are not positive at the end of the step.
-#[cold]
-fn below<F: Size>(
-    equations: &mut Equations<F>,
-    conditions: &mut Conditions,
-    (mode, watched): (&Mode, &[Watched]),
-    signs: &Signs,
-    end: &State<F>,
-) -> Vec<usize> {
-    let is_below = |&i: &usize| {
-        let guard = (&mode.guards[watched[i].guard], watched[i]);
-        signs.found[i].turn <= 0.0
-            && signs.found[i].crossing.is_none()
-            && value_at(equations, conditions, guard, end) <= 0.0
-    };
-    (0..watched.len()).filter(is_below).collect()
-}
-
-/// The event of a guard that was zero at the start of the segment, or came to zero within rounding, and rose from it by
-/// less than the dense output shows, so that it never was seen to be positive: at the end of the step, or where the event of another
-/// guard cuts it (`end`), it is negative and falls, or it has been negative in between by more than rounding. It has fallen where
-/// it first is negative and falls after it was known to be positive, to a factor of two; and it is in doubt, having turned at zero.
-/// The guard, and the state there.
-#[cold]
-fn fallen<'a, F: Size>(
-    method: &mut dyn Retake<F, Equations<'a, F>>,
-    equations: &mut Equations<'a, F>,
-    conditions: &mut Conditions,
-    (mode, watched): (&Mode, &[Watched]),
-    signs: &mut Signs,
-    end: f64,
-) -> Stoppable<Option<(usize, State<F>)>> {
-    let start = method.start().t;
-    if end <= start {
-        // The event of the other guard leaves nothing of the step.
-        return Ok(None);
-    }
-    let mut at_end = None;
-    for (i, &watched) in watched.iter().enumerate() {
-        let found = &signs.found[i];
-        let is_negative = found.watch == Watch::Violated && found.crossing.is_none();
-        // Not seen to be positive where it was known to be, and positive since.
-        let rises = signs.watches[i] == Watch::Violated && signs.away[i] > start;
-        if !(signs.away[i] > 0.0 && (is_negative || rises)) {
-            continue;
-        }
-        let at_end = at_end.get_or_insert_with(|| match end < method.end() {
-            true => {
-                let [q, v, a] = guards::motion(equations, method.motion(), end, true);
-                State { t: end, q, v, a }
-            }
-            false => method.state().clone(),
-        });
-        let guard = (&mode.guards[watched.guard], watched);
-        let falls_at_end = falls_below(equations, conditions, guard, at_end);
-        if !(falls_at_end || has_sunk(method, equations, conditions, guard, end)) {
-            continue;
-        }
-        let away = signs.away[i] - start;
-        let mut length = if away > 0.0 {
-            away
-        } else {
-            TAYLOR * (end - start)
-        };
-        let state = loop {
-            let tau = (start + length).min(end);
-            // A length that rounding does not tell from nothing grows.
-            if tau > start {
-                if method.end() != tau {
-                    method.step_exactly(equations, tau - start)?;
-                }
-                let state = method.state();
-                if falls_below(equations, conditions, guard, state) {
-                    break Some(state.clone());
-                }
-                if tau >= end {
-                    break falls_at_end.then(|| state.clone());
-                }
-            }
-            length *= 2.0;
-        };
-        let Some(state) = state else { continue };
-        // What happens later is the next segment's.
-        signs
-            .found
-            .iter_mut()
-            .for_each(|found| found.crossing = None);
-        signs.found[i].crossing = Some(Crossing {
-            inside: method.end(),
-            outside: method.end(),
-            kind: Kind::Crossing,
-        });
-        signs.found[i].turn = 0.0;
-        signs.unseen = true;
-        return Ok(Some((watched.guard, state)));
-    }
-    Ok(None)
-}
-
-/// Whether a guard is negative at a state, and falls.
-fn falls_below<F: Size>(
-    equations: &mut Equations<F>,
-    conditions: &mut Conditions,
-    guard: (&Guard, Watched),
-    state: &State<F>,
-) -> bool {
-    value_at(equations, conditions, guard, state) < 0.0 && rate_at(equations, guard.0, state) < 0.0
-}
-
-/// Parts of a step at whose ends a guard is looked at: a step is a period at most.
-const PARTS: usize = 8;
-
-/// Whether the motion shows a guard to be negative by more than rounding somewhere in the last step up to local time `end`.
-fn has_sunk<F: Size>(
-    method: &dyn LastStep<F>,
-    equations: &mut Equations<F>,
-    conditions: &mut Conditions,
-    guard: (&Guard, Watched),
-    end: f64,
-) -> bool {
-    let start = method.start();
-    (1..=PARTS).any(|k| {
-        let t = start.t + k as f64 / PARTS as f64 * (end - start.t);
-        let [q, v, a] = guards::motion(equations, method.motion(), t, true);
-        let state = State { t, q, v, a };
-        value_at(equations, conditions, guard, &state) < 0.0
-            && !is_rounding(equations, conditions, guard, (start, &state))
-    })
 }
 
 /// Searches a guard, unless the window from which it is searched is empty.

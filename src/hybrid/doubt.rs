@@ -146,7 +146,8 @@ impl Doubts {
         let errors = &self.errors[step.index];
         let certain =
             |(found, error): (&Search, &f64)| found.resolved && !is_near(found, error * within);
-        let known = errors.len() == step.found.len() && self.left.is_empty();
+        let nothing_touched = self.left.is_empty() && step.signs.touched().is_empty();
+        let known = errors.len() == step.found.len() && nothing_touched;
         if !(known && step.found.iter().zip(errors).all(certain)) {
             self.examine(step, method, equations, conditions);
         }
@@ -175,9 +176,18 @@ impl Doubts {
             let start = method.start();
             let error = |&watched: &Watched| {
                 let mut guard = step.guard(watched, equations, conditions);
-                guard.error(start.t, &start.q, &start.v) + guard.rounding(start)
+                guard.error(start.t, &start.q, &start.v) + guard.tolerance(start)
             };
             self.errors[step.index] = step.watched.iter().map(error).collect();
+        }
+        for &(i, t) in step.signs.touched() {
+            let mut guard = step.guard(step.watched[i], equations, conditions);
+            if guard.matters(t, method) {
+                let error = guard.error_at(t, method) * tolerances + guard.rounding_at(t, method);
+                let value = guard.value_within(method.motion(), t);
+                self.uncertain
+                    .add(guard.doubt(t, Question::Graze, value, error));
+            }
         }
         let left = std::mem::take(&mut self.left);
         for (i, (found, &watched)) in step.found.iter().zip(step.watched).enumerate() {
@@ -212,6 +222,7 @@ impl Doubts {
             }
             let inside = t < end.t;
             let error = guard.error_at(t, method) * tolerances
+                + guard.rounding_at(t, method)
                 + if inside {
                     guard.error_of_dense_output(t, method)
                 } else {
@@ -309,7 +320,7 @@ impl Doubts {
             return None;
         }
         let (t, value) = guard.deepest(method);
-        let error = tolerances(1) * guard.error_at(t, method);
+        let error = tolerances(1) * guard.error_at(t, method) + guard.rounding_at(t, method);
         let is_small = -value <= error && (outlasts || risen <= error);
         is_small.then(|| guard.doubt(t, Question::Graze, value, error))
     }

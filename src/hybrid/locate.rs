@@ -38,25 +38,35 @@ const TAYLOR_OF_RATES: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// Retakes the last step so that it ends at `crossing` of `guard`, and writes the state there.
 ///
-/// A guard that is no more negative there than rounding makes it, and rises, has turned: it does not fall.
+/// A guard that is no more negative there than rounding makes it, and rises, has turned: it does not fall. Of a force its own rounding
+/// counts.
 pub(super) fn land<'a, F: Size>(
     method: &mut dyn Retake<F, Equations<'a, F>>,
     equations: &mut Equations<'a, F>,
     conditions: &mut Conditions,
     guard: (&Guard, Watched),
-    crossing: Crossing,
+    (crossing, is_of_forces): (Crossing, bool),
     landed: &mut State<F>,
 ) -> Stoppable<Landing> {
     let landing = land_on(method, equations, conditions, guard, crossing, landed)?;
     let rises = matches!(landing, Landing::On { .. })
         && guard.1.condition.is_none()
         && rate_at(equations, guard.0, landed) >= 0.0;
-    Ok(
-        match rises && is_rounding(equations, conditions, guard, (method.start(), landed)) {
-            true => Landing::Hidden,
-            false => landing,
-        },
-    )
+    let is_none = rises && {
+        is_of_forces && is_own_rounding(equations, guard.0, landed)
+            || is_rounding(equations, conditions, guard, (method.start(), landed))
+    };
+    Ok(match is_none {
+        true => Landing::Hidden,
+        false => landing,
+    })
+}
+
+/// Whether the value of a guard is no more than its own rounding.
+fn is_own_rounding<F: Size>(equations: &Equations<F>, guard: &Guard, state: &State<F>) -> bool {
+    let (kernel, context, at) = (equations.kernel, &*equations.context, free_of(state));
+    let value = kernel.guard(context, &guard.kernel, at);
+    value.abs() <= kernel.guard_rounding(context, &guard.kernel, at)
 }
 
 /// Whether the value of a guard is no more than what rounding in a step's polynomials makes of it at its end.
@@ -67,6 +77,18 @@ pub(super) fn is_rounding<F: Size>(
     guard: (&Guard, Watched),
     (start, end): (&State<F>, &State<F>),
 ) -> bool {
+    let value = value_at(equations, conditions, guard, end);
+    value.abs() <= rounding_of_step(equations, conditions, guard, (start, end))
+}
+
+/// What rounding in a step's polynomials makes of a guard at its end.
+#[cold]
+pub(super) fn rounding_of_step<F: Size>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    guard: (&Guard, Watched),
+    (start, end): (&State<F>, &State<F>),
+) -> f64 {
     // Horner's rule (Higham 2002, §5.1).
     let rounding = |from: f64, to: f64| ORDERS as f64 * f64::EPSILON * from.abs().max(to.abs());
     let value = value_at(equations, conditions, guard, end);
@@ -81,7 +103,7 @@ pub(super) fn is_rounding<F: Size>(
         faster.v[i] += rounding(start.v[i], end.v[i]);
         sum += change(&mut moved) + change(&mut faster);
     }
-    value.abs() <= sum
+    sum
 }
 
 fn land_on<'a, F: Size>(

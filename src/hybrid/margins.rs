@@ -226,8 +226,11 @@ impl Margins<'_> {
             before = falls;
             // Of another step nothing is known.
             self.open.fill(true);
-            // A step has a length.
-            method.step_exactly(equations, falls.max(start.next_up()) - start)?;
+            // A step has a length, and moves something.
+            let least = start
+                .next_up()
+                .max(start + f64::EPSILON * (method.end() - start));
+            method.step_exactly(equations, falls.max(least) - start)?;
             found = cut(
                 method,
                 equations,

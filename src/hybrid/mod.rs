@@ -48,6 +48,7 @@ mod simulator;
 mod solvers;
 mod start;
 mod stiffness;
+mod touch;
 mod typical;
 mod unrest;
 mod validate;

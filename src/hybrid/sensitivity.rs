@@ -89,14 +89,28 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
     }
 
     /// A tolerance of its own terms, which bounds what its error changes by while it comes to zero.
-    pub fn rounding(&self, state: &State<F>) -> f64 {
+    pub fn tolerance(&self, state: &State<F>) -> f64 {
         if self.watched.condition.is_some() {
             return 0.0;
         }
-        let at = free_of(state);
         let (kernel, context) = (self.equations.kernel, &*self.equations.context);
-        let magnitude = kernel.guard_magnitude(context, &self.guard.kernel, at);
+        let magnitude = kernel.guard_magnitude(context, &self.guard.kernel, free_of(state));
         self.accuracy.relative * magnitude
+    }
+
+    /// Its own rounding where the last step is at local time `t`; 0 of a condition.
+    pub fn rounding_at(&mut self, t: f64, method: &dyn LastStep<F>) -> f64 {
+        if self.multiple().is_some() || self.watched.condition.is_some() {
+            return 0.0;
+        }
+        let [q, v, a] = motion(self.equations, method.motion(), t, true);
+        let at = Free {
+            q: &q,
+            v: &v,
+            a: &a,
+        };
+        let (kernel, context) = (self.equations.kernel, &*self.equations.context);
+        kernel.guard_rounding(context, &self.guard.kernel, at)
     }
 
     /// Place and value of its least value in the last step but where it rises from the start, or from local time `from`
@@ -226,7 +240,7 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
         let (from, dense) = (method.end(), method.motion());
         let to = dense.start() + dense.length();
         let mut deepest = (from, f64::INFINITY);
-        for k in 1..=PARTS {
+        for k in 0..=PARTS {
             let t = from + k as f64 / PARTS as f64 * (to - from);
             let value = self.value_within(dense, t);
             // What is not a number is no depth.

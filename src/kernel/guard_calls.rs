@@ -56,6 +56,13 @@ impl<F: Size> ModeKernel<F> {
         self.of_guard(guard.magnitude, x, guard, at)
     }
 
+    /// What bounds the rounding error of a guard, to first order, in its unit, where all that it depends on is known to its own
+    /// rounding (running error, Higham 2002, §3.3).
+    pub fn guard_rounding(&self, x: &Context, guard: &GuardKernel, at: Free<F>) -> f64 {
+        // Of a half for each operation, in units of the machine epsilon.
+        0.5 * f64::EPSILON * self.of_guard(guard.rounding, x, guard, at)
+    }
+
     /// The reset of a transition out of this mode: all q, all v, all discrete states after it.
     ///
     /// # Panics

@@ -282,6 +282,7 @@ pub struct GuardKernel {
     pub(crate) value: Raw,
     pub(crate) rate: Raw,
     pub(crate) magnitude: Raw,
+    pub(crate) rounding: Raw,
     /// The value in lanes, by level of the processor.
     pub(crate) in_lanes: Box<[Option<Raw>]>,
 }

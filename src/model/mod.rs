@@ -361,6 +361,9 @@ pub struct Guard {
     pub unit: &'static str,
     /// Its dependence, which decides how its roots are isolated.
     pub shape: GuardShape,
+    /// Whether it is a force, or what has its dimension of time (of contacts solved with multipliers, in some of their states:
+    /// [`Mode::is_of_forces`]): no place and no rate.
+    pub of_forces: bool,
     /// The discrete state, ±1, with which it multiplies a slip rate, if it does: the direction of a contact that slides.
     pub direction: Option<usize>,
     /// The generated guard and its derivative along the flow.
@@ -471,9 +474,23 @@ impl Variant {
 }
 
 impl Mode {
-    /// Whether a mode holds a coordinate by itself: it is neither free nor depends on what is.
+    /// Whether a guard is a force in a discrete state: what pushes or what friction can still hold, not a gap and not a slip rate.
+    pub fn is_of_forces(&self, guard: usize, discrete: &[f64]) -> bool {
+        let of_contact = self.contacts.as_ref();
+        let of_contact = of_contact.and_then(|of| of.contacts.get(guard / Contacts::GUARDS));
+        self.guards[guard].of_forces
+            && of_contact.is_none_or(|contact| match guard % Contacts::GUARDS {
+                0 => contact.closed.is_none_or(|closed| discrete[closed] != 0.0),
+                1 => contact
+                    .direction
+                    .is_none_or(|direction| discrete[direction] == 0.0),
+                _ => true,
+            })
+    }
+
+    /// Whether a mode holds a coordinate still: it is not free, does not depend on what is, and is not carried along.
     pub fn freezes(&self, i: usize) -> bool {
-        !self.free.contains(&i) && !self.depends[i]
+        !self.free.contains(&i) && !self.moves(i)
     }
 
     /// Whether a coordinate moves although the mode holds it: it drifts, or depends on free ones.

@@ -119,7 +119,30 @@ fn what_holds_below_its_limit_does_not_slip_in_place_of_another() {
     }
 }
 
-/// Loads, limits and couplings of few values, so that much happens at one instant. No load has its largest value at a limit.
+/// A mass on rough ground, whose load rises to what friction holds at the very most, and no further.
+#[test]
+fn what_friction_can_just_hold_it_holds() {
+    let sines =
+        [1.0, 1.3, 0.7, 0.31, 2.2].map(|f| json!({ "sine": { "amplitude": 3, "frequency": f } }));
+    let knots = [[3.0, 3.0], [3.0, 0.0], [-3.0, 3.0]]
+        .map(|[a, b]| json!({ "knots": [[0, 0], [1, a], [2, b], [3, 0]] }));
+    for load in sines.iter().chain(&knots) {
+        for method in ["taylor", "radau"] {
+            let scene = json!({
+                "inputs": { "F": load }, "end": 3, "method": method,
+                "parameters": { "share_b": 0, "share_c": 0 },
+            });
+            for run in both(&scene) {
+                let of = format!("{load} by {method}: {:?}", run.uncertain);
+                assert!(run.events.is_empty(), "{:?}, {of}", run.events);
+                assert!(run.failure.is_none() && run.end.state.q == [0.0; 3], "{of}");
+                assert!(run.uncertain.total > 0, "{of}");
+            }
+        }
+    }
+}
+
+/// Loads, limits and couplings of few values, so that much happens at one instant; some loads have their largest values at a limit.
 fn random(number: u64) -> serde_json::Value {
     let mut random = Random(number);
     let mut parameters = json!({ "k": random.one_of(&[0.0, 4.0]) });
@@ -136,6 +159,8 @@ fn random(number: u64) -> serde_json::Value {
     let loads = [
         json!({ "sine": { "amplitude": 4.1, "angular_frequency": 1 } }),
         json!({ "sine": { "amplitude": 6.3, "angular_frequency": 2 } }),
+        json!({ "sine": { "amplitude": 3, "frequency": 0.7 } }),
+        json!({ "sine": { "amplitude": 6, "frequency": 1.3 } }),
         json!({ "constant": 3.5 }),
     ];
     let load = random.one_of(&loads);

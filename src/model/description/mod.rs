@@ -276,6 +276,7 @@ impl Reader<'_> {
             text: at.get("text", text)?,
             unit: at.get("unit", text)?,
             shape: at.get("shape", |at| self.shape(at, free))?,
+            of_forces: at.get("of_forces", truth)?,
             direction: at.get("direction", |at| {
                 at.option(|at| at.index(self.dimensions.discretes))
             })?,
@@ -285,6 +286,7 @@ impl Reader<'_> {
                 value: at.get("guard", |at| self.value(at))?,
                 rate: at.get("guard_rate", |at| self.value(at))?,
                 magnitude: at.get("guard_magnitude", |at| self.value(at))?,
+                rounding: at.get("guard_rounding", |at| self.value(at))?,
                 in_lanes: at.get("guard", |at| self.in_lanes(at))?,
             },
             transitions: at.get("transitions", |at| {
