@@ -122,10 +122,11 @@ def described(model):
     found = []
     for contact in model.contacts:
         found.append({
-            "name": contact.name, "kind": "ratchet" if contact.is_ratchet else "friction" if contact.gap is None else "contact", "gap": text(contact.gap_expression),
+            "name": contact.name, "kind": "ratchet" if contact.is_ratchet else "friction" if contact.gap is None else "contact",
+            "gap": text(contact.gap_expression) if contact.sides is None else f"{text(contact.gap_expression)} to either side, {contact.sides.name()}",
             "slip": text(contact.slip_expression), "normal": text(contact.normal) if contact.gap is None else None,
             "static": text(contact.static), "kinetic": text(contact.kinetic),
-            "restitution": None if contact.gap is None or contact.is_ratchet else text(contact.restitution), "states": contact.states()})
+            "restitution": _restitution(contact, text), "states": contact.states()})
     for constraint in model.constraints:
         found.append({
             "name": constraint.name, "kind": "constraint", "gap": text(constraint.expression), "slip": None, "normal": None,
@@ -134,3 +135,13 @@ def described(model):
     for name, kind in model.switched_off:
         found.append({"name": name, "kind": kind, **nothing, "states": ["switched off"]})
     return found
+
+
+def _restitution(contact, text):
+    """What an impact of a contact turns back, as text; None of what has no impacts."""
+    if contact.gap is None or contact.is_ratchet:
+        return None
+    if contact.law:
+        return "a law of the model"
+    along = contact.tangential_restitution
+    return text(contact.restitution) if along is None or ca.SX(along).is_zero() else f"{text(contact.restitution)}, {text(along)} along the slip"

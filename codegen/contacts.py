@@ -177,8 +177,11 @@ def declare(model, name, gap, slip, normal, static, kinetic, restitution, tangen
         raise model.error(f"{what}: `tangential_restitution` is given, but no `slip` that it would turn back")
     slip_expression = None
     if slip is not None:
+        if kinetic is None and static is not None:
+            raise model.error(f"{what}: `static` is given, but no coefficient `kinetic`; one coefficient for both is `kinetic` alone")
         if kinetic is None:
-            raise model.error(f"{what}: `slip` is given, but no coefficient `kinetic`; without friction leave `slip` out")
+            raise model.error(f"{what}: `slip` is given, but no coefficient `kinetic`; without friction leave "
+                              + ("it out" if gap is None else "`slip` out"))
         slip_expression = _of_motion(model, f"{what}: its slip", of("its slip", slip), rates=True)
     kinetic = None if kinetic is None else of("`kinetic`", kinetic)
     static = kinetic if static is None else of("`static`", static)

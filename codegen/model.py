@@ -290,7 +290,7 @@ class Model:
         """
         contacts.declare(self, name, gap, slip, None, static, kinetic, restitution, tangential_restitution, switch, sides)
 
-    def friction(self, name, *, slip, normal, kinetic, static=None, switch=False):
+    def friction(self, name, *, slip, normal, kinetic=None, static=None, switch=False):
         """Coulomb friction without a gap: along `slip` (a place or a rate), under the force `normal`, N. `switch` as for
         contacts."""
         contacts.declare(self, name, None, slip, normal, static, kinetic, 0, 0, switch)

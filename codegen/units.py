@@ -194,4 +194,13 @@ def short(expression, limit=90):
         ca.SX.set_precision(precision)
     # The fewest digits that give the same number.
     line = re.sub(r"\b\d+\.\d+(e[+-]?\d+)?", lambda number: repr(float(number[0])), line)
+    line = _without_names_of_atoms(line)
     return line if len(line) <= limit else line[: limit - 1] + "…"
+
+
+def _without_names_of_atoms(line):
+    """A text without the names that CasADi gives to numbers and symbols which it has twice: `@1=1, (@1-x)` is `(1-x)`."""
+    while named := re.match(r"(.*?)(@\d+)=([\w.]+), (.*)", line):
+        before, name, atom, rest = named.groups()
+        line = before + re.sub(name + r"\b", atom, rest)
+    return line

@@ -1,4 +1,4 @@
-"""Bounds of rounding errors hold where the terms of factors cancel, too."""
+"""Bounds of rounding errors hold where the terms of factors cancel, too; expressions as text."""
 
 import random
 import sys
@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import casadi as ca
 
-from codegen import graph
+from codegen import graph, units
 
 x, y, z = (ca.SX.sym(name) for name in "xyz")
 
@@ -65,6 +65,13 @@ class Rounding(unittest.TestCase):
                 value, bound = (float(v) for v in function(*at))
                 error = abs(Fraction(value) - exactly(expression, dict(zip("xyz", at))))
                 self.assertLessEqual(error, bound * sys.float_info.epsilon / 2, f"{expression} at {at}")
+
+
+class Text(unittest.TestCase):
+    def test_numbers_and_symbols_have_no_names_of_their_own(self):
+        one, twelve = ca.SX(1), ca.SX(12)
+        self.assertEqual(units.short((one - x) * (one - ca.cos(y))), "((1-x)*(1-cos(y)))")
+        self.assertEqual(units.short(twelve * x - twelve * y), "((12*x)-(12*y))")
 
 
 if __name__ == "__main__":

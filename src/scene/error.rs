@@ -141,7 +141,7 @@ pub enum SceneErrorKind {
         chosen: String,
     },
     /// A coordinate to freeze that no mode holds still.
-    #[error("`{coordinate}` is free in every mode, so it cannot be frozen")]
+    #[error("`{coordinate}` moves in every mode, so it cannot be frozen")]
     NeverFrozen {
         /// The coordinate.
         coordinate: &'static str,

@@ -34,9 +34,12 @@ pub(crate) fn freeze(
             let kind = SceneErrorKind::NeverFrozen { coordinate };
             let held = model.own_coordinates().iter().enumerate();
             let held = held.filter(|(i, _)| variant.modes.iter().any(|m| m.freezes(*i)));
-            let held = listing(held.map(|(_, c)| c.name));
-            errors
-                .push(SceneError::new(kind, &name.place).help(format!("modes hold {held} still")));
+            let held: Vec<_> = held.map(|(_, c)| c.name).collect();
+            let help = match held.is_empty() {
+                true => String::from("leave `freeze` out: no mode holds a coordinate still"),
+                false => format!("modes hold {} still", listing(held.into_iter())),
+            };
+            errors.push(SceneError::new(kind, &name.place).help(help));
         } else {
             frozen.push(i);
         }

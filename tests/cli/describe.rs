@@ -30,6 +30,12 @@ fn models_are_listed_with_their_sources() {
 }
 
 #[test]
+fn contacts_are_shown_with_what_they_open_to_and_turn_back() {
+    let text = described(&["rocking_block"]);
+    assert!(text.contains("theta to either side, side"), "{text}");
+}
+
+#[test]
 fn modes_are_shown_with_guards_and_transitions() {
     let text = described(&["belt_oscillator"]);
     let modes = text.split("\nMode ").skip(1).collect::<Vec<_>>();

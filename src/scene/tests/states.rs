@@ -1,6 +1,7 @@
 //! Parameters and states that do not fit together.
 
 use super::errors::{expect, tank};
+use super::{only_error, parse};
 
 #[test]
 fn one_parameter_limits_another() {
@@ -62,7 +63,7 @@ fn states_that_the_modes_do_not_admit() {
 #[test]
 fn coordinates_that_cannot_be_frozen() {
     let error = tank("[\"x\"]", "[\"x_I\"]");
-    let message = "`x_I` is free in every mode, so it cannot be frozen";
+    let message = "`x_I` moves in every mode, so it cannot be frozen";
     expect(
         &error,
         message,
@@ -75,4 +76,9 @@ fn coordinates_that_cannot_be_frozen() {
         "6:19",
         "",
     );
+    // Where it sticks the belt carries it along.
+    let text = r#"{ "model": "belt_oscillator", "freeze": ["x"], "end": 1 }"#;
+    let message = "`x` moves in every mode, so it cannot be frozen";
+    let help = "leave `freeze` out: no mode holds a coordinate still";
+    expect(&only_error(parse(text)), message, "1:42", help);
 }
