@@ -84,6 +84,16 @@ class OfMode:
         required = [self.equations.place(r.expression, r.location) for r in self.equations.mode.requirements]
         return ca.vertcat(*required, *self.equations.margins)
 
+    @property
+    def requirement_roundings(self):
+        """Running errors of what may vanish of them, else 0: a force that is zero may be negative by as much."""
+        mode = self.equations.mode
+        roundings = ca.SX.zeros(self.requirements.numel())
+        for i, required in enumerate(mode.requirements):
+            if required.may_vanish:
+                roundings[i] = graph.running_error(self.requirements[i])
+        return roundings
+
     @functools.cached_property
     def requirement_bounds(self):
         """Lower bounds of these while what moves stays within radii of its values."""
@@ -133,6 +143,7 @@ MODE = (
     Row("powers", lambda of: of.equations.powers(), "the ledger"),
     Row("momenta", lambda of: of.equations.momenta(), "the ledger, at impacts on ground that moves"),
     Row("requirements", lambda of: of.requirements, "hybrid::margins"),
+    Row("requirement_roundings", lambda of: of.requirement_roundings, "hybrid::margins (where they are zero)"),
     Row("requirement_bounds", lambda of: of.requirement_bounds, "hybrid::margins", takes_radii=True, in_lanes=True),
     Row("drift", lambda of: of.equations.freeze(of.equations.rates_of_held[:len(of.model.coordinates)]), "integrate (where the mode holds what drifts)"),
     Row("coordinates", lambda of: of.equations.all_coordinates(), "all coordinates, those that the mode holds among them"),

@@ -216,6 +216,9 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
     let mut out = unwritten(watched);
     kernel.requirements(&x, at, &mut out);
     expect("requirements", is_written(&out));
+    let mut out = unwritten(watched);
+    kernel.requirement_roundings(&x, at, &mut out);
+    expect("requirement_roundings", is_written(&out));
     let mut out = unwritten(coordinates);
     kernel.drift(&x, &mut out);
     expect("drift", is_written(&out));

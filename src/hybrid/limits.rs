@@ -26,7 +26,9 @@ pub(super) struct Margins<'p> {
     has_ended: bool,
     /// Room for the values of a mode's requirements and of all margins.
     pub values: Box<[f64]>,
-    /// The same at the start of a step.
+    /// Room for the rounding errors of these.
+    pub roundings: Box<[f64]>,
+    /// The values at the start of a step.
     pub starts: Box<[f64]>,
     /// Which of them bounds do not show to hold for the whole step.
     pub open: Box<[bool]>,
@@ -76,6 +78,7 @@ impl<'p> Margins<'p> {
             ends,
             has_ended: false,
             values: zeros(room),
+            roundings: zeros(room),
             starts: zeros(room),
             open: vec![true; room].into(),
             output_values: zeros(outputs.count()),

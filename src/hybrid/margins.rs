@@ -57,6 +57,10 @@ impl Margins<'_> {
     ) {
         let of_model = mode.requirements.len() + mode.margins.len();
         kernel.requirements(context, at, &mut self.values[..of_model]);
+        let required = mode.requirements.iter().zip(&self.values);
+        if { required }.any(|(of, &value)| of.may_vanish && value < 0.0) {
+            self.forgive_rounding(kernel, context, mode, at);
+        }
         if self
             .own
             .iter()
@@ -93,6 +97,25 @@ impl Margins<'_> {
                 true => limit.level - value,
                 false => value - limit.level,
             };
+        }
+    }
+
+    /// Adds to what may vanish, and is negative by no more than its own rounding, that rounding: it holds, a force that touches zero among it.
+    #[cold]
+    fn forgive_rounding<F: Size>(
+        &mut self,
+        kernel: &ModeKernel<F>,
+        context: &Context,
+        mode: &Mode,
+        at: Free<F>,
+    ) {
+        let of_model = mode.requirements.len() + mode.margins.len();
+        kernel.requirement_roundings(context, at, &mut self.roundings[..of_model]);
+        let values = self.values.iter_mut().zip(&self.roundings);
+        for (value, &rounding) in values.take(mode.requirements.len()) {
+            if *value < 0.0 && *value >= -rounding {
+                *value += rounding;
+            }
         }
     }
 

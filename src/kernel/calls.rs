@@ -379,6 +379,21 @@ impl<F: Size> ModeKernel<F> {
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }
 
+    /// What bounds, to first order, the rounding errors of what may vanish of what must not be negative (running error, Higham 2002,
+    /// §3.3); 0 of the others and of margins.
+    ///
+    /// # Panics
+    /// If `out` has not one entry a requirement.
+    pub fn requirement_roundings(&self, x: &Context, at: Free<F>, out: &mut [f64]) {
+        let function = self.functions.requirement_roundings;
+        assert_eq!(out.len(), self.requirements);
+        // SAFETY: the length was checked.
+        unsafe { self.call(function, x, at, out.as_mut_ptr()) }
+        // Of a half for each operation, in units of the machine epsilon.
+        out.iter_mut()
+            .for_each(|bound| *bound *= 0.5 * f64::EPSILON);
+    }
+
     /// Lower bounds of what must be positive, while time goes on by `tau` (s) from where the series of motion
     /// and signals, of so many orders, were begun. Not positive or not a number where nothing is known.
     ///

@@ -110,6 +110,7 @@ functions! {
     powers,
     momenta,
     requirements,
+    requirement_roundings,
     requirement_bounds,
     drift,
     coordinates,

@@ -142,6 +142,32 @@ fn what_friction_can_just_hold_it_holds() {
     }
 }
 
+/// Friction whose normal force comes down to zero, and no further, while the masses stand, slide, and slide and stick.
+#[test]
+fn a_normal_force_that_touches_zero_does_not_pull() {
+    for frequency in [1.0, 1.3, 0.7, 0.31, 2.2] {
+        for (rate, load) in [(0.0, 0.0), (40.0, 0.0), (1.0, 0.5)] {
+            for method in ["taylor", "radau"] {
+                let scene = json!({
+                    "inputs": {
+                        "P": { "sine": { "amplitude": 1, "frequency": frequency } },
+                        "F": { "constant": load },
+                    },
+                    "initial": { "x_a.rate": rate, "x_b.rate": rate },
+                    "end": 3, "method": method,
+                });
+                let [one, other] = both(&scene);
+                let of = format!("{scene}: {} and {}", stop(&one), stop(&other));
+                assert!(one.failure.is_none() && other.failure.is_none(), "{of}");
+                for i in 0..3 {
+                    let [a, b] = [&one, &other].map(|run| run.end.state.v[i]);
+                    assert!((a - b).abs() < 1e-6, "{a} and {b}, {of}");
+                }
+            }
+        }
+    }
+}
+
 /// Loads, limits and couplings of few values, so that much happens at one instant; some loads have their largest values at a limit.
 fn random(number: u64) -> serde_json::Value {
     let mut random = Random(number);

@@ -10,6 +10,7 @@ m = model.parameter("m", "kg", 1.0, "each mass", above=0)
 k = model.parameter("k", "N/m", 0.0, "stiffness of springs from each mass to the next", minimum=0)
 N = model.parameter("N", "N", 1.0, "normal force of each friction", above=0)
 F = model.input("F", "N", "load")
+P = model.input("P", "N", "added to the normal force of each friction")
 
 names = ["a", "b", "c"]
 places = [model.coordinate(f"x_{name}", "m", f"place of the mass {name}") for name in names]
@@ -25,6 +26,6 @@ for name, place in zip(names, places):
     share = model.parameter(f"share_{name}", "1", 1.0, "share of the load")
     model.force(place, share * F)
     belt = model.parameter(f"belt_{name}", "m/s", 0.0, "speed of the belt under it")
-    model.friction(name, slip=place.rate - belt, normal=N, static=static, kinetic=kinetic)
+    model.friction(name, slip=place.rate - belt, normal=N + P, static=static, kinetic=kinetic)
 if form == "multipliers":
     model.multipliers()
