@@ -15,7 +15,16 @@ def goes_in_lanes(variant, i):
     analytic = all(variant.functions[i, row.name].symbol for row in functions.OF_EACH_MODE if row.series)
     guards = [any(t.condition is None for t in transitions) for _, transitions in equations.guards]
     stays = not equations.mode.drift and not equations.mode.lines and equations.mode.form is None
-    return 0 < len(equations.free) <= MOST_IN_LANES and analytic and stays and all(guards)
+    return 0 < len(equations.free) <= MOST_IN_LANES and analytic and stays and all(guards) and not paced(variant, i)
+
+
+def paced(variant, i):
+    """The general guards of a mode that are not linear in where and how fast prescribed motions are (a cam): they swing while the motion
+    itself may not, so that a step is no longer than their series."""
+    equations = variant.modes[i]
+    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in variant.model.inputs if declared.motion is not None for s in declared.signals[1:]])
+    swings = lambda value: bool(moved.numel()) and ca.depends_on(ca.jacobian(value, moved), moved)
+    return [g for g, value in enumerate(equations.guard_values) if swings(value)]
 
 
 def facts(variant, i):
@@ -26,7 +35,8 @@ def facts(variant, i):
     inertia = ca.vertcat(ca.vec(mass), ca.vec(output("inertia")))
     return {
         "mass_is_constant": is_constant(model, equations, mass), "inertia_is_fixed": is_fixed(model, equations, inertia),
-        "is_linear": is_constant(model, equations, output("jacobian")), "goes_in_lanes": goes_in_lanes(variant, i)}
+        "is_linear": is_constant(model, equations, output("jacobian")), "goes_in_lanes": goes_in_lanes(variant, i),
+        "paced": paced(variant, i)}
 
 
 def is_for_lanes(variant, slot, function):

@@ -1,8 +1,9 @@
 //! A mode's generated equations as the integrator sees them, in the local time of a segment.
 
 use super::instant::Instant;
+use super::search::falls_off;
 use crate::input::{Side, Signals};
-use crate::integrate::{Analytic, Series, Singular, Size, State, System};
+use crate::integrate::{Analytic, ORDERS, Series, Singular, Size, State, System, stretch};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::numerics::{Lu, solve_for};
 
@@ -284,6 +285,39 @@ impl<F: Size> System<F> for Equations<'_, F> {
             true => f64::INFINITY,
             false => clock.signals.resolution(clock.start.plus(t).seconds()),
         }
+    }
+
+    fn is_paced(&self) -> bool {
+        !self.kernel.paced().is_empty()
+    }
+
+    fn pace(&mut self, t: f64, (series, orders): (&Series<F>, usize), most: f64) -> f64 {
+        self.guards_expanded_at = f64::NAN;
+        // The implicit method has none of the signals.
+        if !self.context.autonomous {
+            let (from, piece) = self.clock.piece(t, self.piece);
+            self.piece = piece;
+            self.context
+                .expand_signals(self.clock.signals, from, orders + 1);
+        }
+        if !self.expand_guards(t, orders, series) {
+            return most;
+        }
+        let (mut own, mut scaled) = ([0.0; ORDERS], [0.0; ORDERS]);
+        let (own, scaled) = (&mut own[..orders], &mut scaled[..orders]);
+        let mut h = most;
+        for &guard in self.kernel.paced() {
+            self.kernel.guard_coefficients(self.context, guard, own);
+            let count = own.iter().rposition(|&c| c != 0.0).map_or(1, |k| k + 1);
+            loop {
+                stretch(own, |c| *c, (1.0, h, 0), scaled);
+                if h == 0.0 || falls_off((scaled, 0), (count, orders), self.tolerance) {
+                    break;
+                }
+                h *= 0.5;
+            }
+        }
+        h
     }
 
     fn smooth_until(&self, t: f64) -> f64 {

@@ -7,7 +7,7 @@ use super::state::{Node, State};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::taylor::{Analytic, Taylor, TaylorDense};
-use crate::numerics::{Series, Size};
+use crate::numerics::{Series, Size, Vector};
 
 /// The last step of a one-step method, whichever method it is.
 pub trait LastStep<F: Size> {
@@ -223,7 +223,18 @@ where
     fn step(&mut self, system: &mut Y, t_end: f64) -> Result<StepReport, StepError> {
         let now = self.end();
         let t_end = t_end.min(system.smooth_until(now));
-        let h_max = system.resolution(now);
+        let mut h_max = system.resolution(now);
+        if system.is_paced() {
+            // What moves does so slowly, else its error limits the step.
+            let State { q, v, .. } = self.state();
+            let size = q.size();
+            let mut series = Series::zero(size);
+            for i in 0..size.get() {
+                (series.q[0][i], series.v[0][i], series.q[1][i]) = (q[i], v[i], v[i]);
+            }
+            let most = h_max.min(t_end - now);
+            h_max = h_max.min(system.pace(now, (&series, 2 * S - 1), most));
+        }
         self.step(system, t_end, h_max)
     }
 

@@ -1,6 +1,6 @@
 //! What the integrator asks of a mechanical system.
 
-use crate::numerics::{Matrix, Size, Vector};
+use crate::numerics::{Matrix, Series, Size, Vector};
 use crate::numerics::{Singular, solve_for};
 
 /// A second-order system r(t, q, v, a) = 0 with q̇ = v, v̇ = a, where r is linear in a:
@@ -57,6 +57,17 @@ pub trait System<F: Size> {
     /// cannot miss what they do in between; infinite where nothing limits it.
     fn resolution(&self, _t: f64) -> f64 {
         f64::INFINITY
+    }
+
+    /// Whether something that is looked at within steps swings with time alone: then [`System::pace`] limits them.
+    fn is_paced(&self) -> bool {
+        false
+    }
+
+    /// The longest step from time `t`, s, not longer than `most`, in which a series of so many orders resolves what swings with time, along
+    /// the series of the motion.
+    fn pace(&mut self, _t: f64, _series: (&Series<F>, usize), most: f64) -> f64 {
+        most
     }
 
     /// The first time after `t` at which some derivative of the equations jumps, s; infinite where there

@@ -379,6 +379,11 @@ impl<F: Size> ModeKernel<F> {
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }
 
+    /// Guards that are not linear in prescribed motions, as the force on a cam: a step resolves them.
+    pub fn paced(&self) -> &[usize] {
+        &self.paced
+    }
+
     /// What bounds, to first order, the rounding errors of what may vanish of what must not be negative (running error, Higham 2002,
     /// §3.3); 0 of the others and of margins.
     ///

@@ -133,6 +133,8 @@ pub struct ModeKernel<F: Size> {
     pub(crate) autonomous_series: Option<SeriesKernel>,
     pub(crate) guard_series: Option<SeriesKernel>,
     pub(crate) guards: usize,
+    /// Those that are not linear in prescribed motions: they swing while the motion itself may not.
+    pub(crate) paced: Box<[usize]>,
     pub(crate) mass_is_constant: bool,
     pub(crate) inertia_is_fixed: bool,
     pub(crate) is_linear: bool,

@@ -262,3 +262,55 @@ fn masses_that_hop_side_by_side_on_a_driven_table_rest_together() {
     let ledger = both.energy.as_ref().unwrap();
     assert!(ledger.imbalance().abs() < 1e-11, "{ledger:?}");
 }
+
+/// A cam that turns ever faster loses its follower when its force first vanishes, after a hundred turns in which nothing that is free moves, or
+/// only another follower falls.
+#[test]
+fn a_follower_leaves_its_cam_when_its_force_vanishes() {
+    let (m, c, k, l, g) = (0.5, 0.01, 2000.0, 0.02, 9.81);
+    let force = |t: f64| {
+        let (phi, rate) = (20.0 * t + 5.0 * t * t, 20.0 + 10.0 * t);
+        let acceleration = c * (10.0 * phi.cos() - rate * rate * phi.sin());
+        k * (c * phi.sin() + l) + m * (g + acceleration)
+    };
+    let mut before = 0.0;
+    while force(before + 1e-4) > 0.0 {
+        before += 1e-4;
+    }
+    let (mut low, mut high) = (before, before + 1e-4);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if force(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    for (form, method, height) in [
+        ("reduced", Method::Taylor, 0.0),
+        ("reduced", Method::Taylor, 1e4),
+        ("reduced", Method::Radau, 0.0),
+        ("reduced", Method::Radau, 1e4),
+        ("multipliers", Method::Taylor, 0.0),
+    ] {
+        let mut cam = problem("cam", &[]);
+        cam.choose(&[("form", form)]).unwrap();
+        for (what, value) in [("phi.rate", 20.0), ("y.rate", c * 20.0), ("z", height)] {
+            cam.set_initial(what, value).unwrap();
+        }
+        cam.set_input("spin", Function::constant(10.0)).unwrap();
+        cam.set_tolerance(1e-11);
+        cam.method = method;
+        cam.end.time = 20.0;
+        cam.end.after = Some(("cam opens", 1));
+        let run = run(&cam);
+        let of = format!("{form} by {method:?} from {height}");
+        assert!(
+            (run.end.t - low).abs() < 1e-9,
+            "{of}: {} and {low}",
+            run.end.t
+        );
+        let energy = run.energy.as_ref().unwrap();
+        assert!(energy.imbalance().abs() < 1e-7, "{of}: {energy:?}");
+    }
+}

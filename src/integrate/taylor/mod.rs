@@ -309,7 +309,12 @@ impl<F: Size> Taylor<F> {
                 self.length = self.accurate_length();
             }
         }
-        let h_max = h_max.min(horizon);
+        let mut h_max = h_max.min(horizon);
+        if system.is_paced() {
+            let most = fit(self.length, remaining, h_max);
+            let series = (&self.dense.series, self.dense.known);
+            h_max = h_max.min(system.pace(from, series, most));
+        }
         let h = fit(self.length, remaining, h_max);
         is_near_end |= h == remaining || h != self.length.min(h_max);
         if from + h == from {

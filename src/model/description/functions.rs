@@ -77,6 +77,7 @@ impl Reader<'_> {
             autonomous_series: series("autonomous_series")?,
             guard_series: series("guard_series")?,
             guards: guards.len(),
+            paced: at.get("paced", |at| at.list(|at| at.index(guards.len())))?,
             mass_is_constant: at.get("mass_is_constant", truth)?,
             inertia_is_fixed: at.get("inertia_is_fixed", truth)?,
             is_linear: at.get("is_linear", truth)?,
