@@ -19,12 +19,24 @@ def goes_in_lanes(variant, i):
 
 
 def paced(variant, i):
-    """The general guards of a mode that are not linear in where and how fast prescribed motions are (a cam): they swing while the motion
-    itself may not, so that a step is no longer than their series."""
+    """What swings with prescribed motions while the motion itself may not, so that a step is no longer than its series: the general guards
+    of a mode that are not linear in where and how fast these motions are (a cam), and what depends on them; places among all series."""
     equations = variant.modes[i]
-    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in variant.model.inputs if declared.motion is not None for s in declared.signals[1:]])
-    swings = lambda value: bool(moved.numel()) and ca.depends_on(ca.jacobian(value, moved), moved)
-    return [g for g, value in enumerate(equations.guard_values) if swings(value)]
+    guards = [g for g, value in enumerate(equations.guard_values) if swings(variant.model, value)]
+    return guards + [len(equations.guard_values) + k for k in range(len(equations.swinging))]
+
+
+def swings(model, expression):
+    """Whether an expression is not linear in where and how fast prescribed motions are."""
+    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in model.inputs if declared.motion is not None for s in declared.signals[1:]])
+    return bool(moved.numel()) and ca.depends_on(ca.jacobian(expression, moved), moved)
+
+
+def swinging(model, equations):
+    """The coordinates that depend on others, or on prescribed motions, and swing."""
+    coordinates = equations.all_coordinates() if equations.mode.lines else ca.SX(0, 1)
+    of_lines = {line.name for line in equations.mode.lines}
+    return [coordinates[i] for i, c in enumerate(model.coordinates) if c.name in of_lines and swings(model, coordinates[i])]
 
 
 def facts(variant, i):
@@ -36,7 +48,7 @@ def facts(variant, i):
     return {
         "mass_is_constant": is_constant(model, equations, mass), "inertia_is_fixed": is_fixed(model, equations, inertia),
         "is_linear": is_constant(model, equations, output("jacobian")), "goes_in_lanes": goes_in_lanes(variant, i),
-        "paced": paced(variant, i)}
+        "paced": paced(variant, i), "series_of_guards": len(equations.guard_values) + len(equations.swinging)}
 
 
 def is_for_lanes(variant, slot, function):

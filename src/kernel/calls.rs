@@ -379,7 +379,8 @@ impl<F: Size> ModeKernel<F> {
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }
 
-    /// Guards that are not linear in prescribed motions, as the force on a cam: a step resolves them.
+    /// Which of the series of guards, and of what else depends on prescribed motions, are not linear in these, as the force on a cam: a
+    /// step resolves them.
     pub fn paced(&self) -> &[usize] {
         &self.paced
     }

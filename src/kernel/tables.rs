@@ -132,6 +132,7 @@ pub struct ModeKernel<F: Size> {
     /// The same where no input acts.
     pub(crate) autonomous_series: Option<SeriesKernel>,
     pub(crate) guard_series: Option<SeriesKernel>,
+    /// Number of series of guards, and of what else swings with prescribed motions.
     pub(crate) guards: usize,
     /// Those that are not linear in prescribed motions: they swing while the motion itself may not.
     pub(crate) paced: Box<[usize]>,

@@ -314,3 +314,31 @@ fn a_follower_leaves_its_cam_when_its_force_vanishes() {
         assert!(energy.imbalance().abs() < 1e-7, "{of}: {energy:?}");
     }
 }
+
+/// A follower that is tied to the cam: nothing is free and nothing happens, and extremes and energies follow its crests all the same.
+#[test]
+fn a_follower_that_is_tied_to_its_cam_is_followed() {
+    let c = 0.01;
+    let rate = |t: f64| c * (20.0 + 10.0 * t) * (20.0 * t + 5.0 * t * t).cos();
+    let fastest = (0..800_000).map(|i| rate(f64::from(i) * 1e-5));
+    let fastest = fastest.fold(0.0, f64::max);
+    for method in METHODS {
+        let mut cam = problem("cam", &[("c", c)]);
+        cam.choose(&[("form", "tied")]).unwrap();
+        cam.set_initial("phi.rate", 20.0).unwrap();
+        cam.set_initial("y.rate", c * 20.0).unwrap();
+        cam.set_input("spin", Function::constant(10.0)).unwrap();
+        cam.set_tolerance(1e-11);
+        cam.method = method;
+        cam.end.time = 8.0;
+        let run = run(&cam);
+        let energy = run.energy.as_ref().unwrap();
+        assert!(energy.imbalance().abs() < 1e-9, "{method:?}: {energy:?}");
+        let column = run.trajectory.column("y.rate").unwrap();
+        let peak = run.peaks.iter().find(|(i, _)| *i == column).unwrap().1;
+        assert!(
+            (peak.max / fastest - 1.0).abs() < 1e-6,
+            "{method:?}: {peak:?}, {fastest}"
+        );
+    }
+}

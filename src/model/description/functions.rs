@@ -64,6 +64,7 @@ impl Reader<'_> {
                 })?,
             })
         });
+        let rows = at.get("series_of_guards", count)?;
         Ok(ModeKernel {
             size,
             dimensions: self.dimensions.clone(),
@@ -76,8 +77,8 @@ impl Reader<'_> {
             series: series("series")?,
             autonomous_series: series("autonomous_series")?,
             guard_series: series("guard_series")?,
-            guards: guards.len(),
-            paced: at.get("paced", |at| at.list(|at| at.index(guards.len())))?,
+            guards: rows,
+            paced: at.get("paced", |at| at.list(|at| at.index(rows)))?,
             mass_is_constant: at.get("mass_is_constant", truth)?,
             inertia_is_fixed: at.get("inertia_is_fixed", truth)?,
             is_linear: at.get("is_linear", truth)?,

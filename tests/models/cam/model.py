@@ -4,7 +4,7 @@ from codegen.model import *
 
 model = Model("Cam and follower", source="test model: tests/engine/driven.rs")
 
-form = model.choice("form", ["reduced", "multipliers"], "how the contact is held")
+form = model.choice("form", ["reduced", "multipliers", "tied"], "how the contact is held; or the follower is tied to the cam")
 
 m = model.parameter("m", "kg", 0.5, "mass of each follower", above=0)
 c = model.parameter("c", "m", 0.01, "eccentricity", minimum=0)
@@ -20,7 +20,10 @@ model.gravity(g)
 model.point_mass(m, position=(0 * y, y))
 model.point_mass(m, position=(0 * z, z))
 model.potential(k * (y + l)**2 / 2)
-model.contact("cam", gap=y - c * sin(phi))
+if form == "tied":
+    model.constraint("cam", y - c * sin(phi))
+else:
+    model.contact("cam", gap=y - c * sin(phi))
 model.contact("ground", gap=z)
 if form == "multipliers":
     model.multipliers()
