@@ -19,10 +19,17 @@ def goes_in_lanes(variant, i):
 
 
 def paced(variant, i):
-    """What swings with prescribed motions while the motion itself may not, so that a step is no longer than its series: the general guards
-    of a mode that are not linear in where and how fast these motions are (a cam), and what depends on them; places among all series."""
+    """What swings with time while the motion itself may not, so that a step is no longer than its series: the general guards of a mode that
+    are not linear in where and how fast prescribed motions are (a cam), or depend on an input that no equation of motion does (a flight over a
+    table that shakes); and coordinates that depend on prescribed motions. Places among all series."""
     equations = variant.modes[i]
-    guards = [g for g, value in enumerate(equations.guard_values) if swings(variant.model, value)]
+    system = variant.functions[i, "system"].output
+    # Where nothing moves no step is longer than the inputs allow.
+    inputs = [ca.vertcat(*declared.signals) for declared in variant.model.inputs] if equations.free else []
+    # With multipliers an equation may be that of a contact which is open.
+    unseen = [signals for signals in inputs if equations.mode.form is not None or not ca.depends_on(system, signals)]
+    is_paced = lambda value: swings(variant.model, value) or any(ca.depends_on(value, signals) for signals in unseen)
+    guards = [g for g, value in enumerate(equations.guard_values) if is_paced(value)]
     return guards + [len(equations.guard_values) + k for k in range(len(equations.swinging))]
 
 
@@ -48,7 +55,7 @@ def facts(variant, i):
     return {
         "mass_is_constant": is_constant(model, equations, mass), "inertia_is_fixed": is_fixed(model, equations, inertia),
         "is_linear": is_constant(model, equations, output("jacobian")), "goes_in_lanes": goes_in_lanes(variant, i),
-        "paced": paced(variant, i), "series_of_guards": len(equations.guard_values) + len(equations.swinging)}
+        "paced": paced(variant, i), "swinging": len(equations.swinging)}
 
 
 def is_for_lanes(variant, slot, function):

@@ -301,13 +301,20 @@ impl<F: Size> System<F> for Equations<'_, F> {
                 .expand_signals(self.clock.signals, from, orders + 1);
         }
         if !self.expand_guards(t, orders, series) {
-            return most;
+            return f64::INFINITY;
         }
         let (mut own, mut scaled) = ([0.0; ORDERS], [0.0; ORDERS]);
         let (own, scaled) = (&mut own[..orders], &mut scaled[..orders]);
-        let mut h = most;
+        // A power of two beyond `most`, and halves of it: no step depends on when the run ends.
+        let beyond =
+            2.0 * f64::from_bits(most.to_bits() & !((1 << (f64::MANTISSA_DIGITS - 1)) - 1));
+        let mut h = beyond;
         for &guard in self.kernel.paced() {
             self.kernel.guard_coefficients(self.context, guard, own);
+            // A pole has no series; its values are looked at.
+            if !own.iter().all(|c| c.is_finite()) {
+                continue;
+            }
             let count = own.iter().rposition(|&c| c != 0.0).map_or(1, |k| k + 1);
             loop {
                 stretch(own, |c| *c, (1.0, h, 0), scaled);
@@ -317,7 +324,10 @@ impl<F: Size> System<F> for Equations<'_, F> {
                 h *= 0.5;
             }
         }
-        h
+        match h > 0.0 && h < most {
+            true => h,
+            false => f64::INFINITY,
+        }
     }
 
     fn smooth_until(&self, t: f64) -> f64 {

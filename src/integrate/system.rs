@@ -64,10 +64,10 @@ pub trait System<F: Size> {
         false
     }
 
-    /// The longest step from time `t`, s, not longer than `most`, in which a series of so many orders resolves what swings with time, along
-    /// the series of the motion.
-    fn pace(&mut self, _t: f64, _series: (&Series<F>, usize), most: f64) -> f64 {
-        most
+    /// The longest step from time `t`, s, in which a series of so many orders resolves what swings with time, along the series of the
+    /// motion; infinite where that does not limit a step of the length `most`.
+    fn pace(&mut self, _t: f64, _series: (&Series<F>, usize), _most: f64) -> f64 {
+        f64::INFINITY
     }
 
     /// The first time after `t` at which some derivative of the equations jumps, s; infinite where there

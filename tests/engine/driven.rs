@@ -3,10 +3,11 @@
 use super::multipliers::sine;
 use crate::common::*;
 use dalembert::hybrid::{Method, Problem, simulate};
-use dalembert::input::{Function, Interpolation, Outside, Table};
+use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::model::models;
 use dalembert::record::Silent;
 use dalembert::scene::{Disk, Scene};
+use std::f64::consts::TAU;
 use std::path::Path;
 
 const METHODS: [Method; 2] = [Method::Taylor, Method::Radau];
@@ -340,5 +341,49 @@ fn a_follower_that_is_tied_to_its_cam_is_followed() {
             (peak.max / fastest - 1.0).abs() < 1e-6,
             "{method:?}: {peak:?}, {fastest}"
         );
+    }
+}
+
+/// A ball falls slowly on to a table that shakes fast: hundreds of crests in one flight, of which it meets the first that is as high.
+#[test]
+fn a_slow_ball_meets_the_first_crest_of_a_fast_table() {
+    let (g, high, amplitude) = (0.5, 3.0, 0.02);
+    for frequency in [20.0, 50.0, 73.0, 200.0] {
+        let omega = TAU * frequency;
+        let gap = |t: f64| high - 0.5 * g * t * t + amplitude * (omega * t).sin();
+        let step = 1e-3 / frequency;
+        let mut low = 0.0;
+        while gap(low + step) > 0.0 {
+            low += step;
+        }
+        let mut upper = low + step;
+        for _ in 0..60 {
+            let middle = 0.5 * (low + upper);
+            if gap(middle) > 0.0 {
+                low = middle;
+            } else {
+                upper = middle;
+            }
+        }
+        for form in ["reduced", "multipliers"] {
+            for method in METHODS {
+                let mut ball = problem("table_ball", &[("g", g)]);
+                ball.choose(&[("form", form)]).unwrap();
+                ball.set_initial("y", high).unwrap();
+                ball.set_initial("table.rate", -amplitude * omega).unwrap();
+                let shakes = Sine::new(amplitude * omega * omega, omega, 0.0);
+                ball.set_input("a", shakes.into()).unwrap();
+                ball.set_tolerance(1e-11);
+                ball.method = method;
+                ball.end.time = 5.0;
+                ball.end.after = Some(("table strikes", 1));
+                let run = run(&ball);
+                let of = format!(
+                    "{form} by {method:?}, {frequency} Hz: {} and {low}",
+                    run.end.t
+                );
+                assert!((run.end.t - low).abs() < 1e-10, "{of}");
+            }
+        }
     }
 }

@@ -153,7 +153,7 @@ fn a_normal_force_that_touches_zero_does_not_pull() {
                         "P": { "sine": { "amplitude": 1, "frequency": frequency } },
                         "F": { "constant": load },
                     },
-                    "initial": { "x_a.rate": rate, "x_b.rate": rate },
+                    "initial": { "x_a.rate": rate, "x_b.rate": rate, "x_c.rate": rate },
                     "end": 3, "method": method,
                 });
                 let [one, other] = both(&scene);

@@ -64,7 +64,9 @@ impl Reader<'_> {
                 })?,
             })
         });
-        let rows = at.get("series_of_guards", count)?;
+        // Each is a coordinate.
+        let swinging = at.get("swinging", |at| at.index(self.dimensions.coordinates + 1))?;
+        let rows = guards.len() + swinging;
         Ok(ModeKernel {
             size,
             dimensions: self.dimensions.clone(),
