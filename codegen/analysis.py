@@ -26,8 +26,10 @@ def paced(variant, i):
     system = variant.functions[i, "system"].output
     # Where nothing moves no step is longer than the inputs allow.
     inputs = [ca.vertcat(*declared.signals) for declared in variant.model.inputs] if equations.free else []
-    # With multipliers an equation may be that of a contact which is open.
-    unseen = [signals for signals in inputs if equations.mode.form is not None or not ca.depends_on(system, signals)]
+    if equations.mode.form is not None:
+        # What a contact asks of accelerations moves nothing while it is open.
+        system = equations.r[equations.own]
+    unseen = [signals for signals in inputs if not ca.depends_on(system, signals)]
     is_paced = lambda value: swings(variant.model, value) or any(ca.depends_on(value, signals) for signals in unseen)
     guards = [g for g, value in enumerate(equations.guard_values) if is_paced(value)]
     return guards + [len(equations.guard_values) + k for k in range(len(equations.swinging))]
