@@ -15,37 +15,39 @@ def goes_in_lanes(variant, i):
     analytic = all(variant.functions[i, row.name].symbol for row in functions.OF_EACH_MODE if row.series)
     guards = [any(t.condition is None for t in transitions) for _, transitions in equations.guards]
     stays = not equations.mode.drift and not equations.mode.lines and equations.mode.form is None
-    return 0 < len(equations.free) <= MOST_IN_LANES and analytic and stays and all(guards) and not paced(variant, i)
+    return 0 < len(equations.free) <= MOST_IN_LANES and analytic and stays and all(guards) and not swinging(variant, i)
 
 
-def paced(variant, i):
-    """What swings with time while the motion itself may not, so that a step is no longer than its series: the general guards of a mode that
-    are not linear in where and how fast prescribed motions are (a cam), or depend on an input that no equation of motion does (a flight over a
-    table that shakes); and coordinates that depend on prescribed motions. Places among all series."""
+def swinging(variant, i):
+    """What a step must not be longer than the series of, since it swings with time while the motion itself may not (`_swings`): guards that
+    are general, and what else swings. Places among all series."""
     equations = variant.modes[i]
-    system = variant.functions[i, "system"].output
-    # Where nothing moves no step is longer than the inputs allow.
-    inputs = [ca.vertcat(*declared.signals) for declared in variant.model.inputs] if equations.free else []
-    if equations.mode.form is not None:
-        # What a contact asks of accelerations moves nothing while it is open.
-        system = equations.r[equations.own]
-    unseen = [signals for signals in inputs if not ca.depends_on(system, signals)]
-    is_paced = lambda value: swings(variant.model, value) or any(ca.depends_on(value, signals) for signals in unseen)
-    guards = [g for g, value in enumerate(equations.guard_values) if is_paced(value)]
-    return guards + [len(equations.guard_values) + k for k in range(len(equations.swinging))]
+    swings = _swings(variant, i)
+    guards = [g for g, value in enumerate(equations.guard_values) if swings(value)]
+    return guards + [len(equations.guard_values) + k for k in range(len(equations.beside_guards))]
 
 
-def swings(model, expression):
-    """Whether an expression is not linear in where and how fast prescribed motions are."""
-    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in model.inputs if declared.motion is not None for s in declared.signals[1:]])
-    return bool(moved.numel()) and ca.depends_on(ca.jacobian(expression, moved), moved)
-
-
-def swinging(model, equations):
-    """The coordinates that depend on others, or on prescribed motions, and swing."""
-    coordinates = equations.all_coordinates() if equations.mode.lines else ca.SX(0, 1)
+def beside_guards(variant, i, requirements):
+    """What else is looked at within steps, and swings: coordinates that depend on prescribed motions, requirements and margins."""
+    model, equations = variant.model, variant.modes[i]
+    swings, coordinates = _swings(variant, i), equations.all_coordinates()
     of_lines = {line.name for line in equations.mode.lines}
-    return [coordinates[i] for i, c in enumerate(model.coordinates) if c.name in of_lines and swings(model, coordinates[i])]
+    dependent = [coordinates[k] for k, c in enumerate(model.coordinates) if c.name in of_lines]
+    return [value for value in (*dependent, *(requirements[k] for k in range(requirements.numel()))) if swings(value)]
+
+
+def _swings(variant, i):
+    """Tells whether an expression of a mode is not linear in where and how fast prescribed motions are (a cam), or depends on an input that
+    no equation of motion does (a flight over a table that shakes)."""
+    inputs, equations = variant.model.inputs, variant.modes[i]
+    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in inputs if declared.motion is not None for s in declared.signals[1:]])
+    # With multipliers: what a contact asks of accelerations moves nothing while it is open.
+    motion = variant.functions[i, "system"].output if equations.mode.form is None else equations.r[equations.own]
+    # Where nothing moves no step is longer than the inputs allow.
+    columns = [ca.vertcat(*declared.signals) for declared in inputs] if equations.free else []
+    unseen = ca.vertcat(ca.SX(0, 1), *[column for column in columns if not ca.depends_on(motion, column)])
+    is_curved = lambda value: bool(moved.numel()) and ca.depends_on(ca.jacobian(value, moved), moved)
+    return lambda value: is_curved(value) or bool(unseen.numel()) and ca.depends_on(value, unseen)
 
 
 def facts(variant, i):
@@ -57,7 +59,7 @@ def facts(variant, i):
     return {
         "mass_is_constant": is_constant(model, equations, mass), "inertia_is_fixed": is_fixed(model, equations, inertia),
         "is_linear": is_constant(model, equations, output("jacobian")), "goes_in_lanes": goes_in_lanes(variant, i),
-        "paced": paced(variant, i), "swinging": len(equations.swinging)}
+        "swinging": swinging(variant, i), "beside_guards": len(equations.beside_guards)}
 
 
 def is_for_lanes(variant, slot, function):

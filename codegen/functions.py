@@ -174,10 +174,10 @@ TRANSITION = (
 )
 """Of each transition of a guard. Resets that stay in the mode are for lanes, too; conditions are in the symbols of the target."""
 
-GUARDS_OF_MODE = Row("guard_series", lambda of: ca.vertcat(*of.equations.guard_values, *of.equations.swinging, of.drift_rates),
+GUARDS_OF_MODE = Row("guard_series", lambda of: ca.vertcat(*of.equations.guard_values, *of.equations.beside_guards, of.drift_rates),
                      "hybrid::search: guards that are not linear", series="values", in_lanes=True)
 """All guards of a mode; 0 in the place of one that is linear, which is as good a polynomial as the motion itself. Then what else swings with
-prescribed motions."""
+inputs."""
 
 ROWS = {row.name: row for row in (*MODE, *GUARD, *TRANSITION, GUARDS_OF_MODE)}
 

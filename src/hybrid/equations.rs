@@ -287,11 +287,11 @@ impl<F: Size> System<F> for Equations<'_, F> {
         }
     }
 
-    fn is_paced(&self) -> bool {
-        !self.kernel.paced().is_empty()
+    fn swings(&self) -> bool {
+        !self.kernel.swinging().is_empty()
     }
 
-    fn pace(&mut self, t: f64, (series, orders): (&Series<F>, usize), most: f64) -> f64 {
+    fn swing_limit(&mut self, t: f64, (series, orders): (&Series<F>, usize), most: f64) -> f64 {
         self.guards_expanded_at = f64::NAN;
         // The implicit method has none of the signals.
         if !self.context.autonomous {
@@ -309,7 +309,7 @@ impl<F: Size> System<F> for Equations<'_, F> {
         let beyond =
             2.0 * f64::from_bits(most.to_bits() & !((1 << (f64::MANTISSA_DIGITS - 1)) - 1));
         let mut h = beyond;
-        for &guard in self.kernel.paced() {
+        for &guard in self.kernel.swinging() {
             self.kernel.guard_coefficients(self.context, guard, own);
             // A pole has no series; its values are looked at.
             if !own.iter().all(|c| c.is_finite()) {

@@ -61,8 +61,7 @@ fn is_shallow<F: Size>(
         let at = state(at.t + k as f64 / PARTS as f64 * last, equations);
         let depth = -value_at(equations, conditions, guard, &at);
         let own = of_terms(equations, &at);
-        let mut of_step = |own| own + rounding_of_step(equations, conditions, guard, (start, &at));
-        depth <= own || depth <= of_step(own)
+        depth <= own || depth <= own + rounding_of_step(equations, conditions, guard, (start, &at))
     })
 }
 

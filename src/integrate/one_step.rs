@@ -7,7 +7,7 @@ use super::state::{Node, State};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::taylor::{Analytic, Taylor, TaylorDense};
-use crate::numerics::{Series, Size, Vector};
+use crate::numerics::{Series, Size};
 
 /// The last step of a one-step method, whichever method it is.
 pub trait LastStep<F: Size> {
@@ -224,16 +224,10 @@ where
         let now = self.end();
         let t_end = t_end.min(system.smooth_until(now));
         let mut h_max = system.resolution(now);
-        if system.is_paced() {
-            // What moves does so slowly, else its error limits the step.
-            let State { q, v, .. } = self.state();
-            let size = q.size();
-            let mut series = Series::zero(size);
-            for i in 0..size.get() {
-                (series.q[0][i], series.v[0][i], series.q[1][i]) = (q[i], v[i], v[i]);
-            }
+        if system.swings() {
             let most = h_max.min(t_end - now);
-            h_max = h_max.min(system.pace(now, (&series, 2 * S - 1), most));
+            let limit = system.swing_limit(now, (self.uniform_motion(), 2 * S - 1), most);
+            h_max = h_max.min(limit);
         }
         self.step(system, t_end, h_max)
     }

@@ -10,7 +10,7 @@ use super::state::{Lost, Node, State, add, fit};
 use super::system::System;
 use super::tableau::{Coefficients, RadauIia};
 use super::tolerances::{Control, Tolerances, Weights};
-use crate::numerics::{Blank, Kept, Memory, Persist, Size, Vector, persist};
+use crate::numerics::{Blank, Kept, Memory, Persist, Series, Size, Vector, persist};
 
 /// A Jacobian with which Newton's iteration contracted at least this fast serves the next step too.
 const REUSE: f64 = 1e-3;
@@ -55,12 +55,14 @@ pub struct Radau<const S: usize, F: Size> {
     unresolved: F::List<bool>,
     /// How much of the error of each coordinate counts.
     controlled: F::Vector,
+    /// Room for the motion to first order.
+    uniform: Series<F>,
     counters: Counters,
 }
 
 persist!([const S: usize, F: Size] Radau<S, F> {
     controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, controlled, counters
-} but { control });
+} but { control, uniform });
 
 impl Blank for Linearized {
     fn blank() -> Self {
@@ -95,6 +97,7 @@ where
             dense: Kept::nothing(Dense::zero(size)),
             unresolved: size.list(false),
             controlled: size.repeat(1.0),
+            uniform: Series::zero(size),
             counters: Counters::default(),
         }
     }
@@ -102,6 +105,15 @@ where
     /// Takes other absolute tolerances, before a [`Radau::restart`].
     pub(crate) fn set_tolerances(&mut self, of: impl FnOnce(F) -> Tolerances<F>) {
         self.control = Control::new::<S>(&of(self.end.q.size()));
+    }
+
+    /// The motion from the end of the last step to first order: what moves faster has an error that limits the step.
+    pub(super) fn uniform_motion(&mut self) -> &Series<F> {
+        let (State { q, v, .. }, series) = (&self.end, &mut self.uniform);
+        for i in 0..q.size().get() {
+            (series.q[0][i], series.v[0][i], series.q[1][i]) = (q[i], v[i], v[i]);
+        }
+        series
     }
 
     /// Goes on from a state that the last step did not lead to: the initial state, or that behind an

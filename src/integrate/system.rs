@@ -59,14 +59,14 @@ pub trait System<F: Size> {
         f64::INFINITY
     }
 
-    /// Whether something that is looked at within steps swings with time alone: then [`System::pace`] limits them.
-    fn is_paced(&self) -> bool {
+    /// Whether something that is looked at within steps swings with time alone: then [`System::swing_limit`] limits them.
+    fn swings(&self) -> bool {
         false
     }
 
     /// The longest step from time `t`, s, in which a series of so many orders resolves what swings with time, along the series of the
     /// motion; infinite where that does not limit a step of the length `most`.
-    fn pace(&mut self, _t: f64, _series: (&Series<F>, usize), _most: f64) -> f64 {
+    fn swing_limit(&mut self, _t: f64, _series: (&Series<F>, usize), _most: f64) -> f64 {
         f64::INFINITY
     }
 

@@ -379,10 +379,10 @@ impl<F: Size> ModeKernel<F> {
         unsafe { self.call(function, x, at, out.as_mut_ptr()) }
     }
 
-    /// Which of the series of guards, and of what else depends on prescribed motions, are not linear in these, as the force on a cam: a
-    /// step resolves them.
-    pub fn paced(&self) -> &[usize] {
-        &self.paced
+    /// Which of the series of guards, and of what else is looked at within steps, swing with inputs while the motion may not, as the force on
+    /// a cam: a step resolves them.
+    pub fn swinging(&self) -> &[usize] {
+        &self.swinging
     }
 
     /// What bounds, to first order, the rounding errors of what may vanish of what must not be negative (running error, Higham 2002,

@@ -132,10 +132,10 @@ pub struct ModeKernel<F: Size> {
     /// The same where no input acts.
     pub(crate) autonomous_series: Option<SeriesKernel>,
     pub(crate) guard_series: Option<SeriesKernel>,
-    /// Number of series of guards, and of what else swings with prescribed motions.
+    /// Number of series of guards, and of what else swings with inputs.
     pub(crate) guards: usize,
-    /// Those that are not linear in prescribed motions: they swing while the motion itself may not.
-    pub(crate) paced: Box<[usize]>,
+    /// Those that swing with inputs while the motion itself may not.
+    pub(crate) swinging: Box<[usize]>,
     pub(crate) mass_is_constant: bool,
     pub(crate) inertia_is_fixed: bool,
     pub(crate) is_linear: bool,

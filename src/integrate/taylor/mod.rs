@@ -310,10 +310,10 @@ impl<F: Size> Taylor<F> {
             }
         }
         let mut h_max = h_max.min(horizon);
-        if system.is_paced() {
+        if system.swings() {
             let most = fit(self.length, remaining, h_max);
             let series = (&self.dense.series, self.dense.known);
-            h_max = h_max.min(system.pace(from, series, most));
+            h_max = h_max.min(system.swing_limit(from, series, most));
         }
         let h = fit(self.length, remaining, h_max);
         is_near_end |= h == remaining || h != self.length.min(h_max);

@@ -64,9 +64,10 @@ impl Reader<'_> {
                 })?,
             })
         });
-        // Each is a coordinate.
-        let swinging = at.get("swinging", |at| at.index(self.dimensions.coordinates + 1))?;
-        let rows = guards.len() + swinging;
+        // Coordinates, requirements and margins.
+        let most = self.dimensions.coordinates + counts.required;
+        let beside = at.get("beside_guards", |at| at.index(most + 1))?;
+        let rows = guards.len() + beside;
         Ok(ModeKernel {
             size,
             dimensions: self.dimensions.clone(),
@@ -80,7 +81,7 @@ impl Reader<'_> {
             autonomous_series: series("autonomous_series")?,
             guard_series: series("guard_series")?,
             guards: rows,
-            paced: at.get("paced", |at| at.list(|at| at.index(rows)))?,
+            swinging: at.get("swinging", |at| at.list(|at| at.index(rows)))?,
             mass_is_constant: at.get("mass_is_constant", truth)?,
             inertia_is_fixed: at.get("inertia_is_fixed", truth)?,
             is_linear: at.get("is_linear", truth)?,

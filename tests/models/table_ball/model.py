@@ -11,10 +11,13 @@ g = model.parameter("g", "m/s^2", 9.81, "gravity", minimum=0)
 e = model.parameter("e", "1", 0.6, "restitution", minimum=0)
 
 y = model.coordinate("y", "m", "height")
+load = model.input("load", "N", "load on what stands beside it")
+most = model.parameter("most", "N", 1.0, "load that it bears", above=0)
 table = model.motion("table", "where the table is", input="a")
 
 model.gravity(g)
 model.point_mass(m, position=(0 * y, y))
 model.contact("table", gap=y - table, restitution=e)
+model.limit("overload", "what stands beside it gives way", when=load > most)
 if form == "multipliers":
     model.multipliers()
