@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from . import functions, graph, signals
+from . import functions, graph, series_graph, signals
 
 MOST_IN_LANES = 6
 """Most free coordinates of modes that go in lanes; `FREE` in codegen/lanes.c tells so many apart."""
@@ -19,35 +19,43 @@ def goes_in_lanes(variant, i):
 
 
 def swinging(variant, i):
-    """What a step must not be longer than the series of, since it swings with time while the motion itself may not (`_swings`): guards that
-    are general, and what else swings. Places among all series."""
+    """What a step must not be longer than the series of, since it swings with time while the motion itself may not: guards that are general,
+    and what else swings. Places among all series."""
     equations = variant.modes[i]
-    swings = _swings(variant, i)
-    guards = [g for g, value in enumerate(equations.guard_values) if swings(value)]
+    guards = [g for g, value in enumerate(equations.guard_values) if _is_curved(variant, value) or _is_unseen(variant, i, value)]
     return guards + [len(equations.guard_values) + k for k in range(len(equations.beside_guards))]
 
 
-def beside_guards(variant, i, requirements):
-    """What else is looked at within steps, and swings: coordinates that depend on prescribed motions, requirements and margins."""
+def beside_guards(variant, i, mode):
+    """What else is looked at within steps, and swings: coordinates that depend on prescribed motions, requirements and margins; of reactions
+    and outputs those that are curved in prescribed motions, since an input alone tells in which windows values are looked at
+    (hybrid::equations). What has no Taylor recurrence is not among them, either."""
     model, equations = variant.model, variant.modes[i]
-    swings, coordinates = _swings(variant, i), equations.all_coordinates()
-    of_lines = {line.name for line in equations.mode.lines}
+    each = lambda column: [column[k] for k in range(column.numel())]
+    of_lines, coordinates = {line.name for line in equations.mode.lines}, equations.all_coordinates()
     dependent = [coordinates[k] for k, c in enumerate(model.coordinates) if c.name in of_lines]
-    return [value for value in (*dependent, *(requirements[k] for k in range(requirements.numel()))) if swings(value)]
+    swings = [value for value in [*dependent, *each(mode.requirements)] if _is_curved(variant, value) or _is_unseen(variant, i, value)]
+    outputs = [*each(mode.reactions), *each(variant.functions[i, "outputs"].expression)]
+    return [value for value in [*swings, *(o for o in outputs if _is_curved(variant, o))] if series_graph.has_recurrence(value)]
 
 
-def _swings(variant, i):
-    """Tells whether an expression of a mode is not linear in where and how fast prescribed motions are (a cam), or depends on an input that
-    no equation of motion does (a flight over a table that shakes)."""
-    inputs, equations = variant.model.inputs, variant.modes[i]
-    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in inputs if declared.motion is not None for s in declared.signals[1:]])
+def _is_curved(variant, value):
+    """Whether an expression is not linear in where and how fast prescribed motions are (a cam)."""
+    inputs = [declared for declared in variant.model.inputs if declared.motion is not None]
+    moved = ca.vertcat(ca.SX(0, 1), *[s for declared in inputs for s in declared.signals[1:]])
+    return bool(moved.numel()) and ca.depends_on(ca.jacobian(value, moved), moved)
+
+
+def _is_unseen(variant, i, value):
+    """Whether an expression depends on an input that no equation of motion does (a flight over a table that shakes)."""
+    equations = variant.modes[i]
+    # Where nothing moves no step is longer than the inputs allow.
+    if not equations.free:
+        return False
     # With multipliers: what a contact asks of accelerations moves nothing while it is open.
     motion = variant.functions[i, "system"].output if equations.mode.form is None else equations.r[equations.own]
-    # Where nothing moves no step is longer than the inputs allow.
-    columns = [ca.vertcat(*declared.signals) for declared in inputs] if equations.free else []
-    unseen = ca.vertcat(ca.SX(0, 1), *[column for column in columns if not ca.depends_on(motion, column)])
-    is_curved = lambda value: bool(moved.numel()) and ca.depends_on(ca.jacobian(value, moved), moved)
-    return lambda value: is_curved(value) or bool(unseen.numel()) and ca.depends_on(value, unseen)
+    columns = (ca.vertcat(*declared.signals) for declared in variant.model.inputs)
+    return any(ca.depends_on(value, column) and not ca.depends_on(motion, column) for column in columns)
 
 
 def facts(variant, i):

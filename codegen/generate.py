@@ -289,7 +289,7 @@ def _variant(model, absent, kind=""):
                 if condition is not None:
                     variant.functions[i, "condition", g, t].equations = target
         _tapes(variant, i, index)
-        equations.beside_guards = analysis.beside_guards(variant, i, mode.requirements)
+        equations.beside_guards = analysis.beside_guards(variant, i, mode)
         _add(variant, prefix, (functions.GUARDS_OF_MODE,), mode, equations, (i,))
     return variant
 

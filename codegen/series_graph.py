@@ -390,6 +390,13 @@ _RULES = {
 }
 
 
+def has_recurrence(expression):
+    """Whether every operation of an expression has a Taylor recurrence; of powers those with a constant exponent."""
+    function = ca.Function("operations", ca.symvar(expression), [expression])
+    known = {ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST, *_RULES} - {ca.OP_POW}
+    return all(function.instruction_id(k) in known for k in range(function.n_instructions()))
+
+
 def _name(op):
     """Name of an operation of CasADi: `atan2`."""
     return next(name[3:].lower() for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == op)

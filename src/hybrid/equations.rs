@@ -173,6 +173,12 @@ impl<'a, F: Size> Equations<'a, F> {
         }
     }
 
+    /// The longest window from local time `tau` in which the values of what depends on inputs tell how it goes, s: a period of the fastest
+    /// sine. Steps in which the motion depends on no input may be longer.
+    pub fn told_by_values(&self, tau: f64) -> f64 {
+        4.0 * self.resolution(tau)
+    }
+
     /// Sets the context to local time `tau`.
     #[inline]
     pub fn at(&mut self, tau: f64) {

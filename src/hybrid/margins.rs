@@ -390,21 +390,30 @@ impl Margins<'_> {
                 );
             }
             None => {
-                let value = |tau: f64| {
-                    let [q, v, a] = match tau == end.t {
-                        true => [end.q.clone(), end.v.clone(), end.a.clone()],
-                        false => motion(equations, dense, tau, true),
+                let mut from = window.0;
+                while found.crossing.is_none() && from < window.1 {
+                    let to = match margin.is_some_and(|margin| margin >= mode.margins.len()) {
+                        true => (from + equations.told_by_values(from)).min(window.1),
+                        // Steps resolve what is the model's.
+                        false => window.1,
                     };
-                    equations.at(tau);
-                    let at = Free {
-                        q: &q,
-                        v: &v,
-                        a: &a,
+                    let value = |tau: f64| {
+                        let [q, v, a] = match tau == end.t {
+                            true => [end.q.clone(), end.v.clone(), end.a.clone()],
+                            false => motion(equations, dense, tau, true),
+                        };
+                        equations.at(tau);
+                        let at = Free {
+                            q: &q,
+                            v: &v,
+                            a: &a,
+                        };
+                        self.evaluate(equations.kernel, equations.context, mode, at);
+                        self.values[row]
                     };
-                    self.evaluate(equations.kernel, equations.context, mode, at);
-                    self.values[row]
-                };
-                found = search_function(value, window, watch);
+                    found = search_function(value, (from, to), watch);
+                    from = to;
+                }
             }
         }
         let crossing = found.crossing?;

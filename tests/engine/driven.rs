@@ -2,7 +2,8 @@
 
 use super::multipliers::sine;
 use crate::common::*;
-use dalembert::hybrid::{Method, Problem, simulate};
+use crate::peaks::{peak, record_all};
+use dalembert::hybrid::{Method, Observed, OwnLimit, Problem, simulate};
 use dalembert::input::{Function, Interpolation, Outside, Sine, Table};
 use dalembert::model::models;
 use dalembert::record::Silent;
@@ -381,36 +382,92 @@ fn a_slow_ball_meets_the_first_crest_of_a_fast_table() {
     }
 }
 
-/// A limit on an input that nothing else depends on: of hundreds of crests in one flight the first that is as high. A search by values alone
-/// misses it at the first three pairs of frequencies.
-#[test]
-fn a_limit_on_what_the_motion_does_not_know_is_reached_in_time() {
-    for (a, b) in [
-        (1286.4, 1303.9),
-        (2327.6, 2360.3),
-        (3026.3, 3069.2),
-        (440.0, 443.0),
-    ] {
-        let margin = |t: f64| 1.0 - 0.55 * ((a * t).sin() + (b * t + 3.0).sin());
-        let expected = first_fall(margin, 1e-6);
-        let load =
-            [(a, 0), (b, 3)].map(|(omega, phase)| sine(&format!("0.55 sin({omega} t+{phase})")));
+/// Pairs of frequencies, rad/s, of a load 0.55 (sin at + sin(bt + 3)), N. A search by values alone misses the first crest above 1 N at the
+/// first three.
+const LOADS: [(f64, f64); 4] = [
+    (1286.4, 1303.9),
+    (2327.6, 2360.3),
+    (3026.3, 3069.2),
+    (440.0, 443.0),
+];
+
+/// A ball in a long flight with such a load, in each form and by each method.
+fn with_each_load(input: &str, end: f64, test: impl Fn(&str, Problem, &dyn Fn(f64) -> f64)) {
+    for (a, b) in LOADS {
+        let load = |t: f64| 0.55 * ((a * t).sin() + (b * t + 3.0).sin());
         for form in ["reduced", "multipliers"] {
             for method in METHODS {
                 let mut ball = problem("table_ball", &[]);
                 ball.choose(&[("form", form)]).unwrap();
                 ball.set_initial("y", 1e3).unwrap();
-                ball.set_input("load", Function::sum(load.clone())).unwrap();
-                let run = run(&at_tolerance(ball, method, 10.0));
+                let sines = [(a, 0), (b, 3)]
+                    .map(|(omega, phase)| sine(&format!("0.55 sin({omega} t+{phase})")));
+                ball.set_input(input, Function::sum(sines)).unwrap();
                 let of = format!("{form} by {method:?}, {a} and {b} rad/s");
-                let [state] = &run.reached.limit_states[..] else {
-                    panic!("{of}: {:?}", run.reached)
-                };
-                assert!(
-                    (state.t - expected).abs() < 1e-10,
-                    "{of}: {state:?} and {expected}"
-                );
+                test(&of, at_tolerance(ball, method, end), &load);
             }
         }
     }
+}
+
+/// A limit on an input that nothing else depends on, of the model or of the problem: of hundreds of crests in one flight the first that is
+/// as high.
+#[test]
+fn a_limit_on_what_the_motion_does_not_know_is_reached_in_time() {
+    for input in ["load", "wind"] {
+        with_each_load(input, 10.0, |of, mut ball, load| {
+            let expected = first_fall(|t| 1.0 - load(t), 1e-6);
+            if input == "wind" {
+                ball.add_output("own", "N", "2 * twice", "four times the wind")
+                    .unwrap();
+                ball.limits.own = vec![OwnLimit {
+                    name: "mine".into(),
+                    message: "it is too much".into(),
+                    of: Observed::Output(ball.output("own").unwrap()),
+                    above: true,
+                    level: 4.0,
+                    ends: true,
+                }];
+            }
+            let run = run(&ball);
+            let [state] = &run.reached.limit_states[..] else {
+                panic!("{input}, {of}: {:?}", run.reached)
+            };
+            assert!(
+                (state.t - expected).abs() < 1e-10,
+                "{input}, {of}: {state:?} and {expected}"
+            );
+        });
+    }
+}
+
+/// The largest value of an output that the motion does not know, in a flight of hundreds of crests.
+#[test]
+fn the_extremes_of_what_the_motion_does_not_know_are_found() {
+    with_each_load("wind", 0.5, |of, mut ball, load| {
+        record_all(&mut ball, Some(f64::INFINITY));
+        ball.record.columns.outputs = true;
+        let run = run(&ball);
+        // Through three neighbours a parabola.
+        let step = 2e-6;
+        let values: Vec<f64> = (0..=250_000).map(|k| load(f64::from(k) * step)).collect();
+        let crest = |[a, b, c]: [f64; 3]| match b >= a && b >= c {
+            true => b - (c - a) * (c - a) / (8.0 * (a + c - 2.0 * b)),
+            false => b,
+        };
+        let largest = |sign: f64| {
+            let crests = values
+                .windows(3)
+                .map(|w| crest([w[0], w[1], w[2]].map(|v| sign * v)));
+            crests.fold(f64::NEG_INFINITY, f64::max)
+        };
+        let found = peak(&run, "twice");
+        for (found, exact) in [(found.max, largest(1.0)), (-found.min, largest(-1.0))] {
+            assert!(
+                (found - 2.0 * exact).abs() < 1e-9,
+                "{of}: {found} and {}",
+                2.0 * exact
+            );
+        }
+    });
 }

@@ -8,13 +8,13 @@ use dalembert::scene::Scene;
 use std::f64::consts::PI;
 
 /// The peak of a column by name.
-fn peak(run: &Run, name: &str) -> Peak {
+pub fn peak(run: &Run, name: &str) -> Peak {
     let column = run.trajectory.column(name).expect("it is recorded");
     let found = run.peaks.iter().find(|(i, _)| *i == column);
     found.expect("it has a peak").1
 }
 
-fn record_all(problem: &mut Problem, every: Option<f64>) {
+pub fn record_all(problem: &mut Problem, every: Option<f64>) {
     problem.record.every = every;
     problem.record.columns = Recorded {
         reactions: true,

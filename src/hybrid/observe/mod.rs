@@ -43,6 +43,9 @@ use std::ops::ControlFlow;
 /// step that is smooth is not cut at all.
 const MOST_HALVINGS: u32 = 4;
 
+/// Most windows in which inputs are told by values that a step is cut into: the places of their halves are counted in 32 bits.
+const MOST_WINDOWS: f64 = (1_u32 << (31 - MOST_HALVINGS)) as f64;
+
 /// Loosest tolerance of the polynomials. The value at an extremum is off by the square of what its
 /// place is off by, so that this finds it to rounding.
 const LOOSEST: f64 = 1e-8;
@@ -493,21 +496,30 @@ impl<'o> Observers<'o> {
         };
         let count = columns + if powers { 2 } else { 0 };
         let end = step.seen(start);
+        // The motion may depend on no input, in which case its steps are as long as it likes.
+        let windows = match count {
+            0 => 1.0,
+            _ => ((end - start) / step.equations.told_by_values(start)).ceil(),
+        };
+        let least = (windows.min(MOST_WINDOWS) as u32).next_power_of_two();
         let mut part = Part {
             from: start,
-            to: end,
-            is_last: true,
+            to: match least {
+                1 => end,
+                _ => start + (end - start) / f64::from(least),
+            },
+            is_last: least == 1,
         };
         self.joined &= self.interpolants.set_count(count);
         let mut flown = [0.0; 2];
-        let (mut index, mut parts) = (0, 1_u32);
+        let (mut index, mut parts) = (0, least);
         if count == 0 {
             self.joined = false;
             return self.sample(step, part, None);
         }
         loop {
             let resolved = self.represent(step, part, (columns, powers));
-            if !resolved && parts < 1 << MOST_HALVINGS {
+            if !resolved && parts < least << MOST_HALVINGS {
                 (index, parts) = (2 * index, 2 * parts);
                 // The values at the start stay.
                 self.joined = true;

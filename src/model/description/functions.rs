@@ -64,8 +64,10 @@ impl Reader<'_> {
                 })?,
             })
         });
-        // Coordinates, requirements and margins.
-        let most = self.dimensions.coordinates + counts.required;
+        // Coordinates, requirements and margins, reactions and outputs.
+        let dimensions = &self.dimensions;
+        let reactions = dimensions.coordinates + dimensions.motions.len();
+        let most = dimensions.coordinates + counts.required + reactions + counts.outputs;
         let beside = at.get("beside_guards", |at| at.index(most + 1))?;
         let rows = guards.len() + beside;
         Ok(ModeKernel {

@@ -12,6 +12,7 @@ e = model.parameter("e", "1", 0.6, "restitution", minimum=0)
 
 y = model.coordinate("y", "m", "height")
 load = model.input("load", "N", "load on what stands beside it")
+wind = model.input("wind", "N", "wind on it, of which nothing but an output knows")
 most = model.parameter("most", "N", 1.0, "load that it bears", above=0)
 table = model.motion("table", "where the table is", input="a")
 
@@ -19,5 +20,6 @@ model.gravity(g)
 model.point_mass(m, position=(0 * y, y))
 model.contact("table", gap=y - table, restitution=e)
 model.limit("overload", "what stands beside it gives way", when=load > most)
+model.output("twice", "N", 2 * wind, "twice the wind")
 if form == "multipliers":
     model.multipliers()
