@@ -392,11 +392,7 @@ impl Margins<'_> {
             None => {
                 let mut from = window.0;
                 while found.crossing.is_none() && from < window.1 {
-                    let to = match margin.is_some_and(|margin| margin >= mode.margins.len()) {
-                        true => (from + equations.told_by_values(from)).min(window.1),
-                        // Steps resolve what is the model's.
-                        false => window.1,
-                    };
+                    let to = (from + equations.told_by_values(from)).min(window.1);
                     let value = |tau: f64| {
                         let [q, v, a] = match tau == end.t {
                             true => [end.q.clone(), end.v.clone(), end.a.clone()],
@@ -411,7 +407,7 @@ impl Margins<'_> {
                         self.evaluate(equations.kernel, equations.context, mode, at);
                         self.values[row]
                     };
-                    found = search_function(value, (from, to), watch);
+                    found = search_function(value, (from, to), found.watch);
                     from = to;
                 }
             }
