@@ -26,9 +26,17 @@ pub(super) fn turns_within_rounding<F: Size>(
     guard: (&Guard, Watched),
     (found, crossing): (&Search, Crossing),
 ) -> bool {
-    let may_turn =
-        found.turn > f64::NEG_INFINITY && matches!(crossing.kind, Kind::Crossing | Kind::Touch);
-    may_turn && is_shallow(method, equations, conditions, guard, (found.turn, crossing))
+    let turn = match crossing.kind {
+        Kind::Crossing | Kind::Touch => found.turn,
+        // A smooth force jumps by rounding alone: it turns near where it is then.
+        Kind::Jump => {
+            let t = crossing.outside;
+            let [q, v, a] = guards::motion(equations, method.motion(), t, true);
+            value_at(equations, conditions, guard, &State { t, q, v, a })
+        }
+        Kind::LeavesNegative | Kind::Pole => f64::NEG_INFINITY,
+    };
+    turn > f64::NEG_INFINITY && is_shallow(method, equations, conditions, guard, (turn, crossing))
 }
 
 /// The same where it turns behind its crossing.

@@ -145,7 +145,7 @@ fn what_friction_can_just_hold_it_holds() {
 /// Friction whose normal force comes down to zero, and no further, while the masses stand, slide, and slide and stick.
 #[test]
 fn a_normal_force_that_touches_zero_does_not_pull() {
-    for frequency in [1.0, 1.3, 0.7, 0.31, 2.2] {
+    for frequency in [1.0, 1.3, 0.7, 0.31, 2.2, 3.1, 5.7] {
         for (rate, load) in [(0.0, 0.0), (40.0, 0.0), (1.0, 0.5)] {
             for method in ["taylor", "radau"] {
                 let scene = json!({
@@ -153,7 +153,7 @@ fn a_normal_force_that_touches_zero_does_not_pull() {
                         "P": { "sine": { "amplitude": 1, "frequency": frequency } },
                         "F": { "constant": load },
                     },
-                    "initial": { "x_a.rate": rate, "x_b.rate": rate, "x_c.rate": rate },
+                    "initial": { "x_a.rate": rate, "x_b.rate": rate },
                     "end": 3, "method": method,
                 });
                 let [one, other] = both(&scene);
