@@ -2,20 +2,19 @@
 
 import casadi as ca
 
-from . import functions, graph, series_graph, signals
+from . import functions, graph, signals
 
 MOST_IN_LANES = 6
 """Most free coordinates of modes that go in lanes; `FREE` in codegen/lanes.c tells so many apart."""
 
 
 def goes_in_lanes(variant, i):
-    """Whether trajectories in a mode can go side by side: it and its guards are analytic, nothing that it holds moves, nothing is brought
-    back to what contacts or constraints hold, each crossing of a guard is an event under any conditions, and few coordinates are free."""
+    """Whether trajectories in a mode can go side by side: nothing that it holds moves, nothing is brought back to what contacts or
+    constraints hold, each crossing of a guard is an event under any conditions, and few coordinates are free."""
     equations = variant.modes[i]
-    analytic = all(variant.functions[i, row.name].symbol for row in functions.OF_EACH_MODE if row.series)
     guards = [any(t.condition is None for t in transitions) for _, transitions in equations.guards]
     stays = not equations.mode.drift and not equations.mode.lines and equations.mode.form is None
-    return 0 < len(equations.free) <= MOST_IN_LANES and analytic and stays and all(guards) and not swinging(variant, i)
+    return 0 < len(equations.free) <= MOST_IN_LANES and stays and all(guards) and not swinging(variant, i)
 
 
 def swinging(variant, i):
@@ -29,14 +28,15 @@ def swinging(variant, i):
 def beside_guards(variant, i, mode):
     """What else is looked at within steps, and swings: coordinates that depend on prescribed motions, requirements and margins; of reactions
     and outputs those that are curved in prescribed motions, since an input alone tells in which windows values are looked at
-    (hybrid::equations). What has no Taylor recurrence is not among them, either."""
+    (hybrid::equations). Of a margin that is not smooth (a load of either sign), what it is made of."""
     model, equations = variant.model, variant.modes[i]
     each = lambda column: [column[k] for k in range(column.numel())]
     of_lines, coordinates = {line.name for line in equations.mode.lines}, equations.all_coordinates()
     dependent = [coordinates[k] for k, c in enumerate(model.coordinates) if c.name in of_lines]
-    swings = [value for value in [*dependent, *each(mode.requirements)] if _is_curved(variant, value) or _is_unseen(variant, i, value)]
+    margins = graph.smooth_parts(each(mode.requirements), [p.symbol for p in model.parameters])
+    swings = [value for value in [*dependent, *margins] if _is_curved(variant, value) or _is_unseen(variant, i, value)]
     outputs = [*each(mode.reactions), *each(variant.functions[i, "outputs"].expression)]
-    return [value for value in [*swings, *(o for o in outputs if _is_curved(variant, o))] if series_graph.has_recurrence(value)]
+    return [*swings, *(o for o in outputs if _is_curved(variant, o))]
 
 
 def _is_curved(variant, value):

@@ -199,7 +199,6 @@ def _mode(variant, i, equations, tables):
             {"text": units.short(r.expression, 200), "failure": r.failure, "unit": _unit(model, r.expression),
              "may_vanish": r.may_vanish} for r in mode.requirements],
         "margins": equations.margin_shapes,
-        "without_series": derived[("series",)].without or None,
         "system": variant.tapes[i, "system"], "guard_values": variant.tapes[i, "guards"],
         "contacts": None if mode.form is None else {
             **equations.describe(model), "decisions": variant.tapes[i, "decisions"]},

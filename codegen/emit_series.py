@@ -19,9 +19,9 @@ The arithmetic of the nodes is that of series_graph.py.
 import casadi as ca
 
 from .emit_c import MOST_ORDERS, zeros
-from .series_graph import ONE, VARIABLE, Graph, Node, NotAnalytic, walk
+from .series_graph import ONE, VARIABLE, Graph, Node, walk
 
-__all__ = ["Equations", "NotAnalytic", "Outputs", "Series"]
+__all__ = ["Equations", "Outputs", "Series"]
 
 
 MOST_UNROLLED = 8

@@ -27,8 +27,6 @@ class Function:
     """As it was derived."""
     equations: object
     symbol: str = ""
-    without: str = ""
-    """Why there is no Taylor series of it."""
     operations: int = 0
     workspace: tuple = ()
     stays: bool = False
@@ -167,7 +165,7 @@ def _lane_functions(variants):
 
 
 def _emit_series(source, prefix, variant, function, constants):
-    """Emits Taylor series, if there is a recurrence for every operation."""
+    """Emits Taylor series."""
     equations, model = function.equations, variant.model
     drifting = [i for i, c in enumerate(model.coordinates) if c.name in equations.mode.drift]
     count = function.output.numel() - len(drifting)
@@ -177,15 +175,11 @@ def _emit_series(source, prefix, variant, function, constants):
         constant=[("d", _discretes(model)), ("c", constants.symbols)],
         held=equations.held,
         drift={i: function.output[count + n] for n, i in enumerate(drifting)})
-    try:
-        if function.row.series == "motion":
-            series = emit_series.Equations(len(equations.free), **arguments)
-        else:
-            arguments["moving"].append(("a", equations.a))
-            series = emit_series.Outputs(**arguments)
-    except emit_series.NotAnalytic as why:
-        function.symbol, function.without = None, str(why)
-        return
+    if function.row.series == "motion":
+        series = emit_series.Equations(len(equations.free), **arguments)
+    else:
+        arguments["moving"].append(("a", equations.a))
+        series = emit_series.Outputs(**arguments)
     function.symbol = series.add_to(source, f"{prefix}_{function.name}")
     function.workspace = (series.lead, series.row, len(series.graph.interiors), series.ends)
     function.operations = series.operations

@@ -74,6 +74,21 @@ def non_smooth_operation(expression, parameters=()):
     return None
 
 
+def smooth_parts(expressions, parameters):
+    """The largest parts of expressions without an operation that is not smooth, each once."""
+    parts, seen, waiting = [], set(), list(reversed(expressions))
+    while waiting:
+        part = waiting.pop()
+        if part.element_hash() in seen:
+            continue
+        seen.add(part.element_hash())
+        if non_smooth_operation(part, parameters) is None:
+            parts.append(part)
+        else:
+            waiting += [part.dep(k) for k in reversed(range(part.n_dep()))]
+    return parts
+
+
 def is_even(expression, symbol):
     """Whether a column stays the same, to the bit, where `symbol` changes its sign: by the operations that carry a
     sign through, each node of the graph is even, odd, or neither."""

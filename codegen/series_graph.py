@@ -16,10 +16,6 @@ from .emit_c import SIN_COS, literal, operation, parenthesized, sin_cos
 from .interiors import Interiors
 
 
-class NotAnalytic(Exception):
-    """The graph has an operation for which there is no recurrence."""
-
-
 class Node:
     """Coefficients of a node: C text of order 0, and of order k a linear form, None where all but the first
     vanish.
@@ -193,10 +189,7 @@ class Graph:
             if op in SIN_COS:
                 return Node(f"{self._sin_cos(arguments[0].zeroth)}.{SIN_COS[op]}")
             return self.zeroth(operation(op, [a.zeroth for a in arguments]))
-        rule = _RULES.get(op)
-        if rule is None:
-            raise NotAnalytic(f"`{_name(op)}` has no Taylor recurrence")
-        return rule(self, *arguments)
+        return _RULES[op](self, *arguments)
 
     def linear(self, op, *factors):
         """An operation that is the sum of its arguments, times these factors."""
@@ -253,8 +246,7 @@ class Graph:
 
     def _grows(self, z, x, w, sign=ONE):
         """z with ż = ± w ẋ: k z_k = ± Σ_{j=1}^{k} j x_j w_{k-j}."""
-        inner = self._over_k(self.interiors.add(self._scaled(x), self.value(w)))
-        self.define(z, self.times(sign, self.sum(inner, self.times(w, x.form))))
+        self.define(z, self.times(sign, self._grown(x, w)))
 
     def _quotient_grows(self, zeroth, x, w, sign=ONE):
         """z with w ż = ± ẋ: w_0 k z_k = ± k x_k − Σ_{j=1}^{k-1} j z_j w_{k-j}."""
@@ -314,22 +306,62 @@ class Graph:
         self.define(slope, self.times(ONE if sign == "+" else _MINUS_ONE, square))
         return z
 
-    def arc_tangent(self, x):
-        """(1 + x²) ż = ẋ."""
+    def _square_plus(self, x, sign, number):
+        """± x² + a number."""
         square = self.square(x)
-        slope = self.series(f"1.0 + {square.zeroth}", square.form)
-        return self._quotient_grows(f"atan({x.zeroth})", x, slope)
+        factor = ONE if sign == "+" else _MINUS_ONE
+        return self.series(f"{number} {sign} {square.zeroth}", self.times(factor, square.form))
 
-    def arc_sine(self, x, name="asin", sign=ONE):
-        """√(1 − x²) ż = ± ẋ."""
-        square = self.square(x)
-        slope = self.root(self.series(f"1.0 - {square.zeroth}", self.times(_MINUS_ONE, square.form)))
-        return self._quotient_grows(f"{name}({x.zeroth})", x, slope, sign)
+    def arc_tangent(self, x, name="atan", sign="+"):
+        """(1 ± x²) ż = ẋ."""
+        return self._quotient_grows(f"{name}({x.zeroth})", x, self._square_plus(x, sign, "1.0"))
+
+    def arc_sine(self, x, name="asin", inner=("-", "1.0"), sign=ONE):
+        """√(± x² + a number) ż = ± ẋ."""
+        return self._quotient_grows(f"{name}({x.zeroth})", x, self.root(self._square_plus(x, *inner)), sign)
+
+    def _sum_of_squares(self, x, y):
+        return self.operation(ca.OP_ADD, [self.operation(ca.OP_SQ, [x]), self.operation(ca.OP_SQ, [y])])
+
+    def angle(self, y, x):
+        """(x² + y²) ż = x ẏ − y ẋ."""
+        z = self._integral(operation(ca.OP_ATAN2, [y.zeroth, x.zeroth]))
+        squares = self._sum_of_squares(x, y)
+        turns = self.sum(self._grown(y, x), self.times(_MINUS_ONE, self._grown(x, y)))
+        inner = self._over_k(self.interiors.add(self._scaled(z), self.value(squares)))
+        self._define_quotient(z, turns, inner, self.zeroth(f"1.0 / {squares.zeroth}"))
+        return z
+
+    def _grown(self, x, w):
+        """(w ẋ)_{k-1} / k: Σ_{j=1}^{k} j x_j w_{k-j} / k."""
+        if x.constant:
+            return {}
+        if w.constant:
+            return self.form(x, w)
+        inner = self._over_k(self.interiors.add(self._scaled(x), self.value(w)))
+        return self.sum(inner, self.times(w, x.form))
+
+    def exponential_less_one(self, x):
+        """ż = eˣ ẋ."""
+        z = self._integral(f"expm1({x.zeroth})")
+        self._grows(z, x, self.exponential(x))
+        return z
+
+    def logarithm_of_one_and(self, x):
+        """(1 + x) ż = ẋ."""
+        return self._quotient_grows(f"log1p({x.zeroth})", x, self.series(f"1.0 + {x.zeroth}", x.form))
+
+    def error_function(self, x):
+        """ż = 2/√π e^(−x²) ẋ."""
+        z = self._integral(f"erf({x.zeroth})")
+        slope = self.product(Node("1.1283791670955126"), self.exponential(self._square_plus(x, "-", "0.0")))
+        self._grows(z, x, slope)
+        return z
 
     def power(self, x, exponent):
-        """x ż = p ẋ z: x_0 k z_k = p k x_k z_0 + Σ_{j=1}^{k-1} (p j − (k − j)) x_j z_{k-j}."""
+        """x ż = p ẋ z: x_0 k z_k = p k x_k z_0 + Σ_{j=1}^{k-1} (p j − (k − j)) x_j z_{k-j}. With an exponent that varies: e^(p log x)."""
         if not exponent.constant:
-            raise NotAnalytic("a power whose exponent varies in time has no Taylor recurrence")
+            return self.exponential(self.product(exponent, self.operation(ca.OP_LOG, [x])))
         whole = _whole(exponent.zeroth)
         if whole is not None:
             return self._whole_power(x, whole)
@@ -382,24 +414,21 @@ _RULES = {
     ca.OP_TANH: lambda g, x: g.tangent(x, "tanh", "-"),
     ca.OP_ATAN: Graph.arc_tangent,
     ca.OP_ASIN: Graph.arc_sine,
-    ca.OP_ACOS: lambda g, x: g.arc_sine(x, "acos", _MINUS_ONE),
+    ca.OP_ACOS: lambda g, x: g.arc_sine(x, "acos", sign=_MINUS_ONE),
+    ca.OP_ATAN2: Graph.angle,
+    ca.OP_HYPOT: lambda g, x, y: g.root(g._sum_of_squares(x, y)),
+    ca.OP_ATANH: lambda g, x: g.arc_tangent(x, "atanh", "-"),
+    ca.OP_ASINH: lambda g, x: g.arc_sine(x, "asinh", ("+", "1.0")),
+    ca.OP_ACOSH: lambda g, x: g.arc_sine(x, "acosh", ("+", "-1.0")),
     ca.OP_EXP: Graph.exponential,
+    ca.OP_EXPM1: Graph.exponential_less_one,
     ca.OP_LOG: Graph.logarithm,
+    ca.OP_LOG1P: Graph.logarithm_of_one_and,
+    ca.OP_ERF: Graph.error_function,
     ca.OP_POW: Graph.power,
     ca.OP_CONSTPOW: Graph.power,
 }
-
-
-def has_recurrence(expression):
-    """Whether every operation of an expression has a Taylor recurrence; of powers those with a constant exponent."""
-    function = ca.Function("operations", ca.symvar(expression), [expression])
-    known = {ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST, *_RULES} - {ca.OP_POW}
-    return all(function.instruction_id(k) in known for k in range(function.n_instructions()))
-
-
-def _name(op):
-    """Name of an operation of CasADi: `atan2`."""
-    return next(name[3:].lower() for name in dir(ca) if name.startswith("OP_") and getattr(ca, name) == op)
+"""Every smooth operation that can be emitted as C; equations and guards have no others."""
 
 
 def walk(graph, place, output):

@@ -247,25 +247,23 @@ fn call_all<F: Size>(kernel: &ModeKernel<F>, (model, mode): Of, variant: &Varian
         }
     }
 
-    if kernel.is_analytic() {
-        let mut series = Box::new(Series::zero(size));
-        let mut inverse = size.zero_matrix();
-        for i in 0..size.get() {
-            (series.q[0][i], series.v[0][i], series.a[0][i]) = (q[i], v[i], a[i]);
-            (series.q[1][i], series.v[1][i], series.q[2][i]) = (v[i], a[i], a[i] / 2.0);
-            inverse[(i, i)] = 1.0;
-        }
-        for autonomous in [false, true] {
-            x.autonomous = autonomous;
-            for orders in 1..=ORDERS - 2 {
-                let mut series = series.clone();
-                let _ = kernel.series_start(&mut x, &series);
-                kernel.series_run(&mut x, orders, &inverse, &mut series);
-                let _ = kernel.guard_series(&mut x, orders, &series);
-                let mut out = unwritten(watched);
-                kernel.requirement_bounds(&mut x, (&series, orders), 1e-3, &mut out);
-                expect("requirement_bounds", is_written(&out));
-            }
+    let mut series = Box::new(Series::zero(size));
+    let mut inverse = size.zero_matrix();
+    for i in 0..size.get() {
+        (series.q[0][i], series.v[0][i], series.a[0][i]) = (q[i], v[i], a[i]);
+        (series.q[1][i], series.v[1][i], series.q[2][i]) = (v[i], a[i], a[i] / 2.0);
+        inverse[(i, i)] = 1.0;
+    }
+    for autonomous in [false, true] {
+        x.autonomous = autonomous;
+        for orders in 1..=ORDERS - 2 {
+            let mut series = series.clone();
+            let _ = kernel.series_start(&mut x, &series);
+            kernel.series_run(&mut x, orders, &inverse, &mut series);
+            kernel.guard_series(&mut x, orders, &series);
+            let mut out = unwritten(watched);
+            kernel.requirement_bounds(&mut x, (&series, orders), 1e-3, &mut out);
+            expect("requirement_bounds", is_written(&out));
         }
     }
     unfinished

@@ -42,7 +42,7 @@ where another event follows there, the report says so under `uncertain`. It ends
 --error-estimate runs the scene a second time, by another method at a tolerance ten thousand \
 times tighter (1e-14 at most), and reports what the two differ by: coordinates and velocities at the end, \
 times of events, events that only one of them has. In summary.json it is `error_estimate`. Where there \
-is no estimate, the reason is said and the status is 3. Radau stands in where Taylor has no series or \
+is no estimate, the reason is said and the status is 3. Radau stands in where Taylor \
 takes twenty times as long. `dalembert precision` has more.")]
 pub struct RunArguments {
     /// Scene file (JSON); docs/scene.md describes it
@@ -291,7 +291,6 @@ pub fn refusal(scene: &Scene, reason: &Reason) -> Failure {
     let may_project = scene.problem.variant().has_inadmissible() && !scene.problem.project;
     let (path, help) = match reason {
         Reason::NoModeLeft { .. } => ("freeze".into(), "freeze fewer coordinates"),
-        Reason::NoSeries { .. } => ("method".into(), "choose `auto` or `radau`"),
         Reason::Invalid(Invalid::BeyondStop { coordinate, .. }) => {
             (format!("initial.{coordinate}"), beyond(may_project))
         }

@@ -57,7 +57,7 @@ impl<'p> Simulation<'p> {
             t: self.here.now.seconds(),
         };
 
-        let is_explicit = self.is_explicit(kernel);
+        let is_explicit = self.is_explicit();
         self.signs.clear();
         let mut violation = None;
         let held = match &mode.contacts {

@@ -223,17 +223,13 @@ impl<'a, F: Size> Equations<'a, F> {
     }
 
     /// Expands the guards about the start of a step of the Taylor method, local time `tau`, unless
-    /// that was done before. Gives false where that is not possible.
-    pub fn expand_guards(&mut self, tau: f64, orders: usize, series: &Series<F>) -> bool {
-        if tau == self.guards_expanded_at {
-            return true;
-        }
-        self.at(tau);
-        let expanded = self.kernel.guard_series(self.context, orders, series);
-        if expanded {
+    /// that was done before.
+    pub fn expand_guards(&mut self, tau: f64, orders: usize, series: &Series<F>) {
+        if tau != self.guards_expanded_at {
+            self.at(tau);
+            self.kernel.guard_series(self.context, orders, series);
             self.guards_expanded_at = tau;
         }
-        expanded
     }
 
     /// The jerk at a point whose time the context and its signal rates are set for.
@@ -306,9 +302,7 @@ impl<F: Size> System<F> for Equations<'_, F> {
             self.context
                 .expand_signals(self.clock.signals, from, orders + 1);
         }
-        if !self.expand_guards(t, orders, series) {
-            return f64::INFINITY;
-        }
+        self.expand_guards(t, orders, series);
         let (mut own, mut scaled) = ([0.0; ORDERS], [0.0; ORDERS]);
         let (own, scaled) = (&mut own[..orders], &mut scaled[..orders]);
         // A power of two beyond `most`, and halves of it: no step depends on when the run ends.

@@ -133,16 +133,6 @@ pub enum Reason {
         /// The frozen coordinates.
         frozen: Vec<&'static str>,
     },
-    /// The Taylor method was asked for where it cannot be had.
-    #[error(
-        "method `taylor`: the equations of mode `{mode}` have no Taylor series ({why}); `radau` takes all equations, and `auto` takes Taylor where it can"
-    )]
-    NoSeries {
-        /// Mode.
-        mode: &'static str,
-        /// What stands in the way.
-        why: &'static str,
-    },
     /// The Taylor method was asked for, and the coefficients of the series leave the range of doubles.
     #[error(
         "method `taylor`: in mode `{mode}` the coefficients of the motion's series leave the range of doubles (rates are too fast); `auto` goes on by `radau` there"

@@ -112,16 +112,14 @@ pub struct Initial {
 /// A method of integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Taylor where a mode is analytic and not stiff, else Radau. Which one is found out on the way:
+    /// Taylor where a mode is not stiff, else Radau. Which one is found out on the way:
     /// see [`Method::Taylor`] and [`Method::Radau`].
     #[default]
     Auto,
     /// Radau IIA: implicit, for stiff and non-stiff equations, with 5 or 7 stages: see
-    /// [`crate::integrate::stages`]. Hops of contacts that are lower than its steps tell are followed by Taylor's method where
-    /// the equations have a series.
+    /// [`crate::integrate::stages`]. Hops of contacts that are lower than its steps tell are followed by Taylor's method.
     Radau,
-    /// Taylor series of the motion: the fastest for equations that are not stiff. A problem that may visit a mode
-    /// whose equations cannot be expanded is refused ([`super::Reason::NoSeries`]).
+    /// Taylor series of the motion: the fastest for equations that are not stiff.
     Taylor,
 }
 

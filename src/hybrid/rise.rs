@@ -80,7 +80,7 @@ impl<F: Size> Start<'_, F> {
 
 impl<'p> Simulation<'p> {
     /// For how long the rise of a coordinate from its place, or of its rate where the first derivative tells of it, is known to last, s, by the
-    /// series of the mode from a start with the accelerations `a`; `None` where the mode has no series.
+    /// series of the mode from a start with the accelerations `a`; `None` where what is held drifts.
     pub fn rises_for<F: Size>(
         &mut self,
         kernel: &'p ModeKernel<F>,
@@ -91,7 +91,7 @@ impl<'p> Simulation<'p> {
         Solvers: SlotsOf<F>,
     {
         // What drifts is in no series of the mode.
-        if !kernel.is_analytic() || self.plan.moves[self.here.mode] {
+        if self.plan.moves[self.here.mode] {
             return None;
         }
         let now = self.here.now.seconds();

@@ -200,7 +200,7 @@ pub(super) fn falls_off(
 
 /// A guard on a step of the Taylor method is a polynomial too: its own Taylor series.
 ///
-/// It is not searched if it cannot be expanded, or if its series falls off more slowly than that of the motion, so
+/// It is not searched if its series falls off more slowly than that of the motion, so
 /// that the last terms are not small: two derivatives of the motion multiply its last term by order². A guard that begins at
 /// zero, whose values near it are roundings, is searched on as large a part of the step as its series takes.
 #[inline(always)]
@@ -216,9 +216,7 @@ fn search_series<F: Size>(
     };
     let tau = dense.start();
     let expanded = orders_of_guards(equations, dense, orders);
-    if !equations.expand_guards(tau, expanded, series) {
-        return BySeries::Nothing;
-    }
+    equations.expand_guards(tau, expanded, series);
     let kernel = equations.kernel;
     let mut powers = [0.0; ORDERS];
     let powers = &mut powers[..expanded];

@@ -42,7 +42,7 @@ impl<'p> Simulation<'p> {
         // What follows an event of contacts is another set of their states.
         let stays = stays && mode.contacts.is_none();
         match stages(problem.accuracy.relative) {
-            _ if self.is_explicit(kernel) => {
+            _ if self.is_explicit() => {
                 self.made_by = MadeBy::Taylor;
                 let make = |x: &Context| {
                     Taylor::new(
@@ -78,15 +78,14 @@ impl<'p> Simulation<'p> {
     }
 
     /// Whether the present mode is followed by the Taylor method: by choice, or since the implicit one does not resolve its hops.
-    pub fn is_explicit<F: Size>(&self, kernel: &ModeKernel<F>) -> bool {
+    pub fn is_explicit(&self) -> bool {
         let prefers_implicit = self.stiffness[self.here.mode].prefers_implicit();
-        kernel.is_analytic()
-            && match self.problem.method {
-                Method::Taylor => true,
-                // Its polynomials have the rounding of coordinates, a series that of what has moved since the last event.
-                Method::Radau => self.accumulation.needs_series() && !prefers_implicit,
-                Method::Auto => !prefers_implicit,
-            }
+        match self.problem.method {
+            Method::Taylor => true,
+            // Its polynomials have the rounding of coordinates, a series that of what has moved since the last event.
+            Method::Radau => self.accumulation.needs_series() && !prefers_implicit,
+            Method::Auto => !prefers_implicit,
+        }
     }
 
     /// Takes the method of the present mode out of its slot, or makes it; follows the motion, and puts it back.
@@ -146,8 +145,7 @@ impl<'p> Simulation<'p> {
             mode,
             scale: self.scale(kernel.size()),
             moves,
-            chooses: kernel.is_analytic()
-                && (problem.method == Method::Auto || self.accumulation.needs_series()),
+            chooses: problem.method == Method::Auto || self.accumulation.needs_series(),
             looks_at_ends: is_explicit
                 || moves
                 || mode.contacts.is_some()

@@ -199,9 +199,7 @@ impl<F: Size> WatchedGuard<'_, '_, '_, F> {
         }
         let (series, orders) = dense.series()?;
         let expanded = orders_of_guards(self.equations, dense, orders);
-        if !(self.equations).expand_guards(dense.start(), expanded, series) {
-            return None;
-        }
+        (self.equations).expand_guards(dense.start(), expanded, series);
         let mut coefficients = [0.0; ORDERS];
         let own = &mut coefficients[..expanded];
         let (kernel, context) = (self.equations.kernel, &*self.equations.context);

@@ -165,7 +165,6 @@ impl<'p> Simulation<'p> {
         let model = &problem.model;
         problem.check()?;
         let plan = Plan::new(problem)?;
-        problem.check_method(&plan)?;
         let mut context = Context::new(model, &problem.parameters);
         context
             .discrete_mut()

@@ -1,8 +1,6 @@
 //! What a problem must be before it is run: for scenes and for programs, for single runs and for members of ensembles.
 
-use super::failure::Reason;
-use super::plan::Plan;
-use super::problem::{Accuracy, Initial, Method, Problem};
+use super::problem::{Accuracy, Initial, Problem};
 use crate::integrate::Tolerances;
 use crate::model::{Bounds, Model, shown};
 use crate::numerics::Const;
@@ -227,22 +225,6 @@ impl Problem {
             Some(every) => within(positive, "s", every, || {
                 "the interval of the samples".into()
             }),
-        }
-    }
-
-    /// The method that was asked for must be there in all modes that may be visited: nothing else stands in for it.
-    pub(super) fn check_method(&self, plan: &Plan) -> Result<(), Reason> {
-        let mut visited = self.automaton().modes.iter().zip(&plan.allowed);
-        let without = visited.find_map(|(mode, &allowed)| {
-            let why = mode.without_series.filter(|_| allowed)?;
-            Some(Reason::NoSeries {
-                mode: mode.name,
-                why,
-            })
-        });
-        match without {
-            Some(reason) if self.method == Method::Taylor => Err(reason),
-            _ => Ok(()),
         }
     }
 }

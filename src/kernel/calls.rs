@@ -157,15 +157,12 @@ impl<F: Size> ModeKernel<F> {
     }
 
     /// Fills `Context::guard_series` with the Taylor coefficients of all guards, one row an order,
-    /// along a motion that is known to that order; false if an operation of theirs has no
-    /// recurrence.
+    /// along a motion that is known to that order.
     ///
     /// # Panics
     /// If `orders` is more than [`ORDERS`].
-    pub fn guard_series(&self, x: &mut Context, orders: usize, at: &Series<F>) -> bool {
-        let Some(series) = &self.guard_series else {
-            return false;
-        };
+    pub fn guard_series(&self, x: &mut Context, orders: usize, at: &Series<F>) {
+        let series = &self.guard_series;
         assert!(orders <= ORDERS);
         self.assert_rows(at);
         let (q, v, a) = (
@@ -182,13 +179,9 @@ impl<F: Size> ModeKernel<F> {
             (series.start)(q, v, a, u, raw, w, out);
             (series.run)(orders, q, v, a, u, raw, w, out);
         }
-        true
     }
 
     /// Begins a Taylor series: mass matrix and load at order 0 of q and v.
-    ///
-    /// # Panics
-    /// If the mode is not analytic.
     #[inline]
     pub fn series_start(&self, x: &mut Context, at: &Series<F>) -> LinearSystem<F> {
         self.assert_rows(at);
@@ -196,7 +189,7 @@ impl<F: Size> ModeKernel<F> {
             if self.size.get() == 0 {
                 return;
             }
-            let series = self.motion_series(x).expect("the mode is analytic");
+            let series = self.motion_series(x);
             let (q, v, a) = (
                 at.q.as_ptr().cast_mut(),
                 at.v.as_ptr().cast_mut(),
@@ -224,7 +217,7 @@ impl<F: Size> ModeKernel<F> {
     /// q_1 and q_2 are.
     ///
     /// # Panics
-    /// If the mode is not analytic, or `n` is more than [`ORDERS`] − 2.
+    /// If `n` is more than [`ORDERS`] − 2.
     #[inline]
     pub fn series_run(&self, x: &mut Context, n: usize, inverse: &F::Matrix, at: &mut Series<F>) {
         if self.size.get() == 0 {
@@ -232,7 +225,7 @@ impl<F: Size> ModeKernel<F> {
         }
         self.assert_rows(at);
         assert_eq!(inverse.size(), self.size);
-        let series = self.motion_series(x).expect("the mode is analytic");
+        let series = self.motion_series(x);
         assert!(n <= ORDERS - 2);
         let (q, v, a) = (at.q.as_mut_ptr(), at.v.as_mut_ptr(), at.a.as_mut_ptr());
         let (u, w) = (x.signal_series.as_ptr(), x.workspace.as_mut_ptr().cast());

@@ -128,10 +128,10 @@ pub struct ModeKernel<F: Size> {
     pub(crate) outputs: usize,
     /// Number of requirements and margins.
     pub(crate) requirements: usize,
-    pub(crate) series: Option<SeriesKernel>,
+    pub(crate) series: SeriesKernel,
     /// The same where no input acts.
-    pub(crate) autonomous_series: Option<SeriesKernel>,
-    pub(crate) guard_series: Option<SeriesKernel>,
+    pub(crate) autonomous_series: SeriesKernel,
+    pub(crate) guard_series: SeriesKernel,
     /// Number of series of guards, and of what else swings with inputs.
     pub(crate) guards: usize,
     /// Those that swing with inputs while the motion itself may not.
@@ -197,18 +197,9 @@ impl<F: Size> ModeKernel<F> {
         self.is_linear
     }
 
-    /// Whether the motion can be expanded in a Taylor series: not if an operation of its equations
-    /// has no recurrence.
-    pub fn is_analytic(&self) -> bool {
-        self.series.is_some()
-    }
-
     /// What the equations tell about the Taylor series of the motion.
-    ///
-    /// # Panics
-    /// If the mode is not analytic.
     pub fn series_kind(&self, x: &Context) -> SeriesKind {
-        let series = self.motion_series(x).expect("the mode is analytic");
+        let series = self.motion_series(x);
         // Guards are expanded as far as the motion, and may depend on inputs where the motion does not.
         match series.convolutions {
             0 if series.ends && self.guards_end(x) => SeriesKind::Ends,
@@ -220,23 +211,23 @@ impl<F: Size> ModeKernel<F> {
     /// Whether the series of the guards end with those of the coordinates.
     #[inline]
     pub fn guards_end(&self, x: &Context) -> bool {
-        let end = self.guard_series.as_ref().is_none_or(|guards| guards.ends);
-        end && x.autonomous
+        self.guard_series.ends && x.autonomous
     }
 
     #[inline]
-    pub(crate) fn motion_series(&self, x: &Context) -> Option<&SeriesKernel> {
+    pub(crate) fn motion_series(&self, x: &Context) -> &SeriesKernel {
         match x.autonomous {
-            true => self.autonomous_series.as_ref(),
-            false => self.series.as_ref(),
+            true => &self.autonomous_series,
+            false => &self.series,
         }
     }
 
     /// Doubles of workspace that the series of this mode need.
     pub(crate) fn workspace(&self) -> usize {
         let all = [&self.series, &self.autonomous_series, &self.guard_series];
-        let all = all.into_iter().flatten();
-        all.map(|s| s.lead + s.row * ORDERS).max().unwrap_or(0)
+        all.map(|s| s.lead + s.row * ORDERS)
+            .into_iter()
+            .fold(0, usize::max)
     }
 
     /// Writes the first coefficients of a guard, by its index in the mode, in powers of time; set by

@@ -324,8 +324,6 @@ pub struct Mode {
     pub drifts: Box<[bool]>,
     /// Whether a frozen coordinate depends on free ones (a wheel that does not slip). One entry a coordinate.
     pub depends: Box<[bool]>,
-    /// Why the motion cannot be expanded in a Taylor series; `None` where it can.
-    pub without_series: Option<&'static str>,
     /// Contacts and constraints that hold by multipliers in this mode, if it is one of all sets of contact states.
     pub contacts: Option<Contacts>,
     /// Mass matrix, column by column, and load.

@@ -14,8 +14,6 @@ pub enum Attempt {
     GivenUp(Run),
     /// From outside.
     Interrupted,
-    /// It is to be by the Taylor method, and the equations have no series: why.
-    NoSeries(String),
 }
 
 /// Progress with a limit of time.
@@ -56,10 +54,7 @@ pub fn attempt(
         expired: false,
         interrupted: false,
     };
-    let run = match simulate(problem, &mut limited) {
-        Err(why @ Reason::NoSeries { .. }) => return Ok(Attempt::NoSeries(why.to_string())),
-        run => run?,
-    };
+    let run = simulate(problem, &mut limited)?;
     Ok(match (limited.interrupted, limited.expired) {
         (true, _) => Attempt::Interrupted,
         (false, true) => Attempt::GivenUp(run),

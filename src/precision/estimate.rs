@@ -44,7 +44,7 @@ pub enum NoEstimate {
 /// a tolerance [`ESTIMATE_FACTOR`] times as tight, but not tighter than [`TIGHTEST`], and the rounding
 /// of their steps. What Taylor has a part in is compared with Radau; what Radau has made alone is
 /// compared with Taylor ([`TAYLOR_ESTIMATE_FACTOR`]), or with Radau where Taylor would take many times as
-/// long or has no series.
+/// long.
 ///
 /// # Errors
 /// [`NoEstimate`] if one of the two runs did not come to its end.

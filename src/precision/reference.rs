@@ -121,7 +121,6 @@ impl Pair {
         let taylor = variation(problem, Method::Taylor, TIGHTEST);
         let taylor = attempt(&taylor, Some(limit), progress)?;
         let alone = match &taylor {
-            Attempt::NoSeries(why) => Some(why.clone()),
             Attempt::Interrupted => return Ok(None),
             Attempt::GivenUp(_) => Some(format!(
                 "taylor did not come to its end in {} s",

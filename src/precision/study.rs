@@ -51,11 +51,6 @@ pub enum Verdict {
         /// How long it took until then, s.
         seconds: f64,
     },
-    /// It is the Taylor method, and the equations have no series.
-    NoSeries {
-        /// In which mode, and why.
-        why: String,
-    },
     /// The study was interrupted before it was there.
     Interrupted,
 }
@@ -204,7 +199,6 @@ fn measure(
             return Ok(Verdict::GivenUp { seconds });
         }
         Attempt::Interrupted => return Ok(Verdict::Interrupted),
-        Attempt::NoSeries(why) => return Ok(Verdict::NoSeries { why }),
     };
     if let Some(failure) = run.failure {
         let (at, reason) = (failure.at.t, failure.reason);

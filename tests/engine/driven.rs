@@ -323,6 +323,35 @@ fn a_follower_leaves_its_cam_when_its_force_vanishes() {
     }
 }
 
+/// A limit on the speed of either sign that the cam gives: not smooth, so that it has no series, but what it is made of has.
+#[test]
+fn a_limit_that_is_not_smooth_is_reached_in_time() {
+    let (c, most) = (0.01, 1.6);
+    let rate = |t: f64| c * (20.0 + 10.0 * t) * (20.0 * t + 5.0 * t * t).cos();
+    let expected = first_fall(|t| most - rate(t).abs(), 1e-5);
+    for method in METHODS {
+        let mut cam = problem("cam", &[("c", c), ("most", most)]);
+        cam.choose(&[("form", "none")]).unwrap();
+        // What falls for twenty seconds does not know of the cam.
+        for (what, value) in [("phi.rate", 20.0), ("z", 2e3)] {
+            cam.set_initial(what, value).unwrap();
+        }
+        cam.set_parameter("k", 0.0).unwrap();
+        cam.set_input("spin", Function::constant(10.0)).unwrap();
+        cam.set_tolerance(1e-11);
+        cam.method = method;
+        cam.end.time = 20.0;
+        let run = run(&cam);
+        let [state] = &run.reached.limit_states[..] else {
+            panic!("{method:?}: {:?}", run.reached)
+        };
+        assert!(
+            (state.t - expected).abs() < 1e-12,
+            "{method:?}: {state:?} and {expected}"
+        );
+    }
+}
+
 /// A follower that is tied to the cam: nothing is free and nothing happens, and extremes and energies follow its crests all the same.
 #[test]
 fn a_follower_that_is_tied_to_its_cam_is_followed() {

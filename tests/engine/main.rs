@@ -17,6 +17,7 @@ mod doubts;
 mod driven;
 mod equilibrium;
 mod extreme_damping;
+mod functions;
 mod grazing;
 mod grips;
 mod hills;

@@ -1,7 +1,7 @@
 //! Nothing inadmissible runs: a program's problem is held against the same bounds as a scene.
 
 use crate::common::*;
-use dalembert::hybrid::{Ensemble, Invalid, Member, Method, Problem, Reason, Simulator, simulate};
+use dalembert::hybrid::{Ensemble, Invalid, Member, Problem, Reason, Simulator, simulate};
 use dalembert::record::Silent;
 
 /// The reason for which a problem is refused, by every way to run it.
@@ -165,19 +165,4 @@ fn a_slip_against_its_direction_is_refused_and_not_stopped() {
     );
     oscillator.set_initial("slip", -1.0).unwrap();
     run(&oscillator);
-}
-
-#[test]
-fn the_taylor_method_is_refused_where_there_is_no_series() {
-    let mut slider = problem("torsion_slider", &[]);
-    slider.set_initial("x", 0.5).unwrap();
-    slider.method = Method::Taylor;
-    let reason = refused(&slider);
-    let words = "method `taylor`: the equations of mode `slides` have no Taylor series (`atan2` has no Taylor recurrence)";
-    assert!(reason.to_string().starts_with(words), "{reason}");
-    for method in [Method::Auto, Method::Radau] {
-        slider.method = method;
-        let used = run(&slider).solver.method;
-        assert!(!used.contains("Taylor"), "{used}");
-    }
 }

@@ -124,7 +124,6 @@ pub(super) fn outcome(verdict: &Verdict) -> String {
             format!("stopped early at t = {} s: {reason}", rounded(*at, 6))
         }
         Verdict::GivenUp { .. } => format!("given up: takes {GIVEN_UP} times as long as radau"),
-        Verdict::NoSeries { why } => why.clone(),
         Verdict::Interrupted => "interrupted".into(),
     }
 }
@@ -160,7 +159,6 @@ fn cells(verdict: &Verdict, bound: Bound, units: &Units) -> [String; 9] {
         Verdict::GivenUp { seconds } => {
             return only("given up", format!("> {}", duration(*seconds)));
         }
-        Verdict::NoSeries { .. } => return only("no series", String::new()),
         Verdict::Interrupted => return only("interrupted", String::new()),
     };
     let events = &found.error.events;

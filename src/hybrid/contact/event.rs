@@ -141,9 +141,9 @@ impl<'p> Simulation<'p> {
     /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding.
     fn resolution(&self, contacts: &Contacts, k: usize, standing: &Standing) -> Resolution {
         let is_explicit = self.made_by == MadeBy::Taylor;
-        let has_series = self.problem.method == Method::Radau && contacts.kernel.is_analytic();
+        let may_expand = self.problem.method == Method::Radau;
         if self.signs.unseen() {
-            return match has_series && !is_explicit {
+            return match may_expand && !is_explicit {
                 true => Resolution::BySeries,
                 false => Resolution::Lost,
             };
@@ -170,7 +170,7 @@ impl<'p> Simulation<'p> {
         let is_low = height <= told;
         match is_explicit {
             true if places.restitution(k) == 0.0 && height <= rounding => Resolution::Lost,
-            _ if has_series && (is_low || blurs) => Resolution::BySeries,
+            _ if may_expand && (is_low || blurs) => Resolution::BySeries,
             false if is_low => Resolution::Lost,
             _ => Resolution::Seen,
         }

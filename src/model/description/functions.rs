@@ -47,7 +47,7 @@ impl Reader<'_> {
         guards: &[Guard],
         counts: Counts,
     ) -> Read<ModeKernel<F>> {
-        let series = |key: &str| at.get(key, |at| at.option(|at| self.series(at, self.functions)));
+        let series = |key: &str| at.get(key, |at| self.series(at, self.functions));
         let lanes = match at.get("goes_in_lanes", truth)? {
             true => self.lanes,
             false => &[],
@@ -64,12 +64,7 @@ impl Reader<'_> {
                 })?,
             })
         });
-        // Coordinates, requirements and margins, reactions and outputs.
-        let dimensions = &self.dimensions;
-        let reactions = dimensions.coordinates + dimensions.motions.len();
-        let most = dimensions.coordinates + counts.required + reactions + counts.outputs;
-        let beside = at.get("beside_guards", |at| at.index(most + 1))?;
-        let rows = guards.len() + beside;
+        let rows = guards.len() + at.get("beside_guards", count)?;
         Ok(ModeKernel {
             size,
             dimensions: self.dimensions.clone(),

@@ -253,7 +253,6 @@ impl Reader<'_> {
                     at.option(|at| self.contacts(at, guards.len(), kernel()?))
                 })?
             },
-            without_series: at.get("without_series", |at| at.option(text))?,
             system: at.get("system", |at| {
                 self.tape(at, free.len() * free.len() + free.len())
             })?,
