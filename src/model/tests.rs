@@ -150,6 +150,7 @@ fn every_index_is_checked() {
         "operations",
         "lead",
         "row",
+        "beside_guards",
         "convolutions",
         "angles",
     ];
