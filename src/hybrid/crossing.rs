@@ -4,7 +4,7 @@ use super::equations::Equations;
 use super::failure::Stoppable;
 use super::guards::{self, Conditions};
 use super::locate::{Landing, is_rounding, land, land_later};
-use super::plan::Watched;
+use super::plan::{Watched, is_impact};
 use super::roots::{
     Crossing, Isolation, Kind, Search, Watch, at_most_one, earliest, first_of_several,
 };
@@ -33,6 +33,8 @@ pub(super) struct Signs {
     below: Vec<usize>,
     /// Whether the event of the step is that of a guard that was never seen to be positive.
     pub(super) unseen: bool,
+    /// Whether that event is of a gap whose series alone told when.
+    by_series: bool,
     /// Those that turned within rounding in the step, and where, local time; they have not fallen.
     touched: Vec<(usize, f64)>,
 }
@@ -44,7 +46,8 @@ impl Persist for Signs {
         memory.list(&mut self.away, f64::default)?;
         self.waits.persist(memory)?;
         memory.list(&mut self.below, usize::default)?;
-        self.unseen.persist(memory)
+        self.unseen.persist(memory)?;
+        self.by_series.persist(memory)
     }
 }
 
@@ -99,6 +102,12 @@ impl Signs {
     /// the errors of the step.
     pub fn unseen(&self) -> bool {
         self.unseen
+    }
+
+    /// Whether the event of the last step is that of a gap whose series alone told when: of how far it was open its values have
+    /// nothing but rounding.
+    pub fn by_series(&self) -> bool {
+        self.by_series
     }
 
     /// Those that turned within rounding in the last step, and where, local time.
@@ -167,7 +176,7 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
 ) -> Stoppable<Cut> {
     let start = method.start().t;
     signs.search_from(start);
-    signs.unseen = false;
+    (signs.unseen, signs.by_series) = (false, false);
     signs.touched.clear();
     if signs.waits {
         wake(method, equations, (mode, watched), signs);
@@ -271,7 +280,8 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         // is known from its series alone.
         let from_zero = watches[first] == Watch::Dormant && start == 0.0;
         let mut crossing = crossing;
-        if M::EXPLICIT && from_zero && mode.contacts.is_some() && crossing.kind == Kind::Crossing {
+        let is_gap = mode.contacts.is_some() || is_impact(guard.0) && !guard.0.is_exact();
+        if M::EXPLICIT && from_zero && is_gap && crossing.kind == Kind::Crossing {
             let found = &mut found[first];
             let (start_of, dense) = (from[first], method.dense().expect("a step was made"));
             let window = (start_of, to);
@@ -281,9 +291,24 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                 let t = of_series.outside;
                 let (q, v, a) = dense.at(t);
                 let end = State { t, q, v, a };
-                if is_rounding(equations, conditions, guard, (method.start(), &end)) {
+                let step = (method.start(), &end);
+                let is_told = |equations: &mut Equations<F>, conditions: &mut Conditions| {
+                    // Of several that close side by side the values tell the order.
+                    let mut others = watched.iter().enumerate().filter(|(i, w)| {
+                        let other = &mode.guards[w.guard];
+                        *i != first && is_impact(other) && !other.is_exact()
+                    });
+                    mode.contacts.is_some()
+                        || !others.any(|(_, w)| {
+                            let other = (&mode.guards[w.guard], *w);
+                            is_rounding(equations, conditions, other, step)
+                        })
+                };
+                if is_rounding(equations, conditions, guard, step) && is_told(equations, conditions)
+                {
                     method.step_exactly(equations, t - start)?;
                     landed.clone_from(method.state());
+                    signs.by_series = true;
                     return Ok(Cut::Event {
                         guard: index,
                         beyond: 0.0,

@@ -226,7 +226,11 @@ impl<'p> Simulation<'p> {
                 v: &v,
                 a: &zero,
             };
-            let value = kernel.guard(&self.context, &guard.kernel, at);
+            let is_closed = self.at_zero.iter().any(|zero| zero.guard == watched.guard);
+            let value = match is_closed {
+                true => 0.0,
+                false => kernel.guard(&self.context, &guard.kernel, at),
+            };
             let rises = !linear.rate && linear.factor * v[linear.index] > 0.0;
             if guard.transitions.iter().any(|t| t.conditional)
                 || !(value > 0.0 || value == 0.0 && rises)
@@ -235,6 +239,7 @@ impl<'p> Simulation<'p> {
             }
             self.signs.remember(Watch::of(value), 0.0);
         }
+        self.at_zero.clear();
         self.signs.start();
         if needs_accelerations || self.has_sample_left() {
             let system = kernel.system(&self.context, &q, &v);

@@ -2,7 +2,7 @@
 
 use super::accumulation::Signature;
 use super::failure::{Reason, Stoppable, Taken};
-use super::simulation::Simulation;
+use super::simulation::{AtZero, Simulation};
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
 use crate::model::{Impulse, Transition};
@@ -45,12 +45,25 @@ impl<'p> Simulation<'p> {
         (guard, decided): (usize, Option<usize>),
     ) -> Stoppable<()> {
         let t = self.chosen(kernel, (guard, decided))?;
-        let transition = &self.mode().guards[guard].transitions[t];
+        let (mode, fired) = (self.here.mode, &self.mode().guards[guard]);
+        let transition = &fired.transitions[t];
         let said = (self.problem.record.event_states)
             .then(|| self.impulses(kernel, transition))
             .flatten();
         let taken = (transition.name, transition.impact);
         self.commit_with(taken, transition.target, said)?;
+        if mode != self.here.mode {
+            self.at_zero.clear();
+        }
+        // A gap that an impact leaves closed: its coordinates alone would tell its next hop by their rounding.
+        if transition.impact && mode == self.here.mode && !fired.is_exact() {
+            self.set_context();
+            let closed = self.closed_gap(fired).map(|_| AtZero {
+                guard,
+                vanishing: 1,
+            });
+            self.at_zero.extend(closed);
+        }
         self.remember(guard, t)
     }
 

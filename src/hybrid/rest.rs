@@ -9,6 +9,7 @@ use super::accumulation::Limit;
 use super::failure::{Reason, Stoppable};
 use super::instant::Instant;
 use super::plan::is_impact;
+use super::problem::Method;
 use super::simulation::{Simulation, Violation};
 use super::start::ROUNDING;
 use super::unrest::{Restless, Unfit};
@@ -58,10 +59,19 @@ impl<'p> Simulation<'p> {
     /// The same where hops at a stop that is not at zero have become lower than the rounding of its gap, which keeps them
     /// from becoming lower still: the limit that was told best before. (A hop begins at the stop and ends one rounding
     /// beyond it, which makes up for what a low impact takes.)
+    ///
+    /// By a series a hop has no rounding of where it began; so the implicit method leaves low ones to it, unless the motion is stiff.
     fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
-        let height = self.lowest_hop()?;
+        let height = self.lowest_hop();
+        let is_told = height.is_none_or(|height| height >= TOLD);
+        let is_implicit = self.problem.method == Method::Radau;
+        self.accumulation.set_needs_series(is_implicit && !is_told);
+        if self.signs.by_series() {
+            return None;
+        }
+        let height = height?;
         // What is told of lower hops is worse than what higher ones have told.
-        if height >= TOLD || self.accumulation.predicted().is_none() {
+        if is_told || self.accumulation.predicted().is_none() {
             self.accumulation.predict();
         }
         if height > ORDERS as f64 || !self.plan.rests(self.here.mode) {
@@ -79,10 +89,7 @@ impl<'p> Simulation<'p> {
     /// high that rounding does not tell its duration from that of another, to half of all digits. A hop of the duration T that
     /// ends with the rate u is about |u| T/4 high.
     fn lowest_hop(&self) -> Option<f64> {
-        // A coordinate that is zero has no rounding.
-        let has_rounding =
-            |guard: &&Guard| !matches!(guard.shape, GuardShape::Linear { offset: false, .. });
-        let guards = self.mode().guards.iter().filter(has_rounding);
+        let guards = self.mode().guards.iter().filter(|guard| !guard.is_exact());
         let mut impacts = guards.filter(|guard| is_impact(guard)).peekable();
         impacts.peek()?;
         let duration = self.accumulation.last_hop()?;
@@ -97,7 +104,7 @@ impl<'p> Simulation<'p> {
 
     /// The rate of the gap that a guard watches, and the rounding of the gap; none where the guard is not zero at the present
     /// state, or where it is no gap but a rate or a force.
-    fn closed_gap(&self, guard: &Guard) -> Option<(f64, f64)> {
+    pub(super) fn closed_gap(&self, guard: &Guard) -> Option<(f64, f64)> {
         let mode = self.mode();
         with_kernel!(&mode.kernels, k => {
             let [q, v, a] = self.here.free(k.size(), &mode.free);
@@ -106,7 +113,7 @@ impl<'p> Simulation<'p> {
             match guard.shape {
                 GuardShape::Linear { index, rate: false, .. } => {
                     let rounding = f64::EPSILON * q[index].abs();
-                    (value == 0.0).then_some((v[index], rounding))
+                    (value.abs() <= ROUNDING * q[index].abs()).then_some((v[index], rounding))
                 }
                 GuardShape::General { accelerations: false, .. } => {
                     let magnitude = k.guard_magnitude(&self.context, &guard.kernel, at);
@@ -212,6 +219,7 @@ impl<'p> Simulation<'p> {
             let (place, value) = held.index(n);
             self.next[place] = value;
         }
+        self.at_zero.clear();
         self.commit("rest", false, target)
     }
 

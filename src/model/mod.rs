@@ -376,6 +376,11 @@ impl Guard {
         matches!(self.shape, GuardShape::General { .. })
     }
 
+    /// Whether it is a coordinate or a rate itself, which has no rounding near zero.
+    pub fn is_exact(&self) -> bool {
+        matches!(self.shape, GuardShape::Linear { offset: false, .. })
+    }
+
     /// Whether its fall leads to the same state in other coordinates, which is no event.
     pub fn is_chart(&self) -> bool {
         self.transitions
