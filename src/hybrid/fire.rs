@@ -1,7 +1,9 @@
 //! Transitions: which one is taken, what it does to state and energy, and what is remembered.
 
 use super::accumulation::Signature;
+use super::advance::MadeBy;
 use super::failure::{Reason, Stoppable, Taken};
+use super::problem::Method;
 use super::simulation::{AtZero, Simulation};
 use crate::kernel::with_kernel;
 use crate::kernel::{Free, ModeKernel};
@@ -129,7 +131,10 @@ impl<'p> Simulation<'p> {
         let mode = self.here.mode;
         self.visited.clear();
         self.fire_by(kernel, guard)?;
-        match self.here.mode == mode && !self.is_over() {
+        // The other method tells lower hops.
+        let changes = self.problem.method == Method::Radau
+            && self.is_explicit() != (self.made_by == MadeBy::Taylor);
+        match self.here.mode == mode && !self.is_over() && !changes {
             true => {
                 self.set_context();
                 // From what the reset has written: the copy of it waits for its way to memory.

@@ -42,6 +42,15 @@ impl Held {
 /// Height of a hop, in roundings of its gap, whose duration is told to a quarter of all digits: ε^(−1/4).
 const TOLD: f64 = (1u64 << 13) as f64;
 
+/// A hop at a stop.
+#[derive(Debug, Clone, Copy)]
+struct Hop {
+    /// Its height, in roundings of its gap.
+    height: f64,
+    /// Whether rounding in a step's polynomials makes more of the time at which it ends than the tolerance admits.
+    blurs: bool,
+}
+
 impl<'p> Simulation<'p> {
     /// The mode and the limit of an accumulation that the last events make certain, where a rest fits it.
     pub fn rest(&mut self) -> Option<(usize, Limit)> {
@@ -60,18 +69,20 @@ impl<'p> Simulation<'p> {
     /// from becoming lower still: the limit that was told best before. (A hop begins at the stop and ends one rounding
     /// beyond it, which makes up for what a low impact takes.)
     ///
-    /// By a series a hop has no rounding of where it began; so the implicit method leaves low ones to it, unless the motion is stiff.
+    /// By a series a hop has no rounding of where it began; so the implicit method leaves to it what it tells less well than the tolerance
+    /// asks for, unless the motion is stiff.
     fn rest_below_rounding(&mut self) -> Option<(usize, Limit)> {
-        let height = self.lowest_hop();
-        let is_told = height.is_none_or(|height| height >= TOLD);
+        let hop = self.lowest_hop();
         let is_implicit = self.problem.method == Method::Radau;
-        self.accumulation.set_needs_series(is_implicit && !is_told);
+        (self.accumulation).set_needs_series(is_implicit && hop.is_some_and(|hop| hop.blurs));
         if self.signs.by_series() {
             return None;
         }
-        let height = height?;
+        // Where rounding does not tell it from another, to half of all digits, it is none to rest after.
+        let height = hop.map(|hop| hop.height)?;
+        let height = (height * f64::EPSILON.sqrt() <= 1.0).then_some(height)?;
         // What is told of lower hops is worse than what higher ones have told.
-        if is_told || self.accumulation.predicted().is_none() {
+        if height >= TOLD || self.accumulation.predicted().is_none() {
             self.accumulation.predict();
         }
         if height > ORDERS as f64 || !self.plan.rests(self.here.mode) {
@@ -85,21 +96,22 @@ impl<'p> Simulation<'p> {
         Some((target, limit))
     }
 
-    /// The height of the last hop at a stop, in roundings of its gap there; none where there is no such hop, or where it is so
-    /// high that rounding does not tell its duration from that of another, to half of all digits. A hop of the duration T that
-    /// ends with the rate u is about |u| T/4 high.
-    fn lowest_hop(&self) -> Option<f64> {
+    /// The last hop at a stop; none where there is no such hop. A hop of the duration T that ends with the rate u is about |u| T/4 high.
+    fn lowest_hop(&self) -> Option<Hop> {
         let guards = self.mode().guards.iter().filter(|guard| !guard.is_exact());
         let mut impacts = guards.filter(|guard| is_impact(guard)).peekable();
         impacts.peek()?;
         let duration = self.accumulation.last_hop()?;
-        let heights = impacts.filter_map(|guard| {
+        let least = self.problem.accuracy.relative * self.here.now.seconds();
+        let hops = impacts.filter_map(|guard| {
             let (rate, rounding) = self.closed_gap(guard)?;
-            let height = 0.25 * rate.abs() * duration / rounding;
-            let is_there = rounding > 0.0 && height * f64::EPSILON.sqrt() <= 1.0;
-            is_there.then_some(height)
+            (rounding > 0.0).then(|| Hop {
+                height: 0.25 * rate.abs() * duration / rounding,
+                // By Horner's rule (Higham 2002, §5.1).
+                blurs: ORDERS as f64 * rounding > least * rate.abs(),
+            })
         });
-        heights.min_by(f64::total_cmp)
+        hops.min_by(|a, b| a.height.total_cmp(&b.height))
     }
 
     /// The rate of the gap that a guard watches, and the rounding of the gap; none where the guard is not zero at the present
