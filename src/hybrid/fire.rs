@@ -54,19 +54,29 @@ impl<'p> Simulation<'p> {
             .flatten();
         let taken = (transition.name, transition.impact);
         self.commit_with(taken, transition.target, said)?;
-        if mode != self.here.mode {
-            self.at_zero.clear();
-        }
-        // A gap that an impact leaves closed: its coordinates alone would tell its next hop by their rounding.
-        if transition.impact && mode == self.here.mode && !fired.is_exact() {
-            self.set_context();
-            let closed = self.closed_gap(fired).map(|_| AtZero {
+        self.note_closed(mode, (guard, taken.1));
+        self.remember(guard, t)
+    }
+
+    /// Notes which gaps a transition of a guard of a mode, an impact or not, has left closed: their coordinates alone would tell the next
+    /// hop by their rounding.
+    fn note_closed(&mut self, mode: usize, (guard, impact): (usize, bool)) {
+        let guards = &self.modes[mode].guards;
+        let mut closed = std::mem::take(&mut self.at_zero);
+        let is_new = impact && !guards[guard].is_exact();
+        if mode != self.here.mode || closed.is_empty() && !is_new {
+            closed.clear();
+        } else {
+            closed.retain(|zero| zero.guard != guard);
+            closed.extend(is_new.then_some(AtZero {
                 guard,
                 vanishing: 1,
-            });
-            self.at_zero.extend(closed);
+            }));
+            // A reset may have moved a stop.
+            self.set_context();
+            closed.retain(|zero| self.closed_gap(&guards[zero.guard]).is_some());
         }
-        self.remember(guard, t)
+        self.at_zero = closed;
     }
 
     /// The impulses of a transition, if it says them.

@@ -3,6 +3,7 @@
 use super::super::accumulation::{Accumulation, SHORTEST_PATTERN, Signature};
 use super::super::guards::slope;
 use super::super::instant::Instant;
+use super::super::plan::is_impact;
 use super::super::problem::Accuracy;
 use super::super::roots::Watch;
 use super::super::simulation::Simulation;
@@ -38,6 +39,8 @@ pub(super) struct CoordinateGuard<const W: usize> {
     pub factor: (f64, Option<usize>),
     /// Whether something is added.
     pub offset: bool,
+    /// Whether it is a stop that is not at zero: of a hop from there the engine alone tells the end, by its series.
+    pub is_stop: bool,
     pub linear: LaneGuard<W>,
     /// Its transition, if lanes can take it side by side; the name of that, and what makes its events the same
     /// ([`Signature::key`]).
@@ -171,8 +174,9 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 starts_at_zero: LaneMask::NONE,
             };
             let own = &mode.guards[watched.guard];
+            let is_stop = is_impact(own) && !own.is_exact();
             let transition =
-                transition_in_lanes(like, watched.guard).filter(|_| general.is_empty());
+                transition_in_lanes(like, watched.guard).filter(|_| general.is_empty() && !is_stop);
             let signature = Signature {
                 guard: watched.guard,
                 transition: transition.unwrap_or_default(),
@@ -184,6 +188,7 @@ impl<'p, const F: usize, const W: usize> Group<'p, F, W> {
                 of: (index, rate),
                 factor: (factor, discrete),
                 offset,
+                is_stop,
                 linear,
                 transition,
                 name: transition.map_or("", |t| own.transitions[t].name),

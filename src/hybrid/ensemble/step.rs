@@ -201,6 +201,9 @@ impl<const F: usize, const W: usize> Group<'_, F, W> {
             let (kernel, context) = (self.kernel, &self.context);
             let own = &self.mode.guards[guard.guard].kernel;
             let value = kernel.lane_guard(self.level, context, own, at);
+            if guard.is_stop {
+                unclear = unclear | guard.falls & guard.linear.starts_at_zero;
+            }
             // Beyond the rounding of the polynomial there is no such state.
             let crossed = lane_crossed(self.level, [&value, tau, h]);
             unclear = unclear | guard.falls & !crossed;
