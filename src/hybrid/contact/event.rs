@@ -18,6 +18,8 @@ use crate::numerics::{Bounded, ORDERS, Vector};
 /// How the end of a hop is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Resolution {
+    /// By a gap that is a coordinate, which has no rounding near zero: other gaps may be told less well.
+    Exact,
     /// By its gap.
     Seen,
     /// By its gap; when those that follow close the implicit method tells less well than the tolerance asks for, or not at all, and
@@ -64,8 +66,13 @@ impl<'p> Simulation<'p> {
             true => self.resolution(contacts, k, &standing),
             false => Resolution::Seen,
         };
-        self.accumulation
-            .set_needs_series(hop == Resolution::BySeries);
+        // Where a series does not tell a hop the implicit method would tell less.
+        let needs_series = match hop {
+            Resolution::BySeries => true,
+            Resolution::Lost | Resolution::Exact => self.accumulation.needs_series(),
+            Resolution::Seen => false,
+        };
+        self.accumulation.set_needs_series(needs_series);
         let unresolved = hop == Resolution::Lost;
         if unresolved && self.rest_unresolved(contacts)? {
             return Ok(());
@@ -172,6 +179,7 @@ impl<'p> Simulation<'p> {
             true if places.restitution(k) == 0.0 && height <= rounding => Resolution::Lost,
             _ if may_expand && (is_low || blurs) => Resolution::BySeries,
             false if is_low => Resolution::Lost,
+            _ if told == 0.0 => Resolution::Exact,
             _ => Resolution::Seen,
         }
     }
