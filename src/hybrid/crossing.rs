@@ -280,7 +280,8 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
         // is known from its series alone.
         let from_zero = watches[first] == Watch::Dormant && start == 0.0;
         let mut crossing = crossing;
-        let is_gap = mode.contacts.is_some() || is_impact(guard.0) && !guard.0.is_exact();
+        let is_stop = is_impact(guard.0) && !guard.0.is_exact() && !watched[first].conditional;
+        let is_gap = mode.contacts.is_some() || is_stop;
         if M::EXPLICIT && from_zero && is_gap && crossing.kind == Kind::Crossing {
             let found = &mut found[first];
             let (start_of, dense) = (from[first], method.dense().expect("a step was made"));
