@@ -1,5 +1,6 @@
 //! Maps of impacts of several contacts, against exact references and closed forms.
 
+use super::multipliers::sine;
 use crate::common::*;
 use dalembert::hybrid::{ImpactLaw, ImpactOrder, Problem, simulate};
 use dalembert::record::{Run, Silent};
@@ -421,4 +422,33 @@ fn an_impact_reaches_what_lies_behind_a_contact_that_it_opens() {
     }
     let energy = run.energy.as_ref().unwrap();
     assert!(energy.imbalance().abs() < 1e-15, "{energy:?}");
+}
+
+/// A load strikes the end of its tray: neither does the tray push nor does the load leave it, and both are zero but for what elimination
+/// leaves. No outcome was found where bounds did not see that (the second scene).
+#[test]
+fn an_impact_beside_which_a_contact_does_nothing_has_an_outcome() {
+    let scenes = [
+        (0.04, 0.06, 0.55, 0.11, "38.98 sin(5.789 t+0.12)"),
+        (0.0, 0.09, 0.27, 0.15, "33.228 sin(4.672 t+0.15)"),
+        (0.3, 0.02, 0.4, -0.6, "45 sin(7 t+1)"),
+        (0.1, 0.05, 0.7, 0.3, "50 sin(3 t+2)"),
+    ];
+    for (mu, nu, e, b, push) in scenes {
+        with_each_method(|| {
+            let mut cart = problem("loaded_cart", &[("mu", mu), ("nu", nu), ("e", e)]);
+            cart.set_initial("b", b).unwrap();
+            cart.set_input("push", sine(push)).unwrap();
+            cart.set_tolerance(1e-12);
+            cart.end.time = 2.5;
+            let run = run(&cart);
+            assert!(run.events.len() > 10, "{push}: {} events", run.events.len());
+            let energy = run.energy.as_ref().expect("a ledger");
+            let turnover = energy.initial.abs() + energy.input_work.abs();
+            assert!(
+                energy.imbalance().abs() < 1e-9 * turnover,
+                "{push}: {energy:?}"
+            );
+        });
+    }
 }

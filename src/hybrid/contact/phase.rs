@@ -470,7 +470,15 @@ fn solve(matrix: &[f64], right: &[About]) -> Option<Vec<About>> {
     let n = right.len();
     let ones = Dynamic(n).repeat(1.0);
     let lu = Lu::<f64, Dynamic>::factorize(|i, j| matrix[i * n + j], &ones).ok()?;
-    let x = lu.solve(|i| right[i].value);
+    let first = lu.solve(|i| right[i].value);
+    let mut x: Vec<f64> = (0..n).map(|i| first[i]).collect();
+    // Elimination alone leaves in a row of few entries what others have filled it with; one step of refinement takes that away, so that
+    // rows are off by their own terms alone (Skeel 1980; Higham 2002, §12.2).
+    let left: Vec<f64> = (0..n)
+        .map(|i| right[i].value - dot(&matrix[i * n..(i + 1) * n], &x))
+        .collect();
+    let more = lu.solve(|i| left[i]);
+    (0..n).for_each(|i| x[i] += more[i]);
     let factor = roundings(n) * ROUNDOFF;
     let sizes: Vec<f64> = (0..n)
         .map(|i| {
