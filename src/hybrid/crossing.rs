@@ -293,19 +293,9 @@ pub(super) fn cut<'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
                 let (q, v, a) = dense.at(t);
                 let end = State { t, q, v, a };
                 let step = (method.start(), &end);
-                let is_told = |equations: &mut Equations<F>, conditions: &mut Conditions| {
-                    // Of several that close side by side the values tell the order.
-                    let mut others = watched.iter().enumerate().filter(|(i, w)| {
-                        let other = &mode.guards[w.guard];
-                        *i != first && is_impact(other) && !other.is_exact()
-                    });
-                    mode.contacts.is_some()
-                        || !others.any(|(_, w)| {
-                            let other = (&mode.guards[w.guard], *w);
-                            is_rounding(equations, conditions, other, step)
-                        })
-                };
-                if is_rounding(equations, conditions, guard, step) && is_told(equations, conditions)
+                if is_rounding(equations, conditions, guard, step)
+                    && (mode.contacts.is_some()
+                        || !closes_beside(equations, conditions, (mode, watched, first), step))
                 {
                     method.step_exactly(equations, t - start)?;
                     landed.clone_from(method.state());
@@ -401,6 +391,21 @@ fn search_from<F: Size>(
     }
     let what = (watch, isolation, found);
     search(equations, conditions, dense, guard, (from, to), what);
+}
+
+/// Whether another stop than the first that closes in a step is closed at its end, as far as rounding tells: the values tell their order.
+#[cold]
+fn closes_beside<F: Size>(
+    equations: &mut Equations<F>,
+    conditions: &mut Conditions,
+    (mode, watched, first): (&Mode, &[Watched], usize),
+    step: (&State<F>, &State<F>),
+) -> bool {
+    watched.iter().enumerate().any(|(i, watched)| {
+        let other = &mode.guards[watched.guard];
+        let is_stop = i != first && is_impact(other) && !other.is_exact();
+        is_stop && is_rounding(equations, conditions, (other, *watched), step)
+    })
 }
 
 /// Time of the first events of a step up to `to`, where places near the events of several guards were found: where
