@@ -10,7 +10,7 @@ use super::roots::{
 };
 use super::search::search;
 use super::touch::{below, fallen, turns_within_rounding};
-use crate::integrate::{LastStep, Motion, OneStep, State};
+use crate::integrate::{LastStep, Motion, OneStep, Path, State};
 use crate::kernel::Free;
 use crate::model::{Guard, GuardShape, Mode};
 use crate::numerics::Size;

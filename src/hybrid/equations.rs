@@ -370,7 +370,7 @@ impl<F: Size> System<F> for Equations<'_, F> {
         v: &F::Vector,
         a: &mut F::Vector,
     ) -> Result<(), Singular> {
-        self.at(t);
+        self.at_stage(t);
         *a = self.acceleration_here(q, v)?;
         Ok(())
     }

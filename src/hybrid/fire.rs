@@ -193,7 +193,7 @@ impl<'p> Simulation<'p> {
     }
 
     /// The same of a transition by its name and whether it is an impact, with the impulses that it says, if it does.
-    fn commit_with(
+    pub fn commit_with(
         &mut self,
         (name, impact): (&'static str, bool),
         target: usize,

@@ -216,17 +216,20 @@ impl Simulation<'_> {
             }
 
             let end = method.end();
-            let dense = method.dense().expect("a step was made");
-            let length = dense.length();
+            let length = method.dense().expect("a step was made").length();
 
             // 7. Observers.
             let has_work = <M as OneStep<F, Equations<F>>>::HAS_QUADRATURE
                 && kernel.size().get() > 0
                 && self.observers.ledger.is_some();
             let work = has_work.then(|| work(method, &mut equations, (&state, beyond)));
+            let path = match self.observers.look_within(&equations, end + beyond) {
+                true => method.path(&mut equations),
+                false => method.motion(),
+            };
             let cut = self.observers.step(Step {
                 equations: &mut equations,
-                motion: dense,
+                motion: path,
                 mode,
                 here: &mut self.here,
                 end,

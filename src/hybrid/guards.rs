@@ -2,7 +2,7 @@
 
 use super::equations::Equations;
 use super::plan::{Plan, Watched};
-use crate::integrate::{Motion, Size};
+use crate::integrate::{Path, Size};
 use crate::kernel::with_kernel;
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{Guard, GuardShape, Mode, Transition};
@@ -113,27 +113,27 @@ pub(super) fn value<F: Size>(
 #[inline(always)]
 pub(super) fn motion<F: Size>(
     equations: &mut Equations<F>,
-    dense: &dyn Motion<F>,
+    path: &dyn Path<F>,
     tau: f64,
     accelerations: bool,
 ) -> [F::Vector; 3] {
     equations.at(tau);
-    motion_at_stage(equations, dense, tau, accelerations)
+    motion_at_stage(equations, path, tau, accelerations)
 }
 
 /// The same, with the context set as far as the equations of motion need it.
 pub(super) fn motion_at_stage<F: Size>(
     equations: &mut Equations<F>,
-    dense: &dyn Motion<F>,
+    path: &dyn Path<F>,
     tau: f64,
     accelerations: bool,
 ) -> [F::Vector; 3] {
     if !accelerations {
-        let (q, v, a) = dense.at(tau);
+        let (q, v, a) = path.at(tau);
         equations.at_stage(tau);
         return [q, v, a];
     }
-    let (q, v) = dense.state_at(tau);
+    let (q, v) = path.state_at(tau);
     equations.at_stage(tau);
     let a = equations.acceleration_here(&q, &v);
     let a = a.unwrap_or_else(|_| equations.kernel.size().repeat(f64::NAN));

@@ -11,7 +11,7 @@ use super::plan::Watched;
 use super::problem::Observed;
 use super::roots::{Isolation, Kind, Search, Watch};
 use super::search::{Coefficients, search_function, search_polynomial};
-use crate::integrate::{Motion, OneStep, Series, State};
+use crate::integrate::{Motion, OneStep, Path, Series, State};
 use crate::kernel::{Context, Free, ModeKernel};
 use crate::model::{GuardShape, Mode, Requirement};
 use crate::numerics::Size;

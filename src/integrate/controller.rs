@@ -8,7 +8,7 @@ use crate::numerics::persist;
 /// Aim below the tolerance by this factor in h, so that few steps are rejected (RADAU5).
 const SAFETY: f64 = 0.9;
 /// A step is at most this many times longer than the last (RADAU5).
-const GROWTH: f64 = 8.0;
+pub(super) const GROWTH: f64 = 8.0;
 /// A step is at least this part of the last (RADAU5).
 const SHRINKAGE: f64 = 0.2;
 /// Errors below this part of the tolerance say little about the trend (RADAU5).

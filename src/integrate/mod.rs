@@ -12,7 +12,7 @@
 //! used, so that results have the same bits on every processor.
 //!
 //! Files: `tableau` (coefficients), `newton` (stage equations), `estimate` (local
-//! error), `controller` (step sizes), `first_step`, `dense`, `radau` (the step), `state`, `tolerances`,
+//! error), `controller` (step sizes), `first_step`, `dense`, `refined` (what is read off inside of a step), `radau` (the step), `state`, `tolerances`,
 //! `stages` (how many are the fastest), `logarithm` (cheap roots), `system` (the interface to the
 //! equations), `report` (counters and errors).
 
@@ -28,6 +28,7 @@ mod logarithm;
 mod newton;
 mod one_step;
 mod radau;
+mod refined;
 mod report;
 mod stages;
 mod state;
@@ -42,7 +43,7 @@ pub use crate::numerics::{
 };
 pub(crate) use crate::numerics::{LaneMask, Lanes};
 pub use dense::Dense;
-pub use one_step::{LastStep, Motion, OneStep, Retake};
+pub use one_step::{LastStep, Motion, OneStep, Path, Retake};
 pub use radau::Radau;
 pub use report::{Counters, StepError, StepReport};
 pub use stages::stages;

@@ -85,6 +85,12 @@ pub trait OneStep<F: Size, Y>: Retake<F, Y> {
     /// The motion within the last step.
     fn dense(&self) -> Option<&Self::Motion>;
 
+    /// The same as accurate as the ends of the step, where that can be had: for what is read off it.
+    ///
+    /// # Panics
+    /// If none was made.
+    fn path(&mut self, system: &mut Y) -> &dyn Path<F>;
+
     /// Whether [`Self::nodes`] are those of a quadrature that is more accurate than the dense output.
     const HAS_QUADRATURE: bool;
 
@@ -108,13 +114,10 @@ pub trait OneStep<F: Size, Y>: Retake<F, Y> {
     fn take_counters(&mut self) -> Counters;
 }
 
-/// The motion within a step: each coordinate is a polynomial.
-pub trait Motion<F: Size> {
+/// The motion within a step, as values.
+pub trait Path<F: Size> {
     /// Start of the step, s.
     fn start(&self) -> f64;
-
-    /// Length of the step that the polynomial was made for, s.
-    fn length(&self) -> f64;
 
     /// Coordinates, velocities and accelerations at time `t` of the step.
     fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector);
@@ -125,6 +128,12 @@ pub trait Motion<F: Size> {
         let (q, v, _) = self.at(t);
         (q, v)
     }
+}
+
+/// The motion within a step: each coordinate is a polynomial.
+pub trait Motion<F: Size>: Path<F> {
+    /// Length of the step that the polynomial was made for, s.
+    fn length(&self) -> f64;
 
     /// The motion as a Taylor series and the number of its orders that are known of everything, if
     /// that is what it is.
@@ -236,6 +245,10 @@ where
         self.dense()
     }
 
+    fn path(&mut self, system: &mut Y) -> &dyn Path<F> {
+        self.path(system)
+    }
+
     fn nodes(&self) -> impl Iterator<Item = Node<F>> {
         self.stages()
     }
@@ -324,6 +337,10 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
         self.dense()
     }
 
+    fn path(&mut self, _: &mut Y) -> &dyn Path<F> {
+        self.dense().expect("a step was made")
+    }
+
     fn nodes(&self) -> impl Iterator<Item = Node<F>> {
         std::iter::empty()
     }
@@ -333,17 +350,19 @@ impl<F: Size, Y: Analytic<F>> OneStep<F, Y> for Taylor<F> {
     }
 }
 
-impl<const S: usize, F: Size> Motion<F> for Dense<S, F> {
+impl<const S: usize, F: Size> Path<F> for Dense<S, F> {
     fn start(&self) -> f64 {
         self.start()
     }
 
-    fn length(&self) -> f64 {
-        self.length()
-    }
-
     fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector) {
         self.at(t)
+    }
+}
+
+impl<const S: usize, F: Size> Motion<F> for Dense<S, F> {
+    fn length(&self) -> f64 {
+        self.length()
     }
 
     fn coefficients(&self, rate: bool) -> usize {
@@ -362,13 +381,9 @@ impl<const S: usize, F: Size> Motion<F> for Dense<S, F> {
     }
 }
 
-impl<F: Size> Motion<F> for TaylorDense<F> {
+impl<F: Size> Path<F> for TaylorDense<F> {
     fn start(&self) -> f64 {
         self.start()
-    }
-
-    fn length(&self) -> f64 {
-        self.length()
     }
 
     fn at(&self, t: f64) -> (F::Vector, F::Vector, F::Vector) {
@@ -378,6 +393,12 @@ impl<F: Size> Motion<F> for TaylorDense<F> {
     #[inline]
     fn state_at(&self, t: f64) -> (F::Vector, F::Vector) {
         self.change_from_start(t - self.start())
+    }
+}
+
+impl<F: Size> Motion<F> for TaylorDense<F> {
+    fn length(&self) -> f64 {
+        self.length()
     }
 
     fn series(&self) -> Option<(&Series<F>, usize)> {

@@ -1,10 +1,12 @@
 //! The step: attempts, acceptance, restarts, and steps of exact length.
 
-use super::controller::{Controller, Pace};
+use super::controller::{Controller, GROWTH, Pace};
 use super::dense::Dense;
 use super::estimate::Estimate;
 use super::first_step;
 use super::newton::{Newton, Outcome, Stages};
+use super::one_step::Path;
+use super::refined::Refined;
 use super::report::{Counters, StepError, StepReport};
 use super::state::{Lost, Node, State, add, fit};
 use super::system::System;
@@ -51,6 +53,8 @@ pub struct Radau<const S: usize, F: Size> {
     stages: Stages<S, F>,
     /// Motion in the last step; `None` after a restart.
     dense: Kept<Dense<S, F>>,
+    /// Room for it as accurate as the ends.
+    refined: Refined<F>,
     /// Components that the last step did not resolve.
     unresolved: F::List<bool>,
     /// How much of the error of each coordinate counts.
@@ -62,7 +66,7 @@ pub struct Radau<const S: usize, F: Size> {
 
 persist!([const S: usize, F: Size] Radau<S, F> {
     controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, controlled, counters
-} but { control, uniform });
+} but { control, uniform, refined });
 
 impl Blank for Linearized {
     fn blank() -> Self {
@@ -95,6 +99,7 @@ where
             lost: Lost::nothing(size),
             stages: Stages::zeros(size),
             dense: Kept::nothing(Dense::zero(size)),
+            refined: Refined::nothing(size),
             unresolved: size.list(false),
             controlled: size.repeat(1.0),
             uniform: Series::zero(size),
@@ -188,6 +193,21 @@ where
     /// The motion within the last step; `None` after a restart.
     pub fn dense(&self) -> Option<&Dense<S, F>> {
         self.dense.get()
+    }
+
+    /// The same as accurate as the ends of the step, where the equations are not stiff; else the dense output.
+    ///
+    /// # Panics
+    /// If no step was made.
+    pub(super) fn path<Y: System<F>>(&mut self, system: &mut Y) -> &dyn Path<F> {
+        let dense = self.dense.get().expect("a step was made");
+        let (start, end) = (&self.start, &self.end);
+        let is_resolved = (0..start.size().get()).all(|i| !self.unresolved[i]);
+        let weights = self.control.weights(&start.q, &start.v, &self.controlled);
+        match is_resolved && self.refined.refine(system, [start, end], dense, &weights) {
+            true => &self.refined,
+            false => dense,
+        }
     }
 
     /// The stages of the last step, in the order of time; the last is its end. Meaningless after a
@@ -439,8 +459,8 @@ where
             // tolerances at which rounding counts: there the correction is kept small.
             _ if S <= 5 && system.is_linear() => self.stages.coast(origin, h),
             // One stage: the polynomial passes through the end points, its second derivative says
-            // nothing.
-            Some(dense) if S > 1 => {
+            // nothing. Nor does that of a step that was taken again and is much shorter, up to an event: far beyond it is rounding alone.
+            Some(dense) if S > 1 && h <= GROWTH * dense.h => {
                 let offset = origin.t - dense.t0;
                 for i in 0..S {
                     self.stages.a[i] = dense.acceleration(offset + tableau.c[i] * h);

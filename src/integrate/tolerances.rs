@@ -168,6 +168,18 @@ pub(super) struct Weights<F: Size> {
     pub v: F::Vector,
 }
 
+impl<F: Size> Weights<F> {
+    /// The norm of the difference of two states (q, v).
+    pub fn distance(&self, one: (F::Vector, F::Vector), other: (&F::Vector, &F::Vector)) -> f64 {
+        let mut most = 0.0_f64;
+        for i in 0..one.0.size().get() {
+            most = most.max((one.0[i] - other.0[i]).abs() * self.q[i]);
+            most = most.max((one.1[i] - other.1[i]).abs() * self.v[i]);
+        }
+        most
+    }
+}
+
 /// x^(1/n), n ≥ 2, by Newton's method, to a few roundings; x > 0, cheap unless x is tiny. The mathematical library's `pow` may
 /// differ in the last bit between processors; +, −, × and ÷ may not.
 pub(super) fn nth_root(x: f64, n: usize) -> f64 {

@@ -317,15 +317,14 @@ impl Geometry {
         Some((change, pushes))
     }
 
-    /// The impulses along some lines that change rates by this, as far as impulses along them do.
-    pub fn impulses(&self, lines: &[Line], change: &[f64]) -> Vec<(Line, f64)> {
+    /// What impulses along some lines make of a change of rates, and these impulses.
+    pub fn impulses(&self, lines: &[Line], change: &[f64]) -> (Vec<f64>, Vec<(Line, f64)>) {
         let lines = self.independent(lines);
         let amounts: Vec<f64> = (lines.iter())
             .map(|&line| dot(self.along(line), change))
             .collect();
-        let pushed = self.pushed(&lines, &amounts).unwrap_or_default();
-        let impulses = pushed.into_iter().skip(self.own.len());
-        lines.into_iter().zip(impulses).collect()
+        let (change, impulses) = self.least_push(&lines, &amounts).unwrap_or_default();
+        (change, lines.into_iter().zip(impulses).collect())
     }
 
     /// The least change, and behind it the pushes along the lines that make it.

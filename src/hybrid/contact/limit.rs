@@ -9,7 +9,7 @@ use crate::hybrid::failure::Stoppable;
 use crate::hybrid::instant::Instant;
 use crate::hybrid::simulation::Simulation;
 use crate::input::Side;
-use crate::model::Contacts;
+use crate::model::{Contacts, Impulse};
 use crate::numerics::Size;
 
 impl<'p> Simulation<'p> {
@@ -123,16 +123,23 @@ impl<'p> Simulation<'p> {
             vanishing: Vec::new(),
         };
         let now = std::mem::replace(&mut self.here.now, limit.at);
-        let after = self.settle_contacts(contacts, &mut standing)?;
-        // What touches beside those that hold it, in the limit where they rest already.
-        if after == before && limit.at.since(now) <= 0.0 {
+        let at_zero = self.at_zero.clone();
+        let settled = self.settle_contacts(contacts, &mut standing);
+        // What touches beside those that hold it, in the limit where they rest already; or what cannot go on: the run ends in the state
+        // that is known.
+        let goes_there = match &settled {
+            Ok(after) => *after != before || limit.at.since(now) > 0.0,
+            Err(_) => false,
+        };
+        if !goes_there {
             self.here.now = now;
+            self.at_zero = at_zero;
             self.set_context();
-            return Ok(false);
+            return settled.map(|_| false);
         }
         let lines = standing.lines_with(&near);
-        self.go_to((contacts, &standing, &lines), now, &limit)?;
-        self.commit("rest", false, self.here.mode)?;
+        let impulses = self.go_to((contacts, &standing, &lines), now, &limit)?;
+        self.commit_with(("rest", false), self.here.mode, Some(impulses))?;
         let signature = Signature {
             mode: self.here.shown,
             ..Signature::default()
@@ -143,26 +150,35 @@ impl<'p> Simulation<'p> {
     }
 
     /// Goes to a limit, from the last event or the one that is not resolved. Up to the limit the motion goes on as it does; all
-    /// impacts that are left happen there, at once: their impulses along `lines`, and the energy that they lose.
+    /// impacts that are left happen there, at once: their impulses along `lines`, which it gives, and the energy that they lose.
+    /// Rates change as these impulses change them: those of the limit, which are told by a series, would not keep momentum.
     fn go_to(
         &mut self,
         (contacts, standing, lines): (&'p Contacts, &Standing, &[Line]),
         before: Instant,
         limit: &Limit,
-    ) -> Stoppable<()> {
+    ) -> Stoppable<Vec<f64>> {
         let n = self.here.q.len();
         let work = self.go_on_to(&contacts.kernel, before, limit.at)?;
         let geometry = &standing.geometry;
         let change: Vec<f64> = (geometry.own.iter())
             .map(|&i| standing.v[i] - self.here.v[i])
             .collect();
-        let impulses = geometry.impulses(lines, &change);
+        let (changes, impulses) = geometry.impulses(lines, &change);
+        for (&i, change) in geometry.own.iter().zip(changes) {
+            self.next[n + i] = self.here.v[i] + change;
+        }
         for line in geometry.all() {
             let i = multiplier(contacts, line);
             let of_line = impulses.iter().find(|(known, _)| *known == line);
             self.next[n + i] = self.here.v[i] + of_line.map_or(0.0, |(_, impulse)| *impulse);
         }
+        let of_limit = |impulse: &Impulse| {
+            let added = |i: usize| self.next[n + i] - self.here.v[i];
+            impulse.multiplier.map_or(0.0, added)
+        };
+        let told = self.problem.variant().impulses.iter().map(of_limit).collect();
         self.take_limit(limit, work);
-        Ok(())
+        Ok(told)
     }
 }

@@ -3,7 +3,7 @@
 use super::extremes::Extremes;
 use super::interpolants::{Interpolants, Polynomial};
 use super::{Observers, Part, Step};
-use crate::integrate::Motion;
+use crate::integrate::Path;
 use crate::numerics::Size;
 
 impl Observers<'_> {
@@ -72,7 +72,7 @@ impl Observers<'_> {
 /// secant method, from a place that is off by less than a thousandth of the part, until a step is as short as places
 /// are close ([`Interpolants::CLOSE`]): what is left is then smaller by as much again. Of the functions the first are the
 /// `n` free coordinates that are no multipliers, then their rates.
-fn polish<F: Size>((motion, n): (&dyn Motion<F>, usize), part: Part, f: usize, tau: f64) -> f64 {
+fn polish<F: Size>((motion, n): (&dyn Path<F>, usize), part: Part, f: usize, tau: f64) -> f64 {
     let rate = |tau: f64| {
         let (_, v, a) = motion.at(tau);
         if f < n { v[f] } else { a[f - n] }

@@ -24,7 +24,7 @@ use super::guards;
 use super::outputs::Outputs;
 use super::problem::{Problem, Record};
 use super::simulation::Here;
-use crate::integrate::Motion;
+use crate::integrate::Path;
 use crate::kernel::Free;
 use crate::model::{Contacts, Mode};
 use crate::numerics::Size;
@@ -173,7 +173,7 @@ impl Functions {
 /// A step that was made, or what its first event has left of it.
 pub(super) struct Step<'s, 'e, F: Size> {
     pub equations: &'s mut Equations<'e, F>,
-    pub motion: &'s dyn Motion<F>,
+    pub motion: &'s dyn Path<F>,
     pub mode: &'s Mode,
     /// Room for the full state of a row; its free coordinates are overwritten.
     pub here: &'s mut Here,
@@ -271,6 +271,11 @@ impl<'o> Observers<'o> {
         let recording = &self.recording;
         let seen = recording.sees_steps || recording.sees_points;
         self.ledger.is_some() || self.extremes.is_some() || seen
+    }
+
+    /// Whether a step up to this local time is looked at between its ends.
+    pub fn look_within<F: Size>(&self, equations: &Equations<F>, to: f64) -> bool {
+        self.extremes.is_some() || self.due(equations, to).is_some()
     }
 
     /// Whether what is recorded in a mode depends on the accelerations.
