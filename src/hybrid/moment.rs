@@ -9,7 +9,7 @@ use super::outputs::Outputs;
 use super::problem::Problem;
 use super::simulation::Simulation;
 use super::solvers::{SlotsOf, Solvers};
-use crate::integrate::Motion;
+use crate::integrate::{OneStep, Path};
 use crate::kernel::{Context, Free, ModeKernel, with_kernel};
 use crate::model::name::intern;
 use crate::model::{Mode, Model};
@@ -222,7 +222,6 @@ impl<'p> Simulation<'p> {
         }
         let scale = self.scale(kernel.size());
         let is_after_step = self.stage.is_after_step();
-        let slots = self.solvers.slots();
         if !moves {
             self.context.hold(&self.here.q);
         }
@@ -244,22 +243,15 @@ impl<'p> Simulation<'p> {
             self.piece,
         );
         let to = self.here.now.since(self.began);
-        let dense: Option<&dyn Motion<F>> = match self.made_by {
+        let slots = self.solvers.slots();
+        let path: Option<&dyn Path<F>> = match self.made_by {
             _ if !is_after_step => None,
-            MadeBy::Taylor => slots.taylor[index]
-                .as_deref()
-                .and_then(|m| Some(m.dense()? as _)),
-            MadeBy::RadauOfFive => {
-                let method = slots.radau_of_five[index].as_deref();
-                method.and_then(|m| Some(m.dense()? as _))
-            }
-            MadeBy::RadauOfSeven => {
-                let method = slots.radau_of_seven[index].as_deref();
-                method.and_then(|m| Some(m.dense()? as _))
-            }
+            MadeBy::Taylor => path_of(&mut slots.taylor[index], &mut equations),
+            MadeBy::RadauOfFive => path_of(&mut slots.radau_of_five[index], &mut equations),
+            MadeBy::RadauOfSeven => path_of(&mut slots.radau_of_seven[index], &mut equations),
         };
         let found = match is_after_step {
-            true => within(&mut equations, dense, to, t),
+            true => within(&mut equations, path, to, t),
             false => Err(now),
         };
         let [q, v, a] = found.map_err(|from| NotComputed {
@@ -291,21 +283,31 @@ impl<'p> Simulation<'p> {
     }
 }
 
+/// The motion in the last step of a method, if it has made one.
+fn path_of<'m, 'a, F: Size, M: OneStep<F, Equations<'a, F>>>(
+    method: &'m mut Option<Box<M>>,
+    equations: &mut Equations<'a, F>,
+) -> Option<&'m dyn Path<F>> {
+    let method = method.as_deref_mut()?;
+    method.dense()?;
+    Some(method.path(equations))
+}
+
 /// The motion at time `t`, s, if it is within a step that ends at local time `to`; else when that begins, s.
 fn within<F: Size>(
     equations: &mut Equations<F>,
-    dense: Option<&dyn Motion<F>>,
+    path: Option<&dyn Path<F>>,
     to: f64,
     t: f64,
 ) -> Result<[F::Vector; 3], f64> {
     let began = equations.clock.start;
     let seconds = |tau: f64| began.plus(tau).seconds();
-    let dense = dense.ok_or(seconds(to))?;
-    let from = dense.start();
+    let path = path.ok_or(seconds(to))?;
+    let from = path.start();
     match seconds(from) <= t && t <= seconds(to) {
         true => {
             let tau = Instant::new(t).since(began).clamp(from, to);
-            Ok(motion(equations, dense, tau, true))
+            Ok(motion(equations, path, tau, true))
         }
         false => Err(seconds(from)),
     }

@@ -219,7 +219,8 @@ impl<'p> Simulation<'p> {
         if self.observers.ledger.is_some() && limit.at.since(self.here.now) > 0.0 {
             let (before, mode) = (self.here.now, self.mode());
             let work = with_kernel!(&mode.kernels, k => self.go_on_to(k, before, limit.at))?;
-            self.take_limit(limit, work);
+            let (q, v) = limit.state.split_at(n);
+            self.take_limit([q, v], work);
         }
         self.here.now = limit.at;
         self.here.q.copy_from_slice(&limit.state[..n]);
@@ -274,14 +275,13 @@ impl<'p> Simulation<'p> {
         Ok(kernel.powers(&self.context, at))
     }
 
-    /// Takes the state of a limit: all impacts that are left happen there, at once. The ledger has the energy that they lose, and the
-    /// work till there.
-    pub(super) fn take_limit(&mut self, limit: &Limit, work: [f64; 2]) {
-        let n = self.here.q.len();
+    /// Takes coordinates and rates at a limit, where all impacts that are left happen at once. The ledger has the energy that they lose,
+    /// and the work till there.
+    pub(super) fn take_limit(&mut self, [q, v]: [&[f64]; 2], work: [f64; 2]) {
         let energies = (self.observers.ledger.is_some())
             .then(|| (self.stored_energy(), self.ground_momenta()));
-        self.here.q.copy_from_slice(&limit.state[..n]);
-        self.here.v.copy_from_slice(&limit.state[n..]);
+        self.here.q.copy_from_slice(q);
+        self.here.v.copy_from_slice(v);
         self.set_context();
         let jump = energies.map(|before| self.energy_jump(before));
         if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, jump) {

@@ -53,8 +53,9 @@ pub struct Radau<const S: usize, F: Size> {
     stages: Stages<S, F>,
     /// Motion in the last step; `None` after a restart.
     dense: Kept<Dense<S, F>>,
-    /// Room for it as accurate as the ends.
+    /// It as accurate as the ends, and whether that was looked for and found.
     refined: Refined<F>,
+    is_refined: Cached,
     /// Components that the last step did not resolve.
     unresolved: F::List<bool>,
     /// How much of the error of each coordinate counts.
@@ -65,8 +66,20 @@ pub struct Radau<const S: usize, F: Size> {
 }
 
 persist!([const S: usize, F: Size] Radau<S, F> {
-    controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, controlled, counters
+    controller, newton, linearization, proposal, start, end, lost_at_start, lost, stages, dense, unresolved, controlled, counters,
+    is_refined
 } but { control, uniform, refined });
+
+/// What was found and can be found again: a run that goes on from a checkpoint does so.
+#[derive(Debug, Clone)]
+struct Cached(Option<bool>);
+
+impl Persist for Cached {
+    fn persist(&mut self, _: &mut Memory) -> Option<()> {
+        self.0 = None;
+        Some(())
+    }
+}
 
 impl Blank for Linearized {
     fn blank() -> Self {
@@ -100,6 +113,7 @@ where
             stages: Stages::zeros(size),
             dense: Kept::nothing(Dense::zero(size)),
             refined: Refined::nothing(size),
+            is_refined: Cached(None),
             unresolved: size.list(false),
             controlled: size.repeat(1.0),
             uniform: Series::zero(size),
@@ -201,11 +215,16 @@ where
     /// If no step was made.
     pub(super) fn path<Y: System<F>>(&mut self, system: &mut Y) -> &dyn Path<F> {
         let dense = self.dense.get().expect("a step was made");
-        let (start, end) = (&self.start, &self.end);
-        let is_resolved = (0..start.size().get()).all(|i| !self.unresolved[i]);
-        let weights = self.control.weights(&start.q, &start.v, &self.controlled);
-        match is_resolved && self.refined.refine(system, [start, end], dense, &weights) {
-            true => &self.refined,
+        let start = &self.start;
+        let refined = &mut self.refined;
+        let is_refined = *self.is_refined.0.get_or_insert_with(|| {
+            let weights = self.control.weights(&start.q, &start.v, &self.controlled);
+            let (end, _) = ended(start, &self.lost_at_start, &self.stages, dense.t_end);
+            (0..start.size().get()).all(|i| !self.unresolved[i])
+                && refined.refine(system, [start, &end], dense, &weights)
+        });
+        match is_refined {
+            true => refined,
             false => dense,
         }
     }
@@ -454,6 +473,8 @@ where
     ) -> Result<u32, StepError> {
         let t = origin.t;
         let tableau = RadauIia::<S>::TABLEAU;
+        // The stages of the last step are gone.
+        self.is_refined.0.get_or_insert(false);
         match self.dense.get() {
             // The first iteration solves a linear system, wherever it starts from. Seven stages serve
             // tolerances at which rounding counts: there the correction is kept small.
@@ -524,16 +545,9 @@ where
     /// Makes the solved stages the step from `origin`, which ends at `t`, rounded by `t_lost`.
     #[inline]
     fn accept(&mut self, origin: &State<F>, lost: Lost<F>, h: f64, (t, t_lost): (f64, f64)) {
-        let mut end = State {
-            a: self.stages.a[S - 1].clone(),
-            ..origin.clone()
-        };
-        let mut now_lost = Lost::nothing(origin.size());
-        (end.t, now_lost.t) = (t, t_lost);
-        for l in 0..origin.size().get() {
-            (end.q[l], now_lost.q[l]) = add(origin.q[l], self.stages.q_change[l], lost.q[l]);
-            (end.v[l], now_lost.v[l]) = add(origin.v[l], self.stages.v_change[l], lost.v[l]);
-        }
+        let (end, mut now_lost) = ended(origin, &lost, &self.stages, t);
+        now_lost.t = t_lost;
+        self.is_refined = Cached(None);
         self.start.clone_from(origin);
         self.end = end;
         self.lost_at_start = lost;
@@ -557,4 +571,25 @@ where
             is_near_end: false,
         }
     }
+}
+
+/// The state at time `t`, s, that the stages of a step lead to from its start, and what is lost in rounding it.
+#[inline(always)]
+fn ended<const S: usize, F: Size>(
+    start: &State<F>,
+    lost: &Lost<F>,
+    stages: &Stages<S, F>,
+    t: f64,
+) -> (State<F>, Lost<F>) {
+    let mut end = State {
+        a: stages.a[S - 1].clone(),
+        t,
+        ..start.clone()
+    };
+    let mut now_lost = Lost::nothing(start.size());
+    for l in 0..start.size().get() {
+        (end.q[l], now_lost.q[l]) = add(start.q[l], stages.q_change[l], lost.q[l]);
+        (end.v[l], now_lost.v[l]) = add(start.v[l], stages.v_change[l], lost.v[l]);
+    }
+    (end, now_lost)
 }

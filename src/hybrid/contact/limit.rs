@@ -178,7 +178,8 @@ impl<'p> Simulation<'p> {
             impulse.multiplier.map_or(0.0, added)
         };
         let told = self.problem.variant().impulses.iter().map(of_limit).collect();
-        self.take_limit(limit, work);
+        let rates = self.here.v.to_vec();
+        self.take_limit([&limit.state[..n], &rates], work);
         Ok(told)
     }
 }
