@@ -139,11 +139,15 @@ impl<F: Size> Refined<F> {
         }
         let (q, v) = self.state(self.offset(worst));
         let mut again = q.size().zeros();
-        if system.acceleration(times[worst], &q, &v, &mut again).is_err() {
+        if system
+            .acceleration(times[worst], &q, &v, &mut again)
+            .is_err()
+        {
             return false;
         }
-        let first = &self.accelerations[worst];
-        let left = (0..q.size().get()).map(|i| self.h * (again[i] - first[i]).abs() * weights.v[i]);
+        // Between the start and the stages the correction changes its sign, and so does what it causes.
+        let (first, lobe) = (&self.accelerations[worst], self.h / (S + 1) as f64);
+        let left = (0..q.size().get()).map(|i| lobe * (again[i] - first[i]).abs() * weights.v[i]);
         // No number where one is not.
         let converges = left.sum::<f64>() <= CONTRACTION * corrected;
         self.meet(end);

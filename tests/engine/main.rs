@@ -23,6 +23,7 @@ mod grips;
 mod hills;
 mod impacts;
 mod impulses;
+mod inside_steps;
 mod invariants;
 mod knots;
 mod libraries;

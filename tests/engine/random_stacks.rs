@@ -9,6 +9,10 @@ use dalembert::record::{Run, Silent};
 /// Stacks in the suite.
 const SHARE: u64 = 30;
 
+/// Others, in which accumulations accumulate (214, 246), a contact touches beside another that rests (408), and Newton's iteration
+/// ended too soon (119, 502).
+const ALSO: [u64; 5] = [119, 214, 246, 408, 502];
+
 const G: f64 = 9.81;
 
 const CONTACTS: [&str; 4] = ["lower_left", "lower_right", "upper_left", "upper_right"];
@@ -71,7 +75,7 @@ impl Stack {
         }
     }
 
-    fn check(&self, run: &Run, of: &str, [vertical, horizontal, ledger]: [f64; 3]) {
+    fn check(&self, run: &Run, of: &str, [vertical, horizontal, ledger, of_event]: [f64; 4]) {
         let column = |name: &str| run.trajectory.column(name).expect("a column");
         let outputs = |of: &str| CONTACTS.map(|contact| column(&format!("{contact}.{of}")));
         let [gaps, slips, normals, frictions] = ["gap", "slip", "normal", "friction"].map(outputs);
@@ -132,8 +136,9 @@ impl Stack {
         let energy = run.energy.as_ref().unwrap();
         let turnover =
             energy.initial.abs() + energy.input_work.abs() + energy.lost_at_impacts.abs();
+        let within = ledger + of_event * run.events.len() as f64;
         assert!(
-            energy.imbalance().abs() <= ledger * turnover,
+            energy.imbalance().abs() <= within * turnover,
             "{of}: {energy:?}"
         );
     }
@@ -143,15 +148,16 @@ impl Stack {
 fn random_stacks_of_blocks_keep_all_laws() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
+    let from = asked("DALEMBERT_FROM").unwrap_or(0);
     let only = asked("DALEMBERT_RANDOM_SCENE");
     let (mut events, mut stops) = (0, Vec::new());
-    // Also one whose accumulations accumulate.
-    let numbers = only.map_or_else(|| (0..share).chain([246]).collect(), |n| vec![n]);
+    let numbers = only.map_or_else(|| (from..share).chain(ALSO).collect(), |n| vec![n]);
     for number in numbers {
         let mut stack = Stack::random(&mut Random(number));
+        // Where contacts close the implicit method is off by a tolerance each time.
         let methods = [
-            (Method::Taylor, [1e-11, 1e-11, 1e-11]),
-            (Method::Radau, [1e-11, 1e-11, 1e-10]),
+            (Method::Taylor, [1e-11, 1e-11, 1e-11, 0.0]),
+            (Method::Radau, [1e-11, 1e-11, 1e-10, 1e-12]),
         ];
         for (method, within) in methods {
             stack.problem.method = method;
@@ -166,7 +172,7 @@ fn random_stacks_of_blocks_keep_all_laws() {
             stack.check(&run, &of, within);
             events += run.events.len();
             if let Some(failure) = &run.failure {
-                let is_known = number >= SHARE && number != 246;
+                let is_known = number >= SHARE && !ALSO.contains(&number);
                 assert!(is_known, "{of}: {}", failure.reason);
                 stops.push(format!("{of}: {}", failure.reason));
             }

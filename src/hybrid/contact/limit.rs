@@ -177,7 +177,13 @@ impl<'p> Simulation<'p> {
             let added = |i: usize| self.next[n + i] - self.here.v[i];
             impulse.multiplier.map_or(0.0, added)
         };
-        let told = self.problem.variant().impulses.iter().map(of_limit).collect();
+        let told = self
+            .problem
+            .variant()
+            .impulses
+            .iter()
+            .map(of_limit)
+            .collect();
         let rates = self.here.v.to_vec();
         self.take_limit([&limit.state[..n], &rates], work);
         Ok(told)
