@@ -154,10 +154,10 @@ fn random_stacks_of_blocks_keep_all_laws() {
     let numbers = only.map_or_else(|| (from..share).chain(ALSO).collect(), |n| vec![n]);
     for number in numbers {
         let mut stack = Stack::random(&mut Random(number));
-        // Where contacts close the implicit method is off by a tolerance each time.
+        // Along the ground's motion steps are off by parts of a tolerance; where contacts close the implicit method is off by one.
         let methods = [
-            (Method::Taylor, [1e-11, 1e-11, 1e-11, 0.0]),
-            (Method::Radau, [1e-11, 1e-11, 1e-10, 1e-12]),
+            (Method::Taylor, [1e-11, 1e-10, 1e-11, 0.0]),
+            (Method::Radau, [1e-11, 1e-10, 1e-10, 1e-12]),
         ];
         for (method, within) in methods {
             stack.problem.method = method;
