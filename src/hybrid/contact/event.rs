@@ -74,10 +74,13 @@ impl<'p> Simulation<'p> {
         };
         self.accumulation.set_needs_series(needs_series);
         let unresolved = hop == Resolution::Lost;
-        if unresolved && (self.rest_unresolved(contacts)? || self.rest_of_rests(contacts)?) {
+        if unresolved && self.rest_unresolved(contacts)? {
             return Ok(());
         }
         if closes && self.accumulation.is_unresolved(unresolved) {
+            if self.rest_of_rests(contacts)? {
+                return Ok(());
+            }
             return Err(Box::new(Reason::Chattering {
                 transitions: vec![intern(&format!("{} strikes", contacts.contacts[k].name))],
                 missing: Restless::BelowRounding,
