@@ -243,3 +243,91 @@ impl<F: Size> Path<F> for Refined<F> {
         self.state(t - self.t0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::{Const, Radau, Tolerances};
+    use nalgebra::{SMatrix, SVector};
+
+    #[test]
+    fn cosines_are_cosines() {
+        for n in [degree(5), degree(7)] {
+            for j in 0..=4 * n {
+                let exact = (j as f64 * std::f64::consts::PI / n as f64).cos();
+                assert!((cosine(n, j) - exact).abs() < 4e-15, "{j} of {n}");
+            }
+        }
+    }
+
+    /// a = sin ωt − λ v, of one coordinate.
+    struct Forced {
+        omega: f64,
+        lambda: f64,
+    }
+
+    type One = SVector<f64, 1>;
+    type Square = SMatrix<f64, 1, 1>;
+
+    impl System<Const<1>> for Forced {
+        fn residual(&mut self, t: f64, _: &One, v: &One, a: &One, r: &mut One) {
+            r[0] = a[0] + self.lambda * v[0] - (self.omega * t).sin();
+        }
+
+        fn jacobian(
+            &mut self,
+            _: f64,
+            _: &One,
+            _: &One,
+            _: &One,
+            m: &mut Square,
+            c: &mut Square,
+            k: &mut Square,
+        ) {
+            (m[0], c[0], k[0]) = (1.0, self.lambda, 0.0);
+        }
+    }
+
+    /// A step of length 1 from rest, and whether its path is another than its dense output; largest differences of both from
+    /// the rate v = ∫ sin ωt.
+    fn step(omega: f64, lambda: f64) -> (bool, [f64; 2]) {
+        let mut system = Forced { omega, lambda };
+        let one = One::repeat(1.0);
+        let tolerances = Tolerances::<Const<1>>::new(1e-13, one * 1e-13, one * 1e-13).unwrap();
+        let mut radau = Radau::<7, Const<1>>::new(&tolerances);
+        let zero = One::zeros();
+        radau.restart(0.0, &zero, &zero, &zero);
+        radau.step_exactly(&mut system, 1.0).unwrap();
+        let dense = radau.dense().unwrap().clone();
+        let path = radau.path(&mut system);
+        let (mut differs, mut off) = (false, [0.0; 2]);
+        for j in 0..=100 {
+            let t = f64::from(j) / 100.0;
+            let exact = (1.0 - (omega * t).cos()) / omega;
+            let [(q, v, _), (own_q, own_v, _)] = [dense.at(t), path.at(t)];
+            differs |= q != own_q || v != own_v;
+            for (off, v) in off.iter_mut().zip([v, own_v]) {
+                *off = f64::max(*off, (v[0] - exact).abs());
+            }
+        }
+        let (q, v, _) = path.at(1.0);
+        let end = radau.state();
+        assert!((q[0] - end.q[0]).abs() < 1e-15 && (v[0] - end.v[0]).abs() < 1e-15);
+        (differs, off)
+    }
+
+    #[test]
+    fn a_path_follows_what_its_dense_output_does_not() {
+        let (differs, [dense, path]) = step(3.0, 0.0);
+        assert!(
+            differs && dense > 1e-7 && path < 1e-12,
+            "{dense:e} {path:e}"
+        );
+    }
+
+    #[test]
+    fn a_stiff_step_keeps_its_dense_output() {
+        let (differs, _) = step(3.0, 1e4);
+        assert!(!differs);
+    }
+}
