@@ -61,6 +61,7 @@ impl<'p> Simulation<'p> {
         let of = |what: usize| (k * Contacts::DECISIONS + what, 1.0);
         let asked = vec![of(FORWARDS), of(BACKWARDS)];
         let candidate = Candidate { states, discrete };
-        self.stay_positive(contacts, &candidate, asked).is_some()
+        self.stay_positive(contacts, (&candidate, false), asked)
+            .is_some()
     }
 }

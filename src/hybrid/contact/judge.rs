@@ -94,7 +94,7 @@ impl<'p> Simulation<'p> {
         // bound): such sets are idle, and tried where no other is admitted.
         let mut idle = Vec::new();
         let mut admitted = Vec::new();
-        let mut judge = |states: Vec<ContactState>, idle: Option<&mut Vec<_>>| {
+        let mut judge = |states: Vec<ContactState>, idle: Option<&mut Vec<_>>, is_exact: bool| {
             let sharing = Sharing::new(contacts, geometry, places, &states)?;
             match idle {
                 Some(idle) if sharing.holds_a_slip(geometry, &states, touching) => {
@@ -112,7 +112,7 @@ impl<'p> Simulation<'p> {
             if is_out && !cfg!(debug_assertions) {
                 return None;
             }
-            let of = (states, sharing);
+            let of = (states, sharing, is_exact);
             let admitted = self.admitted((contacts, geometry), places, touching, of);
             debug_assert!(
                 !(is_out && admitted.is_some()),
@@ -120,14 +120,24 @@ impl<'p> Simulation<'p> {
             );
             admitted
         };
-        for states in sets {
-            admitted.extend(judge(states, Some(&mut idle)));
+        for states in &sets {
+            admitted.extend(judge(states.clone(), Some(&mut idle), false));
         }
         if admitted.is_empty() {
-            admitted.extend(idle.into_iter().filter_map(|states| judge(states, None)));
+            let of_idle = idle
+                .into_iter()
+                .filter_map(|states| judge(states, None, false));
+            admitted.extend(of_idle);
         }
         if admitted.is_empty() {
-            admitted.extend(all_of_many(&choices).filter_map(|states| judge(states, None)));
+            let all = all_of_many(&choices);
+            admitted.extend(all.filter_map(|states| judge(states, None, false)));
+        }
+        // Of two forces that are as small as the state's rounding makes them (a block that rests on another, and both fall freely) one may
+        // be zero within its bound and fall, and the other below zero beyond its own. Then the state is taken as it is.
+        if admitted.is_empty() {
+            let taken = sets.into_iter();
+            admitted.extend(taken.filter_map(|states| judge(states, None, true)));
         }
         // Between kinetic and static friction both are admissible: what sticks goes on sticking, and what it held stays closed.
         let yields = |a: &Admitted, b: &Admitted| {
@@ -203,7 +213,7 @@ impl<'p> Simulation<'p> {
         (contacts, geometry): (&'p Contacts, &Geometry),
         places: &ContactValues,
         touching: &[Option<Tangent>],
-        (states, sharing): (Vec<ContactState>, Sharing),
+        (states, sharing, is_exact): (Vec<ContactState>, Sharing, bool),
     ) -> Option<Admitted> {
         let present = self.context.discrete().to_vec();
         let candidate = |dropped: &Dropped| {
@@ -214,7 +224,7 @@ impl<'p> Simulation<'p> {
             Candidate { states, discrete }
         };
         let first = candidate(&sharing.without_friction(geometry));
-        if let Some(orders) = self.admit(contacts, &first, touching) {
+        if let Some(orders) = self.admit(contacts, (&first, is_exact), touching) {
             let candidate = first;
             return Some(Admitted { candidate, orders });
         }
@@ -224,7 +234,7 @@ impl<'p> Simulation<'p> {
         let forces = self.forces(contacts, &first)?;
         let corners = sharing.corners(geometry, places, &forces);
         corners.iter().map(candidate).find_map(|candidate| {
-            let orders = self.admit(contacts, &candidate, touching)?;
+            let orders = self.admit(contacts, (&candidate, is_exact), touching)?;
             Some(Admitted { candidate, orders })
         })
     }
@@ -276,28 +286,29 @@ impl<'p> Simulation<'p> {
     fn admit(
         &mut self,
         contacts: &'p Contacts,
-        candidate: &Candidate,
+        (candidate, is_exact): (&Candidate, bool),
         touching: &[Option<Tangent>],
     ) -> Option<Orders> {
         let asked = asked(contacts, candidate, touching);
-        let orders = self.stay_positive(contacts, candidate, asked)?;
+        let orders = self.stay_positive(contacts, (candidate, is_exact), asked)?;
         self.keeps_dropped(contacts, candidate, touching)
             .then_some(orders)
     }
 
     /// Which derivatives decided that results of the tape of decisions, each with its sign, are positive in a candidate or become so
-    /// at once, if they do.
+    /// at once, if they do. The state is one that is known to its rounding, or `is_exact`.
     pub(super) fn stay_positive(
         &mut self,
         contacts: &'p Contacts,
-        candidate: &Candidate,
+        (candidate, is_exact): (&Candidate, bool),
         asked: Vec<(usize, f64)>,
     ) -> Option<Orders> {
         let mode: &Mode = self.mode();
         let at = point(&self.next, self.here.q.len(), &candidate.discrete);
         let tape = &contacts.decisions;
         let expansion = &mut self.expansion;
-        expansion.begin(mode, at, Some([&self.sizes, &self.rate_sizes]));
+        let sizes = [&*self.sizes, &*self.rate_sizes];
+        expansion.begin(mode, at, (!is_exact).then_some(sizes));
         expansion.expand(mode, tape, 0);
         let mut open = Vec::new();
         let mut orders = Vec::new();
