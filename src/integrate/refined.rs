@@ -2,8 +2,8 @@
 //!
 //! Dense output is an interpolant of accelerations at few points: its order is lower than that of the end, so that inside a step it is
 //! off by up to a hundred tolerances. What is read off there, rows and extremes, deserves better. So the accelerations at
-//! Chebyshev points follow from the equations along the dense output; their polynomial, integrated twice, is a better motion, along which
-//! they are evaluated again. Each sweep of this iteration (Picard 1890) gains at least one order, until the tolerance is met.
+//! Chebyshev points follow from the equations along the dense output; their polynomial, integrated twice, is a better motion: one
+//! sweep of Picard's iteration (1890), which gains at least one order. A second one is not worth its time.
 //!
 //! It converges where the step is short against all that the equations know, also against what is stiff in them. Where it does not, the
 //! dense output stays: a stiff motion inside of a step is as accurate as the stages tell.
@@ -15,8 +15,8 @@ use super::system::System;
 use super::tolerances::Weights;
 use crate::numerics::{Size, Vector};
 
-/// Degree of the polynomials of accelerations for a method of so many stages. Accelerations along the dense output err by order
-/// `stages` + 2 or more; so many more points do not let them gain by being closer together.
+/// Degree of the polynomials of accelerations for a method of so many stages: what depends on time alone, such as the ground's motion,
+/// they follow as well as the end of the step does, by order 2 `stages` − 1.
 const fn degree(stages: usize) -> usize {
     match stages {
         7.. => 14,
